@@ -1,0 +1,17 @@
+"""Thermal touch for robot grasping: a MuJoCo gripper whose fingertips feel heat, and the same interface on hardware.
+
+Importing the package registers its Gymnasium environments by string and loads neither MuJoCo nor a compiler, so
+`gymnasium.make("thermograsp:thermograsp/Grasp-v0")` works and the import stays cheap.
+"""
+
+from gymnasium.envs.registration import register
+
+__version__ = "0.1.0"
+
+register(
+    id="thermograsp/Grasp-v0",
+    entry_point="thermograsp.envs:GraspEnv",
+    vector_entry_point="thermograsp.envs:GraspVectorEnv",
+)
+
+del register

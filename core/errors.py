@@ -1,0 +1,96 @@
+"""What the package raises, and the checks of numbers that everybody shares.
+
+Every class also derives from the built-in that describes it, so that callers need not know ours. Messages say what is
+wrong, which value it was, and what to do.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable
+from numbers import Real
+
+
+class ThermograspError(Exception):
+    """Base of everything that the package raises on purpose."""
+
+
+class InvalidValueError(ThermograspError, ValueError):
+    """An argument, a file's entry or a setting has a value that cannot be used."""
+
+
+class UnknownNameError(ThermograspError, LookupError):
+    """A name that is not among the known ones. Made by unknown_name."""
+
+
+class MissingDependencyError(ThermograspError, ImportError):
+    """An optional package is needed and not installed; the message names the extra that brings it."""
+
+
+class MeshError(InvalidValueError):
+    """A mesh cannot serve as an object: open, empty, inverted, or in an unusable format."""
+
+
+class SimulationError(ThermograspError, RuntimeError):
+    """A computation went wrong although its input was valid, such as a state that is no longer finite."""
+
+
+def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameError:
+    """The error for `name`, which is not a known `kind`: with near names, or all of them where nothing is near."""
+    names = sorted(known)
+    near = _near(name, names) if isinstance(name, str) else []
+    if near:
+        hint = f"did you mean {_either(near)}?"
+    elif names:
+        hint = f"known: {', '.join(names)}"
+    else:
+        hint = "none is known"
+    return UnknownNameError(f"unknown {kind} {name!r}; {hint}")
+
+
+def finite(name: str, value: object) -> float:
+    """The value as a float. Raises InvalidValueError unless it is a finite real number (bool is not a number here)."""
+    number = _number(name, value)
+    if not math.isfinite(number):
+        raise InvalidValueError(f"{name} must be a finite number, got {value!r}")
+    return number
+
+
+def positive(name: str, value: object) -> float:
+    """The value as a float. Raises InvalidValueError unless it is finite and above 0."""
+    number = _number(name, value)
+    if not (math.isfinite(number) and number > 0):
+        raise InvalidValueError(f"{name} must be a finite number above 0, got {value!r}")
+    return number
+
+
+def non_negative(name: str, value: object) -> float:
+    """The value as a float. Raises InvalidValueError unless it is finite and not below 0."""
+    number = _number(name, value)
+    if not (math.isfinite(number) and number >= 0):
+        raise InvalidValueError(f"{name} must be a finite number, 0 or above, got {value!r}")
+    return number
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise InvalidValueError(f"{name} must be a number, got {value!r} ({type(value).__name__})")
+    try:
+        return float(value)
+    except OverflowError:
+        raise InvalidValueError(f"{name} must be a finite number, got an integer beyond float64") from None
+
+
+def _near(name: str, names: list[str]) -> list[str]:
+    """Up to three of `names` that resemble `name` in spelling, or else that hold it as a part."""
+    folded = {known.casefold(): known for known in names}
+    wanted = name.casefold()
+    close = difflib.get_close_matches(wanted, folded, n=3)
+    parts = [key for key in folded if len(wanted) >= 3 and wanted in key and key not in close]
+    return [folded[key] for key in (close + parts)[:3]]
+
+
+def _either(names: list[str]) -> str:
+    quoted = [repr(name) for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"

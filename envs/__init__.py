@@ -1,0 +1,1 @@
+"""MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments."""

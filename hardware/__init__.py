@@ -1,0 +1,1 @@
+"""Wire formats, drivers, emulators and the serial plant."""
