@@ -1,0 +1,61 @@
+# `make demo` and `make test` need only make and Python >= 3.11 with pip.
+PYTHON  ?= python3
+VENV    ?= .venv
+PY      := $(VENV)/bin/python
+INSTALL ?= $(PY) -m pip install --disable-pip-version-check -q
+# faster: make test INSTALL="uv pip install -p .venv"
+
+DEMO_FLAGS  ?=
+TEST_FLAGS  ?=
+BENCH_FLAGS ?=
+
+FOLDERS := core envs thermal assets hardware
+FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
+
+.PHONY: demo test bench lint install clean distclean FORCE
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+
+demo: build/.run
+	$(PY) -m thermograsp demo $(DEMO_FLAGS)
+
+test: build/.test
+	$(PY) -m pytest $(TEST_FLAGS)
+
+bench: build/.run
+	$(PY) -m thermograsp bench $(BENCH_FLAGS)
+
+lint: build/.dev
+	$(PY) -m ruff check .
+	$(PY) -m ruff format --check .
+	$(PY) -m pyright --pythonpath $(PY)
+
+install: build/.test
+
+# Stamps live in build/, beside the link tree they vouch for: removing build/ or .venv/, adding or removing a source
+# file, or editing setup.cfg reinstalls.
+build/.run: EXTRA :=
+build/.test: EXTRA := [test]
+build/.dev: EXTRA := [dev]
+build/.run build/.test build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+	$(INSTALL) --no-build-isolation -e '.$(EXTRA)'
+	@touch $@
+
+build/.files: FORCE
+	@mkdir -p build
+	@printf '%s\n' $(FILES) | cmp -s - $@ || printf '%s\n' $(FILES) > $@
+
+# Without ensurepip (Debian without python3-venv) the venv gets its pip from the system's pip.
+$(VENV)/.created:
+	@$(PYTHON) -c 'import sys; sys.exit("Python 3.11 or newer is needed: make PYTHON=..." if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv --clear $(VENV) || { \
+	  $(PYTHON) -m venv --clear --without-pip $(VENV) && \
+	  $(PYTHON) -m pip --python $(PY) install -q pip; }
+	$(INSTALL) 'setuptools>=77'
+	@touch $@
+
+clean:
+	rm -rf build dist *.egg-info .coverage .pytest_cache .ruff_cache
+
+distclean: clean
+	rm -rf $(VENV)
