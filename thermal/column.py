@@ -119,6 +119,18 @@ def press_curves(
     )
 
 
+def apart(problem: PressProblem, t: np.ndarray) -> PressCurves:
+    """Both bodies as they were: what a conductance of 0 leaves."""
+    n = len(sample_times(t))
+    return PressCurves(
+        temperature_drop=np.zeros(n),
+        heat_flow=np.zeros(n),
+        sensor_surface=np.full(n, problem.sensor_temperature),
+        object_surface=np.full(n, problem.object_temperature),
+        stored_heat=np.zeros((n, 2)),
+    )
+
+
 def sample_times(t: np.ndarray) -> np.ndarray:
     """t as (n,) floats. Raises InvalidValueError when one is negative or not finite."""
     t = np.atleast_1d(np.asarray(t, dtype=float))

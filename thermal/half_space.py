@@ -1,4 +1,4 @@
-"""Rung "half_space": the contact of two semi-infinite bodies, the quickest there is and right for the first moments only.
+"""Rung "half_space": the contact of two semi-infinite bodies, the quickest there is, right for the first moments only.
 
 T mode: element and object are half-spaces; O mode: the element is one under an ideal thermostat. The surfaces jump to
 
@@ -14,22 +14,24 @@ import numpy as np
 from scipy.special import erfc, erfcx
 
 from .closed_form import equivalent_slab
-from .column import constant_conductance, no_air, sample_times
+from .column import apart, constant_conductance, no_air, sample_times
 from .problem import PressCurves, PressProblem
 
 
 def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     """Curves at t (n,) s, >= 0.
 
-    The element is a half-space of its equivalent homogeneous layer (closed_form.equivalent_slab), the sensed layer at the
-    depths that have the same thermal resistance to the surface. Neglects: the element's far side (the thermostat in T
-    mode, the object in O mode), so it holds while t << R C of the element (R, C its resistance and capacity: 7 s for the
-    seed's; the drop reaches its depth after a tenth of that); what sets the layers apart; the object's
-    thickness; heat spreading sideways. In O mode the object gains nothing.
+    The element is a half-space of its equivalent homogeneous layer (closed_form.equivalent_slab), the sensed layer
+    at the depths that have the same thermal resistance to the surface. Neglects: the element's far side (the
+    thermostat in T mode, the object in O mode), so it holds while t << R C of the element (R, C its resistance and
+    capacity: 7 s for the seed's); what sets the layers apart; the object's thickness; heat spreading sideways.
+    In O mode the object gains nothing.
     Raises InvalidValueError when the conductance is a function of time or air is not 0.
     """
     conductance = constant_conductance(problem, "half_space")
     no_air(problem, "half_space")
+    if conductance == 0:
+        return apart(problem, t)
     t = sample_times(t)
     slab, stack = equivalent_slab(problem.stack), problem.stack
     element = np.sqrt(slab.conductivity * slab.heat_capacity) * stack.face_area  # W s^0.5 / K
@@ -88,7 +90,5 @@ def _temperature(
 
 def _heat(contact: float, rate: float, t: np.ndarray) -> np.ndarray:
     """J per kelvin, the integral of contact * erfcx(rate sqrt t)."""
-    if rate == 0:
-        return np.zeros_like(t)
     eta = rate * np.sqrt(t)
     return contact / rate**2 * (erfcx(eta) - 1 + 2 * eta / np.sqrt(np.pi))

@@ -1,9 +1,9 @@
 """Numerical inversion of Laplace transforms on a cotangent contour (Talbot's method).
 
-Abate & Valko (2004, Int. J. Numer. Meth. Eng. 60:979) fix Talbot's contour with one parameter and get 0.6 digits a node,
-about 8 with 14 nodes. The same contour with the coefficients of Weideman (2006, SIAM J. Numer. Anal. 44:2342, Talbot's
-contour optimised for singularities on the negative real axis, as in all heat conduction) gets 1.18 digits a node at
-the same cost, down to round-off: 7 nodes give 8 digits, 14 nodes 13 to 14, more do not help.
+Abate & Valko (2004, Int. J. Numer. Meth. Eng. 60:979) fix Talbot's contour with one parameter and get 0.6 digits a
+node, about 8 with 14 nodes. The same contour with the coefficients of Weideman (2006, SIAM J. Numer. Anal. 44:2342,
+Talbot's contour optimised for singularities on the negative real axis, as in all heat conduction) gets 1.18 digits a
+node at the same cost, down to round-off: 7 nodes give 8 digits, 12 to 14 nodes 13, more do not help.
 """
 
 from __future__ import annotations

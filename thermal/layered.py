@@ -11,11 +11,11 @@ import numpy as np
 
 from .column import (
     Column,
+    apart,
     constant_conductance,
     element_slabs,
     no_air,
     press_curves,
-    sample_times,
     slab_on_insulation,
 )
 from .impedance import Slab
@@ -30,7 +30,7 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     conductance = constant_conductance(problem, "layered")
     no_air(problem, "layered")
     if conductance == 0:
-        return _apart(problem, t)
+        return apart(problem, t)
     material, stack = problem.material, problem.stack
     body = Slab(problem.object_size[2], material.conductivity, material.density * material.specific_heat)
     column = Column(
@@ -43,14 +43,3 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
         object_area=problem.area if problem.mode == "T" else stack.face_area,
     )
     return press_curves(problem, t, column, first=(0.0, conductance * problem.area, 0.0, 0.0, 0.0, 0.0))
-
-
-def _apart(problem: PressProblem, t: np.ndarray) -> PressCurves:
-    n = len(sample_times(t))
-    return PressCurves(
-        temperature_drop=np.zeros(n),
-        heat_flow=np.zeros(n),
-        sensor_surface=np.full(n, problem.sensor_temperature),
-        object_surface=np.full(n, problem.object_temperature),
-        stored_heat=np.zeros((n, 2)),
-    )

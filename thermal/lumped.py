@@ -1,8 +1,8 @@
 """Rung "lumped": the sensor as a chain of thermal resistances, the object as one temperature.
 
-Neglects: the sensor's heat capacity and all conduction in the object, heat spreading in it included. Right late, for small
-objects of good conductors (Biot number below 0.1); wrong before the sensor's own settling, R C = 7 s for the seed's.
-It alone of the lower rungs follows a conductance that is a function of time, and the air.
+Neglects: the sensor's heat capacity and all conduction in the object, heat spreading in it included. Right late, for
+small objects of good conductors (Biot number below 0.1); wrong before the sensor's own settling, R C = 7 s for the
+seed's. It alone of the lower rungs follows a conductance that is a function of time, and the air.
 """
 
 from __future__ import annotations
@@ -32,8 +32,9 @@ def biot(problem: PressProblem) -> float:
 def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     """Curves at t (n,) s, >= 0, increasing: C dT/dt = G(t) (T_S - T) - air (free area) (T - T_M).
 
-    Exact for a constant conductance, second order in an eighth of the samples' spacing for one that varies. object_surface
-    is the object's temperature plus, in O mode, the element's rise above it. The element's stored heat is NaN.
+    Exact for a constant conductance, second order in an eighth of the samples' spacing for one that varies.
+    object_surface is the object's temperature plus, in O mode, the element's rise above it. The element's stored heat
+    is NaN.
     Raises InvalidValueError for sample times that are negative or not finite.
     """
     t = sample_times(t)
