@@ -91,9 +91,8 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
             return {name: archive[name] for name in archive.files}
     except FileNotFoundError:
         return None
-    except (
-        Exception
-    ):  # a damaged archive raises whatever its broken bytes lead to; the answer is always to rebuild
+    except Exception:  # noqa: BLE001
+        # A damaged archive raises whatever its broken bytes lead to, and the answer is always to build it again.
         return None
 
 

@@ -1,0 +1,72 @@
+"""Error classes and the shared checks of numbers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from thermograsp.errors import (
+    InvalidValueError,
+    MeshError,
+    MissingDependencyError,
+    SimulationError,
+    ThermograspError,
+    UnknownNameError,
+    finite,
+    non_negative,
+    positive,
+    unknown_name,
+)
+
+
+@pytest.mark.parametrize(
+    ("ours", "builtin"),
+    [
+        (InvalidValueError, ValueError),
+        (UnknownNameError, LookupError),
+        (MissingDependencyError, ImportError),
+        (MeshError, ValueError),
+        (SimulationError, RuntimeError),
+    ],
+)
+def test_errors_share_a_base_and_derive_from_a_builtin(ours: type, builtin: type) -> None:
+    assert issubclass(ours, ThermograspError)
+    assert issubclass(ours, builtin)
+
+
+@pytest.mark.parametrize("check", [finite, positive, non_negative])
+@pytest.mark.parametrize("value", [2, 2.0, np.float32(2), np.int64(2)])
+def test_numbers_pass_as_floats(check, value) -> None:
+    result = check("width", value)
+    assert type(result) is float
+    assert result == 2.0
+
+
+@pytest.mark.parametrize("check", [finite, positive, non_negative])
+@pytest.mark.parametrize(
+    "value", [math.nan, math.inf, -math.inf, True, np.True_, "2", None, [2], 2j, 10**400]
+)
+def test_what_is_no_finite_number_is_refused_by_name(check, value) -> None:
+    with pytest.raises(InvalidValueError, match="width must be a"):
+        check("width", value)
+
+
+def test_zero_and_below() -> None:
+    assert non_negative("width", 0) == 0.0
+    assert finite("width", -1) == -1.0
+    for check, value in ((positive, 0.0), (positive, -1), (non_negative, -1e-300)):
+        with pytest.raises(InvalidValueError, match=f"width must be .*, got {value!r}"):
+            check("width", value)
+
+
+def test_an_unknown_name_comes_with_near_ones() -> None:
+    known = ["glass", "stainless_steel", "brass"]
+    assert str(unknown_name("material", "glas", known)) == "unknown material 'glas'; did you mean 'glass'?"
+    assert "'stainless_steel'" in str(unknown_name("material", "Steel", known))
+    assert "'glass' or 'brass'" in str(unknown_name("material", "gras", known))
+
+
+def test_where_nothing_is_near_all_names_are_listed() -> None:
+    assert str(unknown_name("mode", "xyz", ["T", "O"])) == "unknown mode 'xyz'; known: O, T"
+    assert str(unknown_name("mode", 3, ["T", "O"])) == "unknown mode 3; known: O, T"
+    assert str(unknown_name("mode", "x", [])) == "unknown mode 'x'; none is known"
