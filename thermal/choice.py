@@ -1,0 +1,93 @@
+"""The smallest network that keeps a tolerance: candidates in order of cost, each measured against the full one.
+
+Each candidate is compared with the network of full order (itself within .0005 K of the semi-analytic solution) in the
+temperature drop after a touch, at the conductances and times that matter; both are evaluated exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+
+from .states import Orders, StateBasis, reduce, state_bases
+from .system import MOST_MODES, ContactSystem, GeometrySamples, assemble
+
+FIRST = 0.05  # s after a touch from which on a tolerance is kept
+FLOOR = 5e-4  # K, error of the full network per 12 K of initial difference
+_CUTS = np.geomspace(0.3, 1e-8, 40)  # weight below which states are left out
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """tolerance: K of temperature drop from FIRST s on. difference: K between sensor and object at the touch.
+    conductances: W/(m2 K) that occur. horizon: s of contact."""
+
+    tolerance: float
+    difference: float
+    conductances: tuple[float, ...]
+    horizon: float
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """system: the network. error: K, bound found for the demand it was chosen for."""
+
+    system: ContactSystem
+    error: float
+
+
+def choose(samples: GeometrySamples, demand: Demand) -> Choice:
+    """The cheapest system that meets the demand. Raises InvalidValueError where none does, with the best error."""
+    floor = FLOOR * max(abs(demand.difference) / 12, 1e-3)
+    full = {modes: samples.networks(modes) for modes in range(1, MOST_MODES + 1)}
+    bases = {modes: state_bases(networks, samples.geometry.area) for modes, networks in full.items()}
+    reference = _responses(assemble(samples.geometry, full[MOST_MODES]), demand)
+    best = np.inf
+    for orders in _candidates(bases):
+        networks = reduce(full[orders.modes], bases[orders.modes], orders)
+        system = assemble(samples.geometry, networks)
+        error = float(np.max(np.abs(_responses(system, demand) - reference), initial=0.0)) + floor
+        best = min(best, error)
+        if error <= demand.tolerance:
+            return Choice(system, error)
+    raise InvalidValueError(
+        f"no network keeps {demand.tolerance:g} K for this contact; the best is within {best:.2g} K: "
+        "ask for that tolerance, or for the semi-analytic rung"
+    )
+
+
+def _candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:
+    found = set()
+    for modes, bodies in bases.items():
+        for cut in _CUTS:
+            for sensor_cut in (cut, cut / 8):
+                orders = {
+                    name: max(int(np.sum(basis.weights > (sensor_cut if name == "sensor" else cut))), basis.still + 1)
+                    for name, basis in bodies.items()
+                }
+                found.add(Orders(modes, orders.get("sensor", 0), orders["even"], orders.get("odd")))
+    return sorted(found, key=lambda orders: (orders.multiply_adds, str(orders)))
+
+
+def _responses(system: ContactSystem, demand: Demand) -> np.ndarray:
+    """Temperature drops (cases, times) K of the first fingertip: it alone touches, and all touch."""
+    times = np.geomspace(FIRST, max(demand.horizon, 2 * FIRST), 40)
+    modes = system.modes
+    contacts = system.ports.shape[1] // modes
+    cases = []
+    for conductance in demand.conductances:
+        for touching in {1, contacts}:
+            weights = np.zeros(system.ports.shape[1])
+            weights[: touching * modes] = conductance * system.geometry.area
+            drive = np.zeros_like(weights)
+            drive[: touching * modes : modes] = demand.difference
+            scaled = system.ports * np.sqrt(weights)
+            decay, vectors = np.linalg.eigh(np.diag(system.rates) + scaled @ scaled.T)
+            source = vectors.T @ (system.ports @ (weights * drive))
+            product = np.outer(times, np.maximum(decay, 0.0))
+            grown = times[:, None] * np.where(product > 1e-12, -np.expm1(-product) / np.maximum(product, 1e-300), 1.0)
+            cases.append(grown @ (source * (vectors.T @ system.drop[0])))
+    return np.array(cases)
