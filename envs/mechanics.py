@@ -1,0 +1,329 @@
+"""Batched gripper mechanics over mujoco.batch: commands in, contact forces at every substep out.
+
+Shapes: B environments, S substeps, T = 2 fingertips (left, right), O objects.
+Environment i's numbers do not depend on B or on the number of threads, to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import mujoco.batch
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+
+from .scene import MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
+
+SUBSTEPS = 10
+MAX_FORCE = 40.0  # N
+MAX_LIFT_RATE = 0.05  # m/s
+MAX_HEIGHT = 0.15  # m
+OPENING_SPEED = 0.1  # m/s, the fastest the pads move relative to each other (a Robotiq 2F-85: .02 to .15)
+LIFT_ACCELERATION = 1.0  # m/s2, how fast the commanded lift rate is followed
+_WINDUP = 0.002  # m, how far the set point runs beyond where the force limit is reached
+_KEPT_MODELS = 512
+# The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
+_FAMILIES = ("body_", "bvh_", "cam_", "dof_", "geom_", "light_", "qpos")
+_MODEL_ARRAYS = tuple(sorted(name for name in mujoco.batch.MODEL_FIELDS if name.startswith(_FAMILIES)))
+
+
+@dataclass(frozen=True, slots=True)
+class ContactRecord:
+    """What happened at each substep of one control step; arrays of their own, never overwritten later.
+
+    force (B, S, T, O, 3) N: net force of the fingertip on the object in the pad's frame: normal (out of the
+    pad, > 0 when pressing), horizontal, and towards the wrist (a held object's weight shows as > 0).
+    touching (B, S, T, O) bool: whether there was any contact.
+    centroid (B, S, T, O, 2) m: force-weighted centre of the contact from the pad's middle, along the pad's two
+    tangential axes; 0 where nothing touches.
+    opening (B, S) m, opening_rate (B, S) m/s, height (B, S) m over the lowest position.
+    object_pose (B, S, O, 7): position m and quaternion (w, x, y, z), world frame.
+    failed (B,) bool: the simulation broke down (see Mechanics.failure); ignore that environment's other rows.
+
+    Forces act during a substep; opening, height and pose are those at its end.
+    """
+
+    force: np.ndarray
+    touching: np.ndarray
+    centroid: np.ndarray
+    opening: np.ndarray
+    opening_rate: np.ndarray
+    height: np.ndarray
+    object_pose: np.ndarray
+    failed: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class MechanicsState:
+    """Everything that determines the future of some environments' mechanics; picklable.
+
+    rows (n, nstate): MuJoCo's integration states. force_limit (n,) N. objects: each environment's objects.
+    failure: each environment's reason of failure, "" when it runs.
+    """
+
+    rows: np.ndarray
+    force_limit: np.ndarray
+    objects: tuple[tuple[ObjectSpec, ...], ...]
+    failure: tuple[str, ...]
+
+
+class Mechanics:
+    """`num_envs` grippers, each over its own objects.
+
+    objects: what every environment holds at first; later ones may differ in all but name and number. Meshes that
+    come later must be in `library`. threads: 0 means all CPUs. timestep: s, of a substep.
+    model: the compiled model of the first objects (MjModel).
+
+    The gripper's low-level law is in the model: a servo on the opening whose set point moves at a bounded
+    rate and whose closing force saturates at the force limit, in every substep.
+    """
+
+    def __init__(
+        self,
+        objects: Sequence[ObjectSpec] = (ObjectSpec(),),
+        num_envs: int = 1,
+        *,
+        threads: int = 1,
+        library: Sequence[ObjectSpec] = (),
+        timestep: float = 0.002,
+    ) -> None:
+        if num_envs < 1 or threads < 0:
+            raise InvalidValueError(f"num_envs {num_envs}, threads {threads}: give >= 1 and >= 0")
+        self._library = tuple(library) + tuple(o for o in objects if o.mesh)
+        self._timestep = timestep
+        self.num_envs = num_envs
+        self.objects: list[tuple[ObjectSpec, ...]] = [tuple(objects)] * num_envs
+        self.names = tuple(o.name for o in objects)
+        # At the origin, so that two batches with the same objects share every model field.
+        at_origin = tuple(placeless(o) for o in objects)
+        self.model = build_scene(at_origin, library=self._library, timestep=timestep)
+        self._batch = mujoco.batch.Batch(self.model, num_envs, threads)
+        self._rows = self._batch.state  # every simulation's mjSTATE_INTEGRATION, live
+        self._qpos, self._qvel, self._act, self._ctrl = (
+            self._batch.bind(name) for name in ("qpos", "qvel", "act", "ctrl")
+        )
+        self._force_range = self._batch.expand("actuator_forcerange")
+        self._compiled: dict[tuple[ObjectSpec, ...], dict[str, np.ndarray]] = {}
+        self._varying: set[str] = set()
+        self._index(self.model)
+        self.failure = [""] * num_envs
+        self.reset()
+
+    def _index(self, model: mujoco.MjModel) -> None:
+        self._fingers = [model.joint(f"finger_{tip}").qposadr[0] for tip in TIPS]
+        self._finger_dofs = [model.joint(f"finger_{tip}").dofadr[0] for tip in TIPS]
+        self._height = model.joint("lift").qposadr[0]
+        self._free = [model.joint(f"{name}_free").qposadr[0] for name in self.names]
+        self._poses = np.add.outer(self._free, np.arange(7))
+        self._grip, self._lift = model.actuator("grip").id, model.actuator("lift").id
+        self._grip_act, self._lift_act = model.actuator_actadr[[self._grip, self._lift]]
+        self._stiffness = -float(model.actuator_biasprm[self._grip, 1])
+        self._pads = [model.site(f"pad_{tip}").id for tip in TIPS]
+        addresses = [model.sensor(contact_sensor(tip, name)).adr[0] for tip in TIPS for name in self.names]
+        self._contacts = np.add.outer(addresses, np.arange(7)).reshape(len(TIPS), len(self.names), 7)
+
+    @property
+    def opening(self) -> np.ndarray:
+        """(B,) m between the pads, now."""
+        left, right = self._fingers
+        return self._qpos[:, left] + self._qpos[:, right]
+
+    @property
+    def height(self) -> np.ndarray:
+        """(B,) m over the lowest position, now."""
+        return self._qpos[:, self._height].copy()
+
+    @property
+    def object_pose(self) -> np.ndarray:
+        """(B, O, 7) position in m and quaternion (w, x, y, z) of every object, world frame, now."""
+        return self._qpos[:, self._poses]
+
+    def reset(
+        self,
+        ids: Sequence[int] | np.ndarray | None = None,
+        objects: Sequence[Sequence[ObjectSpec]] | None = None,
+        *,
+        opening: float = MAX_OPENING,
+        height: float = 0.0,
+    ) -> None:
+        """Start environments anew, at rest: objects on the table, gripper at `opening` (m) and `height` (m).
+
+        ids: which (None: all). objects: for each of them its objects (None: as they were).
+        Raises InvalidValueError when names or number of objects change or a mesh is not in the library.
+        """
+        rows = self._ids(ids)
+        if objects is not None:
+            if len(objects) != len(rows):
+                raise InvalidValueError(f"objects for {len(objects)} environments, ids name {len(rows)}")
+            chosen = [tuple(items) for items in objects]
+            for items in chosen:
+                self._check_layout(items)
+            for i, items in zip(rows, chosen, strict=True):
+                self._set_objects(int(i), items)
+        within("opening", np.array([opening]), 0.0, MAX_OPENING)
+        within("height", np.array([height]), 0.0, MAX_HEIGHT)
+        self._batch.reset(rows, stage=mujoco.mjtStage.mjSTAGE_NONE)
+        for i in rows:
+            self._qpos[i, self._fingers] = opening / 2
+            self._qpos[i, self._height] = height
+            self._qpos[i, self._poses] = [item.pose for item in self.objects[i]]
+            self._act[i, self._grip_act] = opening
+            self._act[i, self._lift_act] = height
+            self.failure[i] = ""
+
+    def step(
+        self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
+    ) -> ContactRecord:
+        """Advance every environment by `substeps` with one command each, all (B,).
+
+        opening: m, target, 0 .. 0.085. force_limit: N, closing force on an object that blocks the fingers, 0 .. 40.
+        lift_rate: m/s, -0.05 .. 0.05; the lift stops by itself at 0 and 0.15 m.
+        Raises InvalidValueError for a shape, a non-finite value or one outside its range, naming it.
+        """
+        opening = within("opening", self._batched("opening", opening), 0.0, MAX_OPENING)
+        force_limit = within("force_limit", self._batched("force_limit", force_limit), 0.0, MAX_FORCE)
+        lift_rate = within("lift_rate", self._batched("lift_rate", lift_rate), -MAX_LIFT_RATE, MAX_LIFT_RATE)
+        if substeps < 1:
+            raise InvalidValueError(f"substeps {substeps}: give at least 1")
+        self._command(opening, force_limit, lift_rate, substeps * self._timestep)
+        before = self._batch.warning[:, :, 1].copy()
+        out = self._batch.rollout(substeps, record=_RECORD)
+        risen = self._batch.warning[:, :, 1] > before
+        if risen.any():
+            self._note_failures(risen)
+        return self._record(out)
+
+    def state(self, ids: Sequence[int] | np.ndarray | None = None) -> MechanicsState:
+        """A copy of the state of some environments (None: all), for `set_state` here or in another batch."""
+        rows = self._ids(ids)
+        return MechanicsState(
+            rows=self._rows[rows].copy(),
+            force_limit=-self._force_range[rows, self._grip, 0],
+            objects=tuple(self.objects[i] for i in rows),
+            failure=tuple(self.failure[i] for i in rows),
+        )
+
+    def set_state(self, state: MechanicsState, ids: Sequence[int] | np.ndarray | None = None) -> None:
+        """Put environments into a state; what follows is bit-identical to what followed it first.
+
+        Raises InvalidValueError when the state has another number of environments or another layout.
+        """
+        rows = self._ids(ids)
+        if state.rows.shape != (len(rows), self._rows.shape[1]):
+            raise InvalidValueError(
+                f"state of shape {state.rows.shape} for {len(rows)} environments of {self._rows.shape[1]} numbers"
+            )
+        for items in state.objects:
+            self._check_layout(items)
+        for k, i in enumerate(rows):
+            self._set_objects(int(i), state.objects[k])
+            self.failure[i] = state.failure[k]
+        self._rows[rows] = state.rows
+        self._force_range[rows, self._grip, 0] = -state.force_limit
+
+    def env_model(self, env: int, model: mujoco.MjModel | None = None) -> mujoco.MjModel:
+        """Environment `env`'s own model, e.g. to render it; written into `model` where given."""
+        return self._batch.get_model(env, model)
+
+    def env_data(self, env: int, data: mujoco.MjData | None = None) -> mujoco.MjData:
+        """Environment `env`'s state as MjData (call mujoco.mj_forward before reading derived fields)."""
+        return self._batch.get_data(env, data)
+
+    def _ids(self, ids: Sequence[int] | np.ndarray | None) -> np.ndarray:
+        if ids is None:
+            return np.arange(self.num_envs)
+        rows = np.atleast_1d(np.asarray(ids))
+        if rows.dtype.kind not in "iu" or rows.ndim != 1 or ((rows < 0) | (rows >= self.num_envs)).any():
+            raise InvalidValueError(f"ids {ids}: give whole numbers from 0 to {self.num_envs - 1}")
+        return rows
+
+    def _batched(self, name: str, values: np.ndarray) -> np.ndarray:
+        array = np.asarray(values, dtype=float)
+        if array.shape != (self.num_envs,):
+            raise InvalidValueError(f"{name} has shape {array.shape}, expected ({self.num_envs},)")
+        return array
+
+    def _check_layout(self, items: tuple[ObjectSpec, ...]) -> None:
+        names = tuple(o.name for o in items)
+        if names != self.names:
+            raise InvalidValueError(f"objects {names} in place of {self.names}: names and number must stay")
+        known = {o.geometry for o in self._library}
+        for item, first in zip(items, self.objects[0], strict=True):
+            if item.mesh and item.geometry not in known:
+                raise InvalidValueError(f"mesh {item.mesh!r} of {item.name!r} is not in the library of this Mechanics")
+            if item.hulls != first.hulls:
+                raise InvalidValueError(
+                    f"object {item.name!r} has {item.hulls} convex pieces in place of {first.hulls}: the number must stay"
+                )
+
+    def _set_objects(self, env: int, items: tuple[ObjectSpec, ...]) -> None:
+        """Write environment `env`'s row of every model field that depends on the objects."""
+        self.objects[env] = items
+        own = self._differences(tuple(placeless(item) for item in items))
+        self._varying |= own.keys()
+        for name in self._varying:
+            self._batch.expand(name)[env] = own.get(name, getattr(self.model, name))
+
+    def _differences(self, key: tuple[ObjectSpec, ...]) -> dict[str, np.ndarray]:
+        """Model fields in which a scene of the objects `key` differs from self.model."""
+        if key not in self._compiled:
+            if len(self._compiled) >= _KEPT_MODELS:
+                self._compiled.pop(next(iter(self._compiled)))
+            model = build_scene(key, library=self._library, timestep=self._timestep)
+            pairs = ((name, getattr(model, name), getattr(self.model, name)) for name in _MODEL_ARRAYS)
+            self._compiled[key] = {name: a.copy() for name, a, b in pairs if not np.array_equal(a, b)}
+        return self._compiled[key]
+
+    def _command(self, opening: np.ndarray, force: np.ndarray, lift_rate: np.ndarray, duration: float) -> None:
+        """Rates of the two servos' set points over the coming control step.
+
+        The grip's set point stays within reach of where its force saturates: it does not wind up.
+        """
+        self._force_range[:, self._grip, 0] = -force
+        goal = np.maximum(opening, self.opening - force / self._stiffness - _WINDUP)
+        rate = (goal - self._act[:, self._grip_act]) / duration
+        self._ctrl[:, self._grip] = np.clip(rate, -OPENING_SPEED, OPENING_SPEED)
+        last, change = self._ctrl[:, self._lift], LIFT_ACCELERATION * duration
+        self._ctrl[:, self._lift] = np.clip(lift_rate, last - change, last + change)
+
+    def _note_failures(self, risen: np.ndarray) -> None:
+        for env, kind in np.argwhere(risen):
+            warning = mujoco.mjtWarning(int(kind)).name.removeprefix("mjWARN_")
+            if not self.failure[env]:
+                self.failure[env] = f"the simulation broke down (MuJoCo warning {warning}); reset this environment"
+
+    def _record(self, out: dict) -> ContactRecord:
+        qpos, qvel = out["qpos"], out["qvel"]
+        contacts = out["sensordata"][:, :, self._contacts]  # (B, S, T, O, 7)
+        vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3)  # force, centroid; world frame
+        vectors[..., 1, :] -= out["site_xpos"][:, :, self._pads, None]
+        axes = out["site_xmat"][:, :, self._pads, None, None].reshape(*contacts.shape[:3], 1, 1, 3, 3)
+        # Written out: a matmul's rounding may depend on the number of environments.
+        local = (
+            axes[..., 0, :] * vectors[..., 0:1] + axes[..., 1, :] * vectors[..., 1:2] + axes[..., 2, :] * vectors[..., 2:3]
+        )
+        touching = contacts[..., 0] > 0
+        left, right = self._fingers
+        left_dof, right_dof = self._finger_dofs
+        return ContactRecord(
+            force=local[..., 0, :].copy(),
+            touching=touching,
+            centroid=np.where(touching[..., None], local[..., 1, 1:], 0.0),
+            opening=qpos[..., left] + qpos[..., right],
+            opening_rate=qvel[..., left_dof] + qvel[..., right_dof],
+            height=qpos[..., self._height].copy(),
+            object_pose=qpos[..., self._poses],
+            failed=np.array([bool(reason) for reason in self.failure]),
+        )
+
+
+def within(name: str, values: np.ndarray, low: float, high: float) -> np.ndarray:
+    """The values. Raises InvalidValueError, naming the first one that is not in low .. high (SI)."""
+    wrong = ~((values >= low) & (values <= high))
+    if wrong.any():
+        env = int(np.argmax(wrong))
+        raise InvalidValueError(f"{name} {values[env]} in environment {env}: give {low:g} to {high:g} (SI units)")
+    return values

@@ -1,0 +1,143 @@
+"""Objects from mesh files: STL, OBJ, PLY and GLB through trimesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from thermograsp.errors import MeshError, MissingDependencyError, positive
+
+FORMATS = (".stl", ".obj", ".ply", ".glb")
+SMALLEST = 0.005  # m, along the shortest extent
+LARGEST = 0.083  # m, that fits between the pads (85 mm) with 1 mm on either side
+_UNITS = ((0.001, "millimetres"), (0.01, "centimetres"), (0.0254, "inches"))
+
+
+@dataclass(frozen=True, slots=True)
+class MeshShape:
+    """A solid read from a file, scaled to metres, its bounding box centred on the origin.
+
+    extents: m, (x, y, z); x is the thickness between the fingers at yaw 0. volume: m3. centre_of_mass: m.
+    unit_inertia: m2, (3, 3) about the centre of mass, for a mass of 1 kg of uniform density.
+    hulls: (vertices (n, 3) m, triangles (m, 3)) of the convex pieces that collide.
+    Two shapes are equal when file, scale and pieces are.
+    """
+
+    path: str
+    scale: float
+    pieces: int
+    extents: tuple[float, float, float] = field(compare=False)
+    volume: float = field(compare=False)
+    centre_of_mass: tuple[float, float, float] = field(compare=False)
+    unit_inertia: tuple[tuple[float, float, float], ...] = field(compare=False)
+    hulls: tuple[tuple[np.ndarray, np.ndarray], ...] = field(compare=False, repr=False)
+
+    @property
+    def name(self) -> str:
+        """Name of the assets made of it."""
+        return f"{Path(self.path).stem}_{self.scale:g}_{self.pieces}"
+
+
+@lru_cache(maxsize=64)
+def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
+    """Read a closed mesh; lengths in the file times `scale` are metres.
+
+    pieces: most convex pieces to collide with. 1 collides with the convex hull, which fills holes and
+    hollows; more decompose the solid (V-HACD, needs the package vhacdx). Mass and inertia are the true solid's.
+    Results are cached by path, scale and pieces; a file that changed is not read again.
+    Raises MeshError (missing file, unknown format, not a closed solid, non-finite vertices, no volume, a size that
+    does not fit the gripper) or InvalidValueError.
+    """
+    import trimesh
+
+    positive("scale", scale)
+    if pieces < 1 or int(pieces) != pieces:
+        raise MeshError(f"pieces {pieces}: give a whole number, 1 for the convex hull")
+    file = Path(path)
+    if file.suffix.lower() not in FORMATS:
+        raise MeshError(f"{path}: unknown mesh format {file.suffix!r}; use one of {', '.join(FORMATS)}")
+    if not file.is_file():
+        raise MeshError(f"{path}: no such file (looked in {file.resolve().parent})")
+    try:
+        mesh = trimesh.load_mesh(file)
+    except Exception as error:  # trimesh raises whatever its parsers do
+        raise MeshError(f"{path}: cannot be read as {file.suffix}: {error}") from error
+    _check_solid(path, mesh)
+    mesh.apply_scale(scale)
+    _check_size(path, mesh.extents, scale)
+    mesh.apply_translation(-mesh.bounds.mean(axis=0))
+    if mesh.volume < 0:  # closed but inside out
+        mesh.invert()
+    if not mesh.volume > 1e-6 * np.prod(mesh.extents):
+        raise MeshError(f"{path}: encloses no volume ({mesh.volume:.3g} m3); give a solid, not a sheet")
+    return MeshShape(
+        path=str(path),
+        scale=float(scale),
+        pieces=int(pieces),
+        extents=_triple(mesh.extents),
+        volume=float(mesh.volume),
+        centre_of_mass=_triple(mesh.center_mass),
+        unit_inertia=tuple(_triple(row) for row in mesh.moment_inertia / mesh.mass),
+        hulls=_hulls(mesh, int(pieces)),
+    )
+
+
+def _triple(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(v) for v in values)
+    return x, y, z
+
+
+def _check_solid(path: str, mesh) -> None:
+    if len(mesh.faces) == 0:
+        raise MeshError(f"{path}: has no faces; export a surface mesh")
+    if not np.isfinite(mesh.vertices).all():
+        bad = int((~np.isfinite(mesh.vertices)).any(axis=1).sum())
+        raise MeshError(f"{path}: {bad} of {len(mesh.vertices)} vertices are not finite; export it again")
+    if not min(mesh.extents) > 0:
+        raise MeshError(f"{path}: encloses no volume, extents {mesh.extents.tolist()}; give a solid, not a sheet")
+    if not mesh.is_watertight:
+        raise MeshError(
+            f"{path}: not closed (watertight), so it has no volume or mass; close its holes, "
+            "e.g. with trimesh.repair.fill_holes or Blender's 3D Print toolbox"
+        )
+
+
+def _check_size(path: str, extents: np.ndarray, scale: float) -> None:
+    def fits(factor: float) -> bool:
+        return factor * min(extents) >= SMALLEST and factor * min(extents[0], extents[1]) <= LARGEST
+
+    if fits(1.0):
+        return
+    shown = " x ".join(f"{1e3 * e:.4g}" for e in extents)
+    advice = [f"--scale {scale * f:g} if it is in {unit}" for f, unit in _UNITS if fits(f)]
+    if not advice:
+        middle = 0.04 / min(extents[0], extents[1])
+        advice = [f"--scale {scale * middle:.3g} to make it 40 mm wide"] if fits(middle) else ["another object"]
+    raise MeshError(
+        f"{path}: {shown} mm at scale {scale:g} does not fit the gripper ({1e3 * SMALLEST:.0f} mm at least, "
+        f"{1e3 * LARGEST:.0f} mm at most between the fingers); try {' or '.join(advice)}"
+    )
+
+
+def _hulls(mesh, pieces: int) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    if pieces == 1:
+        parts = [mesh.convex_hull]
+    else:
+        try:
+            parts = [_hull(part) for part in mesh.convex_decomposition(maxConvexHulls=pieces)]
+        except ImportError as error:
+            raise MissingDependencyError("convex pieces need vhacdx: pip install vhacdx, or use pieces=1") from error
+    return tuple((np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int32)) for p in parts)
+
+
+def _hull(part):
+    """trimesh 5 gives meshes or keyword dictionaries, depending on the entry point."""
+    import trimesh
+
+    return part.convex_hull if hasattr(part, "convex_hull") else trimesh.Trimesh(**part).convex_hull
+
+
+__all__ = ["FORMATS", "MeshShape", "load_mesh"]

@@ -1,0 +1,283 @@
+"""The mechanical scene: a parallel gripper over a table and the objects it may touch.
+
+World frame: z up, the table's top at z = 0, the fingers move along x. The gripper itself is assets/gripper.xml.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Literal
+
+import mujoco
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, finite, non_negative, positive, unknown_name
+
+from ..assets import asset
+from .meshes import MeshShape, load_mesh
+
+TIPS = ("left", "right")
+MAX_OPENING = 0.085  # m, between the pads
+PAD_SIDE = 0.020  # m, the square pad that takes the force
+CLEARANCE = 0.002  # m, least gap between pads (or fingers) and what they must not touch
+REACH = 0.095  # m, from the grasp centre up to the palm
+DEFAULT_MASS = 0.1  # kg
+
+_SHAPES = ("box", "cylinder", "sphere", "mesh")
+_GEOMS = {
+    "box": mujoco.mjtGeom.mjGEOM_BOX,
+    "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
+    "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
+}
+# Contact softness that holds a grasp without creeping at 2 ms (slip below .1 mm in 10 s at 10 N).
+_SOLREF = (0.005, 1.0)
+_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
+_TORSION, _ROLLING = 0.005, 0.0001  # m, MuJoCo's defaults; a flat patch has its torsion from its corners
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectSpec:
+    """One object on the table. Hashable; the frame is the centre of its bounding box.
+
+    shape: box, cylinder (standing), sphere or mesh. size: m, full extents (x, y, z) in the object's frame; a
+    mesh takes them from its file. mass: kg, or density: kg/m3 (at most one; neither means 0.1 kg). friction: sliding
+    coefficient of every contact of the object. position: m, (x, y) of its centre on the table, the gripper's is
+    (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`.
+    Raises InvalidValueError, UnknownNameError (shape), or MeshError (file).
+    """
+
+    name: str = "object"
+    shape: Literal["box", "cylinder", "sphere", "mesh"] = "box"
+    size: tuple[float, float, float] = (0.04, 0.04, 0.04)
+    mass: float | None = None
+    density: float | None = None
+    friction: float = 0.8
+    position: tuple[float, float] = (0.0, 0.0)
+    yaw: float = 0.0
+    rgba: tuple[float, float, float, float] = (0.55, 0.65, 0.75, 1.0)
+    mesh: str | None = None
+    scale: float = 1.0
+    pieces: int = 1
+
+    def __post_init__(self) -> None:
+        if self.shape not in _SHAPES:
+            raise unknown_name("shape", self.shape, _SHAPES)
+        if (self.mesh is None) == (self.shape == "mesh"):
+            raise InvalidValueError(f"shape {self.shape!r} with mesh {self.mesh!r}: give a file for shape 'mesh' only")
+        if self.mass is not None and self.density is not None:
+            raise InvalidValueError(f"mass {self.mass} kg and density {self.density} kg/m3: give one of them")
+        for field in ("mass", "density"):
+            if getattr(self, field) is not None:
+                positive(field, getattr(self, field))
+        non_negative("friction", self.friction)
+        finite("yaw", self.yaw)
+        for value in self.position:
+            finite("position", value)
+        set_ = object.__setattr__
+        set_(self, "size", tuple(float(s) for s in (self.geometry.extents if self.mesh else self.size)))
+        if len(self.size) != 3:
+            raise InvalidValueError(f"size {self.size}: give full extents (x, y, z) in m")
+        for value in self.size:
+            positive("size", value)
+        x, y, z = self.size
+        if (self.shape == "sphere" and not x == y == z) or (self.shape == "cylinder" and x != y):
+            raise InvalidValueError(f"size {self.size} of a {self.shape}: extents across its axis must be equal")
+        if self.width > MAX_OPENING - CLEARANCE:
+            raise InvalidValueError(
+                f"object {self.name!r} is {1e3 * self.width:.1f} mm wide along x, the gripper opens "
+                f"{1e3 * MAX_OPENING:.0f} mm: make it at most {1e3 * (MAX_OPENING - CLEARANCE):.0f} mm or turn it (yaw)"
+            )
+
+    @property
+    def geometry(self) -> MeshShape:
+        """The mesh's shape (cached by file). Raises InvalidValueError when the object has none."""
+        if self.mesh is None:
+            raise InvalidValueError(f"object {self.name!r} is a {self.shape}, not a mesh")
+        return load_mesh(self.mesh, self.scale, self.pieces)
+
+    @property
+    def hulls(self) -> int:
+        """Number of convex geoms."""
+        return len(self.geometry.hulls) if self.mesh else 1
+
+    @property
+    def width(self) -> float:
+        """m, extent along x (between the fingers) at this yaw; of the bounding box for a mesh."""
+        if self.shape in ("sphere", "cylinder"):
+            return self.size[0]
+        return self.size[0] * abs(math.cos(self.yaw)) + self.size[1] * abs(math.sin(self.yaw))
+
+    @property
+    def volume(self) -> float:
+        """m3."""
+        x, y, z = self.size
+        if self.shape == "mesh":
+            return self.geometry.volume
+        return x * y * z * {"box": 1.0, "cylinder": math.pi / 4, "sphere": math.pi / 6}[self.shape]
+
+    @property
+    def weight(self) -> float:
+        """kg, the mass given or that of the density."""
+        if self.mass is not None:
+            return self.mass
+        return DEFAULT_MASS if self.density is None else self.density * self.volume
+
+    @property
+    def inertia(self) -> tuple[np.ndarray, np.ndarray]:
+        """Centre of mass (3,) m and inertia matrix about it (3, 3) kg m2, in the object's frame, uniform density."""
+        if self.shape == "mesh":
+            shape = self.geometry
+            return np.array(shape.centre_of_mass), self.weight * np.array(shape.unit_inertia)
+        x, y, z = (s * s for s in self.size)
+        across, along = {
+            "box": ((y + z) / 12, (x + y) / 12),
+            "cylinder": (x / 16 + z / 12, x / 8),
+            "sphere": (x / 10, x / 10),
+        }[self.shape]
+        second = (x + z) / 12 if self.shape == "box" else across
+        return np.zeros(3), self.weight * np.diag((across, second, along))
+
+    @property
+    def pose(self) -> np.ndarray:
+        """(7,) position of the centre in m and unit quaternion (w, x, y, z), resting on the table."""
+        half = self.yaw / 2
+        return np.array([*self.position, self.size[2] / 2, math.cos(half), 0.0, 0.0, math.sin(half)])
+
+    @property
+    def grasp_height(self) -> float:
+        """m over the table of the grasp centre when the gripper is down.
+
+        The middle of the side faces, but the pads stay off the table and the palm off the object's top.
+        """
+        lowest = PAD_SIDE / 2 + CLEARANCE
+        return max(self.size[2] / 2, lowest, self.size[2] + CLEARANCE - REACH)
+
+
+def placeless(spec: ObjectSpec) -> ObjectSpec:
+    """The same object at the origin: what the compiled model depends on (the pose is state)."""
+    return replace(spec, position=(0.0, 0.0), yaw=0.0)
+
+
+def contact_sensor(tip: str, name: str) -> str:
+    """Name of the sensor of fingertip `tip` touching object `name`."""
+    return f"contact_{tip}_{name}"
+
+
+def build_scene(
+    objects: Sequence[ObjectSpec] = (ObjectSpec(),),
+    *,
+    library: Iterable[ObjectSpec] = (),
+    timestep: float = 0.002,
+) -> mujoco.MjModel:
+    """Compile gripper, table and objects; the gripper is down at the first object's grasp height.
+
+    Each object is a free body named after it, with explicit inertia, and has a contact sensor per fingertip
+    (names: `contact_sensor`): number of contacts, net force of the tip on the object (world frame, N), and the
+    force-weighted centroid (world frame, m). Sensors are ordered by tip, then by object.
+    library: mesh objects whose files are compiled in besides, so that models with other objects from it
+    have the same layout. timestep: s.
+    Raises InvalidValueError for no objects or a name given twice.
+    """
+    objects = tuple(objects)
+    names = [o.name for o in objects]
+    if not objects or len(set(names)) < len(names):
+        raise InvalidValueError(f"objects {names}: give at least one and every name once")
+    spec = _gripper().copy()
+    spec.option.timestep = positive("timestep", timestep)
+    for shape in dict.fromkeys(o.geometry for o in (*library, *objects) if o.mesh):
+        for name, (vertices, faces) in zip(_mesh_names(shape), shape.hulls, strict=True):
+            spec.add_mesh(name=name, uservert=vertices.ravel(), userface=faces.ravel())
+    for item in objects:
+        _add_object(spec, item)
+    for tip in TIPS:
+        for item in objects:
+            _add_contact_sensor(spec, tip, item.name)
+    spec.body("wrist").pos[2] = objects[0].grasp_height
+    return spec.compile()
+
+
+@cache
+def _gripper() -> mujoco.MjSpec:
+    """The parsed gripper; compile copies only."""
+    return mujoco.MjSpec.from_file(str(asset("gripper.xml")))
+
+
+def _mesh_names(shape: MeshShape) -> list[str]:
+    return [f"{shape.name}_{i}" for i in range(len(shape.hulls))]
+
+
+def _add_object(spec: mujoco.MjSpec, item: ObjectSpec) -> None:
+    com, inertia = item.inertia
+    moments, quat = _principal(inertia)
+    pose = item.pose
+    body = spec.worldbody.add_body(
+        name=item.name,
+        pos=pose[:3],
+        quat=pose[3:],
+        mass=item.weight,
+        ipos=com,
+        inertia=moments,
+        iquat=quat,
+        explicitinertial=True,
+    )
+    body.add_freejoint(name=f"{item.name}_free")
+    x, y, z = (s / 2 for s in item.size)
+    half = {"box": (x, y, z), "cylinder": (x, z, 0), "sphere": (x, 0, 0), "mesh": (0, 0, 0)}[item.shape]
+    meshes = _mesh_names(item.geometry) if item.mesh else [None]
+    for i, mesh in enumerate(meshes):
+        geom = body.add_geom(
+            name=f"{item.name}_{i}",
+            type=mujoco.mjtGeom.mjGEOM_MESH if mesh else _GEOMS[item.shape],
+            size=half,
+            friction=(item.friction, _TORSION, _ROLLING),
+            rgba=item.rgba,
+            material="matter",
+            # Meets the pads (1), the other objects (2) and the table (4); its own contact settings hold.
+            contype=2,
+            conaffinity=7,
+            priority=1,
+            condim=4,
+            solref=_SOLREF,
+            solimp=_SOLIMP,
+        )
+        if mesh:
+            geom.meshname = mesh
+
+
+def _principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Principal moments and the rotation of their axes, never the identity.
+
+    MuJoCo stores the mass matrix of a body with aligned axes more sparsely; objects of one batch need one layout.
+    """
+    moments, axes = np.linalg.eigh(inertia)
+    if np.linalg.det(axes) < 0:
+        axes[:, 0] *= -1
+    if np.trace(axes) > 2.999:
+        moments, axes = np.roll(moments, 1), np.roll(axes, 1, axis=1)
+    quat = np.zeros(4)
+    mujoco.mju_mat2Quat(quat, axes.ravel())
+    return moments, quat
+
+
+def _add_contact_sensor(spec: mujoco.MjSpec, tip: str, name: str) -> None:
+    data = sum(
+        1 << int(bit)
+        for bit in (
+            mujoco.mjtConDataField.mjCONDATA_FOUND,
+            mujoco.mjtConDataField.mjCONDATA_FORCE,
+            mujoco.mjtConDataField.mjCONDATA_POS,
+        )
+    )
+    net_force, one_slot = 3, 1
+    spec.add_sensor(
+        name=contact_sensor(tip, name),
+        type=mujoco.mjtSensor.mjSENS_CONTACT,
+        objtype=mujoco.mjtObj.mjOBJ_BODY,
+        objname=f"tip_{tip}",
+        reftype=mujoco.mjtObj.mjOBJ_BODY,
+        refname=name,
+        intprm=[data, net_force, one_slot],
+    )
