@@ -1,0 +1,90 @@
+"""Rung "network": one press on a thermal network of few states."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+
+from .bodies import Geometry
+from .coupling import Propagator, propagator
+from .coupling_kernel import advance
+from .problem import PressCurves, PressProblem
+from .system import ContactSystem
+
+LONGEST_STEP = 0.01  # s, over which a conductance that varies is held at its value in the middle
+
+
+def geometry_of(problem: PressProblem, fingertips: int = 1) -> Geometry:
+    """What of the problem a network depends on."""
+    return Geometry(
+        problem.stack,
+        problem.material,
+        problem.mode,
+        problem.area,
+        problem.shape,
+        problem.object_size,
+        2 if fingertips == 2 else 1,
+    )
+
+
+def with_air(system: ContactSystem, air: float) -> np.ndarray:
+    """Rates (K,) 1/s of the system in air (W/(m2 K)): the object's mean temperature relaxes at h A / (m c), its free
+    faces at that mean (lumped; small where the object's own Biot number is)."""
+    rates = system.rates.copy()
+    geometry = system.geometry
+    width, depth, thickness = geometry.object_size
+    touched = geometry.stack.face_area if geometry.mode == "O" else geometry.area
+    free = 2 * (width * depth + width * thickness + depth * thickness) - geometry.fingertips * touched
+    capacity = geometry.material.volumetric_heat_capacity * width * depth * thickness
+    if geometry.mode == "O":
+        capacity += geometry.fingertips * geometry.element_capacity
+    rates[system.mean] += air * free / capacity
+    return rates
+
+
+def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressCurves:
+    """Curves at the samples t = 0, dt, 2 dt, ... (n,) s. A constant conductance is stepped exactly from sample to
+    sample, one that varies in equal steps of at most LONGEST_STEP. A second fingertip of the system stays apart.
+
+    Raises InvalidValueError when the conductance function returns a negative or non-finite value, with the time.
+    """
+    rates = with_air(system, problem.air)
+    ports, modes = system.ports, system.modes
+    spacing = t[1] - t[0] if len(t) > 1 else 1.0
+    steps = max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9))) if callable(problem.conductance) else 1
+    dt = spacing / steps
+    stepper: Propagator = propagator(rates, ports, dt)
+    state = np.zeros(len(rates))
+    difference = np.zeros(ports.shape[1])
+    difference[0] = problem.temperature_difference
+    conductance = np.zeros(ports.shape[1])
+    flow = np.zeros(ports.shape[1])
+    states = np.zeros((len(t), len(rates)))
+    flows = np.zeros(len(t))
+    for i, time in enumerate(t):
+        if i:
+            for k in range(steps):
+                conductance[:modes] = _conductance(problem, t[i - 1] + (k + 0.5) * dt) * problem.area
+                advance(rates, ports, stepper.scale, stepper.gram, dt, state, conductance, difference, 1, flow)
+            states[i] = state
+        now = _conductance(problem, float(time)) * problem.area
+        flows[i] = now * (difference[0] - ports[:, 0] @ state)
+    return PressCurves(
+        temperature_drop=states @ system.drop[0],
+        heat_flow=flows,
+        sensor_surface=problem.sensor_temperature + states @ system.sensor_surface[0],
+        object_surface=problem.object_temperature + states @ system.object_surface[0],
+        stored_heat=np.stack((states @ system.element_heat[0], states @ system.object_heat), axis=1),
+    )
+
+
+def _conductance(problem: PressProblem, time: float) -> float:
+    if not callable(problem.conductance):
+        return problem.conductance
+    value = float(problem.conductance(time))
+    if not (np.isfinite(value) and value >= 0):
+        raise InvalidValueError(
+            f"conductance({time:g} s) is {value!r}: it must be finite and >= 0 W/(m2 K), 0 where apart"
+        )
+    return value
