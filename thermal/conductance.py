@@ -13,9 +13,9 @@ Solid spots and the gas around them conduct in parallel: h = h_solid + h_gas. So
   a gripper's 1e-6 to 1e-5 it is 10 to 20 % high, so the relation itself is used.
   M = alpha beta Lambda, the temperature jump at both faces in a rarefied gas (Yovanovich 1981).
 
-All hold for 2 <= Y/sigma <= 4.75 (Yovanovich 1982), P/H from 1e-6 to 0.023. Y stays at these ends beyond them: faces that
-touch without force are 4.75 sigma apart, so pressure 0 leaves the gas, the limit of small pressures. Faces that
-do not touch are the caller's business: conductance 0. Radiation, some 6 W/(m2 K), is neglected.
+All hold for 2 <= Y/sigma <= 4.75 (Yovanovich 1982), P/H from 1e-6 to 0.023. Y stays at these ends beyond them: faces
+that touch without force are 4.75 sigma apart, so pressure 0 leaves the gas, the limit of small pressures. Faces that do
+not touch are the caller's business: conductance 0. Radiation, some 6 W/(m2 K), is neglected.
 """
 
 from __future__ import annotations
