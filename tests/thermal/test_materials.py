@@ -253,7 +253,7 @@ def test_zero_is_refused_except_as_a_poisson_ratio() -> None:
     assert Material("mine", 1.0, 1.0, 1.0, poisson_ratio=0.0).poisson_ratio == 0
     for prop in set(UNITS) - {"poisson_ratio"}:
         with pytest.raises(InvalidValueError, match=f"mine: {prop}"):
-            Material("mine", **{"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0, prop: 0.0})
+            Material("mine", **({"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0} | {prop: 0.0}))  # pyright: ignore[reportArgumentType]
     with pytest.raises(InvalidValueError, match="poisson_ratio .* from 0 to 0.5, got 0.6"):
         Material("mine", 1.0, 1.0, 1.0, poisson_ratio=0.6)
 
