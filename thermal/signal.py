@@ -100,8 +100,8 @@ def measure(
     filtered, last = state.filtered, state.last
     lag = 0.0 if np.isinf(chain.bandwidth) else 1 / (2 * np.pi * chain.bandwidth)
     decay = np.exp(-dt / lag) if lag else 0.0
-    reported = np.zeros(np.shape(drop))
-    for i in range(reported.shape[1]):
+    reported = np.zeros_like(drop, dtype=float)
+    for i in range(drop.shape[1]):
         volts = drop[:, i] * seebeck
         slope_lag = (volts - last) * (lag / dt)
         filtered = volts - slope_lag + (filtered - last + slope_lag) * decay

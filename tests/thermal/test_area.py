@@ -43,11 +43,15 @@ def test_areas_and_forces_are_integrals_of_the_pressure(solve: Curved, force: fl
     x = (np.arange(n) + 0.5) / n * PAD.width / 2
     distance = x[:, None] ** 2 + (x**2 if solve is sphere_contact else np.zeros(n))
     cell = PAD.width**2 / n**2
+
+    def pressure_at(square: float) -> np.ndarray:
+        return K * np.maximum(square - distance, 0) / (2 * radius * PAD.thickness)
+
     low, high = 0.0, 10.0
     for _ in range(60):
-        square = (low + high) / 2
-        pressure = K * np.maximum(square - distance, 0) / (2 * radius * PAD.thickness)
-        low, high = (square, high) if pressure.sum() * cell < force else (low, square)
+        middle = (low + high) / 2
+        low, high = (middle, high) if pressure_at(middle).sum() * cell < force else (low, middle)
+    pressure = pressure_at(low)
     on_face = np.maximum(x[:, None], x) < PAD.face / 2
     contact = solve(PAD, np.array(force), radius)
     assert float(contact.face_force) == pytest.approx((pressure * on_face).sum() * cell, rel=1e-3)

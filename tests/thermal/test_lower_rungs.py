@@ -116,6 +116,7 @@ def _finite_volumes(problem: PressProblem, t: np.ndarray, cells: int) -> np.ndar
     slabs = [(x.thickness, x.conductivity, x.volumetric_heat_capacity, cells) for x in problem.stack.layers]
     body = problem.material
     slabs.append((problem.object_size[2], body.conductivity, body.volumetric_heat_capacity, 10 * cells))
+    assert isinstance(problem.conductance, float)
     half = np.concatenate([np.full(n, d / n / k / 2) for d, k, _, n in slabs])
     capacity = np.concatenate([np.full(n, d / n * c) for d, _, c, n in slabs])
     link = half[:-1] + half[1:]
