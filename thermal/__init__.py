@@ -1,15 +1,82 @@
 """Heat physics: arrays in, arrays out."""
 
+from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
+from .batch import HeatReading, HeatTables, advance_heat, forget_field, heat_tables
+from .bodies import Geometry
+from .choice import Choice, Demand
+from .conductance import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, contact_conductance, joint, stack_joints
+from .contact_network import network_for, network_of
+from .ladder import RUNGS, Rung, RungInfo
 from .layers import Layer, SensorStack, sensor, sensors
 from .materials import Material, load_materials, material, materials
+from .network import ThermalNetwork
+from .press import Press, press
+from .problem import Mode, PressProblem, Shape
+from .signal import ADS1115, IDEAL, SIGNAL_CHAINS, SignalChain, SignalState, measure, saturated, settled
+from .states import Orders
+from .system import ContactSystem
+from .thermostat import (
+    Thermostat,
+    ThermostatState,
+    ideal_thermostat,
+    settled_thermostat,
+    thermostat_step,
+)
 
 __all__ = [
+    "ADS1115",
+    "AIR",
+    "IDEAL",
+    "LAPPED_ALUMINA",
+    "RUNGS",
+    "SIGNAL_CHAINS",
+    "Choice",
+    "ContactArea",
+    "ContactSystem",
+    "Demand",
+    "Gas",
+    "Geometry",
+    "HeatReading",
+    "HeatTables",
+    "Joint",
     "Layer",
     "Material",
+    "Mode",
+    "Orders",
+    "Pad",
+    "Press",
+    "PressProblem",
+    "Rung",
+    "RungInfo",
     "SensorStack",
+    "Shape",
+    "SignalChain",
+    "SignalState",
+    "Surface",
+    "ThermalNetwork",
+    "Thermostat",
+    "ThermostatState",
+    "advance_heat",
+    "contact_conductance",
+    "cylinder_contact",
+    "flat_contact",
+    "forget_field",
+    "heat_tables",
+    "ideal_thermostat",
+    "joint",
     "load_materials",
     "material",
     "materials",
+    "measure",
+    "network_for",
+    "network_of",
+    "press",
+    "saturated",
     "sensor",
     "sensors",
+    "settled",
+    "settled_thermostat",
+    "sphere_contact",
+    "stack_joints",
+    "thermostat_step",
 ]
