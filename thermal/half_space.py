@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import erfc, erfcx
 
 from .closed_form import equivalent_slab
-from .column import apart, constant_conductance, no_air, sample_times
+from .column import apart, constant_conductance, element_slabs, no_air, sample_times
 from .problem import PressCurves, PressProblem
 
 
@@ -22,7 +22,8 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     """Curves at t (n,) s, >= 0.
 
     The element is a half-space of its equivalent homogeneous layer (closed_form.equivalent_slab), the sensed layer
-    at the depths that have the same thermal resistance to the surface. Neglects: the element's far side (the
+    at the depths to which heat diffuses in the same time: a layer of thickness d and diffusivity alpha is
+    d sqrt(alpha_equivalent/alpha) thick. Neglects: the element's far side (the
     thermostat in T mode, the object in O mode), so it holds while t << R C of the element (R, C its resistance and
     capacity: 7 s for the seed's); what sets the layers apart; the object's thickness; heat spreading sideways.
     In O mode the object gains nothing.
@@ -46,8 +47,7 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     flow = jump * contact * erfcx(eta)
     heat = _heat(contact, rate, t) * jump
     near, far = (
-        _temperature(problem, depth, slab.diffusivity, rate, t)
-        for depth in _depths(problem, slab.conductivity)
+        _temperature(depth, slab.diffusivity, rate, t) for depth in _depths(problem, slab.diffusivity)
     )
     element_side = jump * share * (1 - erfcx(eta))
     if problem.mode == "T":
@@ -67,19 +67,17 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     )
 
 
-def _depths(problem: PressProblem, conductivity: float) -> tuple[float, float]:
-    """m, the sensed layer's nearer and farther face below the opening contact, at equal resistance."""
-    layers = problem.stack.layers
-    resistance = [layer.thickness / layer.conductivity for layer in layers]
+def _depths(problem: PressProblem, diffusivity: float) -> tuple[float, float]:
+    """m, the sensed layer's nearer and farther face below the opening contact, at equal diffusion time."""
     sensed = problem.stack.sensed
-    before = resistance[sensed + 1 :] if problem.mode == "T" else resistance[:sensed]
-    near = conductivity * sum(before)
-    return near, near + conductivity * resistance[sensed]
+    depth = [
+        slab.thickness * np.sqrt(diffusivity / slab.diffusivity) for slab in element_slabs(problem.stack)
+    ]
+    near = sum(depth[sensed + 1 :] if problem.mode == "T" else depth[:sensed])
+    return near, near + depth[sensed]
 
 
-def _temperature(
-    problem: PressProblem, depth: float, diffusivity: float, rate: float, t: np.ndarray
-) -> np.ndarray:
+def _temperature(depth: float, diffusivity: float, rate: float, t: np.ndarray) -> np.ndarray:
     """Share of the surface's final jump that has come to the depth."""
     result = np.zeros_like(t)
     later = t > 0

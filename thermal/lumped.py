@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermograsp.errors import InvalidValueError, non_negative
+
 from .column import sample_times
 from .problem import PressCurves, PressProblem
 
@@ -35,9 +37,12 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     Exact for a constant conductance, second order in an eighth of the samples' spacing for one that varies.
     object_surface is the object's temperature plus, in O mode, the element's rise above it. The element's stored heat
     is NaN.
-    Raises InvalidValueError for sample times that are negative or not finite.
+    Raises InvalidValueError for sample times that are negative, not finite or falling, and
+    for a conductance below 0.
     """
     t = sample_times(t)
+    if (np.diff(t) < 0).any():
+        raise InvalidValueError("the sample times must increase: rung 'lumped' marches through them")
     width, depth, thickness = problem.object_size
     capacity = problem.material.density * problem.material.specific_heat * width * depth * thickness
     loss = problem.air * _free_area(problem)
@@ -74,7 +79,9 @@ def _relax(u: float, gain: float, loss: float, capacity: float, jump: float, ste
 
 def _conductance(problem: PressProblem, time: float) -> float:
     """W/K from thermostat to object at that time."""
-    h = problem.conductance(time) if callable(problem.conductance) else problem.conductance
+    h = problem.conductance
+    if callable(h):
+        h = non_negative(f"conductance at t = {time:g} s", h(time))
     return 1 / (_sensor_resistance(problem) + 1 / (h * problem.area)) if h > 0 else 0.0
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import cumulative_simpson, solve_ivp
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal import closed_form, half_space, layered, lumped
+from thermograsp.thermal import closed_form, grid_3d, half_space, layered, lumped
 from thermograsp.thermal.layers import Layer, SensorStack, sensor
 from thermograsp.thermal.materials import Material
 from thermograsp.thermal.problem import PressProblem
@@ -227,6 +227,34 @@ def test_refuses_negative_times(rung: str) -> None:
         RUNGS[rung].solve(press(), np.array([-1.0, 1.0]))
 
 
+def test_lumped_refuses_what_it_cannot_march_through() -> None:
+    with pytest.raises(InvalidValueError, match="increase"):
+        lumped.solve(press(), np.array([1.0, 0.5]))
+    with pytest.raises(InvalidValueError, match="conductance at t = .* got -5"):
+        lumped.solve(press(conductance=lambda t: -5.0), np.array([1.0]))
+
+
 def test_closed_form_refuses_no_contact() -> None:
     with pytest.raises(InvalidValueError, match="perfect"):
         closed_form.solve(press(conductance=0.0), np.array([1.0]))
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+@pytest.mark.parametrize("material", [GLASS, METAL])
+def test_half_space_is_of_the_right_size_for_the_layered_seed_early(mode: str, material: Material) -> None:
+    """Its layers differ fivefold in diffusivity, so one homogeneous half-space is a rough picture: within a factor of
+    two from 20 to 500 ms."""
+    t = np.geomspace(0.02, 0.5, 8)
+    problem = press(mode=mode, material=material)
+    ratio = half_space.solve(problem, t).temperature_drop / layered.solve(problem, t).temperature_drop
+    assert ratio.min() > 0.5 and ratio.max() < 2
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+def test_one_dimension_is_all_there_is_in_an_object_as_wide_as_the_sensor(mode: str) -> None:
+    """Against the three-dimensional grid, which has nowhere to spread here: within its mesh error."""
+    t = np.linspace(0, 4, 41)
+    problem = press(mode=mode, object_size=(9e-3, 9e-3, 0.01))
+    exact = layered.solve(problem, t)
+    grid = grid_3d.solve(problem, t)
+    np.testing.assert_allclose(grid.temperature_drop, exact.temperature_drop, atol=0.02)
