@@ -1,0 +1,349 @@
+"""Independent reference: a press by finite elements with scikit-fem, sharing no numerics with the package.
+
+A quarter of the sensor and of the object are two meshes of triquadratic hexahedra. The contact is an interface without
+thickness: a conductance between coinciding nodes of the two meshes, weighted with the facet mass matrix. In O mode the
+element and the object share the nodes of their bond. Time: TR-BDF2 (Bank et al. 1985, IEEE Trans. Electron Devices 32,
+1992), second order and L-stable, with steps that grow fourfold, each factored once.
+
+    python benchmarks/fem.py                    every case of the reference table, two meshes and their extrapolation
+    python benchmarks/fem.py glass --json       cases whose name contains "glass", as JSON
+
+Needs scikit-fem.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy import sparse
+from scipy.interpolate import CubicSpline
+from scipy.sparse.linalg import SuperLU, splu
+from skfem import Basis, BilinearForm, ElementHex2, FacetBasis, LinearForm, MeshHex
+from skfem.element import DiscreteField
+from skfem.helpers import dot, grad
+
+from thermograsp.thermal.layers import sensor
+from thermograsp.thermal.materials import material
+from thermograsp.thermal.problem import PressProblem
+
+REFERENCE = Path(__file__).resolve().parent.parent / "tests" / "data" / "press_3d.json"
+GAMMA = 2 - np.sqrt(2)
+
+
+@dataclass(frozen=True, slots=True)
+class FemCurves:
+    """t, temperature_drop K, heat_flow W: (n,). stored_heat: (n, 2) J gained by the sensor and the object.
+    passed_heat: (n,) J through the opening contact. nodes: of the mesh."""
+
+    t: np.ndarray
+    temperature_drop: np.ndarray
+    heat_flow: np.ndarray
+    stored_heat: np.ndarray
+    passed_heat: np.ndarray
+    nodes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Extrapolated:
+    """levels: from coarse to fine. value (n,) K: the drop with the mesh error taken off. error (n,) K: the finest
+    level's distance from it, which is the mesh error to be shown."""
+
+    levels: tuple[FemCurves, ...]
+    value: np.ndarray
+    error: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """mass @ v' + stiffness @ v = load, temperatures u = spread @ v + fixed in every node (K above the object's first).
+
+    drop, contact: rows on u for the temperature drop K and the heat flow W (contact @ u + contact_source).
+    stored: (2, N) heat capacity of every node, of the sensor and of the object. initial: v at the touch.
+    """
+
+    mass: sparse.csc_matrix
+    stiffness: sparse.csc_matrix
+    load: np.ndarray
+    spread: sparse.csr_matrix
+    fixed: np.ndarray
+    drop: np.ndarray
+    contact: np.ndarray
+    contact_source: float
+    stored: np.ndarray
+    initial: np.ndarray
+
+
+@BilinearForm
+def _conduction(u, v, w):
+    return w.value * dot(grad(u), grad(v))
+
+
+@BilinearForm
+def _weighted(u, v, w):
+    return w.value * u * v
+
+
+@BilinearForm
+def _product(u, v, w):
+    return u * v
+
+
+@LinearForm
+def _integral(v, w):
+    return v
+
+
+class Block:
+    """One body's quarter on a tensor mesh, its layers between the given heights.
+
+    x, y, z: m, mesh lines. heights: m, bounds of the layers. conductivity, heat_capacity: of the layers.
+    """
+
+    def __init__(
+        self,
+        x: np.ndarray,
+        y: np.ndarray,
+        z: np.ndarray,
+        heights: Sequence[float],
+        conductivity: Sequence[float],
+        heat_capacity: Sequence[float],
+    ) -> None:
+        self.mesh = MeshHex.init_tensor(x, y, z)
+        self.basis = Basis(self.mesh, ElementHex2(), intorder=4)
+        layer = np.searchsorted(np.asarray(heights)[1:-1], np.asarray(self.basis.global_coordinates())[2])
+        self.stiffness = _conduction.assemble(self.basis, value=DiscreteField(np.asarray(conductivity)[layer]))
+        self.mass = _weighted.assemble(self.basis, value=DiscreteField(np.asarray(heat_capacity)[layer]))
+
+    def face(self, axis: int, position: float, within: float = np.inf) -> FacetBasis:
+        """The facets in a plane, those with x and y below `within` (m)."""
+        near = 1e-9
+
+        def chosen(p: np.ndarray) -> np.ndarray:
+            return (np.abs(p[axis] - position) < near) & (p[0] < within) & (p[1] < within)
+
+        return FacetBasis(self.mesh, ElementHex2(), facets=self.mesh.facets_satisfying(chosen), intorder=4)
+
+    def nodes(self, face: FacetBasis) -> np.ndarray:
+        """The nodes of a horizontal face, ordered by where they are."""
+        nodes = self.basis.get_dofs(face.find).flatten()
+        place = np.round(self.basis.doflocs[:2, nodes] * 1e12)
+        return nodes[np.lexsort((place[1], place[0]))]
+
+
+def toward(start: float, stop: float, count: int, ratio: float) -> np.ndarray:
+    """count + 1 mesh lines from start to stop, each interval `ratio` of the one before."""
+    widths = ratio ** np.arange(count)
+    return start + (stop - start) * np.concatenate(([0.0], np.cumsum(widths))) / widths.sum()
+
+
+def _joined(*parts: np.ndarray) -> np.ndarray:
+    return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
+
+
+def blocks(problem: PressProblem, refine: float) -> tuple[Block, Block, float]:
+    """The sensor above z = 0 and the object below it, and half the side of the contact m. refine: 1 is coarse."""
+    if problem.shape != "square" or callable(problem.conductance):
+        raise ValueError("the finite-element reference has square patches and constant conductance only")
+    ratio = 0.3 ** (1 / refine)
+
+    def cells(count: int) -> int:
+        return round(count * refine)
+
+    stack = problem.stack
+    half, patch = stack.width / 2, np.sqrt(problem.area) / 2
+    rim = patch if problem.mode == "T" else half  # where the object's flux is nearly singular
+    face = toward(0.0, patch, cells(5), ratio)
+    if half - patch > 1e-6 * half:
+        outer = toward(half, patch, cells(4), ratio)[::-1]
+        if problem.mode == "O":
+            middle = (half + patch) / 2
+            outer = _joined(toward(middle, patch, cells(4), ratio)[::-1], toward(middle, half, cells(4), ratio))
+        face = _joined(face, outer)
+    elif problem.mode == "T":
+        face[-1] = half
+    sides = []
+    for size in problem.object_size[:2]:
+        start = face if problem.mode == "O" or rim == half else face[face <= patch * (1 + 1e-12)]
+        sides.append(
+            _joined(start, toward(size / 2, start[-1], cells(5), ratio)[::-1]) if size / 2 > start[-1] * 1.000001 else start
+        )
+    # upward from the object: the layers in reverse
+    layers = stack.layers[::-1]
+    heights = np.concatenate(([0.0], np.cumsum([layer.thickness for layer in layers])))
+    pieces = []
+    for n, (low, high) in enumerate(zip(heights[:-1], heights[1:], strict=True)):
+        fine_below, fine_above = n == 0, problem.mode == "O" and n == len(layers) - 1
+        if fine_below and fine_above:
+            middle = (low + high) / 2
+            pieces += [toward(middle, low, cells(4), ratio)[::-1], toward(middle, high, cells(4), ratio)]
+        elif fine_below:
+            pieces.append(toward(high, low, cells(3), ratio)[::-1])
+        elif fine_above:
+            pieces.append(toward(low, high, cells(3), ratio))
+        else:
+            pieces.append(np.linspace(low, high, cells(2) + 1))
+    upper = Block(
+        face,
+        face,
+        _joined(*pieces),
+        list(heights),
+        [layer.conductivity for layer in layers],
+        [layer.density * layer.specific_heat for layer in layers],
+    )
+    depth = problem.object_size[2]
+    lower = Block(
+        *sides,
+        toward(-depth, 0.0, cells(5), ratio),
+        [-depth, 0.0],
+        [problem.material.conductivity],
+        [problem.material.density * problem.material.specific_heat],
+    )
+    return upper, lower, float(patch)
+
+
+def assemble(problem: PressProblem, refine: float) -> System:
+    """The semi-discrete press on one mesh."""
+    upper, lower, patch = blocks(problem, refine)
+    offset = upper.basis.N
+    total = offset + lower.basis.N
+    mass = sparse.block_diag([upper.mass, lower.mass], format="csr")
+    stiffness = sparse.block_diag([upper.stiffness, lower.stiffness], format="csr")
+    bounds = upper.mesh.p[2].max() - np.concatenate(([0.0], np.cumsum([layer.thickness for layer in problem.stack.layers])))
+    half = problem.stack.width / 2
+
+    # the opening contact
+    height = 0.0 if problem.mode == "T" else bounds[0]
+    face = upper.face(2, height, patch)
+    above = upper.nodes(face)
+    weights = _product.assemble(face)[above][:, above]
+    rows = np.arange(len(above))
+    jump = sparse.csr_matrix((np.ones(len(above)), (rows, above)), shape=(len(above), total))
+    source = np.zeros(total)
+    difference, conductance = problem.temperature_difference, float(problem.conductance)
+    area = weights.sum()
+    if problem.mode == "T":
+        below = lower.nodes(lower.face(2, 0.0, patch)) + offset
+        jump = jump - sparse.csr_matrix((np.ones(len(below)), (rows, below)), shape=jump.shape)
+        contact, contact_source = 4 * conductance * (jump.T @ (weights @ np.ones(len(above)))), 0.0
+        touched = patch
+    else:
+        source[above] = conductance * difference * (weights @ np.ones(len(above)))
+        contact = -4 * conductance * (jump.T @ (weights @ np.ones(len(above))))
+        contact_source = 4 * conductance * difference * area
+        touched = half
+    stiffness = stiffness + conductance * (jump.T @ weights @ jump)
+
+    # air on the object's free faces
+    if problem.air:
+        mesh, (width, depth, thickness) = lower.mesh, problem.object_size
+        planes = ((0, width / 2), (1, depth / 2), (2, -thickness))
+        free = [lower.face(axis, position).find for axis, position in planes]
+        top = mesh.facets_satisfying(lambda p: (np.abs(p[2]) < 1e-9) & ((p[0] > touched) | (p[1] > touched)))
+        film = _product.assemble(
+            FacetBasis(mesh, ElementHex2(), facets=np.unique(np.concatenate([*free, top])), intorder=4)
+        )
+        stiffness = stiffness + problem.air * sparse.block_diag([sparse.csr_matrix((offset, offset)), film])
+
+    # nodes held by the thermostat (T) or shared by the two meshes (O)
+    target = np.arange(total)
+    fixed = np.zeros(total)
+    if problem.mode == "T":
+        held = upper.nodes(upper.face(2, bounds[0]))
+        fixed[held] = difference
+        kept = np.setdiff1d(target, held)
+    else:
+        shared = lower.nodes(lower.face(2, 0.0, half)) + offset
+        target[shared] = upper.nodes(upper.face(2, 0.0, half))
+        kept = np.setdiff1d(np.arange(total), shared)
+    number = np.full(total, -1)
+    number[kept] = np.arange(len(kept))
+    column = number[target]
+    filled = column >= 0
+    spread = sparse.csr_matrix(
+        (np.ones(filled.sum()), (np.flatnonzero(filled), column[filled])), shape=(total, len(kept))
+    )
+
+    drop = np.zeros(total)
+    for position, sign in zip(bounds[problem.stack.sensed : problem.stack.sensed + 2], (1.0, -1.0), strict=True):
+        mean = _integral.assemble(upper.face(2, position))
+        drop[:offset] += sign * mean / mean.sum()
+    stored = np.zeros((2, total))
+    stored[0, :offset] = 4 * np.asarray(upper.mass.sum(axis=0)).ravel()
+    stored[1, offset:] = 4 * np.asarray(lower.mass.sum(axis=0)).ravel()
+    at_first = np.where(np.arange(total) < offset, difference if problem.mode == "T" else 0.0, 0.0)
+    return System(
+        mass=(spread.T @ mass @ spread).tocsc(),
+        stiffness=(spread.T @ stiffness @ spread).tocsc(),
+        load=spread.T @ (source - stiffness @ fixed),
+        spread=spread,
+        fixed=fixed,
+        drop=drop,
+        contact=contact,
+        contact_source=contact_source,
+        stored=stored,
+        initial=at_first[kept],
+    )
+
+
+def factor(matrix: sparse.csc_matrix) -> SuperLU:
+    """Sparse LU of a symmetric positive definite matrix, ordered for symmetry."""
+    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def tr_bdf2(solver: SuperLU, system: System, v: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """State in the middle and at the end of a step (s); solver of mass + GAMMA / 2 * step * stiffness."""
+    weight = GAMMA / 2 * step
+    middle = solver.solve(system.mass @ v - weight * (system.stiffness @ v - 2 * system.load))
+    mix = 1 / (GAMMA * (2 - GAMMA))
+    end = solver.solve(system.mass @ (mix * middle + (1 - mix) * v) + weight * system.load)
+    return middle, end
+
+
+def run(
+    problem: PressProblem, t: np.ndarray, refine: float = 1.0, first_step: float = 2.5e-4, step_per_time: float = 0.05
+) -> FemCurves:
+    """Curves at the times t (n,) s > 0 on one mesh.
+
+    refine: 1 is coarse, every number of cells grows with it. first_step: s; steps grow fourfold where they stay below
+    step_per_time of the time since the touch.
+    """
+    system = assemble(problem, refine)
+
+    def read(v: np.ndarray) -> list[float]:
+        u = system.spread @ v + system.fixed
+        return [system.drop @ u, system.contact @ u + system.contact_source, *(system.stored @ u)]
+
+    v, now, step = system.initial, 0.0, first_step
+    times, readings, passed = [0.0], [read(v)], [0.0]
+    solver = None
+    while now < t[-1]:
+        if 4 * step <= step_per_time * now:
+            step, solver = 4 * step, None
+        if solver is None:
+            solver = factor((system.mass + GAMMA / 2 * step * system.stiffness).tocsc())
+        middle, v = tr_bdf2(solver, system, v, step)
+        readings.append(read(v))
+        halfway = passed[-1] + GAMMA / 2 * step * (readings[-2][1] + read(middle)[1])
+        mix = 1 / (GAMMA * (2 - GAMMA))
+        passed.append(mix * halfway + (1 - mix) * passed[-1] + GAMMA / 2 * step * readings[-1][1])
+        now += step
+        times.append(now)
+    table = np.column_stack((readings, passed))
+    table[:, 2:4] -= table[0, 2:4]
+    drop, flow, in_sensor, in_object, through = CubicSpline(times, table)(t).T
+    return FemCurves(t, drop, flow, np.stack((in_sensor, in_object), axis=1), through, len(v))
+
+
+def extrapolate(problem: PressProblem, t: np.ndarray, levels: Sequence[float] = (1.0, 1.5)) -> Extrapolated:
+    """Curves on several meshes, and the drop with the mesh error taken off, as if it fell with refine**-ORDER."""
+    curves = tuple(run(problem, t, refine) for refine in levels)
+    coarse, fine = curves[-2:]
+    change = (fine.temperature_drop - coarse.temperature_drop) / ((levels[-1] / levels[-2]) ** ORDER - 1)
+    return Extrapolated(curves, fine.temperature_drop + change, np.abs(change))
