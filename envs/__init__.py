@@ -1,1 +1,33 @@
 """MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments."""
+
+from .grasp import BatchState, GraspBatch, action_of, action_space, command_of
+from .grasp_env import GraspEnv
+from .grasp_vector import GraspVectorEnv
+from .mechanics import ContactRecord, Mechanics, MechanicsState
+from .observation import observation_space
+from .scene import ObjectSpec, build_scene
+from .simulated_plant import SEED_MATERIALS, PlantState, SimulatedPlant, SimulationConfig
+from .tasks import GraspTask
+from .things import Thing
+
+__all__ = [
+    "SEED_MATERIALS",
+    "BatchState",
+    "ContactRecord",
+    "GraspBatch",
+    "GraspEnv",
+    "GraspTask",
+    "GraspVectorEnv",
+    "Mechanics",
+    "MechanicsState",
+    "ObjectSpec",
+    "PlantState",
+    "SimulatedPlant",
+    "SimulationConfig",
+    "Thing",
+    "action_of",
+    "action_space",
+    "build_scene",
+    "command_of",
+    "observation_space",
+]

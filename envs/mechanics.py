@@ -24,7 +24,9 @@ MAX_HEIGHT = 0.15  # m
 OPENING_SPEED = 0.1  # m/s, the fastest the pads move relative to each other (a Robotiq 2F-85: .02 to .15)
 LIFT_ACCELERATION = 1.0  # m/s2, how fast the commanded lift rate is followed
 _WINDUP = 0.002  # m, how far the set point runs beyond where the force limit is reached
+_STILL, _SHORT = 0.005, 0.0002  # m/s, m: slower than this, and this far from the target, the fingers are blocked
 _KEPT_MODELS = 512
+_RECORD: tuple = ("sensordata", "site_xpos", "site_xmat", "qpos", "qvel")
 # The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
 _FAMILIES = ("body_", "bvh_", "cam_", "dof_", "geom_", "light_", "qpos")
 _MODEL_ARRAYS = tuple(sorted(name for name in mujoco.batch.MODEL_FIELDS if name.startswith(_FAMILIES)))
@@ -39,6 +41,7 @@ class ContactRecord:
     touching (B, S, T, O) bool: whether there was any contact.
     centroid (B, S, T, O, 2) m: force-weighted centre of the contact from the pad's middle, along the pad's two
     tangential axes; 0 where nothing touches.
+    place (B, S, T, O, 3) m: the pad's middle in the object's frame, touching or not.
     opening (B, S) m, opening_rate (B, S) m/s, height (B, S) m over the lowest position.
     object_pose (B, S, O, 7): position m and quaternion (w, x, y, z), world frame.
     failed (B,) bool: the simulation broke down (see Mechanics.failure); ignore that environment's other rows.
@@ -49,6 +52,7 @@ class ContactRecord:
     force: np.ndarray
     touching: np.ndarray
     centroid: np.ndarray
+    place: np.ndarray
     opening: np.ndarray
     opening_rate: np.ndarray
     height: np.ndarray
@@ -107,6 +111,7 @@ class Mechanics:
         )
         self._force_range = self._batch.expand("actuator_forcerange")
         self._compiled: dict[tuple[ObjectSpec, ...], dict[str, np.ndarray]] = {}
+        self._base = {name: getattr(self.model, name).tobytes() for name in _MODEL_ARRAYS}
         self._varying: set[str] = set()
         self._index(self.model)
         self.failure = [""] * num_envs
@@ -265,7 +270,9 @@ class Mechanics:
         own = self._differences(tuple(placeless(item) for item in items))
         self._varying |= own.keys()
         for name in self._varying:
-            self._batch.expand(name)[env] = own.get(name, getattr(self.model, name))
+            rows = self._batch.expand(name)
+            # bvh_aabb goes on with the meshes' boxes, which the environments share
+            rows[env] = own.get(name, getattr(self.model, name))[: rows.shape[1]]
 
     def _differences(self, key: tuple[ObjectSpec, ...]) -> dict[str, np.ndarray]:
         """Model fields in which a scene of the objects `key` differs from self.model."""
@@ -273,19 +280,24 @@ class Mechanics:
             if len(self._compiled) >= _KEPT_MODELS:
                 self._compiled.pop(next(iter(self._compiled)))
             model = build_scene(key, library=self._library, timestep=self._timestep)
-            pairs = ((name, getattr(model, name), getattr(self.model, name)) for name in _MODEL_ARRAYS)
-            self._compiled[key] = {name: a.copy() for name, a, b in pairs if not np.array_equal(a, b)}
+            pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)
+            self._compiled[key] = {n: a.copy() for n, a in pairs if a.tobytes() != self._base[n]}
         return self._compiled[key]
 
     def _command(self, opening: np.ndarray, force: np.ndarray, lift_rate: np.ndarray, duration: float) -> None:
         """Rates of the two servos' set points over the coming control step.
 
-        The grip's set point stays within reach of where its force saturates: it does not wind up.
+        The grip's set point moves to the target. Where something blocks the fingers short of it, it goes on until the
+        force saturates, and little further, so that it does not wind up.
         """
         self._force_range[:, self._grip, 0] = -force
-        goal = np.maximum(opening, self.opening - force / self._stiffness - _WINDUP)
-        rate = (goal - self._act[:, self._grip_act]) / duration
-        self._ctrl[:, self._grip] = np.clip(rate, -OPENING_SPEED, OPENING_SPEED)
+        width, setpoint = self.opening, self._act[:, self._grip_act]
+        left, right = self._finger_dofs
+        still = np.abs(self._qvel[:, left] + self._qvel[:, right]) < _STILL
+        blocked = still & (width > opening + _SHORT) & (setpoint < opening + _SHORT)
+        lowest = width - force / self._stiffness - _WINDUP
+        goal = np.where(blocked, lowest, np.maximum(opening, lowest))
+        self._ctrl[:, self._grip] = np.clip((goal - setpoint) / duration, -OPENING_SPEED, OPENING_SPEED)
         last, change = self._ctrl[:, self._lift], LIFT_ACCELERATION * duration
         self._ctrl[:, self._lift] = np.clip(lift_rate, last - change, last + change)
 
@@ -299,7 +311,8 @@ class Mechanics:
         qpos, qvel = out["qpos"], out["qvel"]
         contacts = out["sensordata"][:, :, self._contacts]  # (B, S, T, O, 7)
         vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3)  # force, centroid; world frame
-        vectors[..., 1, :] -= out["site_xpos"][:, :, self._pads, None]
+        pads = out["site_xpos"][:, :, self._pads, None]  # (B, S, T, 1, 3)
+        vectors[..., 1, :] -= pads
         axes = out["site_xmat"][:, :, self._pads, None, None].reshape(*contacts.shape[:3], 1, 1, 3, 3)
         # Written out: a matmul's rounding may depend on the number of environments.
         local = (
@@ -312,12 +325,29 @@ class Mechanics:
             force=local[..., 0, :].copy(),
             touching=touching,
             centroid=np.where(touching[..., None], local[..., 1, 1:], 0.0),
+            place=_in_frame(pads, qpos[..., self._poses][:, :, None]),
             opening=qpos[..., left] + qpos[..., right],
             opening_rate=qvel[..., left_dof] + qvel[..., right_dof],
             height=qpos[..., self._height].copy(),
             object_pose=qpos[..., self._poses],
             failed=np.array([bool(reason) for reason in self.failure]),
         )
+
+
+def _in_frame(point: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """Points (..., 3) of the world in the frames of poses (..., 7), written out so that rounding is each row's own."""
+    v = point - pose[..., :3]
+    w, u = pose[..., 3:4], -pose[..., 4:]
+
+    def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        a, b = np.broadcast_arrays(a, b)
+        x = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+        y = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+        z = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+        return np.stack((x, y, z), axis=-1)
+
+    turned = 2 * cross(u, v)
+    return v + w * turned + cross(u, turned)
 
 
 def within(name: str, values: np.ndarray, low: float, high: float) -> np.ndarray:

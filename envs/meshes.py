@@ -62,9 +62,11 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
     if not file.is_file():
         raise MeshError(f"{path}: no such file (looked in {file.resolve().parent})")
     try:
-        mesh = trimesh.load_mesh(file)
+        mesh = trimesh.load_mesh(file, process=False)
     except Exception as error:  # trimesh raises whatever its parsers do
         raise MeshError(f"{path}: cannot be read as {file.suffix}: {error}") from error
+    _check_vertices(path, mesh)
+    mesh.merge_vertices()  # STL repeats every corner
     _check_solid(path, mesh)
     mesh.apply_scale(scale)
     _check_size(path, mesh.extents, scale)
@@ -90,12 +92,15 @@ def _triple(values: np.ndarray) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _check_solid(path: str, mesh) -> None:
+def _check_vertices(path: str, mesh) -> None:
     if len(mesh.faces) == 0:
         raise MeshError(f"{path}: has no faces; export a surface mesh")
     if not np.isfinite(mesh.vertices).all():
         bad = int((~np.isfinite(mesh.vertices)).any(axis=1).sum())
         raise MeshError(f"{path}: {bad} of {len(mesh.vertices)} vertices are not finite; export it again")
+
+
+def _check_solid(path: str, mesh) -> None:
     if not min(mesh.extents) > 0:
         raise MeshError(f"{path}: encloses no volume, extents {mesh.extents.tolist()}; give a solid, not a sheet")
     if not mesh.is_watertight:
@@ -106,19 +111,20 @@ def _check_solid(path: str, mesh) -> None:
 
 
 def _check_size(path: str, extents: np.ndarray, scale: float) -> None:
-    def fits(factor: float) -> bool:
-        return factor * min(extents) >= SMALLEST and factor * min(extents[0], extents[1]) <= LARGEST
+    across = min(extents[0], extents[1])
+
+    def fits(factor: float, smallest: float = SMALLEST) -> bool:
+        return factor * min(extents) >= smallest and factor * across <= LARGEST
 
     if fits(1.0):
         return
     shown = " x ".join(f"{1e3 * e:.4g}" for e in extents)
-    advice = [f"--scale {scale * f:g} if it is in {unit}" for f, unit in _UNITS if fits(f)]
-    if not advice:
-        middle = 0.04 / min(extents[0], extents[1])
-        advice = [f"--scale {scale * middle:.3g} to make it 40 mm wide"] if fits(middle) else ["another object"]
+    advice = [f"scale {scale * f:g} (a file in {unit})" for f, unit in _UNITS if fits(f, 2 * SMALLEST)]
+    if not advice and fits(0.04 / across):
+        advice.append(f"scale {scale * 0.04 / across:.3g} (40 mm wide)")
     raise MeshError(
         f"{path}: {shown} mm at scale {scale:g} does not fit the gripper ({1e3 * SMALLEST:.0f} mm at least, "
-        f"{1e3 * LARGEST:.0f} mm at most between the fingers); try {' or '.join(advice)}"
+        f"{1e3 * LARGEST:.0f} mm at most between the fingers); try {' or '.join(advice) or 'another object'}"
     )
 
 

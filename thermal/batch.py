@@ -47,8 +47,8 @@ class HeatTables:
 @dataclass(frozen=True, slots=True)
 class HeatReading:
     """At the end of each step of a call. drop: (B, N, F) K. element_heat: (B, N, F) J. object_heat: (B, N) J.
-    sensor_rise, object_rise: (B, N, F) K of the two contact faces above what each body started from. flow: (B, N, F) W
-    from sensor to object, the step's mean."""
+    sensor_rise, object_rise: (B, N, F) K of the two contact faces above what each body started from. flow: (B, N, F)
+    W from sensor to object, the step's mean."""
 
     drop: np.ndarray
     element_heat: np.ndarray
@@ -56,6 +56,7 @@ class HeatReading:
     sensor_rise: np.ndarray
     object_rise: np.ndarray
     flow: np.ndarray
+    air_loss: np.ndarray
 
 
 def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: float) -> HeatTables:
@@ -118,6 +119,7 @@ def advance_heat(
         np.zeros((rows, samples, fingertips)),
         np.zeros((rows, samples, fingertips)),
         np.zeros((rows, samples, fingertips)),
+        np.zeros((rows, samples)),
     )
     _advance_rows(
         tables.dt,
@@ -132,6 +134,7 @@ def advance_heat(
         tables.sensor_surface,
         tables.object_surface,
         tables.object_heat,
+        tables.mean,
         network,
         state,
         conductance,
@@ -143,6 +146,7 @@ def advance_heat(
         reading.sensor_rise,
         reading.object_rise,
         reading.flow,
+        reading.air_loss,
     )
     return state, reading
 
@@ -173,6 +177,7 @@ def _advance_rows(
     sensor_surface,
     object_surface,
     object_heat,
+    mean,
     network,
     state,
     conductance,
@@ -184,6 +189,7 @@ def _advance_rows(
     sensor_out,
     surface_out,
     flow_out,
+    loss_out,
 ):
     rows, samples, fingertips = drop_out.shape
     for b in range(rows):
@@ -205,7 +211,11 @@ def _advance_rows(
         own_rates = rates[i, :n]
         x = state[b, :n]
         for k in range(samples):
-            advance(own_rates, own, own_scale, own_gram, dt, x, weight, drive, 1, flow)
+            level = advance(own_rates, own, own_scale, own_gram, dt, x, weight, drive, flow, mean[i])
+            kept = object_heat[i, mean[i]]
+            for f in range(fingertips):
+                kept += element_heat[i, f, mean[i]]
+            loss_out[b, k] = own_rates[mean[i]] * kept * level
             for f in range(fingertips):
                 flow_out[b, k, f] = flow[f * p]
                 for j in range(n):

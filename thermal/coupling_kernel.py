@@ -21,11 +21,12 @@ def advance(
     state: np.ndarray,
     conductance: np.ndarray,
     difference: np.ndarray,
-    steps: int,
     flow: np.ndarray,
-) -> None:
-    """`steps` steps of one system at constant conductance, in place. rates (n,), ports (n, M), scale (Q, n), gram
-    (Q, M, M), state (n,), conductance and difference (M,), flow (M,): its mean heat flow W over the steps."""
+    watched: int,
+) -> float:
+    """One step of one system, in place. rates (n,), ports (n, M), scale (Q, n), gram (Q, M, M), state (n,), conductance
+    and difference (M,), flow (M,): filled with the mean heat flow W during the step. Returns the mean during the step of
+    the state of index `watched`."""
     n, m = ports.shape
     rate = np.empty(n)
     seen = np.empty(m)
@@ -33,49 +34,51 @@ def advance(
     matrix = np.empty((m, m), np.complex128)
     change = np.empty(n)
     lagged = np.empty(m)
-    flow[:] = 0.0
-    for _ in range(steps):
-        seen[:] = 0.0
-        for i in range(n):
-            for j in range(m):
-                seen[j] += ports[i, j] * state[i]
-        for i in range(n):
-            total = -rates[i] * state[i]
-            for j in range(m):
-                total += ports[i, j] * conductance[j] * (difference[j] - seen[j])
-            rate[i] = total
-            change[i] = 0.0
-        lagged[:] = 0.0
-        for q in range(_PAIRS):
-            gathered[:] = 0.0
-            for i in range(n):
-                scaled = scale[q, i] * rate[i]
-                for j in range(m):
-                    gathered[j] += ports[i, j] * scaled
-            for j in range(m):
-                weight = dt * conductance[j]
-                for k in range(m):
-                    matrix[j, k] = weight * gram[q, j, k]
-                matrix[j, j] += 1.0
-                lagged[j] += (_LAGS[q] * gathered[j]).real
-                gathered[j] *= weight
-            _solve(matrix, gathered)
-            for i in range(n):
-                pulled = 0.0 + 0.0j
-                for j in range(m):
-                    pulled += ports[i, j] * gathered[j]
-                change[i] += (WEIGHTS[q] * scale[q, i] * (rate[i] - pulled)).real
-            for j in range(m):
-                back = 0.0 + 0.0j
-                for k in range(m):
-                    back += gram[q, j, k] * gathered[k]
-                lagged[j] -= (_LAGS[q] * back).real
+    watched_lag = 0.0
+    seen[:] = 0.0
+    for i in range(n):
         for j in range(m):
-            flow[j] += conductance[j] * (difference[j] - seen[j] + 2 * dt * lagged[j])
+            seen[j] += ports[i, j] * state[i]
+    for i in range(n):
+        total = -rates[i] * state[i]
+        for j in range(m):
+            total += ports[i, j] * conductance[j] * (difference[j] - seen[j])
+        rate[i] = total
+        change[i] = 0.0
+    lagged[:] = 0.0
+    for q in range(_PAIRS):
+        gathered[:] = 0.0
         for i in range(n):
-            state[i] -= 2 * dt * change[i]
+            scaled = scale[q, i] * rate[i]
+            for j in range(m):
+                gathered[j] += ports[i, j] * scaled
+        for j in range(m):
+            weight = dt * conductance[j]
+            for k in range(m):
+                matrix[j, k] = weight * gram[q, j, k]
+            matrix[j, j] += 1.0
+            lagged[j] += (_LAGS[q] * gathered[j]).real
+            gathered[j] *= weight
+        _solve(matrix, gathered)
+        for i in range(n):
+            pulled = 0.0 + 0.0j
+            for j in range(m):
+                pulled += ports[i, j] * gathered[j]
+            solved = scale[q, i] * (rate[i] - pulled)
+            change[i] += (WEIGHTS[q] * solved).real
+            if i == watched:
+                watched_lag += (_LAGS[q] * solved).real
+        for j in range(m):
+            back = 0.0 + 0.0j
+            for k in range(m):
+                back += gram[q, j, k] * gathered[k]
+            lagged[j] -= (_LAGS[q] * back).real
     for j in range(m):
-        flow[j] /= steps
+        flow[j] = conductance[j] * (difference[j] - seen[j] + 2 * dt * lagged[j])
+    mean = state[watched] - 2 * dt * watched_lag
+    for i in range(n):
+        state[i] -= 2 * dt * change[i]
+    return mean
 
 
 @njit(cache=True, error_model="numpy")

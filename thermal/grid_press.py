@@ -112,7 +112,7 @@ def press_grid(
     stack, material, size = problem.stack, problem.material, problem.object_size
     bounds = np.concatenate(([0.0], np.cumsum([layer.thickness for layer in stack.layers])))
     opening = [bounds[-1]] if problem.mode == "T" else [0.0, bounds[-1]]
-    depth = graded_cells(list(bounds), opening, finest_cell, GROWTH, bounds[-1] / 12, resolution)
+    depth = graded_cells(list(bounds), opening, finest_cell, GROWTH, bounds[-1] / 24, resolution)
     layer_of = np.searchsorted(bounds, (depth[1:] + depth[:-1]) / 2) - 1
     sensor = Body(
         *axes[SENSOR],

@@ -66,7 +66,7 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
         if i:
             for k in range(steps):
                 conductance[:modes] = _conductance(problem, t[i - 1] + (k + 0.5) * dt) * problem.area
-                advance(rates, ports, stepper.scale, stepper.gram, dt, state, conductance, difference, 1, flow)
+                advance(rates, ports, stepper.scale, stepper.gram, dt, state, conductance, difference, flow, system.mean)
             states[i] = state
         now = _conductance(problem, float(time)) * problem.area
         flows[i] = now * (difference[0] - ports[:, 0] @ state)

@@ -1,0 +1,78 @@
+"""The one seam between simulation and hardware: a plant takes commands and answers with readings.
+
+B: environments of a plant, F = 2 fingertips (left, right), S: voltage samples of one control step.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Protocol
+
+import numpy as np
+
+from thermograsp.errors import unknown_name
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What a gripper is told for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s."""
+
+    opening: np.ndarray
+    force_limit: np.ndarray
+    lift_rate: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What a gripper and its fingertips report after one control step.
+
+    opening (B,) m, opening_rate (B,) m/s, height (B,) m of the arm over its lowest position. force (B, F, 3) N: each
+    fingertip's load cell in the pad's frame, normal (> 0 when pressing) and two tangential. voltage (B, S, F) V after
+    the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows, empty on
+    hardware. error: (B,) why an environment can't go on, "" while it can.
+    """
+
+    opening: np.ndarray
+    opening_rate: np.ndarray
+    height: np.ndarray
+    force: np.ndarray
+    voltage: np.ndarray
+    thermostat: np.ndarray
+    truth: Mapping[str, Any]
+    error: tuple[str, ...]
+
+
+class Plant(Protocol):
+    """dt: s, the control period. sample_rate: Hz of the voltage. num_envs: B."""
+
+    dt: float
+    sample_rate: float
+    num_envs: int
+
+    def reset(self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]) -> Reading:
+        """Start the named environments anew, each drawing from its own generator; the reading is of all."""
+        ...
+
+    def step(self, command: Command) -> Reading:
+        """Carry out one control step in all environments."""
+        ...
+
+    def close(self) -> None:
+        """Release what the plant holds."""
+        ...
+
+
+_SCHEMES: Mapping[str, str] = MappingProxyType({"simulated": "thermograsp.envs.simulated_plant:simulated_plant"})
+
+
+def plant_factory(url: str) -> Callable[..., Plant]:
+    """What makes a plant for a URL such as "simulated" or "serial:///dev/ttyACM0": called with the URL and the
+    environment's keywords. Modules are loaded on demand. Raises UnknownNameError with the known schemes."""
+    scheme = url.partition(":")[0]
+    if scheme not in _SCHEMES:
+        raise unknown_name("plant", scheme, _SCHEMES)
+    module, _, name = _SCHEMES[scheme].partition(":")
+    return getattr(importlib.import_module(module), name)

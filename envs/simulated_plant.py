@@ -1,0 +1,305 @@
+"""The simulated plant: MuJoCo mechanics, contact heat and the fingertips' electronics for a batch of environments."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, finite, non_negative, positive
+from thermograsp.plant import Command, Reading
+
+from ..thermal import (
+    SIGNAL_CHAINS,
+    Material,
+    Mode,
+    SensorStack,
+    SignalChain,
+    SignalState,
+    material,
+    materials,
+    measure,
+    sensor,
+    settled,
+)
+from .heat import GraspHeat, HeatState, HeatStep
+from .mechanics import SUBSTEPS, ContactRecord, Mechanics, MechanicsState
+from .scene import ObjectSpec
+from .things import Thing
+
+SAMPLES = 2  # of voltage and heat in a control step: 100 Hz
+SEED_MATERIALS = (
+    "cotton",
+    "wood",
+    "plastic",
+    "rubber",
+    "glass",
+    "ceramic",
+    "marble",
+    "stainless_steel",
+    "iron",
+    "aluminium",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationConfig:
+    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed materials.
+    mode: T or O. objects: the object's shape (density and friction are the material's unless given). tolerance: K that the
+    thermal network keeps. air: W/(m2 K). Temperatures in °C. placement: m and degree; the object lies within +- these of
+    the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). threads: of MuJoCo, 0 for all.
+    cache: keep thermal networks on disk."""
+
+    material: str | Material | Sequence[str | Material] | None = None
+    mode: Mode = "T"
+    objects: ObjectSpec | None = None
+    tolerance: float = 0.05
+    sensor: str | SensorStack = "seed"
+    signal: str | SignalChain = "ads1115"
+    air: float = 5.0
+    sensor_temperature: float = 36.0
+    object_temperature: float = 24.0
+    placement: tuple[float, float] = (0.002, 2.0)
+    fingertips: Literal[1, 2] = 2
+    threads: int = 1
+    cache: bool = True
+
+    def __post_init__(self) -> None:
+        if self.mode not in ("T", "O"):
+            raise InvalidValueError(f"mode must be 'T' or 'O', got {self.mode!r}")
+        if self.fingertips not in (1, 2):
+            raise InvalidValueError(f"fingertips must be 1 or 2, got {self.fingertips!r}")
+        positive("tolerance (K)", self.tolerance)
+        non_negative("air (W/(m2 K))", self.air)
+        finite("sensor_temperature (°C)", self.sensor_temperature)
+        finite("object_temperature (°C)", self.object_temperature)
+        for value in self.placement:
+            non_negative("placement (m, degree)", value)
+
+    @property
+    def choices(self) -> tuple[Material, ...]:
+        """Materials that an episode draws from. Raises UnknownNameError, and InvalidValueError for an empty list."""
+        given = SEED_MATERIALS if self.material is None else self.material
+        listed = [given] if isinstance(given, str | Material) else list(given)
+        if not listed:
+            raise InvalidValueError(f"material is an empty list: give one of {len(materials())} names, or None")
+        return tuple(material(name) for name in listed)
+
+    @property
+    def chain(self) -> SignalChain:
+        """The electronics. Raises InvalidValueError for a name that is none."""
+        if isinstance(self.signal, SignalChain):
+            return self.signal
+        if self.signal not in SIGNAL_CHAINS:
+            raise InvalidValueError(f"signal must be one of {sorted(SIGNAL_CHAINS)}, got {self.signal!r}")
+        return SIGNAL_CHAINS[self.signal]
+
+
+@dataclass(frozen=True, slots=True)
+class PlantState:
+    """Everything that decides the future of some environments of a simulated plant; picklable."""
+
+    mechanics: MechanicsState
+    heat: HeatState
+    filtered: np.ndarray
+    last: np.ndarray
+    rest: np.ndarray
+    generators: tuple[np.random.Generator, ...]
+    books: np.ndarray
+
+
+class SimulatedPlant:
+    """A batch of simulated grippers; see thermograsp.plant.Plant. B: environments."""
+
+    def __init__(self, num_envs: int, config: SimulationConfig) -> None:
+        self.config = config
+        self.num_envs = num_envs
+        self._choices, self._chain, self._stack = config.choices, config.chain, sensor(config.sensor)
+        self._shape = config.objects or ObjectSpec()
+        first = self._thing(self._choices[0], self._shape)
+        self.mechanics = Mechanics((first.spec,), num_envs, threads=config.threads)
+        self.dt = SUBSTEPS * float(self.mechanics.model.opt.timestep)
+        self.sample_rate = SAMPLES / self.dt
+        self.heat = GraspHeat(
+            num_envs,
+            tolerance=config.tolerance,
+            air=config.air,
+            dt=self.dt / SAMPLES,
+            samples=SAMPLES,
+            sensor_temperature=config.sensor_temperature,
+            cache=config.cache,
+        )
+        self.things: list[Thing] = [first] * num_envs
+        self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
+        self._signal = settled(np.zeros(2 * num_envs), self._stack.seebeck)
+        self._rest = np.zeros(num_envs)
+        self._books = np.zeros((num_envs, 3))  # J: flowed in, its absolute sum, lost to the air
+
+    @property
+    def model(self) -> Any:
+        """The mujoco.MjModel of the first environment's scene."""
+        return self.mechanics.model
+
+    def reset(self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]) -> Reading:
+        """Starts the rows anew: draws material and placement, opens the gripper. options: material, for this episode."""
+        unknown = set(options) - {"material"}
+        if unknown:
+            raise InvalidValueError(f"unknown reset options {sorted(unknown)}: material is known")
+        choices = self._choices
+        if "material" in options:
+            choices = replace(self.config, material=options["material"]).choices
+        reach, turn = self.config.placement
+        for row, rng in zip(rows, rngs, strict=True):
+            chosen = choices[int(rng.integers(len(choices)))]
+            x, y, angle = rng.uniform(-1.0, 1.0, 3)
+            spec = replace(self._shape, position=(x * reach, y * reach), yaw=self._shape.yaw + np.deg2rad(angle * turn))
+            self.things[row] = self._thing(chosen, spec)
+            self._rngs[row] = rng
+        things = [self.things[row] for row in rows]
+        self.mechanics.reset(rows, [(thing.spec,) for thing in things])
+        self.heat.reset(rows, [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things])
+        both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
+        for values in (self._signal.filtered, self._signal.last):
+            values[both] = 0.0
+        self._rest[list(rows)] = self.mechanics.object_pose[list(rows), 0, 2]
+        self._books[list(rows)] = 0.0
+        return self._still()
+
+    def step(self, command: Command) -> Reading:
+        """One control step of all environments."""
+        record = self.mechanics.step(command.opening, command.force_limit, command.lift_rate)
+        normal = np.where(record.touching[..., 0], np.maximum(record.force[..., 0, 0], 0.0), 0.0)
+        step = self.heat.advance(normal, record.place[:, -1, :, 0])
+        return self._reading(record, step)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def state(self, rows: Sequence[int]) -> PlantState:
+        """A copy of the rows' state."""
+        chosen = list(rows)
+        both = np.array([[2 * row, 2 * row + 1] for row in chosen], int)
+        return PlantState(
+            self.mechanics.state(np.array(chosen)),
+            self.heat.state(chosen),
+            self._signal.filtered[both],
+            self._signal.last[both],
+            self._rest[chosen],
+            tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
+            self._books[chosen],
+        )
+
+    def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
+        """Puts the rows into a state; what follows is bit-identical to what followed it first. Returns the generators the
+        rows now draw from."""
+        chosen = list(rows)
+        self.mechanics.set_state(state.mechanics, np.array(chosen))
+        self.heat.set_state(chosen, state.heat)
+        rngs = tuple(copy.deepcopy(rng) for rng in state.generators)
+        for k, row in enumerate(chosen):
+            self.things[row] = replace(state.heat.things[k], spec=state.mechanics.objects[k][0])
+            self._rngs[row] = rngs[k]
+            self._signal.filtered[2 * row : 2 * row + 2] = state.filtered[k]
+            self._signal.last[2 * row : 2 * row + 2] = state.last[k]
+        self._rest[chosen] = state.rest
+        self._books[chosen] = state.books
+        return rngs
+
+    def _thing(self, chosen: Material, spec: ObjectSpec) -> Thing:
+        """The object of that material: the material's density and friction where the shape gives none."""
+        if spec.mass is None and spec.density is None:
+            spec = replace(spec, density=chosen.density)
+        if self.config.objects is None and chosen.friction is not None:
+            spec = replace(spec, friction=chosen.friction)
+        config = self.config
+        return Thing(spec, chosen, config.object_temperature, config.mode, self._stack, config.fingertips)
+
+    def _reading(self, record: ContactRecord, step: HeatStep) -> Reading:
+        rows = self.num_envs
+        noise = np.stack([rng.standard_normal((SAMPLES, 2)) for rng in self._rngs])
+        self._signal, volts = measure(
+            self._chain,
+            self._signal,
+            np.moveaxis(step.drop, 1, 2).reshape(2 * rows, SAMPLES),
+            self._stack.seebeck,
+            self.dt / SAMPLES,
+            np.moveaxis(noise, 1, 2).reshape(2 * rows, SAMPLES),
+        )
+        force = np.zeros((rows, 2, 3))
+        for k in range(record.force.shape[1]):  # in fixed order: a row's bits must not depend on the others
+            force += record.force[:, k, :, 0]
+        force /= record.force.shape[1]
+        flow = step.flow[:, 0] + step.flow[:, 1]
+        self._books[:, 0] += flow * self.dt
+        self._books[:, 1] += (np.abs(step.flow[:, 0]) + np.abs(step.flow[:, 1])) * self.dt
+        self._books[:, 2] += step.air_loss * self.dt
+        return Reading(
+            opening=record.opening[:, -1],
+            opening_rate=record.opening_rate[:, -1],
+            height=record.height[:, -1],
+            force=force,
+            voltage=np.moveaxis(volts.reshape(rows, 2, SAMPLES), 1, 2),
+            thermostat=np.full((rows, 2), self.config.sensor_temperature),
+            truth=self._truth(record.object_pose[:, -1, 0, 2], step, record.failed),
+            error=tuple(self.mechanics.failure),
+        )
+
+    def _truth(self, object_height: np.ndarray, step: HeatStep, failed: np.ndarray) -> dict[str, Any]:
+        gained = step.heat[:, 2] + (step.heat[:, 0] + step.heat[:, 1] if self.config.mode == "O" else 0.0)
+        return {
+            "material": [thing.material.name for thing in self.things],
+            "temperature_drop": step.drop[:, -1],
+            "temperature_drops": step.drop,
+            "contact_area": step.area,
+            "conductance": step.conductance,
+            "sensor_surface": step.sensor_surface,
+            "object_surface": step.object_surface,
+            "object_temperature": step.object_temperature,
+            "heat_flow": step.flow,
+            "heat_imbalance": gained + self._books[:, 2] - self._books[:, 0],
+            "heat_exchanged": self._books[:, 1].copy(),
+            "events": step.events,
+            "rung": [self.heat.rung(row) for row in range(self.num_envs)],
+            "lift": object_height - self._rest,
+            "crushing_force": np.array([thing.crushing_force for thing in self.things]),
+            "failed": failed,
+        }
+
+    def _still(self) -> Reading:
+        """The reading before anything moves: nothing is touched, no voltage."""
+        rows = self.num_envs
+        none = np.zeros((rows, 2))
+        rest = HeatStep(
+            drop=np.zeros((rows, SAMPLES, 2)),
+            conductance=none,
+            area=none,
+            sensor_surface=none + self.config.sensor_temperature,
+            object_surface=none + self.config.object_temperature,
+            object_temperature=np.full(rows, self.config.object_temperature),
+            heat=np.zeros((rows, 3)),
+            flow=none,
+            air_loss=np.zeros(rows),
+            events=((),) * rows,
+        )
+        return Reading(
+            opening=self.mechanics.opening,
+            opening_rate=np.zeros(rows),
+            height=self.mechanics.height,
+            force=np.zeros((rows, 2, 3)),
+            voltage=np.zeros((rows, SAMPLES, 2)),
+            thermostat=np.full((rows, 2), self.config.sensor_temperature),
+            truth=self._truth(self.mechanics.object_pose[:, 0, 2], rest, np.zeros(rows, bool)),
+            error=tuple(self.mechanics.failure),
+        )
+
+
+def simulated_plant(url: str, num_envs: int, **config: Any) -> SimulatedPlant:
+    """The plant behind plant="simulated". Keywords as in SimulationConfig. Raises InvalidValueError for others."""
+    try:
+        settings = SimulationConfig(**config)
+    except TypeError as error:
+        raise InvalidValueError(f"plant {url!r}: {error}") from None
+    return SimulatedPlant(num_envs, settings)

@@ -1,0 +1,117 @@
+"""What a grasped object is to the heat model: its plate, the shape of its contact, its surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+
+from ..thermal import (
+    LAPPED_ALUMINA,
+    ContactArea,
+    Geometry,
+    Joint,
+    Material,
+    Mode,
+    Pad,
+    SensorStack,
+    Surface,
+    contact_conductance,
+    cylinder_contact,
+    flat_contact,
+    joint,
+    sphere_contact,
+)
+from .scene import ObjectSpec
+
+PAD = Pad()
+NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
+
+# A thermostat's face: nickel-plated copper, lapped (Incropera & DeWitt, table A.1; roughness and hardness estimates).
+THERMOSTAT_FACE = Surface(
+    conductivity=400.0,
+    roughness=0.4e-6,
+    slope=0.1,
+    youngs_modulus=120e9,
+    poisson_ratio=0.34,
+    microhardness=1.3e9,
+)
+
+
+@dataclass(frozen=True)
+class Thing:
+    """An object between the fingertips. spec: its shape and place. material: what it is made of. temperature: °C at
+    first. mode: T or O, where the element sits. stack: the sensor. fingertips: how many carry one."""
+
+    spec: ObjectSpec
+    material: Material
+    temperature: float
+    mode: Mode
+    stack: SensorStack
+    fingertips: Literal[1, 2] = 2
+
+    @cached_property
+    def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:
+        """What the pads meet. An element glued on (O mode) is flat; a mesh's sides are taken as flat."""
+        if self.mode == "O" or self.spec.shape in ("box", "mesh"):
+            return "flat"
+        return "cylinder" if self.spec.shape == "cylinder" else "sphere"
+
+    @cached_property
+    def plate(self) -> tuple[float, float, float]:
+        """(width, depth, thickness) m of the plate that stands for the object: as thick as it is between the fingers, of
+        the same volume, and as wide to high as its bounding box; never narrower than the sensor's face."""
+        x, y, z = self.spec.size
+        area = self.spec.volume / x
+        side = self.stack.width
+        width = max(float(np.sqrt(area * y / z)), side)
+        return width, max(area / width, side), x
+
+    @cached_property
+    def joint(self) -> Joint:
+        """The opening contact's faces: the lapped element on the object (T) or on the thermostat (O)."""
+        other = Surface.of(self.material) if self.mode == "T" else THERMOSTAT_FACE
+        return joint(LAPPED_ALUMINA, other)
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE."""
+        area = float(self.contact(np.array(NOMINAL_FORCE)).face)
+        if not area > 0:
+            raise InvalidValueError(f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face")
+        area = min(area, self.stack.face_area)
+        return Geometry(self.stack, self.material, self.mode, area, "square", self.plate, self.fingertips)
+
+    def contact(self, force: np.ndarray) -> ContactArea:
+        """Areas and force share at that normal force N on a pad."""
+        x, y, z = self.spec.size
+        if self.contact_shape == "cylinder":
+            return cylinder_contact(PAD, force, x / 2, z)
+        if self.contact_shape == "sphere":
+            return sphere_contact(PAD, force, x / 2)
+        size = (y, z) if self.mode == "T" else (max(y, self.stack.width), max(z, self.stack.width))
+        return flat_contact(PAD, force, size)
+
+    def conductance(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Conductance W/(m2 K) and area m2 of the contact on the sensor's face at normal forces N (any shape); both 0
+        where nothing presses."""
+        contact = self.contact(force)
+        touching = contact.face > 0
+        return np.where(touching, contact_conductance(self.joint, contact.face_pressure), 0.0), contact.face
+
+    @property
+    def heat_capacity(self) -> float:
+        """J/K of the object, without elements."""
+        width, height, thickness = self.plate
+        return self.material.volumetric_heat_capacity * width * height * thickness
+
+    @property
+    def crushing_force(self) -> float:
+        """N on one pad at which the object breaks, by the pad's mean pressure; inf for what does not."""
+        if self.material.crushing_stress is None:
+            return np.inf
+        return self.material.crushing_stress * float(self.contact(np.array(NOMINAL_FORCE)).pad)
