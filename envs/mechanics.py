@@ -4,6 +4,9 @@ Shapes: B environments, S substeps, T = 2 fingertips (left, right), O objects.
 Environment i's numbers do not depend on B or on the number of threads, to the last bit.
 """
 
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -24,7 +27,10 @@ MAX_HEIGHT = 0.15  # m
 OPENING_SPEED = 0.1  # m/s, the fastest the pads move relative to each other (a Robotiq 2F-85: .02 to .15)
 LIFT_ACCELERATION = 1.0  # m/s2, how fast the commanded lift rate is followed
 _WINDUP = 0.002  # m, how far the set point runs beyond where the force limit is reached
-_STILL, _SHORT = 0.005, 0.0002  # m/s, m: slower than this, and this far from the target, the fingers are blocked
+_STILL, _SHORT = (
+    0.005,
+    0.0002,
+)  # m/s, m: slower than this, and this far from the target, the fingers are blocked
 _KEPT_MODELS = 512
 _RECORD: tuple = ("sensordata", "site_xpos", "site_xmat", "qpos", "qvel")
 # The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
@@ -258,10 +264,13 @@ class Mechanics:
         known = {o.geometry for o in self._library}
         for item, first in zip(items, self.objects[0], strict=True):
             if item.mesh and item.geometry not in known:
-                raise InvalidValueError(f"mesh {item.mesh!r} of {item.name!r} is not in the library of this Mechanics")
+                raise InvalidValueError(
+                    f"mesh {item.mesh!r} of {item.name!r} is not in the library of this Mechanics"
+                )
             if item.hulls != first.hulls:
                 raise InvalidValueError(
-                    f"object {item.name!r} has {item.hulls} convex pieces in place of {first.hulls}: the number must stay"
+                    f"object {item.name!r} has {item.hulls} convex pieces, "
+                    f"before {first.hulls}: their number must stay"
                 )
 
     def _set_objects(self, env: int, items: tuple[ObjectSpec, ...]) -> None:
@@ -271,8 +280,8 @@ class Mechanics:
         self._varying |= own.keys()
         for name in self._varying:
             rows = self._batch.expand(name)
-            # bvh_aabb goes on with the meshes' boxes, which the environments share
-            rows[env] = own.get(name, getattr(self.model, name))[: rows.shape[1]]
+            values = own[name] if name in own else getattr(self.model, name)
+            rows[env] = values[: rows.shape[1]]  # bvh_aabb goes on with the meshes' boxes, which all share
 
     def _differences(self, key: tuple[ObjectSpec, ...]) -> dict[str, np.ndarray]:
         """Model fields in which a scene of the objects `key` differs from self.model."""
@@ -284,7 +293,9 @@ class Mechanics:
             self._compiled[key] = {n: a.copy() for n, a in pairs if a.tobytes() != self._base[n]}
         return self._compiled[key]
 
-    def _command(self, opening: np.ndarray, force: np.ndarray, lift_rate: np.ndarray, duration: float) -> None:
+    def _command(
+        self, opening: np.ndarray, force: np.ndarray, lift_rate: np.ndarray, duration: float
+    ) -> None:
         """Rates of the two servos' set points over the coming control step.
 
         The grip's set point moves to the target. Where something blocks the fingers short of it, it goes on until the
@@ -305,7 +316,9 @@ class Mechanics:
         for env, kind in np.argwhere(risen):
             warning = mujoco.mjtWarning(int(kind)).name.removeprefix("mjWARN_")
             if not self.failure[env]:
-                self.failure[env] = f"the simulation broke down (MuJoCo warning {warning}); reset this environment"
+                self.failure[env] = (
+                    f"the simulation broke down (MuJoCo warning {warning}); reset this environment"
+                )
 
     def _record(self, out: dict) -> ContactRecord:
         qpos, qvel = out["qpos"], out["qvel"]
@@ -315,9 +328,8 @@ class Mechanics:
         vectors[..., 1, :] -= pads
         axes = out["site_xmat"][:, :, self._pads, None, None].reshape(*contacts.shape[:3], 1, 1, 3, 3)
         # Written out: a matmul's rounding may depend on the number of environments.
-        local = (
-            axes[..., 0, :] * vectors[..., 0:1] + axes[..., 1, :] * vectors[..., 1:2] + axes[..., 2, :] * vectors[..., 2:3]
-        )
+        x, y, z = (axes[..., i, :] * vectors[..., i : i + 1] for i in range(3))
+        local = x + y + z
         touching = contacts[..., 0] > 0
         left, right = self._fingers
         left_dof, right_dof = self._finger_dofs
@@ -355,5 +367,7 @@ def within(name: str, values: np.ndarray, low: float, high: float) -> np.ndarray
     wrong = ~((values >= low) & (values <= high))
     if wrong.any():
         env = int(np.argmax(wrong))
-        raise InvalidValueError(f"{name} {values[env]} in environment {env}: give {low:g} to {high:g} (SI units)")
+        raise InvalidValueError(
+            f"{name} {values[env]} in environment {env}: give {low:g} to {high:g} (SI units)"
+        )
     return values

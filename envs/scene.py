@@ -3,6 +3,9 @@
 World frame: z up, the table's top at z = 0, the fingers move along x. The gripper itself is assets/gripper.xml.
 """
 
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import math
@@ -66,7 +69,9 @@ class ObjectSpec:
         if self.shape not in _SHAPES:
             raise unknown_name("shape", self.shape, _SHAPES)
         if (self.mesh is None) == (self.shape == "mesh"):
-            raise InvalidValueError(f"shape {self.shape!r} with mesh {self.mesh!r}: give a file for shape 'mesh' only")
+            raise InvalidValueError(
+                f"shape {self.shape!r} with mesh {self.mesh!r}: give a file for shape 'mesh' only"
+            )
         if self.mass is not None and self.density is not None:
             raise InvalidValueError(f"mass {self.mass} kg and density {self.density} kg/m3: give one of them")
         for field in ("mass", "density"):
@@ -84,7 +89,9 @@ class ObjectSpec:
             positive("size", value)
         x, y, z = self.size
         if (self.shape == "sphere" and not x == y == z) or (self.shape == "cylinder" and x != y):
-            raise InvalidValueError(f"size {self.size} of a {self.shape}: extents across its axis must be equal")
+            raise InvalidValueError(
+                f"size {self.size} of a {self.shape}: extents across its axis must be equal"
+            )
         if self.width > MAX_OPENING - CLEARANCE:
             raise InvalidValueError(
                 f"object {self.name!r} is {1e3 * self.width:.1f} mm wide along x, the gripper opens "
@@ -181,7 +188,7 @@ def build_scene(
     have the same layout. timestep: s.
     Raises InvalidValueError for no objects or a name given twice.
     """
-    objects = tuple(objects)
+    objects, library = tuple(objects), tuple(library)
     names = [o.name for o in objects]
     if not objects or len(set(names)) < len(names):
         raise InvalidValueError(f"objects {names}: give at least one and every name once")
@@ -190,6 +197,7 @@ def build_scene(
     for shape in dict.fromkeys(o.geometry for o in (*library, *objects) if o.mesh):
         for name, (vertices, faces) in zip(_mesh_names(shape), shape.hulls, strict=True):
             spec.add_mesh(name=name, uservert=vertices.ravel(), userface=faces.ravel())
+    _keep_hulls(spec, [item.geometry for item in library if item.mesh])
     for item in objects:
         _add_object(spec, item)
     for tip in TIPS:
@@ -207,6 +215,19 @@ def _gripper() -> mujoco.MjSpec:
 
 def _mesh_names(shape: MeshShape) -> list[str]:
     return [f"{shape.name}_{i}" for i in range(len(shape.hulls))]
+
+
+def _keep_hulls(spec: mujoco.MjSpec, shapes: Sequence[MeshShape]) -> None:
+    """Invisible users of the library's meshes that touch nothing: MuJoCo makes no hull of a mesh without a user."""
+    names = [name for shape in dict.fromkeys(shapes) for name in _mesh_names(shape)]
+    if not names:
+        return
+    shelf = spec.worldbody.add_body(name="library", pos=(0, 0, -2))
+    for name in names:
+        geom = shelf.add_geom(
+            name=f"library_{name}", type=mujoco.mjtGeom.mjGEOM_MESH, contype=8, conaffinity=0
+        )
+        geom.meshname, geom.rgba, geom.group = name, (0, 0, 0, 0), 5
 
 
 def _add_object(spec: mujoco.MjSpec, item: ObjectSpec) -> None:
