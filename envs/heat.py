@@ -5,12 +5,12 @@ B: environments, S: substeps, F = 2 fingertips, N: heat samples of a control ste
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..thermal import Demand, HeatTables, advance_heat, forget_field, heat_tables, network_for
+from ..thermal import ContactSystem, Demand, HeatTables, advance_heat, forget_field, heat_tables, network_for
 from .things import Thing
 
 CONDUCTANCES = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K), over which a network must keep the tolerance
@@ -71,11 +71,12 @@ class GraspHeat:
         self._tolerance, self._air, self._dt, self._samples = tolerance, air, dt, samples
         self._sensor_temperature, self._cache = sensor_temperature, cache
         self._networks: dict[object, int] = {}
-        self._systems: list = []
+        self._systems: list[ContactSystem] = []
         self._tables: HeatTables | None = None
         self.rungs: list[str] = []
         self._network = np.zeros(num_envs, int)
         self._things: list[Thing | None] = [None] * num_envs
+        self._groups: list[tuple[Thing, np.ndarray]] | None = None
         self._state = np.zeros((num_envs, 0))
         self._difference = np.zeros((num_envs, 2))
         self._begun = np.zeros(num_envs, bool)
@@ -106,7 +107,7 @@ class GraspHeat:
         sensor faces' middles in the object's frame at the end of the step."""
         rows = len(force)
         conductance, area = np.zeros((rows, 2)), np.zeros((rows, 2))
-        for thing, members in self._groups().items():
+        for thing, members in self._members():
             pressing = members[np.any(force[members] > 0, axis=(1, 2))]
             if len(pressing):
                 conductance[pressing], area[pressing] = _mean_contact(thing, force[pressing])
@@ -182,6 +183,7 @@ class GraspHeat:
 
     def _place(self, row: int, thing: Thing) -> None:
         self._things[row] = thing
+        self._groups = None
         self._glued[row] = thing.mode == "O"
         self._reach[row] = thing.stack.width / 2
         self._capacity[row] = thing.heat_capacity
@@ -199,12 +201,15 @@ class GraspHeat:
             self._state = grown
         self._network[row] = self._networks[key]
 
-    def _groups(self) -> Mapping[Thing, np.ndarray]:
-        groups: dict[Thing, list[int]] = {}
-        for row, thing in enumerate(self._things):
-            if thing is not None:
-                groups.setdefault(thing, []).append(row)
-        return {thing: np.array(rows) for thing, rows in groups.items()}
+    def _members(self) -> list[tuple[Thing, np.ndarray]]:
+        """Rows by object, found anew after a reset."""
+        if self._groups is None:
+            groups: dict[Thing, list[int]] = {}
+            for row, thing in enumerate(self._things):
+                if thing is not None:
+                    groups.setdefault(thing, []).append(row)
+            self._groups = [(thing, np.array(rows)) for thing, rows in groups.items()]
+        return self._groups
 
     def _follow(self, touching: np.ndarray, place: np.ndarray) -> tuple[tuple[tuple[str, str], ...], ...]:
         """Touches, releases and new patches since the last step, per environment."""

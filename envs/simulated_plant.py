@@ -172,7 +172,7 @@ class SimulatedPlant:
         """One control step of all environments."""
         record = self.mechanics.step(command.opening, command.force_limit, command.lift_rate)
         normal = np.where(record.touching[..., 0], np.maximum(record.force[..., 0, 0], 0.0), 0.0)
-        step = self.heat.advance(normal, record.place[:, -1, :, 0])
+        step = self.heat.advance(normal, record.place[:, :, 0])
         return self._reading(record, step)
 
     def close(self) -> None:

@@ -103,13 +103,13 @@ class Thing:
         touching = contact.face > 0
         return np.where(touching, contact_conductance(self.joint, contact.face_pressure), 0.0), contact.face
 
-    @property
+    @cached_property
     def heat_capacity(self) -> float:
         """J/K of the object, without elements."""
         width, height, thickness = self.plate
         return self.material.volumetric_heat_capacity * width * height * thickness
 
-    @property
+    @cached_property
     def crushing_force(self) -> float:
         """N on one pad at which the object breaks, by the pad's mean pressure; inf for what does not."""
         if self.material.crushing_stress is None:

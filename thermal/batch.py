@@ -7,7 +7,7 @@ N: samples of a call.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,24 +15,26 @@ from numba import njit
 from thermograsp.errors import InvalidValueError
 
 from .coupling import POLES, propagator
-from .coupling_kernel import advance
+from .coupling_kernel import FAST, StepArrays, advance, workspace
 from .network_press import with_air
 from .system import ContactSystem
 
 
-@dataclass(frozen=True, slots=True)
-class HeatTables:
-    """Networks of the same fingertips, padded to one size, for steps of dt s. fingertips, modes and states: (T,) true
-    sizes. rates (T, K), ports (T, K, M), scale (T, Q, K), gram (T, Q, M, M), drop, element_heat, sensor_surface and
-    object_surface (T, F, K), object_heat (T, K), mean (T,), area (T,) m2 of the patch a network was made for."""
+class HeatTables(NamedTuple):
+    """Networks of the same fingertips, padded to one size, for steps of dt s. states, object_states, sensor_states and
+    modes: (T,) true sizes. rates (T, K), ports (T, M, K), scale_real and scale_imag (T, Q, K), gram (T, Q, M, M), drop,
+    element_heat, sensor_surface and object_surface (T, F, K), object_heat (T, K), mean (T,): the index of the object's
+    mean temperature."""
 
     dt: float
-    fingertips: int
-    modes: np.ndarray
     states: np.ndarray
+    object_states: np.ndarray
+    sensor_states: np.ndarray
+    modes: np.ndarray
     rates: np.ndarray
     ports: np.ndarray
-    scale: np.ndarray
+    scale_real: np.ndarray
+    scale_imag: np.ndarray
     gram: np.ndarray
     drop: np.ndarray
     element_heat: np.ndarray
@@ -40,15 +42,17 @@ class HeatTables:
     object_surface: np.ndarray
     object_heat: np.ndarray
     mean: np.ndarray
-    on_object: np.ndarray
-    area: np.ndarray
+
+    @property
+    def fingertips(self) -> int:
+        """F."""
+        return self.drop.shape[1]
 
 
-@dataclass(frozen=True, slots=True)
-class HeatReading:
+class HeatReading(NamedTuple):
     """At the end of each step of a call. drop: (B, N, F) K. element_heat: (B, N, F) J. object_heat: (B, N) J.
     sensor_rise, object_rise: (B, N, F) K of the two contact faces above what each body started from. flow: (B, N, F)
-    W from sensor to object, the step's mean."""
+    W from sensor to object and air_loss: (B, N) W from the object to the air, means over the step."""
 
     drop: np.ndarray
     element_heat: np.ndarray
@@ -63,35 +67,38 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
     """Tables of the systems (T of them) in air W/(m2 K). Raises InvalidValueError when their fingertips differ."""
     if len({system.geometry.fingertips for system in systems}) != 1:
         raise InvalidValueError("systems of one batch must have the same number of fingertips")
-    count = len(systems)
-    fingertips = systems[0].geometry.fingertips
+    count, fingertips, pairs = len(systems), systems[0].geometry.fingertips, len(POLES)
     states = np.array([len(s.rates) for s in systems])
+    sensor_states = np.array([s.orders.sensor for s in systems])
     modes = np.array([s.modes for s in systems])
-    k, m, q = int(states.max()), int(modes.max()) * fingertips, len(POLES)
+    k, m = int(states.max()), int(modes.max()) * fingertips
+    rows = {
+        name: np.zeros((count, fingertips, k)) for name in ("drop", "element_heat", "sensor_surface", "object_surface")
+    }
     tables = HeatTables(
-        dt,
-        fingertips,
-        modes,
-        states,
-        np.zeros((count, k)),
-        np.zeros((count, k, m)),
-        np.zeros((count, q, k), complex),
-        np.zeros((count, q, m, m), complex),
-        *(np.zeros((count, fingertips, k)) for _ in range(4)),
-        np.zeros((count, k)),
-        np.array([s.mean for s in systems]),
-        np.zeros((count, k), bool),
-        np.array([s.geometry.area for s in systems]),
+        dt=dt,
+        states=states,
+        object_states=states - fingertips * sensor_states,
+        sensor_states=sensor_states,
+        modes=modes,
+        rates=np.zeros((count, k)),
+        ports=np.zeros((count, m, k)),
+        scale_real=np.zeros((count, pairs, k)),
+        scale_imag=np.zeros((count, pairs, k)),
+        gram=np.zeros((count, pairs, m, m), complex),
+        object_heat=np.zeros((count, k)),
+        mean=np.array([s.mean for s in systems]),
+        **rows,
     )
     for i, (system, film) in enumerate(zip(systems, air, strict=True)):
         n, p = len(system.rates), system.ports.shape[1]
         stepper = propagator(with_air(system, film), system.ports, dt)
-        tables.rates[i, :n], tables.ports[i, :n, :p] = stepper.rates, stepper.ports
-        tables.scale[i, :, :n], tables.gram[i, :, :p, :p] = stepper.scale, stepper.gram
-        for name in ("drop", "element_heat", "sensor_surface", "object_surface"):
-            getattr(tables, name)[i, :, :n] = getattr(system, name)
+        tables.rates[i, :n], tables.ports[i, :p, :n] = stepper.rates, stepper.ports.T
+        tables.scale_real[i, :, :n], tables.scale_imag[i, :, :n] = stepper.scale.real, stepper.scale.imag
+        tables.gram[i, :, :p, :p] = stepper.gram
+        for name, table in rows.items():
+            table[i, :, :n] = getattr(system, name)
         tables.object_heat[i, :n] = system.object_heat
-        tables.on_object[i, : n - fingertips * system.orders.sensor] = True
     return tables
 
 
@@ -111,43 +118,18 @@ def advance_heat(
     rows are left as they are and cost nothing. The input is not changed.
     """
     rows, fingertips = conductance.shape
-    state = state.copy()
+    per_tip, per_row = (rows, samples, fingertips), (rows, samples)
     reading = HeatReading(
-        np.zeros((rows, samples, fingertips)),
-        np.zeros((rows, samples, fingertips)),
-        np.zeros((rows, samples)),
-        np.zeros((rows, samples, fingertips)),
-        np.zeros((rows, samples, fingertips)),
-        np.zeros((rows, samples, fingertips)),
-        np.zeros((rows, samples)),
+        drop=np.zeros(per_tip),
+        element_heat=np.zeros(per_tip),
+        object_heat=np.zeros(per_row),
+        sensor_rise=np.zeros(per_tip),
+        object_rise=np.zeros(per_tip),
+        flow=np.zeros(per_tip),
+        air_loss=np.zeros(per_row),
     )
-    _advance_rows(
-        tables.dt,
-        tables.modes,
-        tables.states,
-        tables.rates,
-        tables.ports,
-        tables.scale,
-        tables.gram,
-        tables.drop,
-        tables.element_heat,
-        tables.sensor_surface,
-        tables.object_surface,
-        tables.object_heat,
-        tables.mean,
-        network,
-        state,
-        conductance,
-        difference,
-        active,
-        reading.drop,
-        reading.element_heat,
-        reading.object_heat,
-        reading.sensor_rise,
-        reading.object_rise,
-        reading.flow,
-        reading.air_loss,
-    )
+    state = state.copy()
+    _advance_rows(tables, network, state, conductance, difference, active, reading)
     return state, reading
 
 
@@ -157,71 +139,58 @@ def forget_field(tables: HeatTables, network: np.ndarray, state: np.ndarray, row
     state = state.copy()
     for row in np.flatnonzero(rows):
         table = network[row]
-        local = tables.on_object[table].copy()
-        local[tables.mean[table]] = False
-        state[row, local] = 0.0
+        mean = state[row, tables.mean[table]]
+        state[row, : tables.object_states[table]] = 0.0
+        state[row, tables.mean[table]] = mean
     return state
 
 
-@njit(cache=True, error_model="numpy")
-def _advance_rows(
-    dt,
-    modes,
-    states,
-    rates,
-    ports,
-    scale,
-    gram,
-    drop,
-    element_heat,
-    sensor_surface,
-    object_surface,
-    object_heat,
-    mean,
-    network,
-    state,
-    conductance,
-    difference,
-    active,
-    drop_out,
-    element_out,
-    object_out,
-    sensor_out,
-    surface_out,
-    flow_out,
-    loss_out,
-):
-    rows, samples, fingertips = drop_out.shape
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _advance_rows(tables, network, state, conductance, difference, active, reading):
+    rows, samples, fingertips = reading.drop.shape
+    room = workspace(tables.rates.shape[1], tables.ports.shape[1])
+    ports = tables.ports.shape[1]
+    weight, drive, flow = np.zeros(ports), np.zeros(ports), np.zeros(ports)
     for b in range(rows):
         if not active[b]:
             continue
         i = network[b]
-        n, p = states[i], modes[i]
-        m = p * fingertips
-        weight = np.zeros(m)
-        drive = np.zeros(m)
-        flow = np.zeros(m)
+        n, p, mean = tables.states[i], tables.modes[i], tables.mean[i]
+        system = StepArrays(
+            tables.dt,
+            tables.rates[i],
+            tables.ports[i],
+            tables.scale_real[i],
+            tables.scale_imag[i],
+            tables.gram[i],
+            tables.object_states[i],
+            tables.sensor_states[i],
+            p,
+            fingertips,
+            mean,
+        )
+        drive[:] = 0.0
+        kept = tables.object_heat[i, mean]
         for f in range(fingertips):
             drive[f * p] = difference[b, f]
-            for j in range(p):
-                weight[f * p + j] = conductance[b, f]
-        own = np.ascontiguousarray(ports[i, :n, :m])
-        own_scale = np.ascontiguousarray(scale[i, :, :n])
-        own_gram = np.ascontiguousarray(gram[i, :, :m, :m])
-        own_rates = rates[i, :n]
-        x = state[b, :n]
+            weight[f * p : (f + 1) * p] = conductance[b, f]
+            kept += tables.element_heat[i, f, mean]
+        x = state[b]
         for k in range(samples):
-            level = advance(own_rates, own, own_scale, own_gram, dt, x, weight, drive, flow, mean[i])
-            kept = object_heat[i, mean[i]]
+            level = advance(system, x, weight, drive, flow, room)
+            reading.air_loss[b, k] = tables.rates[i, mean] * kept * level
             for f in range(fingertips):
-                kept += element_heat[i, f, mean[i]]
-            loss_out[b, k] = own_rates[mean[i]] * kept * level
-            for f in range(fingertips):
-                flow_out[b, k, f] = flow[f * p]
-                for j in range(n):
-                    drop_out[b, k, f] += drop[i, f, j] * x[j]
-                    element_out[b, k, f] += element_heat[i, f, j] * x[j]
-                    sensor_out[b, k, f] += sensor_surface[i, f, j] * x[j]
-                    surface_out[b, k, f] += object_surface[i, f, j] * x[j]
-            for j in range(n):
-                object_out[b, k] += object_heat[i, j] * x[j]
+                reading.drop[b, k, f] = _dot(tables.drop[i, f], x, n)
+                reading.element_heat[b, k, f] = _dot(tables.element_heat[i, f], x, n)
+                reading.sensor_rise[b, k, f] = _dot(tables.sensor_surface[i, f], x, n)
+                reading.object_rise[b, k, f] = _dot(tables.object_surface[i, f], x, n)
+                reading.flow[b, k, f] = flow[f * p]
+            reading.object_heat[b, k] = _dot(tables.object_heat[i], x, n)
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def _dot(row, state, count):
+    total = 0.0
+    for j in range(count):
+        total += row[j] * state[j]
+    return total

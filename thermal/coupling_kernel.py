@@ -1,78 +1,159 @@
-"""The step of coupling.py compiled row by row: a row's result does not depend on how many rows there are."""
+"""The step of coupling.py compiled row by row: a row's result does not depend on how many rows there are.
+
+States of the object come first and see every contact port; then each fingertip's own, which see only its own ports.
+Sums may be reassociated by the compiler (fastmath "reassoc"), the same way for every row.
+
+n: states, M: contact ports, Q: pole pairs.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from .coupling import POLES, WEIGHTS
+from .coupling import POLES, WEIGHTS, Propagator
 
 _PAIRS = len(POLES)
 _LAGS = WEIGHTS / POLES
+FAST = {"reassoc", "contract", "nsz"}
 
 
-@njit(cache=True, fastmath=False, error_model="numpy")
+class StepArrays(NamedTuple):
+    """One system's matrices for one step length, laid out for the kernel and possibly padded behind their true sizes.
+    dt: s. rates: (n,) 1/s. ports: (M, n). scale_real, scale_imag: (Q, n). gram: (Q, M, M) complex. object_states,
+    sensor_states: how many, the latter of each fingertip. modes: ports of each of `contacts` contacts. watched: index of
+    the state whose mean `advance` returns."""
+
+    dt: float
+    rates: np.ndarray
+    ports: np.ndarray
+    scale_real: np.ndarray
+    scale_imag: np.ndarray
+    gram: np.ndarray
+    object_states: int
+    sensor_states: int
+    modes: int
+    contacts: int
+    watched: int
+
+
+def step_arrays(
+    propagator: Propagator, *, modes: int | None = None, sensor_states: int = 0, watched: int = 0
+) -> StepArrays:
+    """Arrays of a propagator. modes: ports of each contact (None: all belong to one). sensor_states: of each fingertip,
+    at the end of the states, seeing only its own contact's ports."""
+    states, ports = propagator.ports.shape
+    own = ports if modes is None else modes
+    return StepArrays(
+        propagator.dt,
+        np.ascontiguousarray(propagator.rates),
+        np.ascontiguousarray(propagator.ports.T),
+        np.ascontiguousarray(propagator.scale.real),
+        np.ascontiguousarray(propagator.scale.imag),
+        np.ascontiguousarray(propagator.gram),
+        states - sensor_states * (ports // own),
+        sensor_states,
+        own,
+        ports // own,
+        watched,
+    )
+
+
+class Workspace(NamedTuple):
+    """Memory of `advance`, for systems of at most its sizes; what it holds between calls does not matter."""
+
+    rate: np.ndarray
+    change: np.ndarray
+    real: np.ndarray
+    imag: np.ndarray
+    seen: np.ndarray
+    lagged: np.ndarray
+    gathered: np.ndarray
+    matrix: np.ndarray
+
+
+@njit(cache=True)
+def workspace(states: int, ports: int) -> Workspace:
+    """Room for systems of up to that many states and ports."""
+    return Workspace(
+        np.zeros(states),
+        np.zeros(states),
+        np.zeros(states),
+        np.zeros(states),
+        np.zeros(ports),
+        np.zeros(ports),
+        np.zeros(ports, np.complex128),
+        np.zeros((ports, ports), np.complex128),
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def advance(
-    rates: np.ndarray,
-    ports: np.ndarray,
-    scale: np.ndarray,
-    gram: np.ndarray,
-    dt: float,
+    system: StepArrays,
     state: np.ndarray,
     conductance: np.ndarray,
     difference: np.ndarray,
     flow: np.ndarray,
-    watched: int,
+    room: Workspace,
 ) -> float:
-    """One step of one system, in place. rates (n,), ports (n, M), scale (Q, n), gram (Q, M, M), state (n,), conductance
-    and difference (M,), flow (M,): filled with the mean heat flow W during the step. Returns the mean during the step of
-    the state of index `watched`."""
-    n, m = ports.shape
-    rate = np.empty(n)
-    seen = np.empty(m)
-    gathered = np.empty(m, np.complex128)
-    matrix = np.empty((m, m), np.complex128)
-    change = np.empty(n)
-    lagged = np.empty(m)
-    watched_lag = 0.0
-    seen[:] = 0.0
+    """One step of one system: state (n,) in place, flow (M,) filled with the mean heat flow W during the step.
+
+    conductance: (M,) W/K, >= 0. difference: (M,) K. room: workspace of at least this size. Returns the mean during the
+    step of the watched state.
+    """
+    n = system.object_states + system.contacts * system.sensor_states
+    m = system.contacts * system.modes
+    rates, ports, dt, watched = system.rates, system.ports, system.dt, system.watched
+    shared, own, modes = system.object_states, system.sensor_states, system.modes
+    rate, change, real, imag = room.rate, room.change, room.real, room.imag
+    seen, lagged, gathered, matrix = room.seen, room.lagged, room.gathered, room.matrix
+    for j in range(m):
+        seen[j] = _see(ports[j], state, shared, shared + (j // modes) * own, own)
+        flow[j] = conductance[j] * (difference[j] - seen[j])
+        lagged[j] = 0.0
     for i in range(n):
-        for j in range(m):
-            seen[j] += ports[i, j] * state[i]
-    for i in range(n):
-        total = -rates[i] * state[i]
-        for j in range(m):
-            total += ports[i, j] * conductance[j] * (difference[j] - seen[j])
-        rate[i] = total
+        rate[i] = -rates[i] * state[i]
         change[i] = 0.0
-    lagged[:] = 0.0
+    for j in range(m):
+        _push(ports[j], flow[j], rate, shared, shared + (j // modes) * own, own)
+    watched_lag = 0.0
     for q in range(_PAIRS):
-        gathered[:] = 0.0
+        scale_real, scale_imag = system.scale_real[q], system.scale_imag[q]
+        gram = system.gram[q]
         for i in range(n):
-            scaled = scale[q, i] * rate[i]
-            for j in range(m):
-                gathered[j] += ports[i, j] * scaled
+            real[i] = scale_real[i] * rate[i]
+            imag[i] = scale_imag[i] * rate[i]
         for j in range(m):
+            heard = complex(
+                _see(ports[j], real, shared, shared + (j // modes) * own, own),
+                _see(ports[j], imag, shared, shared + (j // modes) * own, own),
+            )
+            lagged[j] += (_LAGS[q] * heard).real
             weight = dt * conductance[j]
+            gathered[j] = weight * heard
             for k in range(m):
-                matrix[j, k] = weight * gram[q, j, k]
+                matrix[j, k] = weight * gram[j, k]
             matrix[j, j] += 1.0
-            lagged[j] += (_LAGS[q] * gathered[j]).real
-            gathered[j] *= weight
-        _solve(matrix, gathered)
+        _solve(matrix, gathered, m)
         for i in range(n):
-            pulled = 0.0 + 0.0j
-            for j in range(m):
-                pulled += ports[i, j] * gathered[j]
-            solved = scale[q, i] * (rate[i] - pulled)
-            change[i] += (WEIGHTS[q] * solved).real
-            if i == watched:
-                watched_lag += (_LAGS[q] * solved).real
+            real[i] = rate[i]
+            imag[i] = 0.0
         for j in range(m):
+            _push(ports[j], -gathered[j].real, real, shared, shared + (j // modes) * own, own)
+            _push(ports[j], -gathered[j].imag, imag, shared, shared + (j // modes) * own, own)
             back = 0.0 + 0.0j
             for k in range(m):
-                back += gram[q, j, k] * gathered[k]
+                back += gram[j, k] * gathered[k]
             lagged[j] -= (_LAGS[q] * back).real
+        a, b = WEIGHTS[q].real, WEIGHTS[q].imag
+        for i in range(n):
+            solved_real = scale_real[i] * real[i] - scale_imag[i] * imag[i]
+            solved_imag = scale_real[i] * imag[i] + scale_imag[i] * real[i]
+            change[i] += a * solved_real - b * solved_imag
+        solved = complex(scale_real[watched], scale_imag[watched]) * complex(real[watched], imag[watched])
+        watched_lag += (_LAGS[q] * solved).real
     for j in range(m):
         flow[j] = conductance[j] * (difference[j] - seen[j] + 2 * dt * lagged[j])
     mean = state[watched] - 2 * dt * watched_lag
@@ -81,10 +162,29 @@ def advance(
     return mean
 
 
-@njit(cache=True, error_model="numpy")
-def _solve(matrix: np.ndarray, vector: np.ndarray) -> None:
-    """Solves matrix x = vector in place by elimination with row pivoting."""
-    m = vector.shape[0]
+@njit(cache=True, error_model="numpy", fastmath=FAST, inline="always")
+def _see(row, values, shared, start, own):
+    """A port's sum over the states that it sees: the object's, and `own` of its fingertip from `start` on."""
+    total = 0.0
+    for i in range(shared):
+        total += row[i] * values[i]
+    for i in range(start, start + own):
+        total += row[i] * values[i]
+    return total
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, inline="always")
+def _push(row, amount, values, shared, start, own):
+    """Adds a port's column times amount to the states that it drives."""
+    for i in range(shared):
+        values[i] += row[i] * amount
+    for i in range(start, start + own):
+        values[i] += row[i] * amount
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _solve(matrix: np.ndarray, vector: np.ndarray, m: int) -> None:
+    """Solves matrix x = vector, the leading m of each, in place by elimination with row pivoting."""
     for c in range(m):
         pivot, largest = c, -1.0
         for r in range(c, m):
@@ -95,14 +195,16 @@ def _solve(matrix: np.ndarray, vector: np.ndarray) -> None:
             for k in range(c, m):
                 matrix[c, k], matrix[pivot, k] = matrix[pivot, k], matrix[c, k]
             vector[c], vector[pivot] = vector[pivot], vector[c]
-        inverse = 1.0 / matrix[c, c]
+        real, imag = matrix[c, c].real, matrix[c, c].imag
+        inverse = complex(real, -imag) / (real * real + imag * imag)
         for r in range(c + 1, m):
             factor = matrix[r, c] * inverse
             for k in range(c + 1, m):
                 matrix[r, k] -= factor * matrix[c, k]
             vector[r] -= factor * vector[c]
+        matrix[c, c] = inverse
     for c in range(m - 1, -1, -1):
         total = vector[c]
         for k in range(c + 1, m):
             total -= matrix[c, k] * vector[k]
-        vector[c] = total / matrix[c, c]
+        vector[c] = total * matrix[c, c]

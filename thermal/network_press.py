@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from thermograsp.errors import InvalidValueError
 
 from .bodies import Geometry
-from .coupling import Propagator, propagator
-from .coupling_kernel import advance
+from .coupling import propagator
+from .coupling_kernel import advance, step_arrays, workspace
 from .problem import PressCurves, PressProblem
 from .system import ContactSystem
 
@@ -54,22 +55,13 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
     spacing = t[1] - t[0] if len(t) > 1 else 1.0
     steps = max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9))) if callable(problem.conductance) else 1
     dt = spacing / steps
-    stepper: Propagator = propagator(rates, ports, dt)
-    state = np.zeros(len(rates))
-    difference = np.zeros(ports.shape[1])
-    difference[0] = problem.temperature_difference
-    conductance = np.zeros(ports.shape[1])
-    flow = np.zeros(ports.shape[1])
+    arrays = step_arrays(
+        propagator(rates, ports, dt), modes=modes, sensor_states=system.orders.sensor, watched=system.mean
+    )
+    middles = (np.arange(steps * (len(t) - 1)) + 0.5) * dt
     states = np.zeros((len(t), len(rates)))
-    flows = np.zeros(len(t))
-    for i, time in enumerate(t):
-        if i:
-            for k in range(steps):
-                conductance[:modes] = _conductance(problem, t[i - 1] + (k + 0.5) * dt) * problem.area
-                advance(rates, ports, stepper.scale, stepper.gram, dt, state, conductance, difference, flow, system.mean)
-            states[i] = state
-        now = _conductance(problem, float(time)) * problem.area
-        flows[i] = now * (difference[0] - ports[:, 0] @ state)
+    _march(arrays, _conductances(problem, middles) * problem.area, problem.temperature_difference, steps, states)
+    flows = _conductances(problem, t) * problem.area * (problem.temperature_difference - states @ ports[:, 0])
     return PressCurves(
         temperature_drop=states @ system.drop[0],
         heat_flow=flows,
@@ -79,12 +71,29 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
     )
 
 
-def _conductance(problem: PressProblem, time: float) -> float:
+@njit(cache=True, error_model="numpy")
+def _march(arrays, conductance, difference, steps, states):
+    """States (n, K) at the samples; conductance (W/K) of every step, `steps` of them between two samples."""
+    ports = arrays.ports.shape[0]
+    weight, drive, flow = np.zeros(ports), np.zeros(ports), np.zeros(ports)
+    drive[0] = difference
+    room = workspace(arrays.rates.shape[0], ports)
+    state = states[0].copy()
+    for i in range(1, states.shape[0]):
+        for k in range(steps):
+            weight[: arrays.modes] = conductance[(i - 1) * steps + k]
+            advance(arrays, state, weight, drive, flow, room)
+        states[i] = state
+
+
+def _conductances(problem: PressProblem, times: np.ndarray) -> np.ndarray:
     if not callable(problem.conductance):
-        return problem.conductance
-    value = float(problem.conductance(time))
-    if not (np.isfinite(value) and value >= 0):
+        return np.full(len(times), float(problem.conductance))
+    values = np.array([float(problem.conductance(float(time))) for time in times])
+    wrong = ~(np.isfinite(values) & (values >= 0))
+    if wrong.any():
+        first = int(np.argmax(wrong))
         raise InvalidValueError(
-            f"conductance({time:g} s) is {value!r}: it must be finite and >= 0 W/(m2 K), 0 where apart"
+            f"conductance({times[first]:g} s) is {values[first]!r}: it must be finite and >= 0 W/(m2 K), 0 where apart"
         )
-    return value
+    return values
