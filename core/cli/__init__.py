@@ -1,0 +1,79 @@
+"""The command line: `thermograsp COMMAND ...`, one module a command.
+
+A command's module has NAME, HELP, add_arguments(parser) and run(args) -> exit status. It imports what is heavy inside
+run, and only the chosen command's module is imported.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+from typing import NoReturn
+
+import thermograsp
+from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
+
+COMMANDS = ("demo", "grasp", "press", "materials", "rollout")
+
+_BAD_INPUT = 2
+_INTERRUPTED = 130
+_BROKEN_PIPE = 141
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise InvalidValueError(f"{message}; see {self.prog} --help")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs one command and returns its exit status: 0 only where it did what it was asked, 2 for bad input (one line on
+    stderr), 130 for an interrupt."""
+    given = list(sys.argv[1:] if argv is None else argv)
+    try:
+        args = _parser(given).parse_args(given)
+        status = args.run(args)
+        sys.stdout.flush()  # a reader that has gone shows here, not at exit
+        return status
+    except SystemExit as leaving:  # --help and --version
+        return leaving.code if isinstance(leaving.code, int) else 0
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    except BrokenPipeError:
+        _forget_stdout()
+        return _BROKEN_PIPE
+    except (ThermograspError, OSError) as error:
+        print(f"thermograsp: {' '.join(str(error).split())}", file=sys.stderr)
+        return _BAD_INPUT
+
+
+def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser of the command that is named, or of all of them where none is, for --help."""
+    parser = _Parser(prog="thermograsp", description="Thermal touch for robot grasping.", allow_abbrev=False)
+    parser.add_argument("--version", action="version", version=f"thermograsp {thermograsp.__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    first = given[0] if given else "--help"
+    if not first.startswith("-") and first not in COMMANDS:
+        raise unknown_name("command", first, COMMANDS)
+    for name in [first] if first in COMMANDS else COMMANDS:
+        module = _command(name)
+        sub = commands.add_parser(name, help=module.HELP, description=module.HELP, allow_abbrev=False)
+        module.add_arguments(sub)
+        sub.add_argument("--json", action="store_true", help="print one JSON document and nothing else")
+        sub.set_defaults(run=module.run)
+    return parser
+
+
+def _command(name: str) -> ModuleType:
+    return importlib.import_module(f"thermograsp.cli.{name}")
+
+
+def _forget_stdout() -> None:
+    """Python flushes stdout at exit; without a reader that would print a traceback."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError):
+        pass

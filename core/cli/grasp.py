@@ -1,0 +1,135 @@
+"""`thermograsp grasp`: one scripted grasp in simulation, recorded."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from thermograsp.cli.arguments import add_materials_file, chosen_material, target
+from thermograsp.cli.output import Output
+from thermograsp.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from thermograsp.envs import ObjectSpec
+    from thermograsp.report.recording import Recording
+
+NAME = "grasp"
+HELP = "Grasp one object in simulation, lift it by 5 cm and hold it; record what the fingertips feel."
+
+_FAILED = 1
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add = parser.add_argument
+    add("--material", default="glass", help="a name of `thermograsp materials` (default glass)")
+    add_materials_file(parser)
+    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
+    add(
+        "--seconds",
+        type=float,
+        default=6.0,
+        help="of the whole episode; the touch is at about 0.5 s (default 6)",
+    )
+    add("--hold", type=float, default=2.0, help="s at 5 cm, up to the end, that count as held (default 2)")
+    add("--seed", type=int, default=0, help="of the object's place and the noise (default 0)")
+    add("--force", type=float, default=10.0, help="the gripper's limit, N (default 10)")
+    add("--shape", default="box", help="box (default), cylinder or sphere")
+    add("--width", type=float, default=0.04, help="of the object between the fingers, m (default 0.04)")
+    add("--height", type=float, help="of the object, m (default: as its width)")
+    add("--mesh", metavar="FILE", help="an object from a mesh: .stl, .obj, .ply or .glb")
+    add("--scale", type=float, default=1.0, help="lengths in the mesh times this are metres (default 1)")
+    add("--temperature", type=float, default=24.0, help="of the object at first, degC (default 24)")
+    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K (default 0.05)")
+    add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
+    add("--csv", metavar="FILE", help="write one row a voltage sample (100 Hz)")
+    add(
+        "--render",
+        metavar="FILE",
+        help="draw the grasp: an animation (.gif, .webp) or a strip of pictures (.png)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Grasps, writes and prints. 1 where the object was not lifted and held."""
+    from thermograsp.envs import GraspBatch, GraspTask
+    from thermograsp.report.columns import write_csv
+    from thermograsp.report.recording import record
+
+    csv, picture = target(args.csv, ()), target(args.render, (".gif", ".webp", ".png"))
+    if args.seed < 0:
+        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
+    batch = GraspBatch(
+        1,
+        task=GraspTask(hold_seconds=args.hold, seconds=args.seconds),
+        material=chosen_material(args.material, args.materials),
+        mode=args.mode,
+        objects=_object(args),
+        tolerance=args.tolerance,
+        object_temperature=args.temperature,
+        cache=not args.no_cache,
+    )
+    output = Output(args.json)
+    film = None
+    if picture is not None:
+        from thermograsp.report.film import Film
+
+        film = Film(batch.plant, every=0.1 if picture.suffix != ".png" else args.seconds / 5)
+    with output.progress(args.seconds) as advance:
+
+        def watch(time: float, now: GraspBatch) -> None:
+            advance(args.material, now.dt if time else 0.0)
+            if film is not None:
+                film.watch(time, now)
+
+        (grasp,) = record(batch, [args.seed], args.seconds, args.force, watch=watch)
+    if csv is not None:
+        write_csv(csv, grasp.columns)
+    if film is not None and picture is not None:
+        film.write(picture)
+    batch.close()
+    _print(output, args, grasp)
+    return 0 if grasp.success else _FAILED
+
+
+def _object(args: argparse.Namespace) -> ObjectSpec | None:
+    """None for the environment's usual cube, whose friction is the material's."""
+    from thermograsp.envs import ObjectSpec
+
+    friction = chosen_material(args.material, args.materials).friction
+    surface: dict[str, Any] = {} if friction is None else {"friction": friction}
+    if args.mesh is not None:
+        return ObjectSpec(shape="mesh", mesh=args.mesh, scale=args.scale, **surface)
+    height = args.width if args.height is None or args.shape == "sphere" else args.height
+    return ObjectSpec(shape=args.shape, size=(args.width, args.width, height), **surface)
+
+
+def _print(output: Output, args: argparse.Namespace, grasp: Recording) -> None:
+    columns = grasp.columns
+    document: dict[str, Any] = {
+        "material": grasp.material,
+        "mode": args.mode,
+        "seed": grasp.seed,
+        "rung": grasp.rung,
+        "success": grasp.success,
+        "ending": grasp.ending,
+        "touch_time_s": grasp.touch,
+        "samples": len(columns["time_s"]),
+    }
+    what = "lifted and held" if grasp.success else grasp.ending or f"not lifted and held for {args.hold:g} s"
+    output.line(f"{grasp.material}, {args.mode} mode: {what}; rung {grasp.rung}")
+    if len(columns["time_s"]):
+        drop = columns["temperature_drop_left_K"]
+        peak = int(abs(drop).argmax())
+        document |= {
+            "peak_temperature_drop_left_K": drop[peak],
+            "peak_time_s": columns["time_s"][peak],
+            "final": {name: values[-1] for name, values in columns.items()},
+        }
+        output.line(f"touch  {grasp.touch:.2f} s")
+        output.line(f"peak   {drop[peak]:.3f} K at {columns['time_s'][peak]:.2f} s (left fingertip)")
+        output.line(f"final  {drop[-1]:.3f} K at {columns['time_s'][-1]:.2f} s")
+    for file in (args.csv, args.render):
+        if file:
+            output.line(f"wrote {file}")
+    output.document({**document, "csv": args.csv, "render": args.render})

@@ -1,0 +1,84 @@
+"""What a command shows: tables and progress for people on a terminal, plain lines in a pipe, JSON for machines."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+
+class Output:
+    """Writes to stdout; progress goes to stderr, and only to a terminal. as_json: nothing but `document` prints."""
+
+    def __init__(self, as_json: bool) -> None:
+        self.as_json = as_json
+
+    def line(self, text: str = "") -> None:
+        """One line for people."""
+        if not self.as_json:
+            print(text)
+
+    def warn(self, text: str) -> None:
+        """One line on stderr, in every mode."""
+        print(f"thermograsp: {text}", file=sys.stderr)
+
+    def table(self, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """A table; columns but the first are numbers, or set that way."""
+        if self.as_json:
+            return
+        if sys.stdout.isatty():
+            self._rich_table(header, rows)
+            return
+        widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
+        for row in [header, *rows]:
+            cells = [
+                row[0].ljust(widths[0]),
+                *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True)),
+            ]
+            print("  ".join(cells).rstrip())
+
+    def document(self, content: Mapping[str, Any]) -> None:
+        """The JSON document, where one was asked for. Numbers that are not finite become null."""
+        if self.as_json:
+            print(json.dumps(_plain(content), indent=2, allow_nan=False))
+
+    @contextmanager
+    def progress(self, total: float) -> Iterator[Callable[[str, float], None]]:
+        """A bar up to `total`; call what it yields with what is being done and by how much it advanced."""
+        if self.as_json or not sys.stderr.isatty():
+            yield lambda doing, advance: None
+            return
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
+            bar = bars.add_task("", total=total)
+            yield lambda doing, advance: bars.update(bar, description=doing, advance=advance)
+
+    def _rich_table(self, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        from rich import box
+        from rich.console import Console
+        from rich.table import Table
+
+        table = Table(box=box.SIMPLE_HEAD, header_style="bold", pad_edge=False)
+        for i, name in enumerate(header):
+            table.add_column(name, justify="right" if i else "left")
+        for row in rows:
+            table.add_row(*row)
+        Console().print(table)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):  # numpy's arrays and scalars
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

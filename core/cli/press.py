@@ -1,0 +1,120 @@
+"""`thermograsp press`: the sensor on one object, by any model of the ladder."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from thermograsp.cli.arguments import add_materials_file, chosen_material, target
+from thermograsp.cli.output import Output
+
+if TYPE_CHECKING:
+    from thermograsp.thermal import Press
+
+NAME = "press"
+HELP = "Press the sensor on an object and print what it feels."
+
+_KEYWORDS = (
+    "mode",
+    "sensor",
+    "conductance",
+    "area",
+    "shape",
+    "object_size",
+    "air",
+    "sensor_temperature",
+    "object_temperature",
+    "seconds",
+    "dt",
+    "tolerance",
+    "rung",
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command: thermal.press's keywords, with its defaults."""
+    add = parser.add_argument
+    add("material", help="a name of `thermograsp materials`")
+    add_materials_file(parser)
+    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
+    add("--sensor", default="seed", help="a sensor's name (default seed)")
+    add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K) (default 1e4)")
+    add("--area", type=float, default=81e-6, help="of the contact, m2 (default 81e-6)")
+    add("--shape", default="square", help="of the contact: square (default) or round")
+    size = (0.04, 0.04, 0.01)
+    add(
+        "--object-size",
+        type=float,
+        nargs=3,
+        default=size,
+        metavar=("X", "Y", "THICKNESS"),
+        help=f"m (default {size})",
+    )
+    add("--air", type=float, default=0.0, help="heat transfer to the air, W/(m2 K) (default 0)")
+    add("--sensor-temperature", type=float, default=36.0, help="of the thermostat, degC (default 36)")
+    add("--object-temperature", type=float, default=24.0, help="at first, degC (default 24)")
+    add("--seconds", type=float, default=10.0, help="s (default 10)")
+    add("--dt", type=float, default=0.02, help="spacing of the samples, s (default 0.02)")
+    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K (default 0.05)")
+    add("--rung", default="auto", help="model: auto (default), or a name such as layered or network")
+    add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
+    add("--csv", metavar="FILE", help="write the curves")
+    add("--plot", metavar="FILE", help="draw the curves: .svg, .png or .pdf")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Presses and prints."""
+    from thermograsp import thermal
+    from thermograsp.report.columns import write_csv
+
+    csv, plot = target(args.csv, ()), target(args.plot, (".svg", ".png", ".pdf"))
+    material = chosen_material(args.material, args.materials)
+    keywords = {name: getattr(args, name) for name in _KEYWORDS}
+    result = thermal.press(material, **keywords, cache=not args.no_cache)
+    columns = {
+        "time_s": result.t,
+        "temperature_drop_K": result.temperature_drop,
+        "voltage_V": result.voltage,
+        "heat_flow_W": result.heat_flow,
+        "sensor_surface_degC": result.sensor_surface,
+        "object_surface_degC": result.object_surface,
+        "stored_heat_sensor_J": result.stored_heat[:, 0],
+        "stored_heat_object_J": result.stored_heat[:, 1],
+    }
+    if csv is not None:
+        write_csv(csv, columns)
+    if plot is not None:
+        from thermograsp.report.press_plot import plot_press
+
+        plot_press(plot, result, f"{material.name}, {args.mode} mode")
+    _print(Output(args.json), material.name, args, result)
+    return 0
+
+
+def _print(output: Output, name: str, args: argparse.Namespace, result: Press) -> None:
+    drop, rung = result.temperature_drop, result.rung
+    peak = int(abs(drop).argmax())
+    known = f"error {rung.error:.2g} K" if rung.error == rung.error else "error not measured"
+    output.line(f"{name}, {args.mode} mode: rung {rung}, {known} ({rung.reason})")
+    output.line(
+        f"peak   {drop[peak]:8.3f} K  {1e3 * result.voltage[peak]:8.3f} mV  at {result.t[peak]:.2f} s"
+    )
+    output.line(f"final  {drop[-1]:8.3f} K  {1e3 * result.voltage[-1]:8.3f} mV  at {result.t[-1]:.2f} s")
+    for file in (args.csv, args.plot):
+        if file:
+            output.line(f"wrote {file}")
+    output.document(
+        {
+            "material": name,
+            "mode": args.mode,
+            "rung": {"name": rung.name, "orders": rung.orders, "error_K": rung.error, "reason": rung.reason},
+            "samples": len(drop),
+            "peak_temperature_drop_K": drop[peak],
+            "peak_voltage_V": result.voltage[peak],
+            "peak_time_s": result.t[peak],
+            "final_temperature_drop_K": drop[-1],
+            "final_voltage_V": result.voltage[-1],
+            "csv": args.csv,
+            "plot": args.plot,
+        }
+    )

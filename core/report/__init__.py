@@ -1,0 +1,1 @@
+"""What runs leave behind: recordings, CSV files, pictures and pages."""
