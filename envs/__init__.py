@@ -4,7 +4,9 @@ from .grasp import BatchState, GraspBatch, action_of, action_space, command_of
 from .grasp_env import GraspEnv
 from .grasp_vector import GraspVectorEnv
 from .mechanics import ContactRecord, Mechanics, MechanicsState
+from .meshes import MeshShape, load_mesh
 from .observation import observation_space
+from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import SEED_MATERIALS, PlantState, SimulatedPlant, SimulationConfig
 from .tasks import GraspTask
@@ -20,14 +22,18 @@ __all__ = [
     "GraspVectorEnv",
     "Mechanics",
     "MechanicsState",
+    "MeshShape",
     "ObjectSpec",
     "PlantState",
+    "Renderer",
     "SimulatedPlant",
     "SimulationConfig",
     "Thing",
+    "Window",
     "action_of",
     "action_space",
     "build_scene",
     "command_of",
+    "load_mesh",
     "observation_space",
 ]

@@ -26,6 +26,8 @@ MAX_LIFT_RATE = 0.05  # m/s
 MAX_HEIGHT = 0.15  # m
 OPENING_SPEED = 0.1  # m/s, the fastest the pads move relative to each other (a Robotiq 2F-85: .02 to .15)
 LIFT_ACCELERATION = 1.0  # m/s2, how fast the commanded lift rate is followed
+_LOWEST = np.array([[0.0], [0.0], [-MAX_LIFT_RATE]])  # of opening, force limit, lift rate
+_HIGHEST = np.array([[MAX_OPENING], [MAX_FORCE], [MAX_LIFT_RATE]])
 _WINDUP = 0.002  # m, how far the set point runs beyond where the force limit is reached
 _STILL, _SHORT = (
     0.005,
@@ -47,7 +49,7 @@ class ContactRecord:
     touching (B, S, T, O) bool: whether there was any contact.
     centroid (B, S, T, O, 2) m: force-weighted centre of the contact from the pad's middle, along the pad's two
     tangential axes; 0 where nothing touches.
-    place (B, S, T, O, 3) m: the pad's middle in the object's frame, touching or not.
+    place (B, 1, T, O, 3) m: the pad's middle in the object's frame at the last substep, touching or not.
     opening (B, S) m, opening_rate (B, S) m/s, height (B, S) m over the lowest position.
     object_pose (B, S, O, 7): position m and quaternion (w, x, y, z), world frame.
     failed (B,) bool: the simulation broke down (see Mechanics.failure); ignore that environment's other rows.
@@ -127,14 +129,17 @@ class Mechanics:
         self._fingers = [model.joint(f"finger_{tip}").qposadr[0] for tip in TIPS]
         self._finger_dofs = [model.joint(f"finger_{tip}").dofadr[0] for tip in TIPS]
         self._height = model.joint("lift").qposadr[0]
-        self._free = [model.joint(f"{name}_free").qposadr[0] for name in self.names]
-        self._poses = np.add.outer(self._free, np.arange(7))
         self._grip, self._lift = model.actuator("grip").id, model.actuator("lift").id
         self._grip_act, self._lift_act = model.actuator_actadr[[self._grip, self._lift]]
         self._stiffness = -float(model.actuator_biasprm[self._grip, 1])
-        self._pads = [model.site(f"pad_{tip}").id for tip in TIPS]
-        addresses = [model.sensor(contact_sensor(tip, name)).adr[0] for tip in TIPS for name in self.names]
-        self._contacts = np.add.outer(addresses, np.arange(7)).reshape(len(TIPS), len(self.names), 7)
+        # build_scene lays out free joints, pads and contact sensors in order, so that slices find them.
+        free = [model.joint(f"{name}_free").qposadr[0] for name in self.names]
+        self._poses = slice(free[0], free[0] + 7 * len(free))
+        sensors = [contact_sensor(tip, name) for tip in TIPS for name in self.names]
+        assert free == list(range(free[0], self._poses.stop, 7)) and self._poses.stop == model.nq
+        assert [model.site(i).name for i in range(model.nsite)] == [f"pad_{tip}" for tip in TIPS]
+        assert [model.sensor(i).name for i in range(model.nsensor)] == sensors
+        self._contacts = len(TIPS), len(self.names), model.nsensordata // len(sensors)
 
     @property
     def opening(self) -> np.ndarray:
@@ -150,7 +155,7 @@ class Mechanics:
     @property
     def object_pose(self) -> np.ndarray:
         """(B, O, 7) position in m and quaternion (w, x, y, z) of every object, world frame, now."""
-        return self._qpos[:, self._poses]
+        return self._qpos[:, self._poses].reshape(self.num_envs, -1, 7).copy()
 
     def reset(
         self,
@@ -180,7 +185,7 @@ class Mechanics:
         for i in rows:
             self._qpos[i, self._fingers] = opening / 2
             self._qpos[i, self._height] = height
-            self._qpos[i, self._poses] = [item.pose for item in self.objects[i]]
+            self._qpos[i, self._poses] = np.concatenate([item.pose for item in self.objects[i]])
             self._act[i, self._grip_act] = opening
             self._act[i, self._lift_act] = height
             self.failure[i] = ""
@@ -194,12 +199,14 @@ class Mechanics:
         lift_rate: m/s, -0.05 .. 0.05; the lift stops by itself at 0 and 0.15 m.
         Raises InvalidValueError for a shape, a non-finite value or one outside its range, naming it.
         """
-        opening = within("opening", self._batched("opening", opening), 0.0, MAX_OPENING)
-        force_limit = within("force_limit", self._batched("force_limit", force_limit), 0.0, MAX_FORCE)
-        lift_rate = within("lift_rate", self._batched("lift_rate", lift_rate), -MAX_LIFT_RATE, MAX_LIFT_RATE)
+        given = {"opening": opening, "force_limit": force_limit, "lift_rate": lift_rate}
+        command = np.array([self._batched(name, values) for name, values in given.items()])
+        if not ((command >= _LOWEST) & (command <= _HIGHEST)).all():
+            for name, values, low, high in zip(given, command, _LOWEST[:, 0], _HIGHEST[:, 0], strict=True):
+                within(name, values, low, high)
         if substeps < 1:
             raise InvalidValueError(f"substeps {substeps}: give at least 1")
-        self._command(opening, force_limit, lift_rate, substeps * self._timestep)
+        self._command(*command, substeps * self._timestep)
         before = self._batch.warning[:, :, 1].copy()
         out = self._batch.rollout(substeps, record=_RECORD)
         risen = self._batch.warning[:, :, 1] > before
@@ -280,8 +287,7 @@ class Mechanics:
         self._varying |= own.keys()
         for name in self._varying:
             rows = self._batch.expand(name)
-            values = own[name] if name in own else getattr(self.model, name)
-            rows[env] = values[: rows.shape[1]]  # bvh_aabb goes on with the meshes' boxes, which all share
+            rows[env] = own[name] if name in own else getattr(self.model, name)[: rows.shape[1]]
 
     def _differences(self, key: tuple[ObjectSpec, ...]) -> dict[str, np.ndarray]:
         """Model fields in which a scene of the objects `key` differs from self.model."""
@@ -290,7 +296,10 @@ class Mechanics:
                 self._compiled.pop(next(iter(self._compiled)))
             model = build_scene(key, library=self._library, timestep=self._timestep)
             pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)
-            self._compiled[key] = {n: a.copy() for n, a in pairs if a.tobytes() != self._base[n]}
+            # bvh_aabb goes on with the meshes' boxes, which all environments share
+            bodies = int(model.body_bvhnum.sum())
+            own = {name: a for name, a in pairs if a.tobytes() != self._base[name]}
+            self._compiled[key] = {n: (a[:bodies] if n == "bvh_aabb" else a).copy() for n, a in own.items()}
         return self._compiled[key]
 
     def _command(
@@ -308,9 +317,11 @@ class Mechanics:
         blocked = still & (width > opening + _SHORT) & (setpoint < opening + _SHORT)
         lowest = width - force / self._stiffness - _WINDUP
         goal = np.where(blocked, lowest, np.maximum(opening, lowest))
-        self._ctrl[:, self._grip] = np.clip((goal - setpoint) / duration, -OPENING_SPEED, OPENING_SPEED)
+        self._ctrl[:, self._grip] = np.minimum(
+            np.maximum((goal - setpoint) / duration, -OPENING_SPEED), OPENING_SPEED
+        )
         last, change = self._ctrl[:, self._lift], LIFT_ACCELERATION * duration
-        self._ctrl[:, self._lift] = np.clip(lift_rate, last - change, last + change)
+        self._ctrl[:, self._lift] = np.minimum(np.maximum(lift_rate, last - change), last + change)
 
     def _note_failures(self, risen: np.ndarray) -> None:
         for env, kind in np.argwhere(risen):
@@ -321,45 +332,42 @@ class Mechanics:
                 )
 
     def _record(self, out: dict) -> ContactRecord:
-        qpos, qvel = out["qpos"], out["qvel"]
-        contacts = out["sensordata"][:, :, self._contacts]  # (B, S, T, O, 7)
-        vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3)  # force, centroid; world frame
-        pads = out["site_xpos"][:, :, self._pads, None]  # (B, S, T, 1, 3)
-        vectors[..., 1, :] -= pads
-        axes = out["site_xmat"][:, :, self._pads, None, None].reshape(*contacts.shape[:3], 1, 1, 3, 3)
+        qpos, qvel, positions = out["qpos"], out["qvel"], out["site_xpos"]
+        contacts = out["sensordata"].reshape(
+            *qpos.shape[:2], *self._contacts
+        )  # (B, S, T, O, found force position)
+        vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3)  # world frame; rollout made it for us
+        vectors[..., 1, :] -= positions[:, :, :, None]
+        axes = out["site_xmat"].reshape(*contacts.shape[:3], 1, 1, 3, 3)
         # Written out: a matmul's rounding may depend on the number of environments.
         x, y, z = (axes[..., i, :] * vectors[..., i : i + 1] for i in range(3))
         local = x + y + z
         touching = contacts[..., 0] > 0
+        poses = qpos[..., self._poses].reshape(*qpos.shape[:2], -1, 7).copy()
+        before = max(qpos.shape[1] - 2, 0)  # the pads are where they were before the last substep
         left, right = self._fingers
         left_dof, right_dof = self._finger_dofs
         return ContactRecord(
             force=local[..., 0, :].copy(),
             touching=touching,
             centroid=np.where(touching[..., None], local[..., 1, 1:], 0.0),
-            place=_in_frame(pads, qpos[..., self._poses][:, :, None]),
+            place=_in_frame(positions[:, -1:, :, None], poses[:, before : before + 1, None]),
             opening=qpos[..., left] + qpos[..., right],
             opening_rate=qvel[..., left_dof] + qvel[..., right_dof],
             height=qpos[..., self._height].copy(),
-            object_pose=qpos[..., self._poses],
+            object_pose=poses,
             failed=np.array([bool(reason) for reason in self.failure]),
         )
 
 
 def _in_frame(point: np.ndarray, pose: np.ndarray) -> np.ndarray:
     """Points (..., 3) of the world in the frames of poses (..., 7), written out so that rounding is each row's own."""
-    v = point - pose[..., :3]
-    w, u = pose[..., 3:4], -pose[..., 4:]
-
-    def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        a, b = np.broadcast_arrays(a, b)
-        x = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
-        y = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
-        z = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-        return np.stack((x, y, z), axis=-1)
-
-    turned = 2 * cross(u, v)
-    return v + w * turned + cross(u, turned)
+    x, y, z = (point[..., i] - pose[..., i] for i in range(3))
+    w, a, b, c = pose[..., 3], -pose[..., 4], -pose[..., 5], -pose[..., 6]
+    p, q, r = 2 * (b * z - c * y), 2 * (c * x - a * z), 2 * (a * y - b * x)
+    return np.stack(
+        (x + w * p + (b * r - c * q), y + w * q + (c * p - a * r), z + w * r + (a * q - b * p)), axis=-1
+    )
 
 
 def within(name: str, values: np.ndarray, low: float, high: float) -> np.ndarray:
