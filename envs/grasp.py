@@ -58,7 +58,7 @@ class BatchState:
     history: np.ndarray
     task: TaskState
     last: Observation
-    over: np.ndarray
+    reading: Reading | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,6 @@ class GraspBatch:
         self._observer = Observer(num_envs)
         self._judged = fresh(num_envs)
         self._idle = Command(np.full(num_envs, MAX_OPENING), np.zeros(num_envs), np.zeros(num_envs))
-        self._over = np.zeros(num_envs, bool)
         self._last: Observation = {}
         self.reading: Reading | None = None
 
@@ -105,7 +104,6 @@ class GraspBatch:
         self._observer.restart(chosen)
         for values in (self._judged.elapsed, self._judged.held, self._judged.lifted):
             values[chosen] = 0
-        self._over[chosen] = False
         history = self._observer.history.copy()
         seen = self._observer.observe(reading, self._idle)
         # Only the rows that start have a new reading; the others keep what they last saw.
@@ -131,7 +129,6 @@ class GraspBatch:
         for row in np.flatnonzero(broken):
             infos[row]["error"] = reading.error[row]
         self._last, self.reading = seen, reading
-        self._over = outcome.terminated | outcome.truncated | broken
         return Step(
             _copies(seen),
             np.where(broken, 0.0, outcome.reward),
@@ -145,10 +142,9 @@ class GraspBatch:
         if not hasattr(self.plant, "state"):
             raise InvalidValueError("this plant's state can't be saved: it is not simulated")
         plant: Any = self.plant
+        rows = range(self.num_envs)
         return copy.deepcopy(
-            BatchState(
-                plant.state(range(self.num_envs)), self._observer.history, self._judged, self._last, self._over
-            )
+            BatchState(plant.state(rows), self._observer.history, self._judged, self._last, self.reading)
         )
 
     def set_state(self, state: BatchState) -> tuple[np.random.Generator, ...]:
@@ -157,7 +153,7 @@ class GraspBatch:
         plant: Any = self.plant
         rngs = plant.set_state(range(self.num_envs), state.plant)
         self._observer.history, self._judged = state.history, state.task
-        self._last, self._over = state.last, state.over
+        self._last, self.reading = state.last, state.reading
         return rngs
 
     def close(self) -> None:

@@ -23,7 +23,6 @@ from ..thermal import (
     materials,
     measure,
     sensor,
-    settled,
 )
 from .heat import GraspHeat, HeatState, HeatStep
 from .mechanics import SUBSTEPS, ContactRecord, Mechanics, MechanicsState
@@ -134,7 +133,7 @@ class SimulatedPlant:
         )
         self.things: list[Thing] = [first] * num_envs
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
-        self._signal = settled(np.zeros(2 * num_envs), self._stack.seebeck)
+        self._signal = SignalState(np.zeros(2 * num_envs), np.zeros(2 * num_envs))
         self._rest = np.zeros(num_envs)
         self._books = np.zeros((num_envs, 3))  # J: flowed in, its absolute sum, lost to the air
 
@@ -172,7 +171,7 @@ class SimulatedPlant:
         """One control step of all environments."""
         record = self.mechanics.step(command.opening, command.force_limit, command.lift_rate)
         normal = np.where(record.touching[..., 0], np.maximum(record.force[..., 0, 0], 0.0), 0.0)
-        step = self.heat.advance(normal, record.place[:, :, 0])
+        step = self.heat.advance(normal, record.place[:, -1, :, 0])
         return self._reading(record, step)
 
     def close(self) -> None:

@@ -1,0 +1,154 @@
+"""Contact to heat: the grasp's temperature drops against thermal.press, order of materials, books of heat."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermograsp import thermal
+from thermograsp.envs import SEED_MATERIALS, GraspBatch, GraspTask, ObjectSpec
+
+from .scripted import grasp_action
+
+ENDLESS = GraspTask(hold_seconds=1e3, seconds=1e3)
+
+
+def grasped(batch: GraspBatch, steps: int) -> list:
+    rngs = [np.random.default_rng(i) for i in range(batch.num_envs)]
+    batch.reset(range(batch.num_envs), rngs)
+    readings = []
+    for _ in range(steps):
+        batch.step(grasp_action(batch))
+        readings.append(batch.reading)
+    return readings
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+@pytest.mark.parametrize("name", ["wood", "aluminium"])
+def test_press_with_the_recorded_conductance_gives_the_same_drop(mode, name):
+    """One fingertip, same rung and steps, no air: the coupling of the environment adds nothing of its own."""
+    batch = GraspBatch(1, task=ENDLESS, material=name, mode=mode, fingertips=1, air=0.0)
+    readings = grasped(batch, 200)
+    recorded = np.array([reading.truth["conductance"][0, 0] for reading in readings])
+    area = np.array([reading.truth["contact_area"][0, 0] for reading in readings])
+    drop = np.array([reading.truth["temperature_drop"][0, 0] for reading in readings])
+    assert np.all((area == 0) | np.isclose(area, 81e-6, rtol=1e-12))
+    first = int(np.argmax(recorded > 0))
+    held = recorded[first:]
+    thing = batch.plant.heat._things[0]  # pyright: ignore[reportAttributeAccessIssue]
+    press = thermal.press(
+        name,
+        mode=mode,
+        conductance=lambda t: float(held[min(int(t / batch.dt), len(held) - 1)]),
+        object_size=thing.plate,
+        seconds=len(held) * batch.dt,
+        dt=batch.dt,
+        rung=readings[-1].truth["rung"][0],
+    )
+    assert drop.max() > 1.0
+    assert np.max(np.abs(press.temperature_drop[1:] - drop[first:])) < 1e-6
+
+
+def test_two_fingertips_on_a_thick_poor_conductor_feel_what_one_would():
+    """Through 40 mm of wood nothing arrives within seconds, so each fingertip is a press of its own."""
+    batch = GraspBatch(1, task=ENDLESS, material="wood", air=0.0)
+    readings = grasped(batch, 200)
+    recorded = np.array([reading.truth["conductance"][0] for reading in readings])
+    drop = np.array([reading.truth["temperature_drop"][0] for reading in readings])
+    thing = batch.plant.heat._things[0]  # pyright: ignore[reportAttributeAccessIssue]
+    first = int(np.argmax(recorded.max(axis=1) > 0))
+    for side in (0, 1):
+        held = recorded[first:, side]
+        press = thermal.press(
+            "wood",
+            conductance=lambda t, held=held: float(held[min(int(t / batch.dt), len(held) - 1)]),
+            object_size=thing.plate,
+            seconds=len(held) * batch.dt,
+            rung=readings[-1].truth["rung"][0],
+        )
+        assert np.max(np.abs(press.temperature_drop[1:] - drop[first:, side])) < 1e-3
+
+
+def test_both_fingers_warm_a_small_conductor_together():
+    spec = ObjectSpec(size=(0.02, 0.02, 0.03))
+    one, two = (
+        grasped(GraspBatch(1, task=ENDLESS, material="aluminium", objects=spec, fingertips=f, air=0.0), 300)
+        for f in (1, 2)
+    )
+    assert two[-1].truth["object_temperature"][0] > one[-1].truth["object_temperature"][0] + 0.2
+    assert two[-1].truth["temperature_drop"][0, 0] < one[-1].truth["temperature_drop"][0, 0] - 0.1
+
+
+def test_materials_are_in_order_when_grasped():
+    """Metals over stone over plastics over cotton at 2 s after the touch."""
+    batch = GraspBatch(10, task=ENDLESS, material=list(SEED_MATERIALS))
+    rngs = [np.random.default_rng(i) for i in range(10)]
+    for row, name in enumerate(SEED_MATERIALS):
+        batch.reset([row], [rngs[row]], {"material": name})
+    touched = None
+    for k in range(160):
+        batch.step(grasp_action(batch))
+        assert batch.reading is not None
+        if touched is None and np.all(batch.reading.truth["contact_area"] > 0):
+            touched = k
+        if touched is not None and k == touched + 100:
+            break
+    drop = dict(zip(SEED_MATERIALS, batch.reading.truth["temperature_drop"].mean(axis=1), strict=True))
+    groups = [
+        ["stainless_steel", "iron", "aluminium"],
+        ["glass", "ceramic", "marble"],
+        ["plastic", "rubber"],
+        ["cotton"],
+    ]
+    for upper, lower in zip(groups, groups[1:], strict=False):
+        assert min(drop[name] for name in upper) > max(drop[name] for name in lower)
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+def test_books_of_heat_balance_and_temperatures_stay_in_range(mode):
+    batch = GraspBatch(3, task=ENDLESS, material=["glass", "aluminium", "cotton"], mode=mode)
+    for reading in grasped(batch, 250):
+        truth = reading.truth
+        assert np.all(np.abs(truth["heat_imbalance"]) <= 1e-6 * truth["heat_exchanged"] + 1e-15)
+        for name in ("sensor_surface", "object_surface", "object_temperature"):
+            assert np.all(truth[name] > 24 - 0.05) and np.all(truth[name] < 36 + 0.05)
+    assert np.all(batch.reading.truth["heat_exchanged"] > 0.1)  # pyright: ignore[reportOptionalMemberAccess]
+
+
+def test_a_single_row_does_not_depend_on_the_others():
+    names = ["glass", "aluminium", "cotton", "wood"]
+    many = GraspBatch(4, task=ENDLESS, material=names, threads=2)
+    rngs = [np.random.default_rng(i) for i in range(4)]
+    for row in range(4):
+        many.reset([row], [rngs[row]], {"material": names[row]})
+    singles = []
+    for row in range(4):
+        single = GraspBatch(1, task=ENDLESS, material=names)
+        single.reset([0], [np.random.default_rng(row)], {"material": names[row]})
+        singles.append(single)
+    for _ in range(80):
+        all_of_them = many.step(grasp_action(many))
+        for row, single in enumerate(singles):
+            alone = single.step(grasp_action(single))
+            for key, value in alone.observation.items():
+                assert np.array_equal(value[0], all_of_them.observation[key][row])
+            assert alone.reward[0] == all_of_them.reward[row]
+
+
+def test_voltage_is_the_drop_through_the_chain():
+    batch = GraspBatch(1, task=ENDLESS, material="glass", signal="ideal")
+    for reading in grasped(batch, 120):
+        assert np.allclose(reading.voltage[0], 1e-3 * reading.truth["temperature_drops"][0], atol=1e-15)
+
+
+def test_touch_off_the_element_is_not_felt_in_o_mode():
+    batch = GraspBatch(1, task=ENDLESS, material="glass", mode="O", placement=(0.0, 0.0))
+    batch.reset([0], [np.random.default_rng(0)])
+    heat = batch.plant.heat  # pyright: ignore[reportAttributeAccessIssue]
+    heat._anchor[0] += np.array([0.0, 0.0, 0.006])
+    kinds = []
+    for _ in range(100):
+        step = batch.step(grasp_action(batch))
+        kinds += [kind for kind, _ in step.infos[0]["events"]]
+    assert kinds == ["touch off the element"] * 2
+    assert not batch.reading.truth["temperature_drop"].any()  # pyright: ignore[reportOptionalMemberAccess]

@@ -1,0 +1,61 @@
+"""Many environments at once are the single ones, bit for bit."""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+import pytest
+
+import thermograsp  # noqa: F401  registers the ids
+from thermograsp.envs import GraspEnv
+from thermograsp.errors import InvalidValueError
+
+
+def make(num_envs: int, **keywords):
+    return gymnasium.make_vec(
+        "thermograsp/Grasp-v0", num_envs=num_envs, vectorization_mode="vector_entry_point", **keywords
+    )
+
+
+def test_environment_i_is_the_single_one_seeded_s_plus_i():
+    vector = make(3, threads=2)
+    seen, info = vector.reset(seed=5)
+    actions = np.random.default_rng(0).uniform(-1, 1, (60, 3, 3)).astype(np.float32)
+    actions[:, :, 0] = -1.0
+    singles = [GraspEnv() for _ in range(3)]
+    for i, single in enumerate(singles):
+        first, own = single.reset(seed=5 + i)
+        assert all(np.array_equal(first[key], seen[key][i]) for key in first)
+        assert own["material"] == info["material"][i]
+    for action in actions:
+        seen, reward, terminated, truncated, info = vector.step(action)
+        for i, single in enumerate(singles):
+            own, own_reward, own_terminated, own_truncated, own_info = single.step(action[i])
+            assert all(np.array_equal(own[key], seen[key][i]) for key in own)
+            assert own_reward == reward[i]
+            assert (own_terminated, own_truncated) == (terminated[i], truncated[i])
+            assert np.array_equal(own_info["temperature_drop"], info["temperature_drop"][i])
+
+
+def test_environments_that_end_start_anew_at_the_next_step():
+    vector = make(2, seconds=0.1, material="glass")
+    vector.reset(seed=0)
+    for k in range(1, 14):
+        seen, reward, _, truncated, info = vector.step(np.zeros((2, 3), np.float32))
+        assert np.array_equal(truncated, [k % 6 == 5] * 2)
+        if k % 6 == 0:  # the reset step
+            assert not reward.any() and not info["temperature_drop"].any()
+            assert np.all(seen["gripper"][:, 0] > 0.08)
+
+
+def test_bad_calls_say_what_to_do():
+    with pytest.raises(InvalidValueError, match="reset"):
+        make(2).step(np.zeros((2, 3)))
+    with pytest.raises(InvalidValueError, match="seed"):
+        make(2).reset(seed=[1, 2, 3])
+    with pytest.raises(InvalidValueError, match="num_envs"):
+        make(0)
+    vector = make(2)
+    vector.reset(seed=0)
+    with pytest.raises(InvalidValueError, match="finite"):
+        vector.step(np.full((2, 3), np.nan))
