@@ -206,7 +206,7 @@ class Mechanics:
                 within(name, values, low, high)
         if substeps < 1:
             raise InvalidValueError(f"substeps {substeps}: give at least 1")
-        self._command(*command, substeps * self._timestep)
+        self._command(command[0], command[1], command[2], substeps * self._timestep)
         before = self._batch.warning[:, :, 1].copy()
         out = self._batch.rollout(substeps, record=_RECORD)
         risen = self._batch.warning[:, :, 1] > before
