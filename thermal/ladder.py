@@ -110,6 +110,8 @@ def solve_rung(name: str, problem: PressProblem, t: np.ndarray, tolerance: float
         return Rung("network", str(system.orders), error, "asked for"), network_press.solve(problem, t, system)
     solver = RUNGS[base].solve
     assert solver is not None
+    if problem.opposite is not None:
+        raise InvalidValueError(f"rung {base!r} has one fingertip: use 'network' where a second one presses")
     return Rung(base, "", np.nan, "asked for"), solver(problem, t)
 
 
@@ -141,7 +143,7 @@ def _auto(problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool) -
 
 def _possible(info: RungInfo, problem: PressProblem) -> bool:
     steady = not callable(problem.conductance)
-    return (info.varying or steady) and (problem.air == 0 or info.name == "lumped")
+    return problem.opposite is None and (info.varying or steady) and (problem.air == 0 or info.name == "lumped")
 
 
 def _demand(problem: PressProblem, t: np.ndarray, tolerance: float) -> Demand:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numba import njit
 
@@ -10,14 +12,15 @@ from thermograsp.errors import InvalidValueError
 from .bodies import Geometry
 from .coupling import propagator
 from .coupling_kernel import advance, step_arrays, workspace
-from .problem import PressCurves, PressProblem
+from .problem import Conductance, PressCurves, PressProblem
 from .system import ContactSystem
 
 LONGEST_STEP = 0.01  # s, over which a conductance that varies is held at its value in the middle
 
 
-def geometry_of(problem: PressProblem, fingertips: int = 1) -> Geometry:
-    """What of the problem a network depends on."""
+def geometry_of(problem: PressProblem, fingertips: Literal[1, 2] | None = None) -> Geometry:
+    """What of the problem a network depends on. fingertips: None for as many as press."""
+    pressing = 1 if problem.opposite is None else 2
     return Geometry(
         problem.stack,
         problem.material,
@@ -25,7 +28,7 @@ def geometry_of(problem: PressProblem, fingertips: int = 1) -> Geometry:
         problem.area,
         problem.shape,
         problem.object_size,
-        2 if fingertips == 2 else 1,
+        fingertips or pressing,
     )
 
 
@@ -46,22 +49,34 @@ def with_air(system: ContactSystem, air: float) -> np.ndarray:
 
 def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressCurves:
     """Curves at the samples t = 0, dt, 2 dt, ... (n,) s. A constant conductance is stepped exactly from sample to
-    sample, one that varies in equal steps of at most LONGEST_STEP. A second fingertip of the system stays apart.
+    sample, one that varies in equal steps of at most LONGEST_STEP. A second fingertip of the system stays apart unless
+    the problem presses it.
 
-    Raises InvalidValueError when the conductance function returns a negative or non-finite value, with the time.
+    Raises InvalidValueError when a conductance function returns a negative or non-finite value, with the time, and when
+    the system has one fingertip and the problem two.
     """
+    fingertips = system.geometry.fingertips
+    pressed = [problem.conductance] if problem.opposite is None else [problem.conductance, problem.opposite]
+    if len(pressed) > fingertips:
+        raise InvalidValueError(f"network {system.orders} has one fingertip, the problem two: give modes/sensor/even/odd")
     rates = with_air(system, problem.air)
-    ports, modes = system.ports, system.modes
     spacing = t[1] - t[0] if len(t) > 1 else 1.0
-    steps = max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9))) if callable(problem.conductance) else 1
+    steps = max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9))) if any(map(callable, pressed)) else 1
     dt = spacing / steps
     arrays = step_arrays(
-        propagator(rates, ports, dt), modes=modes, sensor_states=system.orders.sensor, watched=system.mean
+        propagator(rates, system.ports, dt),
+        modes=system.modes,
+        sensor_states=system.orders.sensor,
+        watched=system.mean,
     )
     middles = (np.arange(steps * (len(t) - 1)) + 0.5) * dt
+    weights = np.zeros((len(middles), fingertips))
+    for tip, conductance in enumerate(pressed):
+        weights[:, tip] = _values(conductance, middles) * problem.area
     states = np.zeros((len(t), len(rates)))
-    _march(arrays, _conductances(problem, middles) * problem.area, problem.temperature_difference, steps, states)
-    flows = _conductances(problem, t) * problem.area * (problem.temperature_difference - states @ ports[:, 0])
+    _march(arrays, weights, problem.temperature_difference, steps, states)
+    now = _values(problem.conductance, t) * problem.area
+    flows = now * (problem.temperature_difference - states @ system.ports[:, 0])
     return PressCurves(
         temperature_drop=states @ system.drop[0],
         heat_flow=flows,
@@ -73,23 +88,25 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
 
 @njit(cache=True, error_model="numpy")
 def _march(arrays, conductance, difference, steps, states):
-    """States (n, K) at the samples; conductance (W/K) of every step, `steps` of them between two samples."""
-    ports = arrays.ports.shape[0]
+    """States (n, K) at the samples; conductance (W/K) of every step and fingertip, `steps` of them between samples."""
+    ports, modes = arrays.ports.shape[0], arrays.modes
     weight, drive, flow = np.zeros(ports), np.zeros(ports), np.zeros(ports)
-    drive[0] = difference
+    for f in range(arrays.contacts):
+        drive[f * modes] = difference
     room = workspace(arrays.rates.shape[0], ports)
     state = states[0].copy()
     for i in range(1, states.shape[0]):
         for k in range(steps):
-            weight[: arrays.modes] = conductance[(i - 1) * steps + k]
+            for f in range(arrays.contacts):
+                weight[f * modes : (f + 1) * modes] = conductance[(i - 1) * steps + k, f]
             advance(arrays, state, weight, drive, flow, room)
         states[i] = state
 
 
-def _conductances(problem: PressProblem, times: np.ndarray) -> np.ndarray:
-    if not callable(problem.conductance):
-        return np.full(len(times), float(problem.conductance))
-    values = np.array([float(problem.conductance(float(time))) for time in times])
+def _values(conductance: Conductance, times: np.ndarray) -> np.ndarray:
+    if not callable(conductance):
+        return np.full(len(times), float(conductance))
+    values = np.array([float(conductance(float(time))) for time in times])
     wrong = ~(np.isfinite(values) & (values >= 0))
     if wrong.any():
         first = int(np.argmax(wrong))

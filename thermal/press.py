@@ -53,6 +53,7 @@ def press(
     dt: float = 0.02,
     tolerance: float = 0.05,
     rung: str | Rung = "auto",
+    opposite: Conductance | None = None,
     cache: bool = True,
 ) -> Press:
     """Presses the sensor on the middle of a face of an object, both uniform at first.
@@ -62,7 +63,8 @@ def press(
     most the sensor's face. shape: "square" or "round". object_size: (width, depth, thickness) m. air: W/(m2 K) on the
     object's free faces. Temperatures in °C. seconds, dt: samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of
     temperature drop from 0.05 s on, which rung="auto" (and "network") keeps. rung: a name of thermal.RUNGS, "auto",
-    "network:ORDERS" as a Rung prints itself, or a Rung. cache: keep networks on disk.
+    "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same kind on
+    the opposite face, None for none; the curves are the first one's. cache: keep networks on disk.
 
     Raises UnknownNameError for names and InvalidValueError for values that make no sense, or that the rung cannot do.
     """
@@ -77,6 +79,7 @@ def press(
         air=air,
         sensor_temperature=sensor_temperature,
         object_temperature=object_temperature,
+        opposite=opposite,
     )
     positive("dt (s)", dt)
     positive("seconds", seconds)

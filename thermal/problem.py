@@ -28,7 +28,8 @@ class PressProblem:
     time in s. area: m2 of the contact, at most the sensor's face. shape: of the contact patch ("round": the
     sensor's cross-section is round too, of the same area as the square one). object_size: (width, depth,
     thickness) m, the patch in the middle of a width x depth face. air: W/(m2 K) on the object's free faces,
-    whose ambient is object_temperature. Temperatures in °C.
+    whose ambient is object_temperature. Temperatures in °C. opposite: W/(m2 K), a second fingertip of the
+    same kind on the opposite face, None for none; the curves are the first one's.
     """
 
     stack: SensorStack
@@ -41,6 +42,7 @@ class PressProblem:
     air: float
     sensor_temperature: float
     object_temperature: float
+    opposite: Conductance | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -49,6 +51,8 @@ class PressProblem:
             raise InvalidValueError(f"shape must be 'square' or 'round', got {self.shape!r}")
         if not callable(self.conductance):
             non_negative("conductance (W/(m2 K))", self.conductance)
+        if self.opposite is not None and not callable(self.opposite):
+            non_negative("opposite (W/(m2 K))", self.opposite)
         positive("area (m2)", self.area)
         if self.area > self.stack.face_area * (1 + 1e-9):
             raise InvalidValueError(
