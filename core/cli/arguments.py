@@ -17,7 +17,7 @@ def add_materials_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--materials",
         metavar="FILE",
-        help="TOML table of your own to take the material from (as assets/materials.toml)",
+        help="take the material from your own TOML table",
     )
 
 

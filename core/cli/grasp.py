@@ -52,6 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Grasps, writes and prints. 1 where the object was not lifted and held."""
+    import numpy as np
+
     from thermograsp.envs import GraspBatch, GraspTask
     from thermograsp.report.columns import write_csv
     from thermograsp.report.recording import record
@@ -74,7 +76,8 @@ def run(args: argparse.Namespace) -> int:
     if picture is not None:
         from thermograsp.report.film import Film
 
-        film = Film(batch.plant, every=0.1 if picture.suffix != ".png" else args.seconds / 5)
+        count = 6 if picture.suffix == ".png" else max(2, round(10 * args.seconds))
+        film = Film(batch.plant, np.linspace(0.0, args.seconds, count).tolist())
     with output.progress(args.seconds) as advance:
 
         def watch(time: float, now: GraspBatch) -> None:

@@ -1,8 +1,10 @@
-"""Pictures of a grasp in time: animations, strips, and the colours' bar."""
+"""Pictures of a grasp in time: animations and strips, with the temperatures they show."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,17 +19,27 @@ from thermograsp.files import atomic_write
 _GAP = 6  # pixels between the pictures of a strip
 
 
-class Film:
-    """Draws one row of a simulated batch every so many seconds of its time.
+@dataclass(frozen=True, slots=True)
+class Still:
+    """One picture (height, width, 3) uint8 at `time` s. across: degC from the left thermostat to the right one: thermostat,
+    sensor's face, object's face, object's mean, object's face, sensor's face, thermostat."""
 
-    plant: a simulated one. every: s. row: which grasp. low, high: degC, the colours' range.
+    time: float
+    pixels: np.ndarray
+    across: tuple[float, ...]
+
+
+class Film:
+    """Draws one row of a simulated batch at given times of its episode.
+
+    plant: a simulated one. times: s, rising. row: which grasp. low, high: degC, the colours' range.
     Raises MissingDependencyError, naming the packages, where there is no OpenGL.
     """
 
     def __init__(
         self,
         plant: Any,
-        every: float,
+        times: Sequence[float],
         row: int = 0,
         *,
         camera: str = "closeup",
@@ -36,36 +48,40 @@ class Film:
         high: float = 40.0,
     ) -> None:
         self._renderer = Renderer(plant.mechanics, width=size[0], height=size[1], low=low, high=high)
-        self._row, self._camera, self.every = row, camera, every
-        self.frames: list[np.ndarray] = []
-        self.times: list[float] = []
+        self._row, self._camera, self._times = row, camera, list(times)
+        self.stills: list[Still] = []
 
     def watch(self, time: float, batch: GraspBatch) -> None:
         """Takes a picture where one is due; see recording.record."""
-        if time < len(self.times) * self.every - batch.dt / 2:
+        taken = len(self.stills)
+        if taken == len(self._times) or time < self._times[taken] - batch.dt / 2:
             return
-        celsius = temperatures(batch.reading, self._row)
-        self.frames.append(self._renderer.frame(self._row, camera=self._camera, temperatures=celsius))
-        self.times.append(time)
+        reading = batch.reading
+        assert reading is not None
+        celsius = temperatures(reading, self._row)
+        pixels = self._renderer.frame(self._row, camera=self._camera, temperatures=celsius)
+        sensor, face = (reading.truth[name][self._row] for name in ("sensor_surface", "object_surface"))
+        thermostat, mean = reading.thermostat[self._row], reading.truth["object_temperature"][self._row]
+        across = (thermostat[0], sensor[0], face[0], mean, face[1], sensor[1], thermostat[1])
+        self.stills.append(Still(time, pixels, tuple(float(value) for value in across)))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """An animation at the grasp's own speed (.gif, .webp), or all pictures in a row (.png)."""
-        pictures = [Image.fromarray(frame) for frame in self.frames]
+        pictures = [Image.fromarray(still.pixels) for still in self.stills]
         with atomic_write(path) as temporary:
             if Path(path).suffix.lower() == ".png":
                 strip(pictures).save(temporary)
             else:
-                duration = round(1000 * self.every)
-                pictures[0].save(
-                    temporary, save_all=True, append_images=pictures[1:], duration=duration, loop=0
-                )
+                ends = [still.time for still in self.stills[1:]] + [self.stills[-1].time + 1.0]
+                lasting = [round(1000 * (end - still.time)) for end, still in zip(ends, self.stills, strict=True)]
+                pictures[0].save(temporary, save_all=True, append_images=pictures[1:], duration=lasting, loop=0)
 
     def close(self) -> None:
         """Frees OpenGL's buffers."""
         self._renderer.close()
 
 
-def strip(pictures: list[Image.Image]) -> Image.Image:
+def strip(pictures: Sequence[Image.Image]) -> Image.Image:
     """Pictures of one size side by side."""
     width, height = pictures[0].size
     joined = Image.new("RGB", (len(pictures) * (width + _GAP) - _GAP, height), "white")

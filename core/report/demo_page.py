@@ -1,0 +1,226 @@
+"""The demonstration's page: one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+import io
+import platform
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from importlib.metadata import PackageNotFoundError, version
+
+import matplotlib as mpl
+import numpy as np
+from PIL import Image
+
+import thermograsp
+from thermograsp.envs.colormap import colour_table, temperature_colour
+from thermograsp.envs.tasks import LIFTED
+from thermograsp.report.curves import Curve, Mark, chart
+from thermograsp.report.demo_runs import COLOURS, FILMED, FORCE, Grasp, ModeRun
+from thermograsp.report.page_style import style_sheet
+from thermograsp.report.style import readable
+
+_ABOUT = {
+    "T": ("T mode", "The element rides on the warm fingertip and meets the object."),
+    "O": ("O mode", "The element is glued to the object and meets the warm fingertip."),
+}
+_STILL_WIDTH = 380  # pixels
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What was asked for. seconds: s of each grasp. command: as one would type it."""
+
+    seconds: float
+    seed: int
+    command: str
+
+
+def demo_page(runs: Sequence[ModeRun], settings: Settings) -> str:
+    """The page's HTML."""
+    order = np.argsort([grasp.effusivity for grasp in runs[0].grasps], kind="stable").tolist()
+    stills = next((run.stills for run in runs if run.stills), ())
+    parts = [
+        "<!doctype html>",
+        '<html lang="en"><head><meta charset="utf-8">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        "<title>thermograsp: ten materials at a fingertip</title>",
+        f"<style>{style_sheet(len(order), len(stills))}</style></head><body><main>",
+        "<header><h1>What ten materials feel like to a robot’s fingertips</h1>",
+        f'<p class="lede">{_lede(runs, order)}</p></header>',
+        _charts(runs, order, settings),
+        _film(stills, next((run.no_picture for run in runs), "")),
+        _table(runs, order),
+        _details(runs, settings),
+        "</main></body></html>",
+    ]
+    return "\n".join(parts) + "\n"
+
+
+def _lede(runs: Sequence[ModeRun], order: list[int]) -> str:
+    config = "Fingertips kept at 36 °C close on ten 40 mm cubes at 24 °C, lift them by 5 cm and hold them."
+    final = [_drop(runs[0].grasps[i])[-1] for i in order]
+    swapped = [
+        f"{readable(_name(runs[0], order[i]))} and {readable(_name(runs[0], order[i + 1]))}"
+        for i in range(len(order) - 1)
+        if final[i] > final[i + 1]
+    ]
+    but = f", but for {' and '.join(swapped)}" if swapped else ""
+    return (
+        f"{config} The temperature drop over each fingertip’s heat flux sensor tells how fast its heat is drawn away: "
+        f"in T mode the ten end in the order of their effusivity √(<i>kρc</i>){but}."
+    )
+
+
+def _name(run: ModeRun, i: int) -> str:
+    return run.grasps[i].recording.material
+
+
+def _drop(grasp: Grasp) -> np.ndarray:
+    return grasp.recording.columns["temperature_drop_left_K"]
+
+
+def _charts(runs: Sequence[ModeRun], order: list[int], settings: Settings) -> str:
+    top = max(float(_drop(grasp).max()) for run in runs for grasp in run.grasps)
+    y_end = 2.0 * np.ceil(top / 2 + 0.05)
+    figures = []
+    for run in runs:
+        curves = [
+            Curve(
+                readable(_name(run, i)), f"m{rank}", run.grasps[i].recording.columns["time_s"], _drop(run.grasps[i])
+            )
+            for rank, i in enumerate(order)
+        ]
+        name, about = _ABOUT[run.mode]
+        svg = chart(curves, _marks(run.grasps), settings.seconds, float(y_end), f"Temperature drop in {name}")
+        figures.append(
+            f'<figure><figcaption><h2>{name}: temperature drop, K</h2><p class="note">{about}</p></figcaption>{svg}</figure>'
+        )
+    return f'<div class="pair">{"".join(figures)}</div>'
+
+
+def _marks(grasps: Sequence[Grasp]) -> list[Mark]:
+    """The touch, the lift's start and its end: medians over the grasps, which differ by a control step or two."""
+    touch = [grasp.recording.touch for grasp in grasps]
+    marks = [Mark(float(np.nanmedian(touch)), "touch", before=True)] if np.isfinite(touch).any() else []
+    for height, label in ((0.001, "lift"), (LIFTED, "held at 5 cm")):
+        times = []
+        for grasp in grasps:
+            columns = grasp.recording.columns
+            above = np.flatnonzero(columns["height_m"] >= height)
+            if len(above):
+                times.append(columns["time_s"][above[0]])
+        if times:
+            marks.append(Mark(float(np.median(times)), label))
+    return marks
+
+
+def _film(stills: Sequence, no_picture: str) -> str:
+    if not stills:
+        return f'<section><h2>No pictures</h2><p class="note">{escape(no_picture)}</p></section>' if no_picture else ""
+    low, high = COLOURS
+    frames = "".join(_still(still) for still in stills)
+    table = colour_table()[:: len(colour_table()) // 16]
+    stops = ", ".join(mpl.colors.to_hex(color) for color in table)
+    return (
+        f"<section><h2>One of the grasps: {readable(FILMED)}, T mode</h2>"
+        '<p class="note">Cube and sensor faces are coloured by temperature. The bands cut through the contact: thermostat, '
+        "sensor face, object face, the object’s mean, and the same to the right.</p>"
+        f'<div class="film">{frames}</div><div class="key"><span>{low:g} °C</span>'
+        f'<span class="bar" style="background:linear-gradient(90deg, {stops})"></span><span>{high:g} °C</span></div></section>'
+    )
+
+
+def _still(still) -> str:
+    low, high = COLOURS
+    colors = [mpl.colors.to_hex(temperature_colour(celsius, low, high)) for celsius in still.across]
+    bands = "".join(
+        f'<i{" class=wide" if i == len(colors) // 2 else ""} style="background:{color}" title="{celsius:.2f} °C"></i>'
+        for i, (color, celsius) in enumerate(zip(colors, still.across, strict=True))
+    )
+    _, sensor, _, mean, _, right, _ = still.across
+    reads = f"<span>{sensor:.1f}</span><span>{mean:.1f}</span><span>{right:.1f} °C</span>"
+    return (
+        f'<div><img alt="The gripper after {still.time:.1f} s" src="{_picture(still.pixels)}">'
+        f'<div class="when">{still.time:.1f} s</div><div class="across">{bands}</div><div class="reads">{reads}</div></div>'
+    )
+
+
+def _picture(pixels: np.ndarray) -> str:
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    image = image.resize((_STILL_WIDTH, round(image.height * _STILL_WIDTH / image.width)), Image.Resampling.LANCZOS)
+    buffer = io.BytesIO()
+    image.save(buffer, "JPEG", quality=88, optimize=True)
+    return f"data:image/jpeg;base64,{base64.b64encode(buffer.getvalue()).decode()}"
+
+
+def _table(runs: Sequence[ModeRun], order: list[int]) -> str:
+    columns = ("peak<small>K</small>", "after touch<small>s</small>", "end<small>K</small>", "peak<small>mV</small>")
+    columns += ("conductance<small>kW/(m² K)</small>",)
+    groups = "".join(f'<th class="group first" colspan="{len(columns)}">{_ABOUT[run.mode][0]}</th>' for run in runs)
+    heads = "".join(f'<th{" class=first" if i == 0 else ""}>{name}</th>' for i, name in enumerate(columns)) * len(runs)
+    rows = []
+    for rank, i in enumerate(order[::-1]):
+        grasp = runs[0].grasps[i]
+        cells = [f'<td><span class="dot m{len(order) - 1 - rank}"></span>{readable(_name(runs[0], i))}</td>']
+        cells.append(f"<td>{grasp.effusivity:,.0f}</td>")
+        for run in runs:
+            row = run.grasps[i].summary
+            cells += [
+                f'<td class="first strong">{row["peak_temperature_drop_K"]:.2f}</td>',
+                f"<td>{row['peak_after_touch_s']:.2f}</td>",
+                f"<td>{row['final_temperature_drop_K']:.2f}</td>",
+                f"<td>{1e3 * float(row['peak_voltage_V']):.2f}</td>",
+                f"<td>{1e-3 * float(row['conductance_W_m2K']):.1f}</td>",
+            ]
+        row = grasp.summary
+        cells.append(f'<td class="first">{row["force_N"]:.2f}</td><td>{1e6 * float(row["contact_area_m2"]):.0f}</td>')
+        rows.append(f"<tr>{''.join(cells)}</tr>")
+    return (
+        '<section><h2>The numbers</h2><p class="note">Of the left fingertip. Voltages are those of the converter, with its '
+        'noise.</p><div class="scroll"><table><thead>'
+        f"<tr><th></th><th></th>{groups}<th></th><th></th></tr><tr><th>material</th>"
+        f'<th>effusivity<small>W s<sup>½</sup>/(m² K)</small></th>{heads}<th class="first">force<small>N</small></th>'
+        f"<th>area<small>mm²</small></th></tr></thead><tbody>{''.join(rows)}</tbody></table></div></section>"
+    )
+
+
+def _details(runs: Sequence[ModeRun], settings: Settings) -> str:
+    items = [
+        ("Command", f"<code>{escape(settings.command)}</code>"),
+        (
+            "Grasps",
+            f"{sum(len(run.grasps) for run in runs)} of {settings.seconds:g} s each, all of a mode at once; force limit "
+            f"{FORCE:g} N; seeds {settings.seed} to {settings.seed + len(runs[0].grasps) - 1}",
+        ),
+    ]
+    for run in runs:
+        items.append(
+            (
+                f"Speed, {run.mode} mode",
+                f"{run.physics_steps_per_s:,.0f} physics steps of 2 ms a second; {100 * run.heat_share:.0f} % of the time "
+                f"for heat, {100 * run.mechanics_share:.0f} % for mechanics",
+            )
+        )
+    for run in runs:
+        rungs: dict[str, list[str]] = {}
+        for grasp in run.grasps:
+            rungs.setdefault(grasp.recording.rung, []).append(readable(grasp.recording.material))
+        listed = "; ".join(f"<code>{escape(rung)}</code> {', '.join(names)}" for rung, names in rungs.items())
+        items.append((f"Heat model, {run.mode} mode", listed))
+    items.append(("Versions", escape(", ".join(f"{name} {number}" for name, number in versions().items()))))
+    body = "".join(f"<dt>{term}</dt><dd>{text}</dd>" for term, text in items)
+    return f"<section><h2>What was run</h2><dl>{body}</dl></section>"
+
+
+def versions() -> dict[str, str]:
+    """Of what decides the numbers."""
+    found = {"thermograsp": thermograsp.__version__, "Python": platform.python_version()}
+    for name in ("mujoco", "gymnasium", "numpy"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "?"
+    return found

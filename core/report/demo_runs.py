@@ -1,0 +1,132 @@
+"""The demonstration's grasps: all ten seed materials at once, in one mode."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import gymnasium
+import numpy as np
+
+from thermograsp.envs import SEED_MATERIALS, GraspBatch, GraspTask
+from thermograsp.envs.mechanics import SUBSTEPS
+from thermograsp.errors import MissingDependencyError
+from thermograsp.report.film import Film, Still
+from thermograsp.report.recording import Recording, record
+from thermograsp.report.stopwatch import Stopwatch
+from thermograsp.thermal import Mode, material
+
+FILMED = "glass"
+COLOURS = (23.0, 37.0)  # degC, the pictures' range
+FORCE = 10.0  # N
+_STILLS = (0.0, 0.6, 1.1, 1.6, 2.4)  # s; the last picture is at the end
+_CROP = (0.27, 0.0, 0.73, 0.76)  # of the overview: the gripper on its way up
+
+
+@dataclass(frozen=True, slots=True)
+class Grasp:
+    """One run and what the table says of it, of the left fingertip; force, area and conductance as they are at the end."""
+
+    mode: Mode
+    recording: Recording
+    effusivity: float
+
+    @property
+    def peak(self) -> int:
+        """Sample of the largest temperature drop."""
+        return int(np.argmax(self.recording.columns["temperature_drop_left_K"]))
+
+    @property
+    def summary(self) -> dict[str, float | str | bool]:
+        """The table's row, by name_unit."""
+        columns = self.recording.columns
+        drop = columns["temperature_drop_left_K"]
+        return {
+            "material": self.recording.material,
+            "mode": self.mode,
+            "effusivity_Ws05_m2K": self.effusivity,
+            "peak_temperature_drop_K": float(drop[self.peak]),
+            "peak_after_touch_s": float(columns["time_s"][self.peak]) - self.recording.touch,
+            "final_temperature_drop_K": float(drop[-1]),
+            "peak_voltage_V": float(np.max(columns["voltage_left_V"])),
+            "force_N": float(columns["force_left_N"][-1]),
+            "contact_area_m2": float(columns["contact_area_left_m2"][-1]),
+            "conductance_W_m2K": float(columns["conductance_left_W_m2K"][-1]),
+            "rung": self.recording.rung,
+            "success": self.recording.success,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class ModeRun:
+    """All materials in one mode. physics_steps_per_s: of MuJoCo, all grasps together, per second in the environment's
+    step; heat_share and mechanics_share of that time. stills: pictures of FILMED; without them, why in no_picture."""
+
+    mode: Mode
+    grasps: tuple[Grasp, ...]
+    physics_steps_per_s: float
+    heat_share: float
+    mechanics_share: float
+    stills: tuple[Still, ...]
+    no_picture: str
+
+
+def run_mode(
+    mode: Mode,
+    seconds: float,
+    seed: int,
+    film: bool,
+    advance: Callable[[str, float], None],
+    names: Sequence[str] = SEED_MATERIALS,
+) -> ModeRun:
+    """Grasps every material; grasp i is seeded with seed + i. advance: told what is done, 1 for each material's model
+    and 10 for the grasps together."""
+    task = GraspTask(hold_seconds=min(2.0, seconds / 4), seconds=seconds)
+    batch = GraspBatch(len(names), task=task, material=list(names), mode=mode)
+    seeds = [seed + row for row in range(len(names))]
+    for row, name in enumerate(names):  # chooses the heat models, the slow part on a machine that has none cached
+        advance(f"{mode} mode: heat model of {name}", 1.0)
+        batch.reset([row], [gymnasium.utils.seeding.np_random(seeds[row])[0]], {"material": name})
+    camera, no_picture = _film(batch, list(names), seconds) if film else (None, "")
+    watch = Stopwatch()
+    watch.put_on(batch, "step", "step")
+    watch.put_on(batch.plant.heat, "advance", "heat")  # pyright: ignore[reportAttributeAccessIssue]
+    watch.put_on(batch.plant.mechanics, "step", "mechanics")  # pyright: ignore[reportAttributeAccessIssue]
+
+    def tell(time: float, now: GraspBatch) -> None:
+        advance(f"{mode} mode: grasping", 10 * now.dt / seconds if time else 0.0)
+        if camera is not None:
+            camera.watch(time, now)
+
+    recordings = record(batch, seeds, seconds, FORCE, names, tell)
+    steps = round(seconds / batch.dt) * SUBSTEPS * len(names)
+    batch.close()
+    if camera is not None:
+        camera.close()
+    spent = watch.seconds
+    return ModeRun(
+        mode,
+        tuple(Grasp(mode, one, material(one.material).effusivity) for one in recordings),
+        steps / spent["step"],
+        spent["heat"] / spent["step"],
+        spent["mechanics"] / spent["step"],
+        tuple(_cropped(still) for still in camera.stills) if camera else (),
+        no_picture,
+    )
+
+
+def _film(batch: GraspBatch, names: list[str], seconds: float) -> tuple[Film | None, str]:
+    times = [time for time in _STILLS if time < seconds - 0.5] + [seconds]
+    low, high = COLOURS
+    try:
+        row = names.index(FILMED)
+        return Film(batch.plant, times, row, camera="overview", size=(1280, 960), low=low, high=high), ""
+    except MissingDependencyError as error:
+        return None, str(error)
+
+
+def _cropped(still: Still) -> Still:
+    height, width = still.pixels.shape[:2]
+    left, top, right, bottom = _CROP
+    rows, columns = slice(int(top * height), int(bottom * height)), slice(int(left * width), int(right * width))
+    return Still(still.time, still.pixels[rows, columns], still.across)
