@@ -27,7 +27,9 @@ _MARKS = {"holds": "holds  ", "partly": "partly ", "fails": "FAILS  ", "open": "
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("--out", metavar="DIR", default="reproduction", help="folder for figures and claims")
-    parser.add_argument("--quick", action="store_true", help="coarser: 0.005 K instead of 0.002 K, half the grid")
+    parser.add_argument(
+        "--quick", action="store_true", help="coarser: 0.005 K instead of 0.002 K, half the grid"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -91,7 +93,9 @@ def _lines(claim: Claim) -> list[str]:
         initial_indent=f"{_MARKS[claim.verdict]}  ",
         subsequent_indent=indent,
     )
-    found = textwrap.fill(claim.computed, 110, initial_indent=indent + "-> ", subsequent_indent=indent + "   ")
+    found = textwrap.fill(
+        claim.computed, 110, initial_indent=indent + "-> ", subsequent_indent=indent + "   "
+    )
     return [said, found, ""]
 
 

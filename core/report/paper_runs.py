@@ -54,8 +54,8 @@ class Effort:
     resolution: int
 
 
-FULL = Effort(tolerance=0.005, dt=0.02, resolution=2)
-QUICK = Effort(tolerance=0.02, dt=0.05, resolution=1)
+FULL = Effort(tolerance=0.002, dt=0.02, resolution=2)
+QUICK = Effort(tolerance=0.005, dt=0.05, resolution=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,8 +172,8 @@ def sweep(mode: Mode, conductance: np.ndarray, effort: Effort) -> Sweep:
 
 
 def rough_conductances(mode: Mode) -> np.ndarray:
-    """(10,) W/(m2 K) of ROUGHNESS at PRESSURE by the contact laws. T mode: the lapped face on each material. O mode: the
-    contact that opens is thermostat on element, aluminium as rough on the same face whatever the object."""
+    """(10,) W/(m2 K) of ROUGHNESS at PRESSURE by the contact laws. T mode: the lapped face on each material. O mode:
+    the contact that opens is thermostat on element, aluminium as rough on the same face whatever the object."""
     return np.array([_rough(name if mode == "T" else "aluminium") for name in MATERIALS])
 
 

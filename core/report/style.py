@@ -1,7 +1,7 @@
 """One look for all figures: a colour a material, fonts, sizes, and labels at the curves instead of legends.
 
-Colours run through matplotlib's perceptually uniform "plasma", from amber for the material that draws least heat (it feels
-warm) to deep blue for the one that draws most (it feels cold); the last tenth of the map is too pale for lines on white.
+Colours run through matplotlib's perceptually uniform "plasma", from amber for the material that draws least heat (it
+feels warm) to deep blue for the one that draws most (it feels cold); the map's last tenth is too pale for lines.
 """
 
 from __future__ import annotations
@@ -104,8 +104,8 @@ def label_ends(
     colors: Sequence[str],
     size: float = 9.0,
 ) -> None:
-    """Labels right of curves that end at (x, ends), in the curves' colours, moved apart where they would collide; a hair
-    leads from the curve to a label that had to move. Limits must be set before."""
+    """Labels right of curves that end at (x, ends), in the curves' colours, moved apart where they would collide; a
+    hair leads from the curve to its label. Limits must be set before."""
     low, high = axes.get_ylim()
     points = axes.get_window_extent().height / axes.figure.dpi * 72
     least = 1.22 * size / points * (high - low)
