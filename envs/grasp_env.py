@@ -52,7 +52,7 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
         *,
         hold_seconds: float = 2.0,
         seconds: float = 10.0,
-        camera: str = "front",
+        camera: str = "overview",
         width: int = 480,
         height: int = 360,
         **config: Any,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..thermal import ContactSystem, Demand, HeatTables, advance_heat, forget_field, heat_tables, network_for
+from ..thermal import ContactSystem, Demand, HeatTables, advance_heat, forget_field, heat_tables, network_for, shift_thermostats
 from .things import Thing
 
 CONDUCTANCES = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K), over which a network must keep the tolerance
@@ -22,13 +22,16 @@ LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
 class HeatState:
     """Everything that the heat of some environments remembers; picklable. state (B, K). difference (B, F) K, sensor less
     object when both were uniform. begun (B,): something has touched. touching (B, F). known (B, F): whether there
-    is a patch, and anchor (B, F, 3) m where on the object, in its frame, it is. things: each environment's object."""
+    is a patch, and anchor (B, F, 3) m where on the object, in its frame, it is. offset (B, F) K of the thermostats and stored (B, F) J
+    that the elements gained. things: each environment's object."""
 
     state: np.ndarray
     difference: np.ndarray
     begun: np.ndarray
     touching: np.ndarray
     known: np.ndarray
+    offset: np.ndarray
+    stored: np.ndarray
     anchor: np.ndarray
     things: tuple[Thing, ...]
 
@@ -38,7 +41,8 @@ class HeatStep:
     """One control step. drop (B, N, F) K at the end of each heat sample. conductance (B, F) W/(m2 K) and area (B, F) m2 of
     the contact: their product, the mean over the substeps, is what heat saw. sensor_surface, object_surface (B, F) °C,
     means over the contact. object_temperature (B,) °C, the object's mean. heat (B, 3) J gained by left element, right
-    element and object. flow (B, F) W into the object's side and air_loss (B,) W, the step's means. events: per environment (kind, fingertip).
+    element and object. flow (B, F) W into the object's side and air_loss (B,) W, the step's means. drawn (B, F) W from the
+    thermostats. events: per environment (kind, fingertip).
     """
 
     drop: np.ndarray
@@ -50,6 +54,7 @@ class HeatStep:
     heat: np.ndarray
     flow: np.ndarray
     air_loss: np.ndarray
+    drawn: np.ndarray
     events: tuple[tuple[tuple[str, str], ...], ...]
 
 
@@ -83,9 +88,11 @@ class GraspHeat:
         self._touching = np.zeros((num_envs, 2), bool)
         self._known = np.zeros((num_envs, 2), bool)
         self._anchor = np.zeros((num_envs, 2, 3))
+        self._offset = np.zeros((num_envs, 2))  # K, thermostats above sensor_temperature
+        self._stored = np.zeros((num_envs, 2))  # J, gained by the elements
         self._glued = np.zeros(num_envs, bool)
         self._reach = np.zeros(num_envs)
-        self._capacity = np.ones(num_envs)
+        self._capacity, self._element_capacity = np.ones(num_envs), np.zeros(num_envs)
 
     def reset(self, rows: Sequence[int], things: Sequence[Thing]) -> None:
         """The rows start with new objects, everything at its first temperature."""
@@ -94,6 +101,8 @@ class GraspHeat:
             self._state[row] = 0.0
             self._difference[row] = self._sensor_temperature - thing.temperature
             self._begun[row] = False
+            self._offset[row] = 0.0
+            self._stored[row] = 0.0
             self._touching[row] = False
             self._known[row] = thing.mode == "O"
             self._anchor[row] = _elements(thing)
@@ -117,6 +126,7 @@ class GraspHeat:
         drop = np.zeros((rows, self._samples, 2))
         rise = [np.zeros((rows, 2)) for _ in range(2)]
         heat, flow = np.zeros((rows, 3)), np.zeros((rows, 2))
+        before = self._stored
         object_heat, air_loss = np.zeros(rows), np.zeros(rows)
         if self._begun.any():
             assert self._tables is not None
@@ -134,22 +144,38 @@ class GraspHeat:
             rise[0][:, :tips], rise[1][:, :tips] = reading.sensor_rise[:, -1], reading.object_rise[:, -1]
             object_heat = reading.object_heat[:, -1]
             heat[:, :tips], heat[:, 2] = reading.element_heat[:, -1], object_heat
+            heat[:, :2] += ~self._glued[:, None] * self._element_capacity[:, None] * self._offset
+            self._stored = heat[:, :2].copy()
             for k in range(self._samples):  # in fixed order: a row's bits must not depend on the others
                 flow[:, :tips] += reading.flow[:, k] / self._samples
                 air_loss += reading.air_loss[:, k] / self._samples
-        first = self._sensor_temperature - self._difference
+        duration = self._dt * self._samples
+        drawn = flow + ~self._glued[:, None] * (self._stored - before) / duration
+        thermostat = self._sensor_temperature + self._offset
+        first = thermostat - self._difference
         return HeatStep(
             drop=drop,
             conductance=conductance,
             area=area,
-            sensor_surface=self._sensor_temperature + rise[0],
+            sensor_surface=thermostat + rise[0],
             object_surface=first + rise[1],
             object_temperature=first[:, 0] + object_heat / self._capacity,
             heat=heat,
             flow=flow,
             air_loss=air_loss,
+            drawn=drawn,
             events=events,
         )
+
+    def set_thermostats(self, celsius: np.ndarray) -> None:
+        """Temperatures (B, F) °C of the thermostats from now on."""
+        change = celsius - self._sensor_temperature - self._offset
+        self._offset = self._offset + change
+        if self._tables is not None:
+            tips = self._tables.fingertips
+            self._state, self._difference[:, :tips] = shift_thermostats(
+                self._tables, self._network, self._state, self._difference[:, :tips], change[:, :tips]
+            )
 
     def state(self, rows: Sequence[int]) -> HeatState:
         """A copy of what the rows remember."""
@@ -161,6 +187,8 @@ class GraspHeat:
             self._begun[chosen],
             self._touching[chosen],
             self._known[chosen],
+            self._offset[chosen],
+            self._stored[chosen],
             self._anchor[chosen],
             things,
         )
@@ -177,6 +205,8 @@ class GraspHeat:
                 (self._begun, state.begun),
                 (self._touching, state.touching),
                 (self._known, state.known),
+                (self._offset, state.offset),
+                (self._stored, state.stored),
                 (self._anchor, state.anchor),
             ):
                 mine[row] = theirs[k]
@@ -187,6 +217,7 @@ class GraspHeat:
         self._glued[row] = thing.mode == "O"
         self._reach[row] = thing.stack.width / 2
         self._capacity[row] = thing.heat_capacity
+        self._element_capacity[row] = thing.stack.heat_capacity
         difference = max(abs(self._sensor_temperature - thing.temperature), LEAST_DIFFERENCE)
         key = (thing.geometry, difference)
         if key not in self._networks:

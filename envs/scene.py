@@ -28,6 +28,7 @@ PAD_SIDE = 0.020  # m, the square pad that takes the force
 CLEARANCE = 0.002  # m, least gap between pads (or fingers) and what they must not touch
 REACH = 0.095  # m, from the grasp centre up to the palm
 DEFAULT_MASS = 0.1  # kg
+DEFAULT_FRICTION = 0.8
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 _GEOMS = {
@@ -47,7 +48,7 @@ class ObjectSpec:
 
     shape: box, cylinder (standing), sphere or mesh. size: m, full extents (x, y, z) in the object's frame; a
     mesh takes them from its file. mass: kg, or density: kg/m3 (at most one; neither means 0.1 kg). friction: sliding
-    coefficient of every contact of the object. position: m, (x, y) of its centre on the table, the gripper's is
+    coefficient of every contact of the object (None: 0.8). position: m, (x, y) of its centre on the table, the gripper's is
     (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`.
     Raises InvalidValueError, UnknownNameError (shape), or MeshError (file).
     """
@@ -57,7 +58,7 @@ class ObjectSpec:
     size: tuple[float, float, float] = (0.04, 0.04, 0.04)
     mass: float | None = None
     density: float | None = None
-    friction: float = 0.8
+    friction: float | None = None
     position: tuple[float, float] = (0.0, 0.0)
     yaw: float = 0.0
     rgba: tuple[float, float, float, float] = (0.55, 0.65, 0.75, 1.0)
@@ -77,7 +78,8 @@ class ObjectSpec:
         for field in ("mass", "density"):
             if getattr(self, field) is not None:
                 positive(field, getattr(self, field))
-        non_negative("friction", self.friction)
+        if self.friction is not None:
+            non_negative("friction", self.friction)
         finite("yaw", self.yaw)
         for value in self.position:
             finite("position", value)
@@ -253,7 +255,7 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec) -> None:
             name=f"{item.name}_{i}",
             type=mujoco.mjtGeom.mjGEOM_MESH if mesh else _GEOMS[item.shape],
             size=half,
-            friction=(item.friction, _TORSION, _ROLLING),
+            friction=(DEFAULT_FRICTION if item.friction is None else item.friction, _TORSION, _ROLLING),
             rgba=item.rgba,
             material="matter",
             # Meets the pads (1), the other objects (2) and the table (4); its own contact settings hold.

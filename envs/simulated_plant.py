@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -19,10 +19,14 @@ from ..thermal import (
     SensorStack,
     SignalChain,
     SignalState,
+    Thermostat,
+    ThermostatState,
     material,
     materials,
     measure,
     sensor,
+    settled_thermostat,
+    thermostat_step,
 )
 from .heat import GraspHeat, HeatState, HeatStep
 from .mechanics import SUBSTEPS, ContactRecord, Mechanics, MechanicsState
@@ -47,8 +51,8 @@ SEED_MATERIALS = (
 @dataclass(frozen=True, slots=True)
 class SimulationConfig:
     """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed materials.
-    mode: T or O. objects: the object's shape (density and friction are the material's unless given). tolerance: K that the
-    thermal network keeps. air: W/(m2 K). Temperatures in °C. placement: m and degree; the object lies within +- these of
+    mode: T or O. objects: the object's shape (density and friction are the material's where it gives none). tolerance: K that the
+    thermal network keeps. air: W/(m2 K). Temperatures in °C. thermostat: one of finite power (its setpoint is sensor_temperature), None for an ideal one. placement: m and degree; the object lies within +- these of
     the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). threads: of MuJoCo, 0 for all.
     cache: keep thermal networks on disk."""
 
@@ -60,6 +64,7 @@ class SimulationConfig:
     signal: str | SignalChain = "ads1115"
     air: float = 5.0
     sensor_temperature: float = 36.0
+    thermostat: Thermostat | None = None
     object_temperature: float = 24.0
     placement: tuple[float, float] = (0.002, 2.0)
     fingertips: Literal[1, 2] = 2
@@ -105,6 +110,7 @@ class PlantState:
     heat: HeatState
     filtered: np.ndarray
     last: np.ndarray
+    thermostats: tuple[np.ndarray, ...]
     rest: np.ndarray
     generators: tuple[np.random.Generator, ...]
     books: np.ndarray
@@ -135,6 +141,10 @@ class SimulatedPlant:
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
         self._signal = SignalState(np.zeros(2 * num_envs), np.zeros(2 * num_envs))
         self._rest = np.zeros(num_envs)
+        self._thermostat = config.thermostat
+        if self._thermostat is not None:
+            self._thermostat = replace(self._thermostat, setpoint=config.sensor_temperature)
+            self._thermostats = _distinct(settled_thermostat(self._thermostat, 2 * num_envs))
         self._books = np.zeros((num_envs, 3))  # J: flowed in, its absolute sum, lost to the air
 
     @property
@@ -163,6 +173,10 @@ class SimulatedPlant:
         both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
         for values in (self._signal.filtered, self._signal.last):
             values[both] = 0.0
+        if self._thermostat is not None:
+            settled = settled_thermostat(self._thermostat, 2 * self.num_envs)
+            for mine, theirs in zip(_arrays(self._thermostats), _arrays(settled), strict=True):
+                mine[both] = theirs[both]
         self._rest[list(rows)] = self.mechanics.object_pose[list(rows), 0, 2]
         self._books[list(rows)] = 0.0
         return self._still()
@@ -172,6 +186,10 @@ class SimulatedPlant:
         record = self.mechanics.step(command.opening, command.force_limit, command.lift_rate)
         normal = np.where(record.touching[..., 0], np.maximum(record.force[..., 0, 0], 0.0), 0.0)
         step = self.heat.advance(normal, record.place[:, -1, :, 0])
+        if self._thermostat is not None:
+            after = thermostat_step(self._thermostat, self._thermostats, step.drawn.ravel(), self.dt)
+            self._thermostats = _distinct(after)
+            self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2))
         return self._reading(record, step)
 
     def close(self) -> None:
@@ -186,6 +204,7 @@ class SimulatedPlant:
             self.heat.state(chosen),
             self._signal.filtered[both],
             self._signal.last[both],
+            tuple(array[both] for array in self._thermostat_arrays()),
             self._rest[chosen],
             tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
             self._books[chosen],
@@ -203,6 +222,8 @@ class SimulatedPlant:
             self._rngs[row] = rngs[k]
             self._signal.filtered[2 * row : 2 * row + 2] = state.filtered[k]
             self._signal.last[2 * row : 2 * row + 2] = state.last[k]
+            for mine, theirs in zip(self._thermostat_arrays(), state.thermostats, strict=True):
+                mine[2 * row : 2 * row + 2] = theirs[k]
         self._rest[chosen] = state.rest
         self._books[chosen] = state.books
         return rngs
@@ -211,7 +232,7 @@ class SimulatedPlant:
         """The object of that material: the material's density and friction where the shape gives none."""
         if spec.mass is None and spec.density is None:
             spec = replace(spec, density=chosen.density)
-        if self.config.objects is None and chosen.friction is not None:
+        if spec.friction is None and chosen.friction is not None:
             spec = replace(spec, friction=chosen.friction)
         config = self.config
         return Thing(spec, chosen, config.object_temperature, config.mode, self._stack, config.fingertips)
@@ -241,7 +262,7 @@ class SimulatedPlant:
             height=record.height[:, -1],
             force=force,
             voltage=np.moveaxis(volts.reshape(rows, 2, SAMPLES), 1, 2),
-            thermostat=np.full((rows, 2), self.config.sensor_temperature),
+            thermostat=self._measured_thermostats(),
             truth=self._truth(record.object_pose[:, -1, 0, 2], step, record.failed),
             error=tuple(self.mechanics.failure),
         )
@@ -258,6 +279,8 @@ class SimulatedPlant:
             "object_surface": step.object_surface,
             "object_temperature": step.object_temperature,
             "heat_flow": step.flow,
+            "heat_drawn": step.drawn,
+            "heat": step.heat,
             "heat_imbalance": gained + self._books[:, 2] - self._books[:, 0],
             "heat_exchanged": self._books[:, 1].copy(),
             "events": step.events,
@@ -266,6 +289,15 @@ class SimulatedPlant:
             "crushing_force": np.array([thing.crushing_force for thing in self.things]),
             "failed": failed,
         }
+
+    def _thermostat_arrays(self) -> list[np.ndarray]:
+        return [] if self._thermostat is None else _arrays(self._thermostats)
+
+    def _measured_thermostats(self) -> np.ndarray:
+        """(B, F) °C by the thermostats' own sensors."""
+        if self._thermostat is None:
+            return np.full((self.num_envs, 2), self.config.sensor_temperature)
+        return self._thermostats.measured.reshape(-1, 2).copy()
 
     def _still(self) -> Reading:
         """The reading before anything moves: nothing is touched, no voltage."""
@@ -281,6 +313,7 @@ class SimulatedPlant:
             heat=np.zeros((rows, 3)),
             flow=none,
             air_loss=np.zeros(rows),
+            drawn=none,
             events=((),) * rows,
         )
         return Reading(
@@ -289,10 +322,19 @@ class SimulatedPlant:
             height=self.mechanics.height,
             force=np.zeros((rows, 2, 3)),
             voltage=np.zeros((rows, SAMPLES, 2)),
-            thermostat=np.full((rows, 2), self.config.sensor_temperature),
+            thermostat=self._measured_thermostats(),
             truth=self._truth(self.mechanics.object_pose[:, 0, 2], rest, np.zeros(rows, bool)),
             error=tuple(self.mechanics.failure),
         )
+
+
+def _arrays(state: ThermostatState) -> list[np.ndarray]:
+    return [getattr(state, field.name) for field in fields(state)]
+
+
+def _distinct(state: ThermostatState) -> ThermostatState:
+    """The same with an array of its own in every field, to be written to."""
+    return ThermostatState(*(array.copy() for array in _arrays(state)))
 
 
 def simulated_plant(url: str, num_envs: int, **config: Any) -> SimulatedPlant:

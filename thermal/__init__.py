@@ -1,7 +1,7 @@
 """Heat physics: arrays in, arrays out."""
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
-from .batch import HeatReading, HeatTables, advance_heat, forget_field, heat_tables
+from .batch import HeatReading, HeatTables, advance_heat, forget_field, heat_tables, shift_thermostats
 from .bodies import Geometry
 from .choice import Choice, Demand
 from .conductance import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, contact_conductance, joint, stack_joints
@@ -74,6 +74,7 @@ __all__ = [
     "saturated",
     "sensor",
     "sensors",
+    "shift_thermostats",
     "settled",
     "settled_thermostat",
     "sphere_contact",

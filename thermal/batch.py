@@ -145,6 +145,21 @@ def forget_field(tables: HeatTables, network: np.ndarray, state: np.ndarray, row
     return state
 
 
+def shift_thermostats(
+    tables: HeatTables, network: np.ndarray, state: np.ndarray, difference: np.ndarray, change: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(state (B, K), difference (B, F)) after the thermostats' temperatures moved by change (B, F) K.
+
+    Networks hold temperatures above the thermostat's, so the same field is lower by the change throughout the elements
+    that sit on it (T mode): minus the change times their row of stored heat, which is the uniform field's coordinates.
+    """
+    state = state.copy()
+    for f in range(tables.fingertips):
+        moved = tables.element_heat[network, f] * (tables.sensor_states[network] > 0)[:, None]
+        state -= moved * change[:, f : f + 1]
+    return state, difference + change
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _advance_rows(tables, network, state, conductance, difference, active, reading):
     rows, samples, fingertips = reading.drop.shape

@@ -152,3 +152,42 @@ def test_touch_off_the_element_is_not_felt_in_o_mode():
         kinds += [kind for kind, _ in step.infos[0]["events"]]
     assert kinds == ["touch off the element"] * 2
     assert not batch.reading.truth["temperature_drop"].any()  # pyright: ignore[reportOptionalMemberAccess]
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+def test_a_thermostat_of_finite_power_dips_and_recovers(mode):
+    ideal, real = (
+        GraspBatch(1, task=ENDLESS, material="aluminium", mode=mode, signal="ideal", air=0.0, thermostat=thermostat)
+        for thermostat in (None, thermal.Thermostat())
+    )
+    a, b = grasped(ideal, 500), grasped(real, 500)
+    celsius = np.array([reading.thermostat[0] for reading in b])
+    assert celsius[0] == pytest.approx([36.0, 36.0])
+    assert 0.05 < 36.0 - celsius.min() < 2.0
+    assert abs(celsius[-1] - 36.0).max() < 0.1
+    drops = [np.array([reading.truth["temperature_drop"][0] for reading in run]) for run in (a, b)]
+    assert np.abs(drops[0] - drops[1]).max() > 0.02  # it is felt
+    assert np.abs(drops[0][-1] - drops[1][-1]).max() < 0.1  # and passes
+
+
+def test_a_large_thermostat_is_the_ideal_one():
+    ideal, large = (
+        GraspBatch(1, task=ENDLESS, material="glass", signal="ideal", thermostat=thermostat)
+        for thermostat in (None, thermal.Thermostat(heat_capacity=1e9))
+    )
+    for a, b in zip(grasped(ideal, 120), grasped(large, 120), strict=True):
+        assert np.allclose(a.voltage, b.voltage, atol=1e-9)
+
+
+def test_heat_drawn_from_thermostats_is_what_elements_and_object_gain():
+    """With thermostats that drift by kelvins, drawn heat still equals the gain of elements and object."""
+    weak = thermal.Thermostat(heat_capacity=0.5, power_limit=0.5)
+    batch = GraspBatch(1, task=ENDLESS, material="aluminium", thermostat=weak, air=0.0)
+    batch.reset([0], [np.random.default_rng(0)])
+    drawn = 0.0
+    for _ in range(200):
+        batch.step(grasp_action(batch))
+        assert batch.reading is not None
+        drawn += batch.reading.truth["heat_drawn"].sum() * batch.dt
+    assert batch.reading.thermostat.min() < 35.0
+    assert batch.reading.truth["heat"].sum() == pytest.approx(drawn, rel=1e-9)
