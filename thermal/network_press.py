@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -11,9 +12,10 @@ from thermograsp.errors import InvalidValueError
 
 from .bodies import Geometry
 from .coupling import propagator
-from .coupling_kernel import advance, step_arrays, workspace
+from .coupling_kernel import StepArrays, advance, step_arrays, workspace
 from .problem import Conductance, PressCurves, PressProblem
 from .system import ContactSystem
+from .thermostat import settled_thermostat, thermostat_step
 
 LONGEST_STEP = 0.01  # s, over which a conductance that varies is held at its value in the middle
 
@@ -61,7 +63,8 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
         raise InvalidValueError(f"network {system.orders} has one fingertip, the problem two: give modes/sensor/even/odd")
     rates = with_air(system, problem.air)
     spacing = t[1] - t[0] if len(t) > 1 else 1.0
-    steps = max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9))) if any(map(callable, pressed)) else 1
+    held = problem.thermostat is None and not any(map(callable, pressed))
+    steps = 1 if held else max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9)))
     dt = spacing / steps
     arrays = step_arrays(
         propagator(rates, system.ports, dt),
@@ -74,16 +77,59 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
     for tip, conductance in enumerate(pressed):
         weights[:, tip] = _values(conductance, middles) * problem.area
     states = np.zeros((len(t), len(rates)))
-    _march(arrays, weights, problem.temperature_difference, steps, states)
+    offset = np.zeros(len(t))
+    if problem.thermostat is None:
+        _march(arrays, weights, problem.temperature_difference, steps, states)
+    else:
+        offset = _march_with_thermostats(problem, system, arrays, weights, steps, states)
     now = _values(problem.conductance, t) * problem.area
-    flows = now * (problem.temperature_difference - states @ system.ports[:, 0])
+    flows = now * (problem.temperature_difference + offset - states @ system.ports[:, 0])
+    element = states @ system.element_heat[0]
+    if problem.mode == "T":  # the states hold temperatures above the thermostat's
+        element = element + system.geometry.element_capacity * offset
     return PressCurves(
         temperature_drop=states @ system.drop[0],
         heat_flow=flows,
-        sensor_surface=problem.sensor_temperature + states @ system.sensor_surface[0],
+        sensor_surface=problem.sensor_temperature + offset + states @ system.sensor_surface[0],
         object_surface=problem.object_temperature + states @ system.object_surface[0],
-        stored_heat=np.stack((states @ system.element_heat[0], states @ system.object_heat), axis=1),
+        stored_heat=np.stack((element, states @ system.object_heat), axis=1),
     )
+
+
+def _march_with_thermostats(
+    problem: PressProblem,
+    system: ContactSystem,
+    arrays: StepArrays,
+    conductance: np.ndarray,
+    steps: int,
+    states: np.ndarray,
+) -> np.ndarray:
+    """Fills states (n, K) as _march does, each fingertip on a thermostat that follows its controller step by step.
+    Returns the first thermostat's temperature (n,) K above sensor_temperature."""
+    assert problem.thermostat is not None
+    fingertips, modes = system.geometry.fingertips, system.modes
+    thermostat = replace(problem.thermostat, setpoint=problem.sensor_temperature)
+    plate = settled_thermostat(thermostat, fingertips)
+    start = plate.temperature
+    rows = system.element_heat if problem.mode == "T" else np.zeros_like(system.element_heat)
+    capacity = system.geometry.element_capacity if problem.mode == "T" else 0.0
+    state, room = states[0].copy(), workspace(len(arrays.rates), len(arrays.ports))
+    flow, drive = np.zeros(len(arrays.ports)), np.zeros(len(arrays.ports))
+    stored = np.zeros(fingertips)
+    offset = np.zeros((len(states), fingertips))
+    for step, weights in enumerate(conductance):
+        above = plate.temperature - start
+        drive[::modes] = problem.temperature_difference + above
+        advance(arrays, state, np.repeat(weights, modes), drive, flow, room)
+        now = rows @ state + capacity * above
+        plate = thermostat_step(thermostat, plate, flow[::modes] + (now - stored) / arrays.dt, arrays.dt)
+        stored = now
+        # A uniform shift of the thermostat is, seen from it, minus that shift of the elements.
+        state -= (plate.temperature - start - above) @ rows
+        if (step + 1) % steps == 0:
+            states[(step + 1) // steps] = state
+            offset[(step + 1) // steps] = plate.temperature - start
+    return offset[:, 0]
 
 
 @njit(cache=True, error_model="numpy")

@@ -12,6 +12,7 @@ from .ladder import Rung, solve_rung
 from .layers import SensorStack, sensor as sensor_preset
 from .materials import Material, material as named_material
 from .problem import Conductance, Mode, PressProblem, Shape
+from .thermostat import Thermostat
 
 _MOST_SAMPLES = 10_000_000
 
@@ -54,6 +55,7 @@ def press(
     tolerance: float = 0.05,
     rung: str | Rung = "auto",
     opposite: Conductance | None = None,
+    thermostat: Thermostat | None = None,
     cache: bool = True,
 ) -> Press:
     """Presses the sensor on the middle of a face of an object, both uniform at first.
@@ -64,7 +66,8 @@ def press(
     object's free faces. Temperatures in °C. seconds, dt: samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of
     temperature drop from 0.05 s on, which rung="auto" (and "network") keeps. rung: a name of thermal.RUNGS, "auto",
     "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same kind on
-    the opposite face, None for none; the curves are the first one's. cache: keep networks on disk.
+    the opposite face, None for none; the curves are the first one's. thermostat: one of finite power, at sensor_temperature at first, None for an
+    ideal one. cache: keep networks on disk.
 
     Raises UnknownNameError for names and InvalidValueError for values that make no sense, or that the rung cannot do.
     """
@@ -80,6 +83,7 @@ def press(
         sensor_temperature=sensor_temperature,
         object_temperature=object_temperature,
         opposite=opposite,
+        thermostat=thermostat,
     )
     positive("dt (s)", dt)
     positive("seconds", seconds)

@@ -12,6 +12,7 @@ from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 
 from .layers import SensorStack
 from .materials import Material
+from .thermostat import Thermostat
 
 Mode = Literal["T", "O"]
 Shape = Literal["square", "round"]
@@ -29,7 +30,8 @@ class PressProblem:
     sensor's cross-section is round too, of the same area as the square one). object_size: (width, depth,
     thickness) m, the patch in the middle of a width x depth face. air: W/(m2 K) on the object's free faces,
     whose ambient is object_temperature. Temperatures in °C. opposite: W/(m2 K), a second fingertip of the
-    same kind on the opposite face, None for none; the curves are the first one's.
+    same kind on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power
+    that is settled at sensor_temperature at first, None for an ideal one.
     """
 
     stack: SensorStack
@@ -43,6 +45,7 @@ class PressProblem:
     sensor_temperature: float
     object_temperature: float
     opposite: Conductance | None = None
+    thermostat: Thermostat | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
