@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -19,7 +20,7 @@ class Claim:
     statement: str
     computed: str
     verdict: Verdict
-    numbers: dict[str, float | list[float]] = field(default_factory=dict)
+    numbers: Mapping[str, float | list[float]] = field(default_factory=dict)
 
 
 def graded(holds: bool, partly: bool = False) -> Verdict:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -161,7 +162,7 @@ def _draw_section(axes: Axes, section: Section) -> None:
 
 
 def _color_bar(figure: Figure, place: tuple[float, float, float, float]) -> None:
-    mapped = mpl.cm.ScalarMappable(mpl.colors.Normalize(*_LIMITS), TEMPERATURE_MAP)
+    mapped = ScalarMappable(Normalize(*_LIMITS), TEMPERATURE_MAP)
     bar = figure.colorbar(mapped, cax=figure.add_axes(place), ticks=[24, 28, 32, 36])
     bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
     bar.set_label("temperature (°C)")

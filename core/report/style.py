@@ -6,12 +6,14 @@ feels warm) to deep blue for the one that draws most (it feels cold); the map's 
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.colors import to_hex
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +28,7 @@ TEMPERATURE_MAP = "inferno"
 """Colour map of temperature fields, bright = hot."""
 
 _WARM, _COLD = 0.86, 0.0
-_SETTINGS: dict[str, Any] = {
+_SETTINGS: Any = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
     "savefig.dpi": 160,
@@ -58,8 +60,6 @@ _SETTINGS: dict[str, Any] = {
 def style() -> AbstractContextManager[None]:
     """Within it matplotlib draws in the house's look."""
     # The families are alternatives: a warning for each one that a machine lacks would say nothing.
-    import logging
-
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     return mpl.rc_context(_SETTINGS)
 
@@ -67,7 +67,7 @@ def style() -> AbstractContextManager[None]:
 def ordered_colors(count: int) -> list[str]:
     """Hex colours of that many things in order, warm to cold."""
     at = np.linspace(_WARM, _COLD, count) if count > 1 else np.array([_COLD])
-    return [mpl.colors.to_hex(color) for color in mpl.colormaps["plasma"](at)]
+    return [to_hex(color) for color in mpl.colormaps["plasma"](at)]
 
 
 def readable(name: str) -> str:
@@ -99,7 +99,7 @@ def spread_out(places: Sequence[float], least: float, low: float, high: float) -
 def label_ends(
     axes: Axes,
     x: float,
-    ends: Sequence[float],
+    ends: Sequence[float] | np.ndarray,
     labels: Sequence[str],
     colors: Sequence[str],
     size: float = 9.0,
