@@ -125,7 +125,8 @@ def sample_bodies(geometry: Geometry, s: np.ndarray) -> dict[str, BodySamples]:
     object side, heat flow counted into the body), "element" and "object" (J stored)."""
     if geometry.mode == "T":
         return {"sensor": _sensor(geometry, s), **{p: _object(geometry, p, s) for p in geometry.parities}}
-    return {parity: _bonded(geometry, parity, s) for parity in geometry.parities}
+    element = _element(geometry, s)
+    return {parity: _bonded(geometry, parity, s, element) for parity in geometry.parities}
 
 
 def _sensor(geometry: Geometry, s: np.ndarray) -> BodySamples:
@@ -150,16 +151,28 @@ def _object(geometry: Geometry, parity: str, s: np.ndarray) -> BodySamples:
     return BodySamples(impedance, capacity, {"object": none}, {"object": capacity})
 
 
-def _bonded(geometry: Geometry, parity: str, s: np.ndarray) -> BodySamples:
+def _element(geometry: Geometry, s: np.ndarray) -> tuple[Sampled, Sampled, Sampled]:
+    """The element alone, both faces adiabatic: its impedance at the contact, at the bond, and across, (S, bond, contact)."""
     slabs, section = geometry.slabs, geometry.element_section
     top, bond = geometry.patch, geometry.face
+    return (
+        layered_impedance(slabs, "adiabatic", section, top, s),
+        layered_impedance(slabs[::-1], "adiabatic", section, bond, s),
+        transfer_impedance(slabs, section, top, bond, s),
+    )
+
+
+def _bonded(
+    geometry: Geometry, parity: str, s: np.ndarray, element: tuple[Sampled, Sampled, Sampled]
+) -> BodySamples:
+    slabs, section = geometry.slabs, geometry.element_section
+    top, bond = geometry.patch, geometry.face
+    own, own_bond, across = element
     far = "adiabatic" if parity == "even" else "isothermal"
     plate = slab_impedance(geometry.plate, geometry.object_section, bond, far, s)
     if parity == "even":
         plate = plate + _pole(bond, geometry.object_capacity, s)
-    own = layered_impedance(slabs, "adiabatic", section, top, s)
-    at_bond = layered_impedance(slabs[::-1], "adiabatic", section, bond, s) + plate
-    across = transfer_impedance(slabs, section, top, bond, s)
+    at_bond = own_bond + plate
     bond_flow = np.linalg.solve(at_bond.value, across.value)  # flux patterns over the bond per pattern over the contact
     value = own.value - np.einsum("sbc,sbd->scd", across.value, bond_flow)
     cross = np.einsum("sbc,sbd->scd", across.slope, bond_flow)
@@ -182,12 +195,12 @@ def _bonded(geometry: Geometry, parity: str, s: np.ndarray) -> BodySamples:
     outputs = {"drop": from_top * into - from_bond * out, "element": (into - out) / s[:, None]}
     if parity == "odd":
         return BodySamples(impedance, np.inf, {**outputs, "object": np.zeros_like(out)})
-    element, below = geometry.element_capacity, geometry.object_capacity
-    capacity = element + below
+    above, below = geometry.element_capacity, geometry.object_capacity
+    capacity = above + below
     outputs["object"] = out / s[:, None] - into * below / capacity / s[:, None]
-    outputs["element"] = outputs["element"] - into * element / capacity / s[:, None]
+    outputs["element"] = outputs["element"] - into * above / capacity / s[:, None]
     rest = impedance + _pole(top, capacity, s, sign=-1.0)
-    return BodySamples(rest, capacity, outputs, {"element": element, "object": below, "drop": 0.0})
+    return BodySamples(rest, capacity, outputs, {"element": above, "object": below, "drop": 0.0})
 
 
 def _pole(patch: Patch, capacity: float, s: np.ndarray, sign: float = 1.0) -> Sampled:

@@ -178,6 +178,5 @@ def _sum_modes(function, s: np.ndarray, left: np.ndarray, right: np.ndarray) -> 
     """Sum over the eigenfunctions of left^T f(s, kappa) right, its slope by a complex step."""
     tiny = 1e-30
     values = function((s * (1 + 1j * tiny))[:, None])
-    value = np.einsum("mc,sm,md->scd", left, values.real, right, optimize=True)
-    slope = np.einsum("mc,sm,md->scd", left, values.imag / (tiny * s[:, None]), right, optimize=True)
-    return Sampled(value, slope)
+    slopes = values.imag / (tiny * s[:, None])
+    return Sampled((left.T * values.real[:, None]) @ right, (left.T * slopes[:, None]) @ right)
