@@ -75,7 +75,7 @@ def readable(name: str) -> str:
     return name.replace("_", " ")
 
 
-def spread_out(places: Sequence[float], least: float, low: float, high: float) -> np.ndarray:
+def spread_out(places: Sequence[float] | np.ndarray, least: float, low: float, high: float) -> np.ndarray:
     """Places at least `least` apart, inside [low, high] as far as they fit, each as near to its own as can be.
 
     Least squares under the order constraint: pool adjacent violators on the places less their offsets."""
