@@ -105,7 +105,7 @@ class GraspHeat:
             self._stored[row] = 0.0
             self._touching[row] = False
             self._known[row] = thing.mode == "O"
-            self._anchor[row] = _elements(thing)
+            self._anchor[row] = thing.spec.element_places
 
     def rung(self, row: int) -> str:
         """The model that computes an environment's heat."""
@@ -291,10 +291,3 @@ def _mean_contact(thing: Thing, force: np.ndarray) -> tuple[np.ndarray, np.ndarr
     mean_area = np.divide(total, touching, out=np.zeros_like(total), where=touching > 0)
     mean = np.divide(product / count, mean_area, out=np.zeros_like(total), where=mean_area > 0)
     return mean, mean_area
-
-
-def _elements(thing: Thing) -> np.ndarray:
-    """(F, 3) m in the object's frame: where the elements of O mode are glued, in the pads' way."""
-    x, _, z = thing.spec.size
-    height = thing.spec.grasp_height - z / 2
-    return np.array([[-x / 2, 0.0, height], [x / 2, 0.0, height]])

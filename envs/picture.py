@@ -10,6 +10,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Reading
 
 from .render import Renderer, Window
+from .scene import TIPS, element_geom
 
 
 class GraspPicture:
@@ -40,12 +41,12 @@ class GraspPicture:
 
 
 def temperatures(reading: Reading | None, row: int = 0) -> dict[str, float]:
-    """°C by part of the scene: the two sensor faces and the object's mean."""
+    """°C by part of the scene: the two fingertips' faces, in O mode the elements' too, and the object's mean."""
     if reading is None or "object_temperature" not in reading.truth:
         return {}
-    left, right = reading.truth["sensor_surface"][row]
-    return {
-        "sensor_left": float(left),
-        "sensor_right": float(right),
-        "object": float(reading.truth["object_temperature"][row]),
-    }
+    celsius = {"object": float(reading.truth["object_temperature"][row])}
+    for tip, name in enumerate(TIPS):
+        celsius[f"sensor_{name}"] = float(reading.truth["sensor_surface"][row, tip])
+        if reading.truth["mode"] == "O":
+            celsius[element_geom(name, "object")] = float(reading.truth["object_surface"][row, tip])
+    return celsius

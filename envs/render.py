@@ -40,7 +40,8 @@ class _Stage:
         for geom in range(self.model.ngeom):
             name = self.model.geom(geom).name
             body = self.model.body(self.model.geom_bodyid[geom]).name
-            self._geoms.setdefault(body if body in mechanics.names else name, []).append(geom)
+            part = body if body in mechanics.names and "_element_" not in name else name
+            self._geoms.setdefault(part, []).append(geom)
 
     def load(self, mechanics: Mechanics, env: int, temperatures: Mapping[str, float]) -> None:
         mechanics.env_model(env, self.model)

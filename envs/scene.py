@@ -50,6 +50,7 @@ class ObjectSpec:
     mesh takes them from its file. mass: kg, or density: kg/m3 (at most one; neither means 0.1 kg). friction: sliding
     coefficient of every contact of the object (None: 0.8). position: m, (x, y) of its centre on the table, the gripper's is
     (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`.
+    elements: (side, thickness) m of square plates without mass glued on where the pads meet it, None for none.
     Raises InvalidValueError, UnknownNameError (shape), or MeshError (file).
     """
 
@@ -65,6 +66,7 @@ class ObjectSpec:
     mesh: str | None = None
     scale: float = 1.0
     pieces: int = 1
+    elements: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.shape not in _SHAPES:
@@ -94,6 +96,8 @@ class ObjectSpec:
             raise InvalidValueError(
                 f"size {self.size} of a {self.shape}: extents across its axis must be equal"
             )
+        for value in self.elements or ():
+            positive("elements (side, thickness)", value)
         if self.width > MAX_OPENING - CLEARANCE:
             raise InvalidValueError(
                 f"object {self.name!r} is {1e3 * self.width:.1f} mm wide along x, the gripper opens "
@@ -115,9 +119,17 @@ class ObjectSpec:
     @property
     def width(self) -> float:
         """m, extent along x (between the fingers) at this yaw; of the bounding box for a mesh."""
+        glued = 2 * self.elements[1] if self.elements else 0.0
         if self.shape in ("sphere", "cylinder"):
-            return self.size[0]
-        return self.size[0] * abs(math.cos(self.yaw)) + self.size[1] * abs(math.sin(self.yaw))
+            return self.size[0] + glued
+        return (self.size[0] + glued) * abs(math.cos(self.yaw)) + self.size[1] * abs(math.sin(self.yaw))
+
+    @property
+    def element_places(self) -> np.ndarray:
+        """(2, 3) m in the object's frame: the outer faces' middles of the left and the right element."""
+        thickness = self.elements[1] if self.elements else 0.0
+        height = self.grasp_height - self.size[2] / 2
+        return np.array([[side * (self.size[0] / 2 + thickness), 0.0, height] for side in (-1, 1)])
 
     @property
     def volume(self) -> float:
@@ -173,6 +185,11 @@ def placeless(spec: ObjectSpec) -> ObjectSpec:
 def contact_sensor(tip: str, name: str) -> str:
     """Name of the sensor of fingertip `tip` touching object `name`."""
     return f"contact_{tip}_{name}"
+
+
+def element_geom(tip: str, name: str) -> str:
+    """Name of the geom of the element on object `name` that fingertip `tip` meets."""
+    return f"{name}_element_{tip}"
 
 
 def build_scene(
@@ -249,25 +266,40 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec) -> None:
     body.add_freejoint(name=f"{item.name}_free")
     x, y, z = (s / 2 for s in item.size)
     half = {"box": (x, y, z), "cylinder": (x, z, 0), "sphere": (x, 0, 0), "mesh": (0, 0, 0)}[item.shape]
+    # They meet the pads (1), the other objects (2) and the table (4); their own contact settings hold.
+    contact: dict = {
+        "contype": 2,
+        "conaffinity": 7,
+        "priority": 1,
+        "condim": 4,
+        "friction": (DEFAULT_FRICTION if item.friction is None else item.friction, _TORSION, _ROLLING),
+        "solref": _SOLREF,
+        "solimp": _SOLIMP,
+    }
     meshes = _mesh_names(item.geometry) if item.mesh else [None]
     for i, mesh in enumerate(meshes):
         geom = body.add_geom(
             name=f"{item.name}_{i}",
             type=mujoco.mjtGeom.mjGEOM_MESH if mesh else _GEOMS[item.shape],
             size=half,
-            friction=(DEFAULT_FRICTION if item.friction is None else item.friction, _TORSION, _ROLLING),
             rgba=item.rgba,
             material="matter",
-            # Meets the pads (1), the other objects (2) and the table (4); its own contact settings hold.
-            contype=2,
-            conaffinity=7,
-            priority=1,
-            condim=4,
-            solref=_SOLREF,
-            solimp=_SOLIMP,
+            **contact,
         )
         if mesh:
             geom.meshname = mesh
+    if item.elements:
+        side, thickness = item.elements
+        for tip, place in zip(TIPS, item.element_places, strict=True):
+            body.add_geom(
+                name=element_geom(tip, item.name),
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                pos=place - np.sign(place) * (thickness / 2, 0.0, 0.0),
+                size=(thickness / 2, side / 2, side / 2),
+                rgba=item.rgba,
+                material="matter",
+                **contact,
+            )
 
 
 def _principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

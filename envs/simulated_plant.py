@@ -235,6 +235,8 @@ class SimulatedPlant:
         if spec.friction is None and chosen.friction is not None:
             spec = replace(spec, friction=chosen.friction)
         config = self.config
+        if config.mode == "O":
+            spec = replace(spec, elements=(self._stack.width, self._stack.thickness))
         return Thing(spec, chosen, config.object_temperature, config.mode, self._stack, config.fingertips)
 
     def _reading(self, record: ContactRecord, step: HeatStep) -> Reading:
@@ -270,6 +272,7 @@ class SimulatedPlant:
     def _truth(self, object_height: np.ndarray, step: HeatStep, failed: np.ndarray) -> dict[str, Any]:
         gained = step.heat[:, 2] + (step.heat[:, 0] + step.heat[:, 1] if self.config.mode == "O" else 0.0)
         return {
+            "mode": self.config.mode,
             "material": [thing.material.name for thing in self.things],
             "temperature_drop": step.drop[:, -1],
             "temperature_drops": step.drop,

@@ -93,7 +93,7 @@ class Thing:
             return cylinder_contact(PAD, force, x / 2, z)
         if self.contact_shape == "sphere":
             return sphere_contact(PAD, force, x / 2)
-        size = (y, z) if self.mode == "T" else (max(y, self.stack.width), max(z, self.stack.width))
+        size = (y, z) if self.mode == "T" else (self.stack.width, self.stack.width)
         return flat_contact(PAD, force, size)
 
     def conductance(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
