@@ -84,8 +84,7 @@ def measured_t(runs: PaperRuns) -> Claim:
 
 def slower_experiment(runs: PaperRuns) -> Claim:
     smooth, rough = ({mode: rise_time(which[mode]) for mode in MODES} for which in (runs.smooth, runs.rough))
-    slower = all((rough[mode][1:] > smooth[mode][1:]).all() for mode in MODES)
-    every = slower and all(rough[mode][0] > smooth[mode][0] for mode in MODES)
+    slower = bool((rough["O"] > 1.1 * smooth["O"]).all() and (rough["T"][1:] > smooth["T"][1:]).all())
     return Claim(
         "slower_experiment",
         "4.2",
@@ -96,7 +95,7 @@ def slower_experiment(runs: PaperRuns) -> Claim:
         f"{rough['T'][4]:.2f} s, aluminium {smooth['T'][-1]:.2f} and {rough['T'][-1]:.2f} s, O mode aluminium "
         f"{smooth['O'][-1]:.2f} and {rough['O'][-1]:.2f} s; only cotton in T mode, {smooth['T'][0]:.2f} and "
         f"{rough['T'][0]:.2f} s, is so slow itself that its contact hardly counts.",
-        graded(every, slower),
+        graded(slower),
         {
             f"rise_{kind}_{mode}_s": times[mode].tolist()
             for kind, times in (("smooth", smooth), ("rough", rough))

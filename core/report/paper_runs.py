@@ -55,7 +55,7 @@ class Effort:
 
 
 FULL = Effort(tolerance=0.002, dt=0.02, resolution=2)
-QUICK = Effort(tolerance=0.005, dt=0.05, resolution=1)
+QUICK = Effort(tolerance=0.005, dt=0.02, resolution=1)
 
 
 @dataclass(frozen=True, slots=True)

@@ -148,7 +148,11 @@ def test_the_difference_moves_into_the_object(numbers: dict) -> None:
 def test_a_gap_makes_every_curve_slower(numbers: dict) -> None:
     rise = numbers["slower_experiment"]
     for mode in "OT":
-        assert (np.array(rise[f"rise_rough_{mode}_s"]) >= np.array(rise[f"rise_smooth_{mode}_s"])).all()
+        slower = np.array(rise[f"rise_rough_{mode}_s"]) - np.array(rise[f"rise_smooth_{mode}_s"])
+        assert (slower[1:] > 0.02).all()
+        assert slower[0] > (-0.1 if mode == "T" else 0.02), (
+            "cotton itself, not its contact, limits it in T mode"
+        )
 
 
 @pytest.mark.parametrize("gamma", [-0.9, -0.3, 0.5, 0.95])
