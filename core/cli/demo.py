@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thermograsp.cli.opengl import load_mujoco
 from thermograsp.cli.output import Output
 from thermograsp.errors import InvalidValueError
 from thermograsp.files import write_text
@@ -33,6 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Runs, writes and prints. 1 where an object was not lifted and held."""
+    output = Output(args.json)
+    load_mujoco(output)
     from thermograsp.report.columns import write_csv
     from thermograsp.report.demo_page import Settings, demo_page, versions
     from thermograsp.report.demo_runs import run_mode
@@ -43,7 +46,6 @@ def run(args: argparse.Namespace) -> int:
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     seconds = _QUICK if args.quick else _SECONDS
-    output = Output(args.json)
     with output.progress(20.0 * len(_MODES)) as advance:
         runs = [run_mode(mode, seconds, args.seed, mode == "T", advance) for mode in _MODES]
     files = []
@@ -79,7 +81,12 @@ def run(args: argparse.Namespace) -> int:
             ],
         }
     )
-    failed = [f"{g.recording.material} ({g.mode})" for one in runs for g in one.grasps if not g.recording.success]
+    failed = [
+        f"{grasp.recording.material} ({grasp.mode} mode{grasp.recording.ending and ', '}{grasp.recording.ending})"
+        for one in runs
+        for grasp in one.grasps
+        if not grasp.recording.success
+    ]
     if failed:
         output.warn(f"not lifted and held: {', '.join(failed)}")
     return _FAILED if failed else 0
@@ -90,10 +97,22 @@ def _command(args: argparse.Namespace) -> str:
 
 
 def _print(output: Output, runs: Sequence[ModeRun]) -> None:
-    header = ("material", "mode", "peak K", "after s", "end K", "peak mV", "force N", "area mm2", "h W/(m2 K)")
+    header = (
+        "material",
+        "mode",
+        "peak K",
+        "after s",
+        "end K",
+        "peak mV",
+        "force N",
+        "area mm2",
+        "h W/(m2 K)",
+    )
     rows = []
     for one in runs:
-        for row in sorted((grasp.summary for grasp in one.grasps), key=lambda row: -float(row["effusivity_Ws05_m2K"])):
+        for row in sorted(
+            (grasp.summary for grasp in one.grasps), key=lambda row: -float(row["effusivity_Ws05_m2K"])
+        ):
             rows.append(
                 (
                     str(row["material"]),
@@ -110,6 +129,6 @@ def _print(output: Output, runs: Sequence[ModeRun]) -> None:
     output.table(header, rows)
     for one in runs:
         output.line(
-            f"{one.mode} mode: {one.physics_steps_per_s:.0f} physics steps/s, {100 * one.heat_share:.0f} % of the time for "
-            f"heat, {100 * one.mechanics_share:.0f} % for mechanics"
+            f"{one.mode} mode: {one.physics_steps_per_s:.0f} physics steps/s, of the time "
+            f"{100 * one.heat_share:.0f} % for heat and {100 * one.mechanics_share:.0f} % for mechanics"
         )

@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from thermograsp.cli.arguments import add_materials_file, chosen_material, target
+from thermograsp.cli.opengl import load_mujoco
 from thermograsp.cli.output import Output
 from thermograsp.errors import InvalidValueError
 
@@ -52,6 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Grasps, writes and prints. 1 where the object was not lifted and held."""
+    output = Output(args.json)
+    load_mujoco(output)
     import numpy as np
 
     from thermograsp.envs import GraspBatch, GraspTask
@@ -71,7 +74,6 @@ def run(args: argparse.Namespace) -> int:
         object_temperature=args.temperature,
         cache=not args.no_cache,
     )
-    output = Output(args.json)
     film = None
     if picture is not None:
         from thermograsp.report.film import Film
@@ -90,8 +92,9 @@ def run(args: argparse.Namespace) -> int:
         write_csv(csv, grasp.columns)
     if film is not None and picture is not None:
         film.write(picture)
+    assert batch.reading is not None
+    _print(output, args, grasp, float(batch.reading.truth["crushing_force"][0]))
     batch.close()
-    _print(output, args, grasp)
     return 0 if grasp.success else _FAILED
 
 
@@ -107,7 +110,7 @@ def _object(args: argparse.Namespace) -> ObjectSpec | None:
     return ObjectSpec(shape=args.shape, size=(args.width, args.width, height), **surface)
 
 
-def _print(output: Output, args: argparse.Namespace, grasp: Recording) -> None:
+def _print(output: Output, args: argparse.Namespace, grasp: Recording, crushing: float) -> None:
     columns = grasp.columns
     document: dict[str, Any] = {
         "material": grasp.material,
@@ -120,6 +123,8 @@ def _print(output: Output, args: argparse.Namespace, grasp: Recording) -> None:
         "samples": len(columns["time_s"]),
     }
     what = "lifted and held" if grasp.success else grasp.ending or f"not lifted and held for {args.hold:g} s"
+    if grasp.ending == "crushed":
+        what = f"crushed by more than {crushing:.1f} N"
     output.line(f"{grasp.material}, {args.mode} mode: {what}; rung {grasp.rung}")
     if len(columns["time_s"]):
         drop = columns["temperature_drop_left_K"]

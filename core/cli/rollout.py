@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from thermograsp.cli.opengl import load_mujoco
 from thermograsp.cli.output import Output
 from thermograsp.errors import InvalidValueError, ThermograspError
 
@@ -43,6 +44,7 @@ def run(args: argparse.Namespace) -> int:
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     output = Output(args.json)
+    load_mujoco(output)
     at_once = min(args.num_envs, args.episodes)
     try:
         env = gymnasium.make_vec(args.env_id, num_envs=at_once, vectorization_mode="vector_entry_point")

@@ -52,7 +52,9 @@ def chart(curves: Sequence[Curve], marks: Sequence[Mark], x_end: float, y_end: f
         parts.append(f'<text class="tick" x="{_LEFT - 7}" y="{at + 4:.1f}" text-anchor="end">{tick:g}</text>')
     for tick in _ticks(x_end):
         at = px(tick)
-        parts.append(f'<text class="tick" x="{at:.1f}" y="{_TOP + up + 18:.1f}" text-anchor="middle">{tick:g}</text>')
+        parts.append(
+            f'<text class="tick" x="{at:.1f}" y="{_TOP + up + 18:.1f}" text-anchor="middle">{tick:g}</text>'
+        )
     parts.append(f'<text class="tick" x="{_LEFT + across + 12}" y="{_TOP + up + 18}">s</text>')
     for mark in marks:
         at, anchor, shift = px(mark.x), "end" if mark.before else "start", -3 if mark.before else 3
@@ -79,8 +81,9 @@ def _ticks(end: float) -> np.ndarray:
 
 
 def _simplified(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The points that a path needs to stay within _FINE of all of them (Ramer, Comput. Graph. Image Process. 1, 1972, with
-    the vertical distance)."""
+    """The points that a path needs to stay within _FINE of all of them, by vertical distance.
+
+    Source: Ramer U., Computer Graphics and Image Processing 1(3), 244-256 (1972)."""
     keep = np.zeros(len(x), bool)
     keep[[0, -1]] = True
     spans = [(0, len(x) - 1)]

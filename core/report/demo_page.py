@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.metadata import PackageNotFoundError, version
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib.colors import to_hex
 from PIL import Image
 
 import thermograsp
@@ -61,16 +62,17 @@ def demo_page(runs: Sequence[ModeRun], settings: Settings) -> str:
 
 def _lede(runs: Sequence[ModeRun], order: list[int]) -> str:
     config = "Fingertips kept at 36 °C close on ten 40 mm cubes at 24 °C, lift them by 5 cm and hold them."
-    final = [_drop(runs[0].grasps[i])[-1] for i in order]
+    ordered = [runs[0].grasps[i] for i in order]
     swapped = [
-        f"{readable(_name(runs[0], order[i]))} and {readable(_name(runs[0], order[i + 1]))}"
-        for i in range(len(order) - 1)
-        if final[i] > final[i + 1]
+        f"{readable(low.recording.material)} and {readable(high.recording.material)}, "
+        f"{100 * (high.effusivity / low.effusivity - 1):.0f} % apart"
+        for low, high in itertools.pairwise(ordered)
+        if _drop(low)[-1] > _drop(high)[-1]
     ]
     but = f", but for {' and '.join(swapped)}" if swapped else ""
     return (
         f"{config} The temperature drop over each fingertip’s heat flux sensor tells how fast its heat is drawn away: "
-        f"in T mode the ten end in the order of their effusivity √(<i>kρc</i>){but}."
+        f"in T mode the ten end in the order of their effusivity √(kρc){but}."
     )
 
 
@@ -89,14 +91,18 @@ def _charts(runs: Sequence[ModeRun], order: list[int], settings: Settings) -> st
     for run in runs:
         curves = [
             Curve(
-                readable(_name(run, i)), f"m{rank}", run.grasps[i].recording.columns["time_s"], _drop(run.grasps[i])
+                readable(_name(run, i)),
+                f"m{rank}",
+                run.grasps[i].recording.columns["time_s"],
+                _drop(run.grasps[i]),
             )
             for rank, i in enumerate(order)
         ]
         name, about = _ABOUT[run.mode]
         svg = chart(curves, _marks(run.grasps), settings.seconds, float(y_end), f"Temperature drop in {name}")
         figures.append(
-            f'<figure><figcaption><h2>{name}: temperature drop, K</h2><p class="note">{about}</p></figcaption>{svg}</figure>'
+            f'<figure><figcaption><h2>{name}: temperature drop, K</h2><p class="note">{about}</p></figcaption>'
+            f"{svg}</figure>"
         )
     return f'<div class="pair">{"".join(figures)}</div>'
 
@@ -119,23 +125,28 @@ def _marks(grasps: Sequence[Grasp]) -> list[Mark]:
 
 def _film(stills: Sequence, no_picture: str) -> str:
     if not stills:
-        return f'<section><h2>No pictures</h2><p class="note">{escape(no_picture)}</p></section>' if no_picture else ""
+        return (
+            f'<section><h2>No pictures</h2><p class="note">{escape(no_picture)}</p></section>'
+            if no_picture
+            else ""
+        )
     low, high = COLOURS
     frames = "".join(_still(still) for still in stills)
     table = colour_table()[:: len(colour_table()) // 16]
-    stops = ", ".join(mpl.colors.to_hex(color) for color in table)
+    stops = ", ".join(to_hex(color) for color in table)
     return (
         f"<section><h2>One of the grasps: {readable(FILMED)}, T mode</h2>"
-        '<p class="note">Cube and sensor faces are coloured by temperature. The bands cut through the contact: thermostat, '
-        "sensor face, object face, the object’s mean, and the same to the right.</p>"
+        '<p class="note">Sensor faces and cube are coloured by temperature. Each band runs through both contacts, from '
+        "thermostat to thermostat; the figures are the sensor faces’ and the cube’s mean.</p>"
         f'<div class="film">{frames}</div><div class="key"><span>{low:g} °C</span>'
-        f'<span class="bar" style="background:linear-gradient(90deg, {stops})"></span><span>{high:g} °C</span></div></section>'
+        f'<span class="bar" style="background:linear-gradient(90deg, {stops})"></span><span>{high:g} °C</span></div>'
+        "</section>"
     )
 
 
 def _still(still) -> str:
     low, high = COLOURS
-    colors = [mpl.colors.to_hex(temperature_colour(celsius, low, high)) for celsius in still.across]
+    colors = [to_hex(temperature_colour(celsius, low, high)) for celsius in still.across]
     bands = "".join(
         f'<i{" class=wide" if i == len(colors) // 2 else ""} style="background:{color}" title="{celsius:.2f} °C"></i>'
         for i, (color, celsius) in enumerate(zip(colors, still.across, strict=True))
@@ -144,23 +155,35 @@ def _still(still) -> str:
     reads = f"<span>{sensor:.1f}</span><span>{mean:.1f}</span><span>{right:.1f} °C</span>"
     return (
         f'<div><img alt="The gripper after {still.time:.1f} s" src="{_picture(still.pixels)}">'
-        f'<div class="when">{still.time:.1f} s</div><div class="across">{bands}</div><div class="reads">{reads}</div></div>'
+        f'<div class="when">{still.time:.1f} s</div><div class="across">{bands}</div>'
+        f'<div class="reads">{reads}</div></div>'
     )
 
 
 def _picture(pixels: np.ndarray) -> str:
     image = Image.fromarray(np.ascontiguousarray(pixels))
-    image = image.resize((_STILL_WIDTH, round(image.height * _STILL_WIDTH / image.width)), Image.Resampling.LANCZOS)
+    image = image.resize(
+        (_STILL_WIDTH, round(image.height * _STILL_WIDTH / image.width)), Image.Resampling.LANCZOS
+    )
     buffer = io.BytesIO()
     image.save(buffer, "JPEG", quality=88, optimize=True)
     return f"data:image/jpeg;base64,{base64.b64encode(buffer.getvalue()).decode()}"
 
 
 def _table(runs: Sequence[ModeRun], order: list[int]) -> str:
-    columns = ("peak<small>K</small>", "after touch<small>s</small>", "end<small>K</small>", "peak<small>mV</small>")
-    columns += ("conductance<small>kW/(m² K)</small>",)
-    groups = "".join(f'<th class="group first" colspan="{len(columns)}">{_ABOUT[run.mode][0]}</th>' for run in runs)
-    heads = "".join(f'<th{" class=first" if i == 0 else ""}>{name}</th>' for i, name in enumerate(columns)) * len(runs)
+    columns = (
+        "peak<small>K</small>",
+        "after<small>s</small>",
+        "end<small>K</small>",
+        "peak<small>mV</small>",
+    )
+    columns += ("force<small>N</small>", "area<small>mm²</small>", "contact<small>kW/(m² K)</small>")
+    groups = "".join(
+        f'<th class="group first" colspan="{len(columns)}">{_ABOUT[run.mode][0]}</th>' for run in runs
+    )
+    heads = "".join(
+        f"<th{' class=first' if i == 0 else ''}>{name}</th>" for i, name in enumerate(columns)
+    ) * len(runs)
     rows = []
     for rank, i in enumerate(order[::-1]):
         grasp = runs[0].grasps[i]
@@ -173,17 +196,16 @@ def _table(runs: Sequence[ModeRun], order: list[int]) -> str:
                 f"<td>{row['peak_after_touch_s']:.2f}</td>",
                 f"<td>{row['final_temperature_drop_K']:.2f}</td>",
                 f"<td>{1e3 * float(row['peak_voltage_V']):.2f}</td>",
+                f"<td>{row['force_N']:.2f}</td>",
+                f"<td>{1e6 * float(row['contact_area_m2']):.0f}</td>",
                 f"<td>{1e-3 * float(row['conductance_W_m2K']):.1f}</td>",
             ]
-        row = grasp.summary
-        cells.append(f'<td class="first">{row["force_N"]:.2f}</td><td>{1e6 * float(row["contact_area_m2"]):.0f}</td>')
         rows.append(f"<tr>{''.join(cells)}</tr>")
     return (
-        '<section><h2>The numbers</h2><p class="note">Of the left fingertip. Voltages are those of the converter, with its '
-        'noise.</p><div class="scroll"><table><thead>'
-        f"<tr><th></th><th></th>{groups}<th></th><th></th></tr><tr><th>material</th>"
-        f'<th>effusivity<small>W s<sup>½</sup>/(m² K)</small></th>{heads}<th class="first">force<small>N</small></th>'
-        f"<th>area<small>mm²</small></th></tr></thead><tbody>{''.join(rows)}</tbody></table></div></section>"
+        '<section><h2>The numbers</h2><p class="note">Of the left fingertip. Voltages are the converter’s, '
+        'with its noise; after: s from the touch to the peak.</p><div class="scroll"><table><thead>'
+        f"<tr><th></th><th></th>{groups}</tr><tr><th>material</th>"
+        f'<th>effusivity<small>W s<sup>½</sup>/(m² K)</small></th>{heads}</tr></thead><tbody>{''.join(rows)}</tbody></table></div></section>"
     )
 
 
@@ -192,16 +214,16 @@ def _details(runs: Sequence[ModeRun], settings: Settings) -> str:
         ("Command", f"<code>{escape(settings.command)}</code>"),
         (
             "Grasps",
-            f"{sum(len(run.grasps) for run in runs)} of {settings.seconds:g} s each, all of a mode at once; force limit "
-            f"{FORCE:g} N; seeds {settings.seed} to {settings.seed + len(runs[0].grasps) - 1}",
+            f"{sum(len(run.grasps) for run in runs)} of {settings.seconds:g} s each, all of a mode at once; "
+            f"force limit {FORCE:g} N, less where that would crush; seeds {settings.seed} to {settings.seed + len(runs[0].grasps) - 1}",
         ),
     ]
     for run in runs:
         items.append(
             (
                 f"Speed, {run.mode} mode",
-                f"{run.physics_steps_per_s:,.0f} physics steps of 2 ms a second; {100 * run.heat_share:.0f} % of the time "
-                f"for heat, {100 * run.mechanics_share:.0f} % for mechanics",
+                f"{run.physics_steps_per_s:,.0f} physics steps of 2 ms a second; "
+                f"{100 * run.heat_share:.0f} % of the time for heat, {100 * run.mechanics_share:.0f} % for mechanics",
             )
         )
     for run in runs:

@@ -21,8 +21,8 @@ _GAP = 6  # pixels between the pictures of a strip
 
 @dataclass(frozen=True, slots=True)
 class Still:
-    """One picture (height, width, 3) uint8 at `time` s. across: degC from the left thermostat to the right one: thermostat,
-    sensor's face, object's face, object's mean, object's face, sensor's face, thermostat."""
+    """One picture (height, width, 3) uint8 at `time` s. across: degC from left to right: thermostat, sensor's face,
+    object's face, object's mean, object's face, sensor's face, thermostat."""
 
     time: float
     pixels: np.ndarray
@@ -73,8 +73,12 @@ class Film:
                 strip(pictures).save(temporary)
             else:
                 ends = [still.time for still in self.stills[1:]] + [self.stills[-1].time + 1.0]
-                lasting = [round(1000 * (end - still.time)) for end, still in zip(ends, self.stills, strict=True)]
-                pictures[0].save(temporary, save_all=True, append_images=pictures[1:], duration=lasting, loop=0)
+                lasting = [
+                    round(1000 * (end - still.time)) for end, still in zip(ends, self.stills, strict=True)
+                ]
+                pictures[0].save(
+                    temporary, save_all=True, append_images=pictures[1:], duration=lasting, loop=0
+                )
 
     def close(self) -> None:
         """Frees OpenGL's buffers."""

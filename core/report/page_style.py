@@ -4,26 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib.colors import to_hex, to_rgb
 
 from thermograsp.report.style import ordered_colors
 
 _SHEET = """
-:root { color-scheme: light dark; --paper:#fcfbf9; --ink:#1d2025; --soft:#666c75; --faint:#a3a8af; --line:#e5e3de; %LIGHT% }
+:root { color-scheme: light dark; --paper:#fcfbf9; --ink:#1d2025; --soft:#666c75; --faint:#a3a8af;
+  --line:#e5e3de; %LIGHT% }
 @media (prefers-color-scheme: dark) {
   :root { --paper:#14161a; --ink:#eceae5; --soft:#a0a5ae; --faint:#6c727b; --line:#2b2f36; %DARK% }
 }
 * { box-sizing: border-box; }
 body { margin:0; background:var(--paper); color:var(--ink); line-height:1.55; font-size:16px;
-  font-family: system-ui, -apple-system, "Segoe UI", "Helvetica Neue", "Liberation Sans", Arial, sans-serif; }
+  font-family: Inter, system-ui, -apple-system, "Segoe UI", "Helvetica Neue", "Liberation Sans", Arial, sans-serif; }
 main { max-width:1240px; margin:0 auto; padding:56px 32px 72px; }
 header { max-width:760px; margin-bottom:44px; }
-h1 { font:600 40px/1.14 "Iowan Old Style", Charter, "Bitstream Charter", "Sitka Text", Cambria, Georgia, "Liberation Serif", serif;
-  letter-spacing:-.012em; margin:0 0 16px; text-wrap:balance; }
+h1 { font:600 40px/1.14 "Iowan Old Style", Charter, "Bitstream Charter", "Sitka Text", Cambria, Georgia,
+  "Liberation Serif", serif; letter-spacing:-.012em; margin:0 0 16px; text-wrap:balance; }
 .lede { font-size:18px; color:var(--soft); margin:0; text-wrap:pretty; }
 h2 { font-size:16px; font-weight:650; margin:0; letter-spacing:-.003em; }
-.note { color:var(--soft); font-size:14px; margin:2px 0 0; }
+.note { color:var(--soft); font-size:14px; margin:2px 0 0; text-wrap:pretty; }
 section { margin-top:56px; }
 .pair { display:grid; grid-template-columns:repeat(auto-fit, minmax(min(100%,460px),1fr)); gap:40px 48px; }
 figure { margin:0; min-width:0; }
@@ -61,7 +62,8 @@ td.strong { font-weight:650; }
 dl { display:grid; grid-template-columns:max-content 1fr; gap:5px 24px; font-size:14px; margin:14px 0 0; }
 dt { color:var(--soft); } dd { margin:0; min-width:0; overflow-wrap:anywhere; }
 code { font-family:ui-monospace, "SF Mono", Menlo, Consolas, "Liberation Mono", monospace; font-size:.92em; }
-@media (max-width:820px) { main { padding:32px 18px 48px; } h1 { font-size:31px; } .film { grid-template-columns:repeat(3,1fr); } }
+@media (max-width:820px) { main { padding:32px 18px 48px; } h1 { font-size:31px; }
+  .film { grid-template-columns:repeat(3,1fr); } }
 @media print { main { max-width:none; padding:0; } }
 """
 
@@ -70,7 +72,9 @@ def style_sheet(count: int, stills: int) -> str:
     """CSS for a page of `count` materials, whose classes m0, m1, ... set the colour --c, and a film of `stills`."""
     light = ordered_colors(count)
     # The house's colours end in a blue too deep for a dark page: towards that end they are mixed with white.
-    dark = [_lighter(color, share) for color, share in zip(light, np.linspace(0.05, 0.55, count), strict=True)]
+    dark = [
+        _lighter(color, share) for color, share in zip(light, np.linspace(0.05, 0.55, count), strict=True)
+    ]
     sheet = _SHEET.replace("%LIGHT%", _variables(light)).replace("%DARK%", _variables(dark))
     classes = "".join(f".m{i} {{ --c:var(--m{i}); }}\n" for i in range(count))
     return sheet.replace("%STILLS%", str(max(stills, 1))) + classes
@@ -81,4 +85,4 @@ def _variables(colors: Sequence[str]) -> str:
 
 
 def _lighter(color: str, share: float) -> str:
-    return mpl.colors.to_hex(np.array(mpl.colors.to_rgb(color)) * (1 - share) + share)
+    return to_hex(np.array(to_rgb(color)) * (1 - share) + share)

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import gymnasium
 import numpy as np
+from gymnasium.utils.seeding import np_random
 
 from thermograsp.envs import GraspBatch
 from thermograsp.errors import InvalidValueError, positive
@@ -73,14 +73,14 @@ def record(
     batch: GraspBatch,
     seeds: Sequence[int],
     seconds: float,
-    force: float = 10.0,
+    force: float | np.ndarray = 10.0,
     materials: Sequence[str | Material | None] | None = None,
     watch: Watch | None = None,
 ) -> list[Recording]:
     """Scripted grasps, all of a batch at once, for `seconds` from their start.
 
-    seeds: one for each; grasp i is that of a single environment reset with seeds[i]. force: N. materials: one for each,
-    None to draw. watch: called with the time and the batch at the start and after every control step; it may read only.
+    seeds: one for each; grasp i is that of a single environment reset with seeds[i]. force: N, one for all
+    or (B,). materials: one for each, None to draw. watch: called with the time and the batch at the start and after every control step; it may read only.
     Raises InvalidValueError.
     """
     if positive("seconds", seconds) > LONGEST:
@@ -91,7 +91,7 @@ def record(
     for row, seed in enumerate(seeds):
         chosen = materials[row] if materials else None
         options = {"material": chosen} if chosen is not None else {}
-        observation, _ = batch.reset([row], [gymnasium.utils.seeding.np_random(seed)[0]], options)
+        observation, _ = batch.reset([row], [np_random(seed)[0]], options)
     readings: list[Reading] = []
     events: list[list[Event]] = [[] for _ in seeds]
     ending = ["" for _ in seeds]

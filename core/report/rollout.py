@@ -58,7 +58,7 @@ def rollout(
     for first in range(0, episodes, env.num_envs):
         wanted = min(env.num_envs, episodes - first)
         seeds = [seed + first + i for i in range(env.num_envs)]
-        observation, _ = env.reset(seed=seeds)
+        observation, _ = env.reset(seed=seeds)  # pyright: ignore[reportArgumentType]
         acting.restart(seeds)
         hashes = [hashlib.sha256() for _ in range(wanted)]
         total, over, succeeded = np.zeros(wanted), np.zeros(wanted, bool), np.zeros(wanted, bool)

@@ -17,16 +17,18 @@ _APPROACH = 0.1  # s, time constant of the arm's last millimetres
 
 
 class ScriptedGrasp:
-    """Policy of `num_envs` environments. force: N, the gripper's limit. dt: s, the control period.
+    """Policy of `num_envs` environments. force: N, the gripper's limit, one for all or (B,). dt: s, the control
+    period.
 
     Raises InvalidValueError for a force that the gripper does not have."""
 
-    def __init__(self, num_envs: int, dt: float, force: float = 10.0) -> None:
-        if positive("force (N)", force) > MAX_FORCE:
-            raise InvalidValueError(
-                f"force (N) must be at most {MAX_FORCE:g}, the gripper's limit, got {force!r}"
-            )
-        self._force, self._dt = force, dt
+    def __init__(self, num_envs: int, dt: float, force: float | np.ndarray = 10.0) -> None:
+        for one in np.atleast_1d(force).tolist():
+            if positive("force (N)", one) > MAX_FORCE:
+                raise InvalidValueError(
+                    f"force (N) must be at most {MAX_FORCE:g}, the gripper's limit, got {one!r}"
+                )
+        self._force, self._dt = np.broadcast_to(np.asarray(force, float), num_envs), dt
         self._pressed = np.zeros(num_envs)  # s without a break
         self._lifting = np.zeros(num_envs, bool)
 
@@ -37,9 +39,9 @@ class ScriptedGrasp:
 
     def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
         """Actions (B, 3) float32 for observations (B, ...)."""
-        pressing = np.all(observation["force"][:, :, 0] > self._force / 2, axis=1)
+        pressing = np.all(observation["force"][:, :, 0] > self._force[:, None] / 2, axis=1)
         self._pressed = np.where(pressing, self._pressed + self._dt, 0.0)
         self._lifting |= self._pressed >= _SETTLING
         left = LIFTED + _MARGIN - observation["gripper"][:, 2].astype(float)
         rate = np.where(self._lifting, np.clip(left / _APPROACH, 0.0, MAX_LIFT_RATE), 0.0)
-        return np.stack([action_of(0.0, self._force, one) for one in rate])
+        return np.stack([action_of(0.0, force, one) for force, one in zip(self._force, rate, strict=True)])
