@@ -37,8 +37,9 @@ def run(args: argparse.Namespace) -> int:
     output = Output(args.json)
     load_mujoco(output)
     from thermograsp.report.columns import write_csv
-    from thermograsp.report.demo_page import Settings, demo_page, versions
+    from thermograsp.report.demo_page import demo_page
     from thermograsp.report.demo_runs import run_mode
+    from thermograsp.report.demo_tables import Settings, versions
 
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")

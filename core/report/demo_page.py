@@ -5,38 +5,22 @@ from __future__ import annotations
 import base64
 import io
 import itertools
-import platform
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 from matplotlib.colors import to_hex
 from PIL import Image
 
-import thermograsp
 from thermograsp.envs.colormap import colour_table, temperature_colour
 from thermograsp.envs.tasks import LIFTED
 from thermograsp.report.curves import Curve, Mark, chart
-from thermograsp.report.demo_runs import COLOURS, FILMED, FORCE, Grasp, ModeRun
+from thermograsp.report.demo_runs import COLOURS, FILMED, Grasp, ModeRun
+from thermograsp.report.demo_tables import ABOUT, Settings, details, numbers
 from thermograsp.report.page_style import style_sheet
 from thermograsp.report.style import readable
 
-_ABOUT = {
-    "T": ("T mode", "The element rides on the warm fingertip and meets the object."),
-    "O": ("O mode", "The element is glued to the object and meets the warm fingertip."),
-}
 _STILL_WIDTH = 380  # pixels
-
-
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """What was asked for. seconds: s of each grasp. command: as one would type it."""
-
-    seconds: float
-    seed: int
-    command: str
 
 
 def demo_page(runs: Sequence[ModeRun], settings: Settings) -> str:
@@ -53,8 +37,8 @@ def demo_page(runs: Sequence[ModeRun], settings: Settings) -> str:
         f'<p class="lede">{_lede(runs, order)}</p></header>',
         _charts(runs, order, settings),
         _film(stills, next((run.no_picture for run in runs), "")),
-        _table(runs, order),
-        _details(runs, settings),
+        numbers(runs, order),
+        details(runs, settings),
         "</main></body></html>",
     ]
     return "\n".join(parts) + "\n"
@@ -98,7 +82,7 @@ def _charts(runs: Sequence[ModeRun], order: list[int], settings: Settings) -> st
             )
             for rank, i in enumerate(order)
         ]
-        name, about = _ABOUT[run.mode]
+        name, about = ABOUT[run.mode]
         svg = chart(curves, _marks(run.grasps), settings.seconds, float(y_end), f"Temperature drop in {name}")
         figures.append(
             f'<figure><figcaption><h2>{name}: temperature drop, K</h2><p class="note">{about}</p></figcaption>'
@@ -146,7 +130,7 @@ def _film(stills: Sequence, no_picture: str) -> str:
 
 def _still(still) -> str:
     low, high = COLOURS
-    colors = [to_hex(temperature_colour(celsius, low, high)) for celsius in still.across]
+    colors = [to_hex(tuple(temperature_colour(celsius, low, high).tolist())) for celsius in still.across]
     bands = "".join(
         f'<i{" class=wide" if i == len(colors) // 2 else ""} style="background:{color}" title="{celsius:.2f} °C"></i>'
         for i, (color, celsius) in enumerate(zip(colors, still.across, strict=True))
@@ -168,81 +152,3 @@ def _picture(pixels: np.ndarray) -> str:
     buffer = io.BytesIO()
     image.save(buffer, "JPEG", quality=88, optimize=True)
     return f"data:image/jpeg;base64,{base64.b64encode(buffer.getvalue()).decode()}"
-
-
-def _table(runs: Sequence[ModeRun], order: list[int]) -> str:
-    columns = (
-        "peak<small>K</small>",
-        "after<small>s</small>",
-        "end<small>K</small>",
-        "peak<small>mV</small>",
-    )
-    columns += ("force<small>N</small>", "area<small>mm²</small>", "contact<small>kW/(m² K)</small>")
-    groups = "".join(
-        f'<th class="group first" colspan="{len(columns)}">{_ABOUT[run.mode][0]}</th>' for run in runs
-    )
-    heads = "".join(
-        f"<th{' class=first' if i == 0 else ''}>{name}</th>" for i, name in enumerate(columns)
-    ) * len(runs)
-    rows = []
-    for rank, i in enumerate(order[::-1]):
-        grasp = runs[0].grasps[i]
-        cells = [f'<td><span class="dot m{len(order) - 1 - rank}"></span>{readable(_name(runs[0], i))}</td>']
-        cells.append(f"<td>{grasp.effusivity:,.0f}</td>")
-        for run in runs:
-            row = run.grasps[i].summary
-            cells += [
-                f'<td class="first strong">{row["peak_temperature_drop_K"]:.2f}</td>',
-                f"<td>{row['peak_after_touch_s']:.2f}</td>",
-                f"<td>{row['final_temperature_drop_K']:.2f}</td>",
-                f"<td>{1e3 * float(row['peak_voltage_V']):.2f}</td>",
-                f"<td>{row['force_N']:.2f}</td>",
-                f"<td>{1e6 * float(row['contact_area_m2']):.0f}</td>",
-                f"<td>{1e-3 * float(row['conductance_W_m2K']):.1f}</td>",
-            ]
-        rows.append(f"<tr>{''.join(cells)}</tr>")
-    return (
-        '<section><h2>The numbers</h2><p class="note">Of the left fingertip. Voltages are the converter’s, '
-        'with its noise; after: s from the touch to the peak.</p><div class="scroll"><table><thead>'
-        f"<tr><th></th><th></th>{groups}</tr><tr><th>material</th>"
-        f'<th>effusivity<small>W s<sup>½</sup>/(m² K)</small></th>{heads}</tr></thead><tbody>{''.join(rows)}</tbody></table></div></section>"
-    )
-
-
-def _details(runs: Sequence[ModeRun], settings: Settings) -> str:
-    items = [
-        ("Command", f"<code>{escape(settings.command)}</code>"),
-        (
-            "Grasps",
-            f"{sum(len(run.grasps) for run in runs)} of {settings.seconds:g} s each, all of a mode at once; "
-            f"force limit {FORCE:g} N, less where that would crush; seeds {settings.seed} to {settings.seed + len(runs[0].grasps) - 1}",
-        ),
-    ]
-    for run in runs:
-        items.append(
-            (
-                f"Speed, {run.mode} mode",
-                f"{run.physics_steps_per_s:,.0f} physics steps of 2 ms a second; "
-                f"{100 * run.heat_share:.0f} % of the time for heat, {100 * run.mechanics_share:.0f} % for mechanics",
-            )
-        )
-    for run in runs:
-        rungs: dict[str, list[str]] = {}
-        for grasp in run.grasps:
-            rungs.setdefault(grasp.recording.rung, []).append(readable(grasp.recording.material))
-        listed = "; ".join(f"<code>{escape(rung)}</code> {', '.join(names)}" for rung, names in rungs.items())
-        items.append((f"Heat model, {run.mode} mode", listed))
-    items.append(("Versions", escape(", ".join(f"{name} {number}" for name, number in versions().items()))))
-    body = "".join(f"<dt>{term}</dt><dd>{text}</dd>" for term, text in items)
-    return f"<section><h2>What was run</h2><dl>{body}</dl></section>"
-
-
-def versions() -> dict[str, str]:
-    """Of what decides the numbers."""
-    found = {"thermograsp": thermograsp.__version__, "Python": platform.python_version()}
-    for name in ("mujoco", "gymnasium", "numpy"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "?"
-    return found

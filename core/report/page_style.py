@@ -51,12 +51,12 @@ svg:has(.curve:hover) .curve:not(:hover) { opacity:.18; }
 .key .bar { width:240px; height:10px; border-radius:5px; }
 .scroll { overflow-x:auto; margin-top:14px; }
 table { border-collapse:collapse; width:100%; font-size:14px; font-variant-numeric:tabular-nums; white-space:nowrap; }
-th, td { padding:7px 0 7px 16px; text-align:right; border-bottom:1px solid var(--line); }
+th, td { padding:7px 0 7px 14px; text-align:right; border-bottom:1px solid var(--line); }
 th { font-weight:500; color:var(--soft); vertical-align:bottom; line-height:1.3; font-size:13px; }
 th.group { text-align:center; color:var(--ink); font-weight:650; padding-bottom:3px; }
 th small { font-size:12px; color:var(--faint); display:block; }
 th:first-child, td:first-child { text-align:left; padding-left:0; }
-td.first, th.first { padding-left:36px; }
+td.first, th.first { padding-left:40px; }
 td.strong { font-weight:650; }
 .dot { display:inline-block; width:10px; height:10px; border-radius:50%; background:var(--c); margin-right:9px; }
 dl { display:grid; grid-template-columns:max-content 1fr; gap:5px 24px; font-size:14px; margin:14px 0 0; }
@@ -85,4 +85,5 @@ def _variables(colors: Sequence[str]) -> str:
 
 
 def _lighter(color: str, share: float) -> str:
-    return to_hex(np.array(to_rgb(color)) * (1 - share) + share)
+    red, green, blue = (part * (1 - share) + share for part in to_rgb(color))
+    return to_hex((red, green, blue))

@@ -79,8 +79,9 @@ def record(
 ) -> list[Recording]:
     """Scripted grasps, all of a batch at once, for `seconds` from their start.
 
-    seeds: one for each; grasp i is that of a single environment reset with seeds[i]. force: N, one for all
-    or (B,). materials: one for each, None to draw. watch: called with the time and the batch at the start and after every control step; it may read only.
+    seeds: one for each; grasp i is that of a single environment reset with seeds[i]. force: N, one for all or (B,).
+    materials: one for each, None to draw. watch: called with the time and the batch at the start and after every
+    control step; it may read only.
     Raises InvalidValueError.
     """
     if positive("seconds", seconds) > LONGEST:
