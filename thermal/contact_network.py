@@ -13,7 +13,7 @@ from .choice import Choice, Demand, choose
 from .states import Orders
 from .system import ContactSystem, contact_system, sample_geometry
 
-_VERSION = 1  # of the arrays' meaning and of how they are computed
+_VERSION = 2  # of the arrays' meaning and of how they are computed
 _ARRAYS = ("rates", "ports", "drop", "element_heat", "object_heat", "sensor_surface", "object_surface")
 
 

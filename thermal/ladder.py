@@ -10,7 +10,16 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, unknown_name
 
-from . import closed_form, grid_3d, grid_axisymmetric, half_space, layered, lumped, network_press
+from . import (
+    closed_form,
+    grid_3d,
+    grid_axisymmetric,
+    half_space,
+    layered,
+    lumped,
+    network_press,
+    semi_analytic,
+)
 from .choice import FIRST, Demand
 from .contact_network import network_for, network_of
 from .network_press import geometry_of
@@ -77,6 +86,13 @@ RUNGS = MappingProxyType(
             ),
             RungInfo("layered", "heat spreading sideways in the object", False, 14 * 400, layered.solve),
             RungInfo("network", "what its orders cut off: its error is measured", True, 0),
+            RungInfo(
+                "semi_analytic",
+                "air and conductances that vary, which it refuses; its flux patterns leave .0003 K of 12 K",
+                False,
+                1_000_000_000,  # a decade of times, however many there are
+                semi_analytic.solve,
+            ),
             RungInfo(
                 "axisymmetric",
                 "corners: square patches and plates are discs of equal area; what its mesh misses",

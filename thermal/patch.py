@@ -1,4 +1,10 @@
-"""Contact patches cut into cells of constant heat flux, graded toward the edge where the flux is nearly singular."""
+"""Heat-flux patterns over a contact patch: piecewise linear between radii graded toward the edge, where the flux is
+nearly singular.
+
+Along a half side (a radius) a pattern is linear between graded nodes. Integrals are taken over strips (rings) of
+constant flux, PARTS to each interval, so that all closed forms are those of strips. The drop is within .0003 K of 12 K at
+any conductance; as many strips alone leave .005 K on small contacts of 1e5 W/(m2 K).
+"""
 
 from __future__ import annotations
 
@@ -6,27 +12,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
-CELLS_PER_HALF_SIDE = 9
-GRADING = 0.47
+INTERVALS = 10
+GRADING = 0.58
+PARTS = 4
 
 
-def graded_edges(half_width: float, cells: int = CELLS_PER_HALF_SIDE, grading: float = GRADING) -> np.ndarray:
-    """Cell boundaries (cells + 1,) m from the middle to the edge, each cell `grading` of the one before."""
-    widths = grading ** np.arange(cells)
-    edges = np.concatenate(([0.0], np.cumsum(widths)))
-    return half_width * edges / edges[-1]
+def graded_edges(half_width: float, intervals: int, parts: int = PARTS) -> np.ndarray:
+    """Boundaries (intervals * parts + 1,) m of the strips from the middle to the edge, each interval GRADING of the one
+    before and cut into equal parts."""
+    nodes = np.concatenate(([0.0], np.cumsum(GRADING ** np.arange(intervals))))
+    fine = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), nodes)
+    return half_width * fine / nodes[-1]
+
+
+def _shapes(edges: np.ndarray, measure: np.ndarray, parts: int = PARTS) -> np.ndarray:
+    """(strips, intervals + 1): orthonormal basis of the functions linear between the nodes, in unit-norm strips.
+
+    measure: (strips,) m or m2 of each."""
+    nodes, middles = edges[::parts], (edges[1:] + edges[:-1]) / 2
+    hats = np.stack([np.interp(middles, nodes, hat) for hat in np.eye(len(nodes))], axis=1)
+    return np.linalg.qr(np.sqrt(measure)[:, None] * hats)[0]
 
 
 @dataclass(frozen=True, slots=True)
 class SquarePatch:
-    """A square patch in the middle of a face, cut into products of strips.
+    """A square patch in the middle of a face, its patterns products of those along x and y.
 
-    half_width: m. Only flux patterns with the square's own symmetry are kept (those a centred press excites on a
-    square cross-section); with square=False the two axes are kept apart (rectangular cross-sections).
+    half_width: m. Only patterns with the square's own symmetry are kept (those a centred press excites on a square
+    cross-section); with square=False the two axes are kept apart (rectangular cross-sections). intervals: along a half
+    side.
     """
 
     half_width: float
     square: bool = True
+    intervals: int = INTERVALS
 
     @property
     def area(self) -> float:
@@ -35,13 +54,18 @@ class SquarePatch:
 
     @property
     def edges(self) -> np.ndarray:
-        """m, along one half side."""
-        return graded_edges(self.half_width)
+        """Of the strips, m, along one half side."""
+        return graded_edges(self.half_width, self.intervals)
+
+    @property
+    def shapes(self) -> np.ndarray:
+        """(strips, L): orthonormal patterns along one axis in terms of unit-norm strips."""
+        return _shapes(self.edges, np.diff(self.edges))
 
     @property
     def symmetrize(self) -> np.ndarray:
-        """(strips * strips, C): orthonormal patterns in terms of the products of unit-norm strips."""
-        n = CELLS_PER_HALF_SIDE
+        """(L * L, C): orthonormal patterns in terms of the products of those along the axes."""
+        n = self.intervals + 1
         if not self.square:
             return np.eye(n * n)
         columns = []
@@ -55,26 +79,16 @@ class SquarePatch:
     @property
     def uniform(self) -> np.ndarray:
         """(C,): the uniform pattern of mean square 1 over the patch, a unit vector."""
-        widths = np.diff(self.edges)
-        strips = np.sqrt(widths / self.half_width)
-        return self.symmetrize.T @ np.kron(strips, strips)
-
-    @property
-    def rings(self) -> np.ndarray:
-        """(C, strips): concentric square rings, each a unit vector, the innermost first."""
-        n = CELLS_PER_HALF_SIDE
-        widths = np.diff(self.edges)
-        cell = np.sqrt(np.outer(widths, widths))
-        index = np.maximum.outer(np.arange(n), np.arange(n))
-        columns = [np.where(index == ring, cell, 0.0).ravel() for ring in range(n)]
-        return self.symmetrize.T @ np.stack([c / np.linalg.norm(c) for c in columns], axis=1)
+        along = self.shapes.T @ np.sqrt(np.diff(self.edges) / self.half_width)
+        return self.symmetrize.T @ np.kron(along, along)
 
 
 @dataclass(frozen=True, slots=True)
 class RoundPatch:
-    """A round patch in the middle of a round face, cut into rings. radius: m."""
+    """A round patch in the middle of a round face. radius: m. intervals: along it."""
 
     radius: float
+    intervals: int = INTERVALS
 
     @property
     def area(self) -> float:
@@ -83,18 +97,18 @@ class RoundPatch:
 
     @property
     def edges(self) -> np.ndarray:
-        """m, radii."""
-        return graded_edges(self.radius)
+        """Of the rings, m, radii."""
+        return graded_edges(self.radius, self.intervals)
+
+    @property
+    def shapes(self) -> np.ndarray:
+        """(rings, C): orthonormal patterns in terms of unit-norm rings."""
+        return _shapes(self.edges, np.diff(self.edges**2))
 
     @property
     def uniform(self) -> np.ndarray:
         """(C,): the uniform pattern of mean square 1 over the patch, a unit vector."""
-        return np.sqrt(np.diff(self.edges**2)) / self.radius
-
-    @property
-    def rings(self) -> np.ndarray:
-        """(C, C): the cells themselves."""
-        return np.eye(len(self.edges) - 1)
+        return self.shapes.T @ np.sqrt(np.diff(self.edges**2)) / self.radius
 
 
 Patch = SquarePatch | RoundPatch

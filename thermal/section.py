@@ -39,6 +39,7 @@ class Rectangle:
         assert isinstance(patch, SquarePatch)
         kx, ox = _cosine_overlaps(patch.edges, self.half_x, kappa_max)
         ky, oy = _cosine_overlaps(patch.edges, self.half_y, kappa_max)
+        ox, oy = ox @ patch.shapes, oy @ patch.shapes
         kappa2 = (kx[:, None] ** 2 + ky[None, :] ** 2).ravel()
         overlaps = np.einsum("mi,nj->mnij", ox, oy).reshape(len(kappa2), -1) @ patch.symmetrize
         keep = kappa2 <= kappa_max**2
@@ -47,8 +48,13 @@ class Rectangle:
     def kernel(self, patch: Patch, tau: np.ndarray) -> np.ndarray:
         """(J, C, C): lateral heat kernel between the patterns at the diffusion lengths squared tau (J,) m2."""
         assert isinstance(patch, SquarePatch)
-        x = _strip_kernel(patch.edges, self.half_x, tau)
-        y = x if self.half_x == self.half_y else _strip_kernel(patch.edges, self.half_y, tau)
+        shapes = patch.shapes
+        x = shapes.T @ _strip_kernel(patch.edges, self.half_x, tau) @ shapes
+        y = (
+            x
+            if self.half_x == self.half_y
+            else shapes.T @ _strip_kernel(patch.edges, self.half_y, tau) @ shapes
+        )
         n = x.shape[1]
         product = np.einsum("tik,tjl->tijkl", x, y).reshape(len(tau), n * n, n * n)
         return patch.symmetrize.T @ product @ patch.symmetrize
@@ -66,7 +72,7 @@ class Disc:
         return np.pi * self.radius**2
 
     def modes(self, patch: Patch, kappa_max: float) -> tuple[np.ndarray, np.ndarray]:
-        """Squared wave numbers (M,) 1/m2 up to kappa_max and overlaps (M, C) with the unit-norm rings."""
+        """Squared wave numbers (M,) 1/m2 up to kappa_max and overlaps (M, C) with the unit-norm patterns."""
         count = max(int(kappa_max * self.radius / np.pi) + 1, 2)
         return self._modes(patch, count)
 
@@ -81,20 +87,24 @@ class Disc:
         antiderivative[0] = np.pi * edges**2
         norm = self.area * j0(roots) ** 2
         overlaps = np.diff(antiderivative, axis=1) / np.sqrt(ring_area) / np.sqrt(norm)[:, None]
-        return kappa**2, overlaps
+        return kappa**2, overlaps @ patch.shapes
 
     def kernel(self, patch: Patch, tau: np.ndarray) -> np.ndarray:
-        """(J, C, C): lateral heat kernel between the rings at the diffusion lengths squared tau (J,) m2."""
+        """(J, C, C): lateral heat kernel between the patterns at the diffusion lengths squared tau (J,) m2."""
         assert isinstance(patch, RoundPatch)
         finest = np.diff(patch.edges).min()
         count = int(min(40 * self.radius / finest, 20_000))
         kappa2, overlaps = self._modes(patch, count)
-        rest = np.eye(overlaps.shape[1]) - overlaps.T @ overlaps  # what the finite series leaves of the identity
+        rest = (
+            np.eye(overlaps.shape[1]) - overlaps.T @ overlaps
+        )  # what the finite series leaves of the identity
         kernel = np.zeros((len(tau), overlaps.shape[1], overlaps.shape[1]))
         for j, length2 in enumerate(tau):
             decay = np.exp(-kappa2 * length2)
             few = int(np.searchsorted(-decay, -1e-18)) or len(decay)
-            kernel[j] = (overlaps[:few].T * decay[:few]) @ overlaps[:few] + rest * np.exp(-kappa2[-1] * length2)
+            kernel[j] = (overlaps[:few].T * decay[:few]) @ overlaps[:few] + rest * np.exp(
+                -kappa2[-1] * length2
+            )
         return kernel
 
 
