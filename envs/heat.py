@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..thermal import ContactSystem, Demand, HeatTables, advance_heat, forget_field, heat_tables, network_for, shift_thermostats
+from .contact_rows import ContactRows
 from .things import Thing
 
 CONDUCTANCES = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K), over which a network must keep the tolerance
@@ -81,7 +82,7 @@ class GraspHeat:
         self.rungs: list[str] = []
         self._network = np.zeros(num_envs, int)
         self._things: list[Thing | None] = [None] * num_envs
-        self._groups: list[tuple[Thing, np.ndarray]] | None = None
+        self._contacts = ContactRows(num_envs)
         self._state = np.zeros((num_envs, 0))
         self._difference = np.zeros((num_envs, 2))
         self._begun = np.zeros(num_envs, bool)
@@ -115,11 +116,7 @@ class GraspHeat:
         """One control step. force: (B, S, F) N, normal, of each substep, 0 where apart. place: (B, F, 3) m, the
         sensor faces' middles in the object's frame at the end of the step."""
         rows = len(force)
-        conductance, area = np.zeros((rows, 2)), np.zeros((rows, 2))
-        for thing, members in self._members():
-            pressing = members[np.any(force[members] > 0, axis=(1, 2))]
-            if len(pressing):
-                conductance[pressing], area[pressing] = _mean_contact(thing, force[pressing])
+        conductance, area = self._contacts.mean_contact(force)
         events = self._follow(area > 0, place)
         self._begun |= np.any(area > 0, axis=1)
         felt = conductance * area * self._felt(place)
@@ -213,7 +210,7 @@ class GraspHeat:
 
     def _place(self, row: int, thing: Thing) -> None:
         self._things[row] = thing
-        self._groups = None
+        self._contacts.place(row, thing)
         self._glued[row] = thing.mode == "O"
         self._reach[row] = thing.stack.width / 2
         self._capacity[row] = thing.heat_capacity
@@ -231,16 +228,6 @@ class GraspHeat:
             grown[:, : self._state.shape[1]] = self._state
             self._state = grown
         self._network[row] = self._networks[key]
-
-    def _members(self) -> list[tuple[Thing, np.ndarray]]:
-        """Rows by object, found anew after a reset."""
-        if self._groups is None:
-            groups: dict[Thing, list[int]] = {}
-            for row, thing in enumerate(self._things):
-                if thing is not None:
-                    groups.setdefault(thing, []).append(row)
-            self._groups = [(thing, np.array(rows)) for thing, rows in groups.items()]
-        return self._groups
 
     def _follow(self, touching: np.ndarray, place: np.ndarray) -> tuple[tuple[tuple[str, str], ...], ...]:
         """Touches, releases and new patches since the last step, per environment."""
@@ -277,17 +264,3 @@ class GraspHeat:
         """(B, F) m from each sensor face to where it first touched, or to the glued element."""
         x, y, z = np.moveaxis(place - self._anchor, -1, 0)
         return np.sqrt(x * x + y * y + z * z)
-
-
-def _mean_contact(thing: Thing, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Conductance and area (n, F) whose product is the mean of their products over the substeps of force (n, S, F)."""
-    conductance, area = thing.conductance(np.maximum(force, 0.0))
-    count = force.shape[1]
-    product, total, touching = (np.zeros((len(force), 2)) for _ in range(3))
-    for k in range(count):  # in fixed order: a row's bits must not depend on the others
-        product += conductance[:, k] * area[:, k]
-        total += area[:, k]
-        touching += area[:, k] > 0
-    mean_area = np.divide(total, touching, out=np.zeros_like(total), where=touching > 0)
-    mean = np.divide(product / count, mean_area, out=np.zeros_like(total), where=mean_area > 0)
-    return mean, mean_area

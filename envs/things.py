@@ -20,7 +20,6 @@ from ..thermal import (
     Pad,
     SensorStack,
     Surface,
-    contact_conductance,
     cylinder_contact,
     flat_contact,
     joint,
@@ -95,13 +94,6 @@ class Thing:
             return sphere_contact(PAD, force, x / 2)
         size = (y, z) if self.mode == "T" else (self.stack.width, self.stack.width)
         return flat_contact(PAD, force, size)
-
-    def conductance(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Conductance W/(m2 K) and area m2 of the contact on the sensor's face at normal forces N (any shape); both 0
-        where nothing presses."""
-        contact = self.contact(force)
-        touching = contact.face > 0
-        return np.where(touching, contact_conductance(self.joint, contact.face_pressure), 0.0), contact.face
 
     @cached_property
     def heat_capacity(self) -> float:
