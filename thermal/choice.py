@@ -44,12 +44,12 @@ def choose(samples: GeometrySamples, demand: Demand) -> Choice:
     floor = FLOOR * max(abs(demand.difference) / 12, 1e-3)
     full = {modes: samples.networks(modes) for modes in range(1, MOST_MODES + 1)}
     bases = {modes: state_bases(networks, samples.geometry.area) for modes, networks in full.items()}
-    reference = _responses(assemble(samples.geometry, full[MOST_MODES]), demand)
+    reference = responses(assemble(samples.geometry, full[MOST_MODES]), demand)
     best = np.inf
-    for orders in _candidates(bases):
+    for orders in candidates(bases):
         networks = reduce(full[orders.modes], bases[orders.modes], orders)
         system = assemble(samples.geometry, networks)
-        error = float(np.max(np.abs(_responses(system, demand) - reference), initial=0.0)) + floor
+        error = float(np.max(np.abs(responses(system, demand) - reference), initial=0.0)) + floor
         best = min(best, error)
         if error <= demand.tolerance:
             return Choice(system, error)
@@ -59,20 +59,24 @@ def choose(samples: GeometrySamples, demand: Demand) -> Choice:
     )
 
 
-def _candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:
+def candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:
+    """Orders worth trying, cheapest first. bases: of the bodies, by the number of patch modes."""
     found = set()
     for modes, bodies in bases.items():
         for cut in _CUTS:
             for sensor_cut in (cut, cut / 8):
                 orders = {
-                    name: max(int(np.sum(basis.weights > (sensor_cut if name == "sensor" else cut))), basis.still + 1)
+                    name: max(
+                        int(np.sum(basis.weights > (sensor_cut if name == "sensor" else cut))),
+                        basis.still + 1,
+                    )
                     for name, basis in bodies.items()
                 }
                 found.add(Orders(modes, orders.get("sensor", 0), orders["even"], orders.get("odd")))
     return sorted(found, key=lambda orders: (orders.multiply_adds, str(orders)))
 
 
-def _responses(system: ContactSystem, demand: Demand) -> np.ndarray:
+def responses(system: ContactSystem, demand: Demand) -> np.ndarray:
     """Temperature drops (cases, times) K of the first fingertip: it alone touches, and all touch."""
     times = np.geomspace(FIRST, max(demand.horizon, 2 * FIRST), 40)
     modes = system.modes
@@ -88,6 +92,8 @@ def _responses(system: ContactSystem, demand: Demand) -> np.ndarray:
             decay, vectors = np.linalg.eigh(np.diag(system.rates) + scaled @ scaled.T)
             source = vectors.T @ (system.ports @ (weights * drive))
             product = np.outer(times, np.maximum(decay, 0.0))
-            grown = times[:, None] * np.where(product > 1e-12, -np.expm1(-product) / np.maximum(product, 1e-300), 1.0)
+            grown = times[:, None] * np.where(
+                product > 1e-12, -np.expm1(-product) / np.maximum(product, 1e-300), 1.0
+            )
             cases.append(grown @ (source * (vectors.T @ system.drop[0])))
     return np.array(cases)

@@ -2,8 +2,8 @@
 nearly singular.
 
 Along a half side (a radius) a pattern is linear between graded nodes. Integrals are taken over strips (rings) of
-constant flux, PARTS to each interval, so that all closed forms are those of strips. The drop is within .0003 K of 12 K at
-any conductance; as many strips alone leave .005 K on small contacts of 1e5 W/(m2 K).
+constant flux, PARTS to each interval, so that all closed forms are those of strips. The drop is within .0003 K of 12 K
+at any conductance; as many strips alone leave .005 K on small contacts of 1e5 W/(m2 K).
 """
 
 from __future__ import annotations
