@@ -157,5 +157,9 @@ def _strip_kernel(edges: np.ndarray, half_width: float, tau: np.ndarray) -> np.n
 
 
 def _primitive(distance: np.ndarray, length: np.ndarray) -> np.ndarray:
-    ratio = distance / length
-    return distance * erf(ratio) + length / np.sqrt(np.pi) * np.exp(-(ratio**2))
+    distance, length = np.broadcast_arrays(distance, length)
+    primitive = np.abs(distance)
+    near = primitive < 6 * length  # beyond, the rest is below round-off
+    own, ratio = length[near], distance[near] / length[near]
+    primitive[near] = distance[near] * erf(ratio) + own / np.sqrt(np.pi) * np.exp(-(ratio**2))
+    return primitive
