@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     stderr), 130 for an interrupt."""
     given = list(sys.argv[1:] if argv is None else argv)
     try:
-        args = _parser(given).parse_args(given)
+        args = _parser(given).parse_args(given or ["--help"])
         status = args.run(args)
         sys.stdout.flush()  # a reader that has gone shows here, not at exit
         return status

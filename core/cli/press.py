@@ -28,6 +28,7 @@ _KEYWORDS = (
     "dt",
     "tolerance",
     "rung",
+    "opposite",
 )
 
 
@@ -57,6 +58,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--dt", type=float, default=0.02, help="spacing of the samples, s (default 0.02)")
     add("--tolerance", type=float, default=0.05, help="of the temperature drop, K (default 0.05)")
     add("--rung", default="auto", help="model: auto (default), or a name such as layered or network")
+    add(
+        "--opposite",
+        type=float,
+        help="conductance of a fingertip on the opposite face, W/(m2 K) (default none)",
+    )
+    add(
+        "--thermostat-power",
+        type=float,
+        metavar="W",
+        help="limit of the thermostat's heater (default: an ideal one)",
+    )
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
     add("--csv", metavar="FILE", help="write the curves")
     add("--plot", metavar="FILE", help="draw the curves: .svg, .png or .pdf")
@@ -70,7 +82,11 @@ def run(args: argparse.Namespace) -> int:
     csv, plot = target(args.csv, ()), target(args.plot, (".svg", ".png", ".pdf"))
     material = chosen_material(args.material, args.materials)
     keywords = {name: getattr(args, name) for name in _KEYWORDS}
-    result = thermal.press(material, **keywords, cache=not args.no_cache)
+    thermostat = None
+    if args.thermostat_power is not None:
+        first, around = args.sensor_temperature, args.object_temperature
+        thermostat = thermal.Thermostat(setpoint=first, ambient=around, power_limit=args.thermostat_power)
+    result = thermal.press(material, **keywords, thermostat=thermostat, cache=not args.no_cache)
     columns = {
         "time_s": result.t,
         "temperature_drop_K": result.temperature_drop,

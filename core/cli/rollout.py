@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import closing
 
 from thermograsp.cli.opengl import load_mujoco
 from thermograsp.cli.output import Output
@@ -48,13 +49,10 @@ def run(args: argparse.Namespace) -> int:
     at_once = min(args.num_envs, args.episodes)
     try:
         env = gymnasium.make_vec(args.env_id, num_envs=at_once, vectorization_mode="vector_entry_point")
-    except gymnasium.error.Error as error:
-        raise ThermograspError(f"cannot make {args.env_id!r}: {error}") from error
-    try:
-        with output.progress(args.episodes) as advance:
+        with closing(env), output.progress(args.episodes) as advance:
             result = rollout(env, args.episodes, args.seed, args.policy, args.max_steps, args.check, advance)
-    finally:
-        env.close()
+    except gymnasium.error.Error as error:
+        raise ThermograspError(f"cannot run {args.env_id!r}: {error}") from error
     output.line(f"{args.env_id}: {args.episodes} episodes, {result.steps} steps, policy {args.policy}")
     output.line(f"success  {result.successes} of {args.episodes}")
     output.line(f"return   {result.mean_return:.3f} (mean)")
