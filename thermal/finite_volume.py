@@ -11,7 +11,7 @@ Temperatures are arrays (D, I, J): D cells in depth, I and J along the two later
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,26 +20,34 @@ from scipy.linalg import eigh_tridiagonal
 
 
 def graded_cells(
-    breaks: Sequence[float], fine: Sequence[float], first: float, growth: float, largest: float, resolution: int = 1
+    breaks: Sequence[float], fine: Mapping[float, float], growth: float, largest: float, resolution: int = 1
 ) -> np.ndarray:
     """Cell boundaries (n + 1,) m that contain every break and shrink toward the fine points.
 
-    breaks: m, increasing, the ends included. A cell at distance d from the nearest fine point is about
-    first + growth * d long (first m at a fine point), and no longer than largest (m) by number. resolution: each cell
-    cut into so many, of equal ratio, so that the boundaries of a coarse grid are among those of a finer one.
+    breaks: m, increasing, the ends included. fine: points m and the length m of a cell there; at a distance d a cell is
+    about growth * d (growth > 0) longer, and in number there are no fewer than if none were longer than largest (m).
+    resolution: each cell cut into so many, of equal ratio, so that the boundaries of a coarse grid are among those of a
+    finer one.
     """
-    points = np.asarray(sorted(fine))
-    middles = (points[:-1] + points[1:]) / 2
-    knots = np.unique(np.concatenate((breaks, [p for p in (*points, *middles) if breaks[0] < p < breaks[-1]])))
+    points = np.array(sorted(fine))
+    lengths = np.array([fine[point] for point in points])
+    middles = (points[:-1] + points[1:]) / 2 + np.diff(lengths) / (
+        2 * growth
+    )  # as long seen from either side
+    knots = np.unique([*breaks, *(p for p in (*points, *middles) if breaks[0] < p < breaks[-1])])
     edges = [knots[:1]]
     for start, stop in zip(knots[:-1], knots[1:], strict=True):
         if stop - start < 1e-12 * (knots[-1] - knots[0]):
             continue
-        near, far = (first + growth * np.min(np.abs(points - x)) for x in (start, stop))
+        near, far = (np.min(lengths + growth * np.abs(points - x)) for x in (start, stop))
         count = max(abs(np.log(far / near)) / np.log1p(growth), (stop - start) / largest, 1.0)
         parts = resolution * int(np.ceil(count - 1e-9))
         fraction = np.arange(1, parts + 1) / parts
-        span = np.expm1(fraction * np.log(far / near)) / (far / near - 1) if near != far else fraction
+        span = (
+            np.expm1(fraction * np.log(far / near)) / (far / near - 1)
+            if abs(far / near - 1) > 1e-9
+            else fraction
+        )
         edges.append(start + (stop - start) * span)
     return np.concatenate(edges)
 
@@ -134,8 +142,10 @@ class Body:
     @cached_property
     def _surface_films(self) -> tuple[float, float]:
         """W/(m2 K) from the middles of the top and bottom cells to the surroundings."""
-        top, bottom = (0.0 if film == 0 else 1 / (1 / film + half)
-                       for film, half in ((self.top, self.half_resistance[0]), (self.bottom, self.half_resistance[-1])))
+        top, bottom = (
+            0.0 if film == 0 else 1 / (1 / film + half)
+            for film, half in ((self.top, self.half_resistance[0]), (self.bottom, self.half_resistance[-1]))
+        )
         return top, bottom
 
     @cached_property
@@ -188,7 +198,9 @@ class Body:
     def surface_heat(self, surroundings: tuple[float, float]) -> list[tuple[int, np.ndarray]]:
         """(row, W per cell) that the surroundings' temperatures alone drive into a body at 0."""
         films = zip((0, -1), self._surface_films, surroundings, strict=True)
-        return [(row, film * temperature * self.area) for row, film, temperature in films if film * temperature]
+        return [
+            (row, film * temperature * self.area) for row, film, temperature in films if film * temperature
+        ]
 
     def factor(self, step: float) -> FactoredBody:
         """The operator capacity + step * conduction (shielded cells not corrected), ready to be solved. step: s."""
@@ -246,7 +258,9 @@ class FactoredBody:
             x[n] *= self._pivots[n]
         return x
 
-    def response(self, into: int, at: int, into_cells: tuple[int, int], at_cells: tuple[int, int]) -> np.ndarray:
+    def response(
+        self, into: int, at: int, into_cells: tuple[int, int], at_cells: tuple[int, int]
+    ) -> np.ndarray:
         """(at, into) K/J: temperature of the cells next to the middle of row `at` per heat in those of row `into`."""
         unit = np.zeros_like(self._pivots)
         unit[into] = 1.0

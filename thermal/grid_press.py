@@ -91,14 +91,18 @@ def finest(half_width: float) -> float:
     return min(FIRST_CELL, 2e-3 * half_width)
 
 
-def contact_edges(problem: PressProblem, contact: float, sensor: float, reach: float, resolution: int) -> np.ndarray:
+def contact_edges(
+    problem: PressProblem, contact: float, sensor: float, reach: float, resolution: int
+) -> np.ndarray:
     """Cell boundaries m from the middle of the face out to reach, along one axis of the sensor or of the object.
 
-    contact, sensor: m, half widths or radii. Both bodies get the same boundaries as far as they touch.
+    contact, sensor: m, half widths or radii. Both bodies get the same boundaries as far as they touch. In O mode the
+    flux is singular at the edge of the bond; at the contact's the ceramic spreads it, so its cells may be longer.
     """
-    fine = [contact] if problem.mode == "T" else [contact, sensor]
+    edge = finest(contact)
+    fine = {contact: edge} if problem.mode == "T" else {contact: 0.05 * contact, sensor: edge}
     breaks = sorted({0.0, contact, sensor, max(reach, sensor)})
-    return graded_cells(breaks, fine, finest(contact), GROWTH, np.inf, resolution)
+    return graded_cells(breaks, fine, GROWTH, np.inf, resolution)
 
 
 def press_grid(
@@ -112,7 +116,9 @@ def press_grid(
     stack, material, size = problem.stack, problem.material, problem.object_size
     bounds = np.concatenate(([0.0], np.cumsum([layer.thickness for layer in stack.layers])))
     opening = [bounds[-1]] if problem.mode == "T" else [0.0, bounds[-1]]
-    depth = graded_cells(list(bounds), opening, finest_cell, GROWTH, bounds[-1] / 24, resolution)
+    depth = graded_cells(
+        list(bounds), dict.fromkeys(opening, finest_cell), GROWTH, bounds[-1] / 24, resolution
+    )
     layer_of = np.searchsorted(bounds, (depth[1:] + depth[:-1]) / 2) - 1
     sensor = Body(
         *axes[SENSOR],
@@ -122,7 +128,7 @@ def press_grid(
         top=np.inf if problem.mode == "T" else 0.0,
     )
     touched = cells if problem.mode == "T" else sensor.area.shape
-    depth = graded_cells([0.0, size[2]], [0.0], finest_cell, GROWTH, size[2] / 6, resolution)
+    depth = graded_cells([0.0, size[2]], {0.0: finest_cell}, GROWTH, size[2] / 6, resolution)
     body = Body(
         *axes[OBJECT],
         edges=depth,
@@ -145,7 +151,9 @@ def press_grid(
     return Grid((sensor, body), interfaces, thermostat, first, (int(sensed[0]), int(sensed[-1]) + 1))
 
 
-def march(problem: PressProblem, grid: Grid, t: np.ndarray, step_per_time: float = STEP_PER_TIME) -> PressCurves:
+def march(
+    problem: PressProblem, grid: Grid, t: np.ndarray, step_per_time: float = STEP_PER_TIME
+) -> PressCurves:
     """Curves of a press at the times t (n,) s, increasing from 0 or later; the touch is at 0.
 
     A conductance that is a function of time is seen at the times t and halfway between them, and where it jumps the
@@ -243,7 +251,11 @@ def _reading(grid: Grid, state: list[np.ndarray], thermostat: float, conductance
         if n == 0 and contact.above is not None:
             return thermostat
         half = sensor.half_resistance
-        means = [np.sum(sensor.area * state[SENSOR][m]) / sensor.area.sum() for m in (n - 1, n) if 0 <= m < len(half)]
+        means = [
+            np.sum(sensor.area * state[SENSOR][m]) / sensor.area.sum()
+            for m in (n - 1, n)
+            if 0 <= m < len(half)
+        ]
         if n == 0:
             return means[0] + flows[0].sum() / sensor.area.sum() * half[TOP]
         if n == len(half):
