@@ -28,7 +28,7 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import SuperLU, splu
 from skfem import Basis, BilinearForm, ElementHex2, FacetBasis, LinearForm, MeshHex
 from skfem.element import DiscreteField
-from skfem.helpers import dot, grad
+from skfem.helpers import dot
 
 from thermograsp.thermal.layers import sensor
 from thermograsp.thermal.materials import material
@@ -89,7 +89,7 @@ class System:
 
 @BilinearForm
 def _conduction(u, v, w):
-    return w.value * dot(grad(u), grad(v))
+    return w.value * dot(u.grad, v.grad)
 
 
 @BilinearForm
@@ -149,10 +149,11 @@ class Block:
 def toward(start: float, stop: float, count: int, last: float) -> np.ndarray:
     """count + 1 mesh lines from start to stop, the intervals shrinking in equal ratio to `last` (m) at stop."""
     length = abs(stop - start)
+    powers = np.arange(count)
     ratio = 1.0
     if count > 1 and last * count < length:
-        ratio = brentq(lambda r: last * np.sum(r ** -np.arange(count)) - length, 1e-4, 1.0)
-    widths = ratio ** np.arange(count)
+        ratio = float(np.asarray(brentq(lambda r: last * np.sum(r**-powers) - length, 1e-4, 1.0)))
+    widths = ratio**powers
     return start + (stop - start) * np.concatenate(([0.0], np.cumsum(widths))) / widths.sum()
 
 
@@ -212,7 +213,8 @@ def blocks(problem: PressProblem, refine: float) -> tuple[Block, Block, float]:
     )
     depth = problem.object_size[2]
     lower = Block(
-        *sides,
+        sides[0],
+        sides[1],
         toward(-depth, 0.0, cells(7), last),
         [-depth, 0.0],
         [problem.material.conductivity],
@@ -241,7 +243,8 @@ def assemble(problem: PressProblem, refine: float) -> System:
     rows = np.arange(len(above))
     jump = sparse.csr_matrix((np.ones(len(above)), (rows, above)), shape=(len(above), total))
     source = np.zeros(total)
-    difference, conductance = problem.temperature_difference, float(problem.conductance)
+    assert not callable(problem.conductance)  # blocks() has refused it
+    difference, conductance = problem.temperature_difference, problem.conductance
     area = weights.sum()
     if problem.mode == "T":
         below = lower.nodes(lower.face(2, 0.0, patch)) + offset
@@ -339,7 +342,8 @@ def run(
 
     def read(v: np.ndarray) -> list[float]:
         u = system.spread @ v + system.fixed
-        return [system.drop @ u, system.contact @ u + system.contact_source, *(system.stored @ u)]
+        flow = system.contact @ u + system.contact_source
+        return [float(system.drop @ u), float(flow), *(system.stored @ u).tolist()]
 
     v, now, step = system.initial, 0.0, first_step
     times, readings, passed = [0.0], [read(v)], [0.0]

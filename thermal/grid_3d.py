@@ -39,7 +39,7 @@ def solve(
     """Curves at the times t (n,) s by finite volumes in x, y, z and SDIRK2 in time.
 
     resolution: 1, 2, ...; step_per_time: length of a step over the time since the touch or the last jump of the
-    conductance. Both errors fall with the square of the step. On the seed's geometry resolution 1 is within .02 K of the
-    drop in half a second, 2 within .005 K in some seconds, 4 within .001 K in minutes.
+    conductance. Both errors fall with the square of the step. On the seed's geometry resolution 1 is within .02 K of
+    the drop in half a second, 2 within .005 K in some seconds, 4 within .001 K in minutes.
     """
     return march(problem, grid(problem, resolution), t, step_per_time)

@@ -1,9 +1,9 @@
 """Two finite-volume bodies and the cells through which they touch: rates of heat, and one implicit stage of both.
 
-The bodies touch along few cells. Within a step each body is solved by itself (finite_volume), and the heat that crosses
-follows from a dense system as large as the number of touching cells, (I + sqrt(U) G sqrt(U)) y = sqrt(U) gap, with U the
-cells' conductances and G the bodies' response. It is symmetric positive definite for every conductance from 0 to
-infinity, and only it changes when the conductance does.
+The bodies touch along few cells. Within a step each body is solved by itself (finite_volume), and the heat that
+crosses follows from a dense system as large as the number of touching cells, (I + sqrt(U) G sqrt(U)) y = sqrt(U) gap,
+with U the cells' conductances and G the bodies' response. It is symmetric positive definite for every conductance from
+0 to infinity, and only it changes when the conductance does.
 
 Temperatures are differences to the object's first temperature, which is also the air's. Arrays as in finite_volume.
 """
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve, lu_factor, lu_solve
 
 from .finite_volume import Body, FactoredBody
 
@@ -26,8 +26,8 @@ TOP, BOTTOM = 0, -1
 class Interface:
     """Cells that touch: (i, j) next to the middle of the sensor's row and of the object's top.
 
-    above: body whose bottom (or, for the thermostat, None) lies above; below: body whose top lies below. bonded: the two
-    are one solid, else the press's conductance is between them.
+    above: body whose bottom (or, for the thermostat, None) lies above; below: body whose top lies below. bonded: the
+    two are one solid, else the press's conductance is between them.
     """
 
     above: int | None
@@ -197,16 +197,16 @@ class _Shield:
         body = factored.body
         self._film = factored.step * body.shielded_film
         self._own = factored.response(TOP, TOP, body.shielded, body.shielded)
-        self._matrix = np.eye(self._film.size) - self._own * self._film.ravel()
+        self._matrix = lu_factor(np.eye(self._film.size) - self._own * self._film.ravel(), check_finite=False)
         self._true = self.correct(self._own)
 
     def correct(self, response: np.ndarray) -> np.ndarray:
         """Response of the covered cells without their film."""
-        return np.linalg.solve(self._matrix, response)
+        return lu_solve(self._matrix, response, check_finite=False)
 
     def correct_temperatures(self, u: np.ndarray) -> np.ndarray:
         """The covered cells' temperatures without their film, no heat crossing."""
-        return np.linalg.solve(self._matrix, u.ravel()).reshape(u.shape)
+        return self.correct(u.ravel()).reshape(u.shape)
 
     def total_heat(self, free: np.ndarray, heat: np.ndarray) -> np.ndarray:
         """What to put into the separable operator so that it answers like the body: heat and the film's share back."""

@@ -194,7 +194,7 @@ def march(
 def _knots(
     t: np.ndarray, conductance: Callable[[float], float], reach: float, changes: bool, step_per_time: float
 ) -> Iterator[float]:
-    """Ends of the steps: halves of halves of the whole time, or of the time between samples if the conductance changes."""
+    """Ends of the steps: halves of halves of the whole time, or of that between samples if the conductance changes."""
     positive = t[t > 0]
     if not len(positive):
         return

@@ -104,10 +104,8 @@ def test_separated_solve_equals_the_assembled_sparse_operator():
     state = rng.normal(size=body.capacity.shape)
 
     def line(axis):
-        links = sparse.diags_array([axis.links], offsets=[0])
-        difference = sparse.diags_array(
-            [-1.0, 1.0], offsets=[0, 1], shape=(len(axis.links), len(axis.volumes))
-        )
+        links = sparse.diags_array(axis.links)
+        difference = sparse.csr_array(np.diff(np.eye(len(axis.volumes)), axis=0))
         end = np.zeros(len(axis.volumes))
         end[-1] = axis.end
         return difference.T @ links @ difference + sparse.diags_array(end)
@@ -115,7 +113,7 @@ def test_separated_solve_equals_the_assembled_sparse_operator():
     volumes = [sparse.diags_array(axis.volumes) for axis in (body.first, body.second)]
     thickness = np.diff(body.edges)
     half = thickness / 2 / body.conductivity
-    difference = sparse.diags_array([-1.0, 1.0], offsets=[0, 1], shape=(len(half) - 1, len(half)))
+    difference = sparse.csr_array(np.diff(np.eye(len(half)), axis=0))
     deep = difference.T @ sparse.diags_array(1 / (half[:-1] + half[1:])) @ difference
     layer = sparse.diags_array(body.conductivity * thickness)
     films = np.zeros(body.capacity.shape)
@@ -206,7 +204,8 @@ def _inverse(transform, t: np.ndarray, nodes: int = 24) -> np.ndarray:
 
 def exact_1d(problem: PressProblem, t: np.ndarray) -> np.ndarray:
     """Temperature drop where the plate is as wide as the sensor: layers in series by transfer matrices."""
-    plate, difference = problem.material, problem.temperature_difference
+    plate, difference, conductance = problem.material, problem.temperature_difference, problem.conductance
+    assert not callable(conductance)
 
     def matrix(s, thickness, conductivity, capacity):
         q = np.sqrt(s * capacity / conductivity)
@@ -235,12 +234,7 @@ def exact_1d(problem: PressProblem, t: np.ndarray) -> np.ndarray:
             unit = np.array([np.zeros_like(s), np.ones_like(s)])
             theta, flux = down(unit, n)
             # object = dT/s + theta f - flux f / h; flux f = admittance * object
-            f = (
-                admittance
-                * difference
-                / s
-                / (flux * (1 + admittance / problem.conductance) - admittance * theta)
-            )
+            f = admittance * difference / s / (flux * (1 + admittance / conductance) - admittance * theta)
             ends = [down(unit, to)[0] * f for to in (sensed, sensed + 1)]
         else:  # f = h (dT/s - theta_top), bonded below
             cold, warm = (
@@ -248,7 +242,7 @@ def exact_1d(problem: PressProblem, t: np.ndarray) -> np.ndarray:
             )
             (tf, ff), (tt, ft) = down(cold, n), down(warm, n)
             impedance = (ff - admittance * tf) / (admittance * tt - ft)  # top temperature per top flux
-            f = difference / s / (impedance + 1 / problem.conductance)
+            f = difference / s / (impedance + 1 / conductance)
             top = np.array([impedance * f, f])
             ends = [down(top, to)[0] for to in (sensed, sensed + 1)]
         return ends[0] - ends[1]
