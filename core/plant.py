@@ -52,7 +52,9 @@ class Plant(Protocol):
     sample_rate: float
     num_envs: int
 
-    def reset(self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]) -> Reading:
+    def reset(
+        self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
+    ) -> Reading:
         """Start the named environments anew, each drawing from its own generator; the reading is of all."""
         ...
 
@@ -65,7 +67,9 @@ class Plant(Protocol):
         ...
 
 
-_SCHEMES: Mapping[str, str] = MappingProxyType({"simulated": "thermograsp.envs.simulated_plant:simulated_plant"})
+_SCHEMES: Mapping[str, str] = MappingProxyType(
+    {"simulated": "thermograsp.envs.simulated_plant:simulated_plant"}
+)
 
 
 def plant_factory(url: str) -> Callable[..., Plant]:

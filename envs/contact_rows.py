@@ -16,8 +16,8 @@ _FIELDS = tuple(field.name for field in fields(Joint))
 
 
 class ContactRows:
-    """The contact laws of `num_envs` environments. Flat contacts have a constant area and share of the force; curved ones
-    follow the force, object by object."""
+    """The contact laws of `num_envs` environments. Flat contacts have a constant area and share of the force; curved
+    ones follow the force, object by object."""
 
     def __init__(self, num_envs: int) -> None:
         self._joint = {name: np.ones(num_envs) for name in _FIELDS}
@@ -37,8 +37,9 @@ class ContactRows:
         self._groups = None
 
     def mean_contact(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Conductance W/(m2 K) and area m2, both (B, F), whose product is the mean of their products over the substeps of
-        the normal forces (B, S, F) N; both 0 where nothing presses. The area is the mean over the pressing substeps."""
+        """Conductance W/(m2 K) and area m2, both (B, F), whose product is the mean of their products over the
+        substeps of the normal forces (B, S, F) N; both 0 where nothing presses. The area is the mean over the
+        pressing substeps."""
         conductance, mean_area = np.zeros(force.shape[::2]), np.zeros(force.shape[::2])
         rows = np.flatnonzero(np.any(force > 0, axis=(1, 2)))
         if not len(rows):

@@ -39,9 +39,13 @@ def command_of(action: np.ndarray) -> Command:
         )
     if not np.isfinite(array).all():
         row = int(np.argmax(~np.isfinite(array).all(axis=1)))
-        raise InvalidValueError(f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1")
+        raise InvalidValueError(
+            f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
+        )
     array = np.clip(array, -1.0, 1.0)
-    return Command((array[:, 0] + 1) / 2 * MAX_OPENING, (array[:, 1] + 1) / 2 * MAX_FORCE, array[:, 2] * MAX_LIFT_RATE)
+    return Command(
+        (array[:, 0] + 1) / 2 * MAX_OPENING, (array[:, 1] + 1) / 2 * MAX_FORCE, array[:, 2] * MAX_LIFT_RATE
+    )
 
 
 def action_of(opening: float, force_limit: float, lift_rate: float) -> np.ndarray:
@@ -73,8 +77,8 @@ class Step:
 
 
 class GraspBatch:
-    """`num_envs` grasp environments over a plant. task: what is judged. plant: "simulated" or a URL. Other keywords go to
-    the plant (SimulationConfig)."""
+    """`num_envs` grasp environments over a plant. task: what is judged. plant: "simulated" or a URL. Other keywords
+    go to the plant (SimulationConfig)."""
 
     def __init__(
         self, num_envs: int = 1, *, plant: str = "simulated", task: GraspTask | None = None, **config: Any
@@ -96,7 +100,10 @@ class GraspBatch:
         return self.plant.dt
 
     def reset(
-        self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any] | None = None
+        self,
+        rows: Sequence[int],
+        rngs: Sequence[np.random.Generator],
+        options: Mapping[str, Any] | None = None,
     ) -> tuple[Observation, list[dict[str, Any]]]:
         """Starts the rows anew, each with its generator; the observations are of all environments."""
         reading = self.plant.reset(rows, rngs, options or {})
@@ -114,17 +121,21 @@ class GraspBatch:
         return _copies(seen), self._infos(reading, None)
 
     def step(self, action: np.ndarray) -> Step:
-        """One control step of all environments. action: (B, 3). An environment whose simulation broke down is truncated,
-        the reason in info["error"], with its last finite observation."""
+        """One control step of all environments. action: (B, 3). An environment whose simulation broke down is
+        truncated, the reason in info["error"], with its last finite observation."""
         command = command_of(action)
         reading = self.plant.step(command)
         broken = np.array([bool(error) for error in reading.error])
         seen = self._observer.observe(reading, command)
         if broken.any():
-            seen = {name: _where(np.flatnonzero(~broken), value, self._last[name]) for name, value in seen.items()}
+            seen = {
+                name: _where(np.flatnonzero(~broken), value, self._last[name]) for name, value in seen.items()
+            }
         lift = np.asarray(reading.truth.get("lift", reading.height), float)
         crushing = np.asarray(reading.truth.get("crushing_force", np.full(self.num_envs, np.inf)))
-        self._judged, outcome = judge(self.task, self._judged, self.dt, reading.force[:, :, 0], lift, crushing)
+        self._judged, outcome = judge(
+            self.task, self._judged, self.dt, reading.force[:, :, 0], lift, crushing
+        )
         infos = self._infos(reading, outcome)
         for row in np.flatnonzero(broken):
             infos[row]["error"] = reading.error[row]
@@ -148,7 +159,8 @@ class GraspBatch:
         )
 
     def set_state(self, state: BatchState) -> tuple[np.random.Generator, ...]:
-        """Puts the batch into a state: what follows is bit-identical to what followed it first. Returns the generators."""
+        """Puts the batch into a state: what follows is bit-identical to what followed it first. Returns the
+        generators."""
         state = copy.deepcopy(state)
         plant: Any = self.plant
         rngs = plant.set_state(range(self.num_envs), state.plant)

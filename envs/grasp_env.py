@@ -31,17 +31,18 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
     | voltage | (2, 16) | heat flux sensors after the ADC, oldest first, 100 Hz | V |
     | thermostat | (2,) | temperature of the thermostats | °C |
 
-    Reward per second: .2 while both fingertips press, .3 times the share of 5 cm reached, .5 while held there; 1 once on
-    success, -1 on dropping or crushing. Ends with success after hold_seconds at 5 cm, on dropping and crushing; truncated
-    after `seconds`.
+    Reward per second: .2 while both fingertips press, .3 times the share of 5 cm reached, .5 while held there; 1 once
+    on success, -1 on dropping or crushing. Ends with success after hold_seconds at 5 cm, on dropping and crushing;
+    truncated after `seconds`.
 
-    info: success; in simulation also material, temperature_drop (2,) K, contact_area (2,) m2, conductance (2,) W/(m2 K),
-    rung, events (of this step: (kind, fingertip)); dropped or crushed where it ended so; error where the simulation
-    broke down.
+    info: success; in simulation also material, temperature_drop (2,) K, contact_area (2,) m2, conductance (2,) W/(m2
+    K), rung, events (of this step: (kind, fingertip)); dropped or crushed where it ended so; error where the
+    simulation broke down.
 
-    Keywords: material (a name, a Material, a list, None = the ten seed materials; drawn per episode), mode ("T", "O"),
-    plant ("simulated" or a URL), objects (ObjectSpec), tolerance (K), hold_seconds and seconds (s), render_mode ("human",
-    "rgb_array"), and the fields of SimulationConfig. reset(options={"material": name}) fixes one episode's material.
+    Keywords: material (a name, a Material, a list, None = the ten seed materials; drawn per episode), mode ("T",
+    "O"), plant ("simulated" or a URL), objects (ObjectSpec), tolerance (K), hold_seconds and seconds (s), render_mode
+    ("human", "rgb_array"), and the fields of SimulationConfig. reset(options={"material": name}) fixes one episode's
+    material.
     """
 
     metadata: dict[str, Any] = {"render_modes": RENDER_MODES, "render_fps": FRAMES_PER_SECOND}  # noqa: RUF012
@@ -60,7 +61,7 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
         if render_mode is not None and render_mode not in RENDER_MODES:
             raise unknown_name("render_mode", render_mode, RENDER_MODES)
         self.batch = GraspBatch(1, task=GraspTask(hold_seconds, seconds), **config)
-        self.observation_space = self.batch.observation_space
+        self.observation_space: gymnasium.spaces.Dict = self.batch.observation_space  # pyright: ignore
         self.action_space = self.batch.action_space
         self.render_mode = render_mode
         self._picture = (camera, width, height)
@@ -107,8 +108,8 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
         )
 
     def render(self) -> np.ndarray | None:
-        """(height, width, 3) uint8 in "rgb_array", None in "human" (a window). Fingertips and object are coloured by their
-        temperature. Raises MissingDependencyError, naming the packages, where there is no GL library."""
+        """(height, width, 3) uint8 in "rgb_array", None in "human" (a window). Fingertips and object are coloured by
+        their temperature. Raises MissingDependencyError, naming the packages, where there is no GL library."""
         if self.render_mode is None:
             gymnasium.logger.warn("render() without a render_mode: give render_mode='rgb_array' or 'human'")
             return None

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import gymnasium
 import numpy as np
+from gymnasium.utils.seeding import np_random
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
@@ -19,8 +19,8 @@ from .tasks import GraspTask
 class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
     """`num_envs` grasp environments; observation, action, info and keywords as GraspEnv's.
 
-    Environment i of a batch reset with seed s is the single environment reset with s + i, bit for bit. An environment that
-    ended is reset by the next step, which ignores its action (autoreset NEXT_STEP).
+    Environment i of a batch reset with seed s is the single environment reset with s + i, bit for bit. An environment
+    that ended is reset by the next step, which ignores its action (autoreset NEXT_STEP).
     """
 
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": []}  # noqa: RUF012
@@ -71,11 +71,11 @@ class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
             seeds = list(seed) if seed is not None else [None] * self.num_envs
         if len(seeds) != self.num_envs:
             raise InvalidValueError(f"seed lists {len(seeds)} values for {self.num_envs} environments")
-        rngs = self._rngs or [gymnasium.utils.seeding.np_random(None)[0] for _ in range(self.num_envs)]
+        rngs = self._rngs or [np_random(None)[0] for _ in range(self.num_envs)]
         rows = [int(row) for row in np.flatnonzero(mask)]
         for row in rows:
             if seeds[row] is not None:
-                rngs[row] = gymnasium.utils.seeding.np_random(seeds[row])[0]
+                rngs[row] = np_random(seeds[row])[0]
         self._rngs = rngs
         seen, infos = self.batch.reset(rows, [rngs[row] for row in rows], options)
         self._ended[rows] = False

@@ -10,7 +10,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..thermal import ContactSystem, Demand, HeatTables, advance_heat, forget_field, heat_tables, network_for, shift_thermostats
+from ..thermal import (
+    ContactSystem,
+    Demand,
+    HeatTables,
+    advance_heat,
+    forget_field,
+    heat_tables,
+    network_for,
+    shift_thermostats,
+)
 from .contact_rows import ContactRows
 from .things import Thing
 
@@ -21,10 +30,10 @@ LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
 
 @dataclass(frozen=True, slots=True)
 class HeatState:
-    """Everything that the heat of some environments remembers; picklable. state (B, K). difference (B, F) K, sensor less
-    object when both were uniform. begun (B,): something has touched. touching (B, F). known (B, F): whether there
-    is a patch, and anchor (B, F, 3) m where on the object, in its frame, it is. offset (B, F) K of the thermostats and stored (B, F) J
-    that the elements gained. things: each environment's object."""
+    """Everything that the heat of some environments remembers; picklable. state (B, K). difference (B, F) K, sensor
+    less object when both were uniform. begun (B,): something has touched. touching (B, F). known (B, F): whether
+    there is a patch, and anchor (B, F, 3) m where on the object, in its frame, it is. offset (B, F) K of the
+    thermostats and stored (B, F) J that the elements gained. things: each environment's object."""
 
     state: np.ndarray
     difference: np.ndarray
@@ -39,11 +48,11 @@ class HeatState:
 
 @dataclass(frozen=True, slots=True)
 class HeatStep:
-    """One control step. drop (B, N, F) K at the end of each heat sample. conductance (B, F) W/(m2 K) and area (B, F) m2 of
-    the contact: their product, the mean over the substeps, is what heat saw. sensor_surface, object_surface (B, F) °C,
-    means over the contact. object_temperature (B,) °C, the object's mean. heat (B, 3) J gained by left element, right
-    element and object. flow (B, F) W into the object's side and air_loss (B,) W, the step's means. drawn (B, F) W from the
-    thermostats. events: per environment (kind, fingertip).
+    """One control step. drop (B, N, F) K at the end of each heat sample. conductance (B, F) W/(m2 K) and area (B, F)
+    m2 of the contact: their product, the mean over the substeps, is what heat saw. sensor_surface, object_surface (B,
+    F) °C, means over the contact. object_temperature (B,) °C, the object's mean. heat (B, 3) J gained by left
+    element, right element and object. flow (B, F) W into the object's side and air_loss (B,) W, the step's means.
+    drawn (B, F) W from the thermostats. events: per environment (kind, fingertip).
     """
 
     drop: np.ndarray
@@ -60,8 +69,9 @@ class HeatStep:
 
 
 class GraspHeat:
-    """The thermal side of `num_envs` grasps. tolerance: K. air: W/(m2 K) on the objects. dt: s, spacing of heat samples,
-    `samples` of them in a control step. sensor_temperature: °C of the thermostats. cache: keep networks on disk."""
+    """The thermal side of `num_envs` grasps. tolerance: K. air: W/(m2 K) on the objects. dt: s, spacing of heat
+    samples, `samples` of them in a control step. sensor_temperature: °C of the thermostats. cache: keep networks on
+    disk."""
 
     def __init__(
         self,
@@ -234,7 +244,9 @@ class GraspHeat:
         events: list[list[tuple[str, str]]] = [[] for _ in touching]
         renewed = np.zeros(len(touching), bool)
         moved = self._distance(place) > self._reach[:, None]
-        for row, side in np.argwhere((touching != self._touching) | (touching & moved & ~self._glued[:, None])):
+        for row, side in np.argwhere(
+            (touching != self._touching) | (touching & moved & ~self._glued[:, None])
+        ):
             tip = ("left", "right")[side]
             if not touching[row, side]:
                 events[row].append(("release", tip))

@@ -24,8 +24,10 @@ def observation_space() -> gymnasium.spaces.Dict:
     fingertip, pad frame. voltage (2, 16) V after the ADC, oldest first. thermostat (2,) °C. float32, finite bounds."""
 
     def box(low: object, high: object, shape: tuple[int, ...]) -> gymnasium.spaces.Box:
-        bounds = [np.broadcast_to(np.asarray(bound, np.float32), shape).copy() for bound in (low, high)]
-        return gymnasium.spaces.Box(*bounds, dtype=np.float32)
+        lowest, highest = (
+            np.broadcast_to(np.asarray(bound, np.float32), shape).copy() for bound in (low, high)
+        )
+        return gymnasium.spaces.Box(low=lowest, high=highest, dtype=np.float32)
 
     return gymnasium.spaces.Dict(
         {

@@ -46,12 +46,12 @@ _TORSION, _ROLLING = 0.005, 0.0001  # m, MuJoCo's defaults; a flat patch has its
 class ObjectSpec:
     """One object on the table. Hashable; the frame is the centre of its bounding box.
 
-    shape: box, cylinder (standing), sphere or mesh. size: m, full extents (x, y, z) in the object's frame; a
-    mesh takes them from its file. mass: kg, or density: kg/m3 (at most one; neither means 0.1 kg). friction: sliding
-    coefficient of every contact of the object (None: 0.8). position: m, (x, y) of its centre on the table, the gripper's is
-    (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`.
-    elements: (side, thickness) m of square plates without mass glued on where the pads meet it, None for none.
-    Raises InvalidValueError, UnknownNameError (shape), or MeshError (file).
+    shape: box, cylinder (standing), sphere or mesh. size: m, full extents (x, y, z) in the object's frame; a mesh
+    takes them from its file. mass: kg, or density: kg/m3 (at most one; neither means 0.1 kg). friction: sliding
+    coefficient of every contact of the object (None: 0.8). position: m, (x, y) of its centre on the table, the
+    gripper's is (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`. elements: (side,
+    thickness) m of square plates without mass glued on where the pads meet it, None for none. Raises
+    InvalidValueError, UnknownNameError (shape), or MeshError (file).
     """
 
     name: str = "object"

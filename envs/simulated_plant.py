@@ -50,11 +50,12 @@ SEED_MATERIALS = (
 
 @dataclass(frozen=True, slots=True)
 class SimulationConfig:
-    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed materials.
-    mode: T or O. objects: the object's shape (density and friction are the material's where it gives none). tolerance: K that the
-    thermal network keeps. air: W/(m2 K). Temperatures in °C. thermostat: one of finite power (its setpoint is sensor_temperature), None for an ideal one. placement: m and degree; the object lies within +- these of
-    the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). threads: of MuJoCo, 0 for all.
-    cache: keep thermal networks on disk."""
+    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed
+    materials. mode: T or O. objects: the object's shape (density and friction are the material's where it gives
+    none). tolerance: K that the thermal network keeps. air: W/(m2 K). Temperatures in °C. thermostat: one of finite
+    power (its setpoint is sensor_temperature), None for an ideal one. placement: m and degree; the object lies within
+    +- these of the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). threads: of
+    MuJoCo, 0 for all. cache: keep thermal networks on disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -89,7 +90,9 @@ class SimulationConfig:
         given = SEED_MATERIALS if self.material is None else self.material
         listed = [given] if isinstance(given, str | Material) else list(given)
         if not listed:
-            raise InvalidValueError(f"material is an empty list: give one of {len(materials())} names, or None")
+            raise InvalidValueError(
+                f"material is an empty list: give one of {len(materials())} names, or None"
+            )
         return tuple(material(name) for name in listed)
 
     @property
@@ -152,8 +155,11 @@ class SimulatedPlant:
         """The mujoco.MjModel of the first environment's scene."""
         return self.mechanics.model
 
-    def reset(self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]) -> Reading:
-        """Starts the rows anew: draws material and placement, opens the gripper. options: material, for this episode."""
+    def reset(
+        self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
+    ) -> Reading:
+        """Starts the rows anew: draws material and placement, opens the gripper. options: material, for this
+        episode."""
         unknown = set(options) - {"material"}
         if unknown:
             raise InvalidValueError(f"unknown reset options {sorted(unknown)}: material is known")
@@ -164,12 +170,16 @@ class SimulatedPlant:
         for row, rng in zip(rows, rngs, strict=True):
             chosen = choices[int(rng.integers(len(choices)))]
             x, y, angle = rng.uniform(-1.0, 1.0, 3)
-            spec = replace(self._shape, position=(x * reach, y * reach), yaw=self._shape.yaw + np.deg2rad(angle * turn))
+            spec = replace(
+                self._shape, position=(x * reach, y * reach), yaw=self._shape.yaw + np.deg2rad(angle * turn)
+            )
             self.things[row] = self._thing(chosen, spec)
             self._rngs[row] = rng
         things = [self.things[row] for row in rows]
         self.mechanics.reset(rows, [(thing.spec,) for thing in things])
-        self.heat.reset(rows, [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things])
+        self.heat.reset(
+            rows, [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things]
+        )
         both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
         for values in (self._signal.filtered, self._signal.last):
             values[both] = 0.0
@@ -211,8 +221,8 @@ class SimulatedPlant:
         )
 
     def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
-        """Puts the rows into a state; what follows is bit-identical to what followed it first. Returns the generators the
-        rows now draw from."""
+        """Puts the rows into a state; what follows is bit-identical to what followed it first. Returns the generators
+        the rows now draw from."""
         chosen = list(rows)
         self.mechanics.set_state(state.mechanics, np.array(chosen))
         self.heat.set_state(chosen, state.heat)

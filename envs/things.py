@@ -62,8 +62,8 @@ class Thing:
 
     @cached_property
     def plate(self) -> tuple[float, float, float]:
-        """(width, depth, thickness) m of the plate that stands for the object: as thick as it is between the fingers, of
-        the same volume, and as wide to high as its bounding box; never narrower than the sensor's face."""
+        """(width, depth, thickness) m of the plate that stands for the object: as thick as it is between the fingers,
+        of the same volume, and as wide to high as its bounding box; never narrower than the sensor's face."""
         x, y, z = self.spec.size
         area = self.spec.volume / x
         side = self.stack.width
@@ -81,7 +81,9 @@ class Thing:
         """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE."""
         area = float(self.contact(np.array(NOMINAL_FORCE)).face)
         if not area > 0:
-            raise InvalidValueError(f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face")
+            raise InvalidValueError(
+                f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face"
+            )
         area = min(area, self.stack.face_area)
         return Geometry(self.stack, self.material, self.mode, area, "square", self.plate, self.fingertips)
 

@@ -73,7 +73,8 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
     modes = np.array([s.modes for s in systems])
     k, m = int(states.max()), int(modes.max()) * fingertips
     rows = {
-        name: np.zeros((count, fingertips, k)) for name in ("drop", "element_heat", "sensor_surface", "object_surface")
+        name: np.zeros((count, fingertips, k))
+        for name in ("drop", "element_heat", "sensor_surface", "object_surface")
     }
     tables = HeatTables(
         dt=dt,
@@ -94,7 +95,10 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
         n, p = len(system.rates), system.ports.shape[1]
         stepper = propagator(with_air(system, film), system.ports, dt)
         tables.rates[i, :n], tables.ports[i, :p, :n] = stepper.rates, stepper.ports.T
-        tables.scale_real[i, :, :n], tables.scale_imag[i, :, :n] = stepper.scale.real, stepper.scale.imag
+        tables.scale_real[i, :, :n], tables.scale_imag[i, :, :n] = (
+            np.real(stepper.scale),
+            np.imag(stepper.scale),
+        )
         tables.gram[i, :, :p, :p] = stepper.gram
         for name, table in rows.items():
             table[i, :, :n] = getattr(system, name)
@@ -134,8 +138,8 @@ def advance_heat(
 
 
 def forget_field(tables: HeatTables, network: np.ndarray, state: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """State (B, K) with the object of the given rows (B,) bool at its mean temperature throughout: what a touch at a new
-    place finds. The object's heat is unchanged (only its mean state holds any); the fingertips' states stay."""
+    """State (B, K) with the object of the given rows (B,) bool at its mean temperature throughout: what a touch at a
+    new place finds. The object's heat is unchanged (only its mean state holds any); the fingertips' states stay."""
     state = state.copy()
     for row in np.flatnonzero(rows):
         table = network[row]

@@ -95,7 +95,8 @@ class Geometry:
     def slabs(self) -> tuple[Slab, ...]:
         """The element's layers, thermostat side first."""
         return tuple(
-            Slab(layer.thickness, layer.conductivity, layer.volumetric_heat_capacity) for layer in self.stack.layers
+            Slab(layer.thickness, layer.conductivity, layer.volumetric_heat_capacity)
+            for layer in self.stack.layers
         )
 
     def _centred(self, area: float) -> Patch:
@@ -135,7 +136,7 @@ def _sensor(geometry: Geometry, s: np.ndarray) -> BodySamples:
     impedance = layered_impedance(slabs, "isothermal", section, patch, s)
     temperatures, flows = stack_profile(slabs, "isothermal", s[:, None], np.zeros(1))
     sensed = len(slabs) - 1 - geometry.stack.sensed
-    drop = (temperatures[sensed + 1] - temperatures[sensed])[:, 0] / section.area  
+    drop = (temperatures[sensed + 1] - temperatures[sensed])[:, 0] / section.area
     stored = ((flows[0] - flows[-1])[:, 0]) / s
     outputs = {"drop": np.outer(drop, patch.uniform), "element": np.outer(stored, patch.uniform)}
     return BodySamples(impedance, np.inf, outputs)
@@ -152,7 +153,8 @@ def _object(geometry: Geometry, parity: str, s: np.ndarray) -> BodySamples:
 
 
 def _element(geometry: Geometry, s: np.ndarray) -> tuple[Sampled, Sampled, Sampled]:
-    """The element alone, both faces adiabatic: its impedance at the contact, at the bond, and across, (S, bond, contact)."""
+    """The element alone, both faces adiabatic: its impedance at the contact, at the bond, and across, (S, bond,
+    contact)."""
     slabs, section = geometry.slabs, geometry.element_section
     top, bond = geometry.patch, geometry.face
     return (
@@ -173,7 +175,9 @@ def _bonded(
     if parity == "even":
         plate = plate + _pole(bond, geometry.object_capacity, s)
     at_bond = own_bond + plate
-    bond_flow = np.linalg.solve(at_bond.value, across.value)  # flux patterns over the bond per pattern over the contact
+    bond_flow = np.linalg.solve(
+        at_bond.value, across.value
+    )  # flux patterns over the bond per pattern over the contact
     value = own.value - np.einsum("sbc,sbd->scd", across.value, bond_flow)
     cross = np.einsum("sbc,sbd->scd", across.slope, bond_flow)
     slope = (

@@ -87,7 +87,8 @@ def candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:
 
 
 def responses(system: ContactSystem, demand: Demand) -> np.ndarray:
-    """Temperature drops (cases, times) K of the first fingertip at every conductance: it alone touches, and all touch."""
+    """Temperature drops (cases, times) K of the first fingertip at every conductance: it alone touches, and all
+    touch."""
     return np.array([_response(system, demand, *case) for case in _cases(system, demand)])
 
 

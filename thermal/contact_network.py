@@ -34,7 +34,9 @@ def network_of(geometry: Geometry, orders: Orders, *, cache: bool = True) -> Con
     def build() -> dict[str, np.ndarray]:
         return _pack(contact_system(sample_geometry(geometry), orders))
 
-    arrays = cached_arrays({"version": _VERSION, **_key(geometry), "orders": str(orders)}, build, enabled=cache)
+    arrays = cached_arrays(
+        {"version": _VERSION, **_key(geometry), "orders": str(orders)}, build, enabled=cache
+    )
     return _unpack(geometry, arrays)
 
 

@@ -1,15 +1,16 @@
 """Bodies joined by contacts, stepped exactly while the conductances stand still.
 
 x' = -rates x + B q,  q = H (u - B^T x): a diagonal plus a matrix of rank M, the number of contact ports. Each step
-evaluates (exp(-dt A) - 1) / (-dt A), A = diag(rates) + B H B^T, by a rational function with three pairs of complex poles
-that is within 3e-6 of the exponential on the whole negative axis, whatever dt and H are; every pole costs a diagonal
-scaling and a solve of size M. Two constraints on the weights make heat balance to round-off (the function is 1 at 0) and
-remove stiff transients at once (the propagator is 0 at infinity), so that neither a jump of the conductance nor a long
-step can ring, leave the range of temperatures, or blow up.
+evaluates (exp(-dt A) - 1) / (-dt A), A = diag(rates) + B H B^T, by a rational function with three pairs of complex
+poles that is within 3e-6 of the exponential on the whole negative axis, whatever dt and H are; every pole costs a
+diagonal scaling and a solve of size M. Two constraints on the weights make heat balance to round-off (the function is
+1 at 0) and remove stiff transients at once (the propagator is 0 at infinity), so that neither a jump of the
+conductance nor a long step can ring, leave the range of temperatures, or blow up.
 
-Poles: Caratheodory-Fejer approximation of exp on the negative axis (Trefethen, Weideman & Schmelzer, BIT 46, 2006), moved
-by 1/2; weights: minimax fit (Lawson) under the two constraints of the error relative to min(1, dt rate), so that slow
-rates are kept to 3e-6 too. Conductances that vary are taken by their mean over the step: second order (Magnus).
+Poles: Caratheodory-Fejer approximation of exp on the negative axis (Trefethen, Weideman & Schmelzer, BIT 46, 2006),
+moved by 1/2; weights: minimax fit (Lawson) under the two constraints of the error relative to min(1, dt rate), so
+that slow rates are kept to 3e-6 too. Conductances that vary are taken by their mean over the step: second order
+(Magnus).
 
 B: rows (independent systems), n: states, M: contact ports, Q: pole pairs.
 """

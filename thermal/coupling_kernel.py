@@ -23,8 +23,8 @@ FAST = {"reassoc", "contract", "nsz"}
 class StepArrays(NamedTuple):
     """One system's matrices for one step length, laid out for the kernel and possibly padded behind their true sizes.
     dt: s. rates: (n,) 1/s. ports: (M, n). scale_real, scale_imag: (Q, n). gram: (Q, M, M) complex. object_states,
-    sensor_states: how many, the latter of each fingertip. modes: ports of each of `contacts` contacts. watched: index of
-    the state whose mean `advance` returns."""
+    sensor_states: how many, the latter of each fingertip. modes: ports of each of `contacts` contacts. watched: index
+    of the state whose mean `advance` returns."""
 
     dt: float
     rates: np.ndarray
@@ -50,8 +50,8 @@ def step_arrays(
         propagator.dt,
         np.ascontiguousarray(propagator.rates),
         np.ascontiguousarray(propagator.ports.T),
-        np.ascontiguousarray(propagator.scale.real),
-        np.ascontiguousarray(propagator.scale.imag),
+        np.ascontiguousarray(np.real(propagator.scale)),
+        np.ascontiguousarray(np.imag(propagator.scale)),
         np.ascontiguousarray(propagator.gram),
         states - sensor_states * (ports // own),
         sensor_states,

@@ -98,7 +98,8 @@ def _transform(slab: Slab, section: Section, patch: Patch, s: np.ndarray, far: F
     # Before the first node every cell is a half-space of its own: the rule's sum to minus infinity is a geometric one.
     value += np.eye(size) * _LOG_STEP * np.sqrt(first / np.pi) / np.expm1(_LOG_STEP / 2)
     if far == "adiabatic":
-        # the pole's part of the same sum, from minus infinity to the first node, and what the rule leaves beyond the last
+        # the pole's part of the same sum, from minus infinity to the first node, and what the rule leaves beyond the
+        # last
         value -= np.outer(patch.uniform, patch.uniform) * (
             patch.area / (section.area * slab.thickness) * _LOG_STEP * first / np.expm1(_LOG_STEP)
         )
@@ -149,7 +150,9 @@ def stack_profile(
     return temperatures, flows
 
 
-def layered_impedance(slabs: tuple[Slab, ...], far: Far, section: Section, patch: Patch, s: np.ndarray) -> Sampled:
+def layered_impedance(
+    slabs: tuple[Slab, ...], far: Far, section: Section, patch: Patch, s: np.ndarray
+) -> Sampled:
     """Impedance of a stack, near face first, for real s (S,) > 0, an adiabatic stack's pole at 0 included."""
     near = slabs[0]
     kappa2, overlaps = section.modes(patch, _NEGLIGIBLE_DEPTH / near.thickness)

@@ -106,7 +106,9 @@ RUNGS = MappingProxyType(
 )
 
 
-def solve_rung(name: str, problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool) -> tuple[Rung, PressCurves]:
+def solve_rung(
+    name: str, problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool
+) -> tuple[Rung, PressCurves]:
     """Curves at t (n,) = 0, dt, ... by the rung of that name, "network:ORDERS", or by the one "auto" chooses.
 
     Raises UnknownNameError, and InvalidValueError where the rung cannot do the problem, with the reason."""
@@ -125,7 +127,9 @@ def solve_rung(name: str, problem: PressProblem, t: np.ndarray, tolerance: float
         else:
             choice = network_for(geometry_of(problem), _demand(problem, t, tolerance), cache=cache)
             system, error = choice.system, choice.error
-        return Rung("network", str(system.orders), error, "asked for"), network_press.solve(problem, t, system)
+        return Rung("network", str(system.orders), error, "asked for"), network_press.solve(
+            problem, t, system
+        )
     solver = RUNGS[base].solve
     assert solver is not None
     if problem.opposite is not None or problem.thermostat is not None:
@@ -178,5 +182,3 @@ def _demand(problem: PressProblem, t: np.ndarray, tolerance: float) -> Demand:
     else:
         conductances = (problem.conductance,)
     return Demand(tolerance, problem.temperature_difference, conductances, float(max(t[-1], 2 * FIRST)))
-
-

@@ -23,7 +23,9 @@ def patch_modes(geometry: Geometry, bodies: dict[str, BodySamples], s: np.ndarra
     pole = np.outer(uniform, uniform)[None] * geometry.patch.area / even.capacity / s[:, None, None]
     both = even.impedance.value + pole
     # One fingertip alone sees the mean of the even and the odd body, two at once the even one.
-    touched_bodies = [both] + [(both + body.impedance.value) / 2 for name, body in bodies.items() if name == "odd"]
+    touched_bodies = [both] + [
+        (both + body.impedance.value) / 2 for name, body in bodies.items() if name == "odd"
+    ]
     sensor = bodies["sensor"].impedance.value if "sensor" in bodies else 0.0
     identity = np.eye(len(uniform))
     patterns = []

@@ -33,7 +33,9 @@ class ThermalNetwork:
         ports = np.asarray(self.ports, float)
         direct = np.asarray(self.direct, float)
         if rates.ndim != 1 or ports.ndim != 2 or ports.shape[0] != rates.size:
-            raise InvalidValueError(f"rates (K,) and ports (K, P) do not fit: got {rates.shape} and {ports.shape}")
+            raise InvalidValueError(
+                f"rates (K,) and ports (K, P) do not fit: got {rates.shape} and {ports.shape}"
+            )
         if direct.shape != (ports.shape[1],) * 2:
             raise InvalidValueError(f"direct must be (P, P) = {(ports.shape[1],) * 2}, got {direct.shape}")
         if not (np.all(np.isfinite(rates)) and np.all(np.isfinite(ports)) and np.all(np.isfinite(direct))):

@@ -60,7 +60,9 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
     fingertips = system.geometry.fingertips
     pressed = [problem.conductance] if problem.opposite is None else [problem.conductance, problem.opposite]
     if len(pressed) > fingertips:
-        raise InvalidValueError(f"network {system.orders} has one fingertip, the problem two: give modes/sensor/even/odd")
+        raise InvalidValueError(
+            f"network {system.orders} has one fingertip, the problem two: give modes/sensor/even/odd"
+        )
     rates = with_air(system, problem.air)
     spacing = t[1] - t[0] if len(t) > 1 else 1.0
     held = problem.thermostat is None and not any(map(callable, pressed))

@@ -9,8 +9,10 @@ import numpy as np
 from thermograsp.errors import InvalidValueError, positive
 
 from .ladder import Rung, solve_rung
-from .layers import SensorStack, sensor as sensor_preset
-from .materials import Material, material as named_material
+from .layers import SensorStack
+from .layers import sensor as sensor_preset
+from .materials import Material
+from .materials import material as named_material
 from .problem import Conductance, Mode, PressProblem, Shape
 from .thermostat import Thermostat
 
@@ -65,9 +67,9 @@ def press(
     most the sensor's face. shape: "square" or "round". object_size: (width, depth, thickness) m. air: W/(m2 K) on the
     object's free faces. Temperatures in °C. seconds, dt: samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of
     temperature drop from 0.05 s on, which rung="auto" (and "network") keeps. rung: a name of thermal.RUNGS, "auto",
-    "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same kind on
-    the opposite face, None for none; the curves are the first one's. thermostat: one of finite power, at sensor_temperature at first, None for an
-    ideal one. cache: keep networks on disk.
+    "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same kind
+    on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power, at
+    sensor_temperature at first, None for an ideal one. cache: keep networks on disk.
 
     Raises UnknownNameError for names and InvalidValueError for values that make no sense, or that the rung cannot do.
     """

@@ -63,7 +63,9 @@ class PressProblem:
                 f"{self.stack.face_area:g} m2: give at most that"
             )
         if len(self.object_size) != 3:
-            raise InvalidValueError(f"object_size must be (width, depth, thickness) in m, got {self.object_size!r}")
+            raise InvalidValueError(
+                f"object_size must be (width, depth, thickness) in m, got {self.object_size!r}"
+            )
         for axis, size in zip(("width", "depth", "thickness"), self.object_size, strict=True):
             positive(f"object_size: {axis} (m)", size)
         side = self.stack.width

@@ -1,9 +1,9 @@
 """Networks from impedance samples, and their reduction, both by orthogonal projection: passive by construction.
 
-A conducting body seen through P ports is T = Z(s) q with Z(s) = B^T (s + A)^-1 B, A symmetric and non-negative. Samples at
-real s_i > 0 give the Galerkin projection onto the fields (s_i + A)^-1 B without ever forming a field (Antoulas,
-Approximation of Large-Scale Dynamical Systems, 2005, sections 4.5 and 7; Mayo & Antoulas, Linear Algebra Appl. 425,
-2007). The result is diagonalised: x' = -rates x + B q, T = B^T x.
+A conducting body seen through P ports is T = Z(s) q with Z(s) = B^T (s + A)^-1 B, A symmetric and non-negative.
+Samples at real s_i > 0 give the Galerkin projection onto the fields (s_i + A)^-1 B without ever forming a field
+(Antoulas, Approximation of Large-Scale Dynamical Systems, 2005, sections 4.5 and 7; Mayo & Antoulas, Linear Algebra
+Appl. 425, 2007). The result is diagonalised: x' = -rates x + B q, T = B^T x.
 
 S: samples, P: ports, K: states.
 """

@@ -1,9 +1,10 @@
 """The states that a contact excites: orthonormal bases on which its bodies' networks are reduced.
 
 Heat flows into a body as its contact drives them, not as any pattern at any frequency. So the basis is made of the
-body's own responses to the flows of coupled contacts, over the moments and conductances that occur, and of the adjoint
-responses of its outputs, which make the error quadratic; singular vectors put them in order of weight (proper orthogonal
-decomposition in the Laplace domain; Willcox & Peraire, AIAA J. 40, 2002). Projection on any of them stays passive.
+body's own responses to the flows of coupled contacts, over the moments and conductances that occur, and of the
+adjoint responses of its outputs, which make the error quadratic; singular vectors put them in order of weight (proper
+orthogonal decomposition in the Laplace domain; Willcox & Peraire, AIAA J. 40, 2002). Projection on any of them stays
+passive.
 
 P: modes of one contact, K: states of a body, S: samples.
 """
@@ -107,7 +108,9 @@ def reduce(
         order, basis = getattr(orders, name), bases[name]
         most = basis.vectors.shape[1]
         if not basis.still < order <= most:
-            raise InvalidValueError(f"the {name} body's order must be {basis.still + 1} .. {most}, got {order}")
+            raise InvalidValueError(
+                f"the {name} body's order must be {basis.still + 1} .. {most}, got {order}"
+            )
         reduced[name] = network.projected(basis.vectors[:, :order])
     return reduced
 

@@ -97,7 +97,9 @@ def assemble(geometry: Geometry, networks: dict[str, ThermalNetwork]) -> Contact
     signs = np.array([[1.0]]) if odd is None else np.array([[1.0, 1.0], [1.0, -1.0]]) * np.sqrt(0.5)
 
     def per_fingertip(values: list[np.ndarray]) -> np.ndarray:
-        return np.stack([np.concatenate([sign * v for sign, v in zip(row, values, strict=True)]) for row in signs])
+        return np.stack(
+            [np.concatenate([sign * v for sign, v in zip(row, values, strict=True)]) for row in signs]
+        )
 
     touched = per_fingertip([part.ports for part in parts])  # (F, K, P)
     fingertips, count = len(touched), touched.shape[1]

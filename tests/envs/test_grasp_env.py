@@ -82,6 +82,7 @@ def test_the_object_stays_warm_between_touches():
     heat = []
     for k in range(400):
         env.step(action_of(0.0 if k < 150 or k > 200 else 0.085, 10.0, 0.0))
+        assert env.batch.reading is not None
         heat.append(env.batch.reading.truth["object_temperature"][0])
     assert heat[150] > 24.0
     assert heat[195] == pytest.approx(heat[180], abs=1e-9)  # apart and without air: kept
@@ -116,7 +117,8 @@ def test_saved_and_restored_in_mid_episode_gives_the_same_bits(mode):
 
 
 @pytest.mark.parametrize(
-    "action", [np.array([np.nan, 0, 0]), np.array([0, np.inf, 0]), np.zeros(2), np.zeros((3, 1)), np.zeros((1, 3))]
+    "action",
+    [np.array([np.nan, 0, 0]), np.array([0, np.inf, 0]), np.zeros(2), np.zeros((3, 1)), np.zeros((1, 3))],
 )
 def test_bad_actions_raise(action):
     env = GraspEnv(material="glass")
@@ -191,7 +193,9 @@ def test_an_egg_like_object_is_crushed_by_force_and_not_by_care():
 
 @pytest.mark.parametrize("shape", ["cylinder", "sphere"])
 def test_curved_objects_are_grasped_and_felt(shape):
-    env = GraspEnv(material="aluminium", objects=ObjectSpec(shape=shape, mass=0.1), hold_seconds=0.5, placement=(0, 0))
+    env = GraspEnv(
+        material="aluminium", objects=ObjectSpec(shape=shape, mass=0.1), hold_seconds=0.5, placement=(0, 0)
+    )
     steps = run(env, 250)
     assert any(step[4]["success"] for step in steps)
     assert steps[200][4]["temperature_drop"].min() > 1.0

@@ -93,7 +93,9 @@ def test_materials_are_in_order_when_grasped():
             touched = k
         if touched is not None and k == touched + 100:
             break
-    drop = dict(zip(SEED_MATERIALS, batch.reading.truth["temperature_drop"].mean(axis=1), strict=True))
+    assert batch.reading is not None
+    means = batch.reading.truth["temperature_drop"].mean(axis=1)
+    drop = {str(name): float(mean) for name, mean in zip(SEED_MATERIALS, means, strict=True)}
     groups = [
         ["stainless_steel", "iron", "aluminium"],
         ["glass", "ceramic", "marble"],
@@ -157,7 +159,9 @@ def test_touch_off_the_element_is_not_felt_in_o_mode():
 @pytest.mark.parametrize("mode", ["T", "O"])
 def test_a_thermostat_of_finite_power_dips_and_recovers(mode):
     ideal, real = (
-        GraspBatch(1, task=ENDLESS, material="aluminium", mode=mode, signal="ideal", air=0.0, thermostat=thermostat)
+        GraspBatch(
+            1, task=ENDLESS, material="aluminium", mode=mode, signal="ideal", air=0.0, thermostat=thermostat
+        )
         for thermostat in (None, thermal.Thermostat())
     )
     a, b = grasped(ideal, 500), grasped(real, 500)
@@ -189,5 +193,6 @@ def test_heat_drawn_from_thermostats_is_what_elements_and_object_gain():
         batch.step(grasp_action(batch))
         assert batch.reading is not None
         drawn += batch.reading.truth["heat_drawn"].sum() * batch.dt
+    assert batch.reading is not None
     assert batch.reading.thermostat.min() < 35.0
     assert batch.reading.truth["heat"].sum() == pytest.approx(drawn, rel=1e-9)

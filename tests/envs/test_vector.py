@@ -52,7 +52,7 @@ def test_bad_calls_say_what_to_do():
     with pytest.raises(InvalidValueError, match="reset"):
         make(2).step(np.zeros((2, 3)))
     with pytest.raises(InvalidValueError, match="seed"):
-        make(2).reset(seed=[1, 2, 3])
+        make(2).reset(seed=[1, 2, 3])  # pyright: ignore[reportArgumentType]
     with pytest.raises(InvalidValueError, match="num_envs"):
         make(0)
     vector = make(2)
