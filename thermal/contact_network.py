@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from thermograsp.files import cached_arrays
 
@@ -21,7 +22,8 @@ def network_for(geometry: Geometry, demand: Demand, *, cache: bool = True) -> Ch
     """The cheapest network that keeps the demand's tolerance. Raises InvalidValueError where none does."""
 
     def build() -> dict[str, np.ndarray]:
-        choice = choose(sample_geometry(geometry), demand)
+        with _one_thread():
+            choice = choose(sample_geometry(geometry), demand)
         return {**_pack(choice.system), "error": np.array(choice.error)}
 
     arrays = cached_arrays({"version": _VERSION, **_key(geometry), "demand": demand}, build, enabled=cache)
@@ -32,12 +34,19 @@ def network_of(geometry: Geometry, orders: Orders, *, cache: bool = True) -> Con
     """The network of those orders. Raises InvalidValueError where they cannot be filled."""
 
     def build() -> dict[str, np.ndarray]:
-        return _pack(contact_system(sample_geometry(geometry), orders))
+        with _one_thread():
+            return _pack(contact_system(sample_geometry(geometry), orders))
 
     arrays = cached_arrays(
         {"version": _VERSION, **_key(geometry), "orders": str(orders)}, build, enabled=cache
     )
     return _unpack(geometry, arrays)
+
+
+def _one_thread() -> threadpool_limits:
+    """Linear algebra in one thread: the products are many and small. Two threads took 40 times as long where other
+    processes kept both cores busy (42 s against 1 s for three networks), and their number could decide the last bits."""
+    return threadpool_limits(1, user_api="blas")
 
 
 def _key(geometry: Geometry) -> dict[str, object]:
