@@ -2,7 +2,7 @@
 
 One contour serves a window of times: the hyperbola s = mu (1 + sin(i u - phi)) with the parameters that Weideman and
 Trefethen (Math. Comp. 76, 2007, section 4) found for transforms whose singularities lie on the negative real axis, as
-those of heat conduction do. A window a decade long needs 20 samples for 8 digits, however many times are in it.
+those of heat conduction do. A window a decade long needs 20 samples for 7 digits, however many times are in it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def invert_many(transform: Callable[[np.ndarray], np.ndarray], t: np.ndarray) ->
     """Inverse transform (n, ...) at t (n,) s, > 0, in any order.
 
     transform: s (NODES,) complex 1/s -> (NODES, ...), called once a window; as in laplace.invert it must be analytic
-    off the negative real axis and real on the positive one. Error about 1e-8 of the largest |f| in the window.
+    off the negative real axis and real on the positive one. Error about 2e-7 of the largest |f| in the window.
     Raises InvalidValueError for times that are not finite and > 0.
     """
     t = np.asarray(t, float)

@@ -1,0 +1,126 @@
+"""Impedances from heat kernels against transmission lines and against sums over eigenfunctions."""
+
+import numpy as np
+import pytest
+
+from thermograsp.thermal.bodies import Geometry, sample_bodies
+from thermograsp.thermal.impedance import (
+    Slab,
+    half_space_impedance,
+    layered_impedance,
+    slab_impedance,
+    stack_impedance,
+    stack_profile,
+    transfer_impedance,
+)
+from thermograsp.thermal.lateral_sum import lateral_sum
+from thermograsp.thermal.layers import sensor
+from thermograsp.thermal.materials import material
+from thermograsp.thermal.patch import RoundPatch, SquarePatch
+from thermograsp.thermal.section import Disc, Rectangle
+
+GLASS = Slab(0.01, 1.0, 2500 * 840)
+METAL = Slab(0.002, 237.0, 2700 * 897)
+STACK = (Slab(7e-4, 25.0, 3900 * 850), Slab(1.6e-3, 1.6, 7740 * 154.4), Slab(7e-4, 25.0, 3900 * 850))
+S = np.geomspace(1e-2, 1e3, 6)
+SECTIONS = [
+    (Rectangle(0.02, 0.02), SquarePatch(0.0045)),
+    (Rectangle(0.03, 0.01), SquarePatch(0.002, square=False)),
+    (Disc(0.02), RoundPatch(0.005)),
+]
+
+
+def assert_same(z: np.ndarray, summed: np.ndarray, patch) -> None:
+    """To 3e-4 of the largest pattern: the narrowest ones need more wave numbers than the sum has; they hold little
+    heat, so that the uniform pattern agrees to 1e-6."""
+    apart = np.abs(z - summed).max(axis=(1, 2))
+    assert np.all(apart < 3e-4 * np.abs(summed).max(axis=(1, 2)))
+    mean = np.einsum("c,scd,d->s", patch.uniform, summed, patch.uniform)
+    np.testing.assert_allclose(np.einsum("c,scd,d->s", patch.uniform, z, patch.uniform), mean, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("section", "whole"), [(Rectangle(0.01, 0.01), SquarePatch(0.01)), (Disc(0.01), RoundPatch(0.01))]
+)
+def test_one_dimensional_where_the_patch_is_the_face(section, whole) -> None:
+    """The uniform pattern over the whole face sees the transmission line at wave number 0 and stays uniform."""
+    uniform, one = whole.uniform, np.zeros(1)
+    pole = whole.area / section.area / (S * GLASS.thickness * GLASS.heat_capacity)
+    for slabs, far in ((STACK, "isothermal"), ((GLASS,), "isothermal"), ((GLASS,), "adiabatic")):
+        if len(slabs) == 1:
+            z = slab_impedance(GLASS, section, whole, far, S).value @ uniform
+        else:
+            z = layered_impedance(slabs, far, section, whole, S).value @ uniform
+        line = stack_impedance(slabs, far, S[:, None], one)[:, 0] - (pole if far == "adiabatic" else 0)
+        np.testing.assert_allclose(z, line[:, None] * uniform, atol=1e-7 * np.abs(line).max())
+
+
+@pytest.mark.parametrize(("section", "patch"), SECTIONS)
+@pytest.mark.parametrize("slab", [GLASS, METAL])
+def test_slab_is_the_sum_over_eigenfunctions(section, patch, slab) -> None:
+    direct = lateral_sum(section, patch, patch)
+    for far in ("adiabatic", "isothermal"):
+        z = slab_impedance(slab, section, patch, far, S).value
+        if far == "adiabatic":
+            capacity = section.area * slab.thickness * slab.heat_capacity
+            z = z + np.outer(patch.uniform, patch.uniform) * patch.area / capacity / S[:, None, None]
+        summed = direct(lambda s, kappa2, far=far: stack_impedance((slab,), far, s, kappa2), S)
+        assert_same(z, summed, patch)
+
+
+@pytest.mark.parametrize(("section", "patch"), SECTIONS)
+def test_stack_and_transfer_are_sums_over_eigenfunctions(section, patch) -> None:
+    summed = lateral_sum(section, patch, patch)(
+        lambda s, kappa2: stack_impedance(STACK, "isothermal", s, kappa2), S
+    )
+    z = layered_impedance(STACK, "isothermal", section, patch, S).value
+    assert_same(z, summed, patch)
+    slow = S[S < 10]  # faster than that nothing comes through
+    across = lateral_sum(section, patch, patch)(
+        lambda s, kappa2: stack_profile(STACK, "adiabatic", s, kappa2)[0][-1], slow
+    )
+    z = transfer_impedance(STACK, section, patch, patch, slow).value
+    assert_same(z, across, patch)
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+@pytest.mark.parametrize("fingertips", [1, 2])
+def test_slopes_are_derivatives(mode: str, fingertips: int) -> None:
+    """Central differences: their error falls by 4 when the step is halved, so Richardson's value is good to 1e-9."""
+    geometry = Geometry(
+        sensor("seed"), material("glass"), mode, 5e-5, "square", (0.04, 0.04, 0.01), fingertips
+    )  # pyright: ignore[reportArgumentType]
+    s = np.array([0.02, 1.0, 300.0])
+    sampled = sample_bodies(geometry, s)
+
+    def slope(name: str, step: float) -> np.ndarray:
+        up, down = (sample_bodies(geometry, s * (1 + sign * step))[name].impedance.value for sign in (1, -1))
+        return (up - down) / (2 * step * s[:, None, None])
+
+    for name, body in sampled.items():
+        expected = (4 * slope(name, 1e-3) - slope(name, 2e-3)) / 3
+        np.testing.assert_allclose(
+            body.impedance.slope, expected, atol=3e-8 * np.abs(expected).max(axis=(1, 2)).max(), rtol=1e-5
+        )
+
+
+def test_half_space_scales() -> None:
+    """Z of a half-space depends on length and s through a sqrt(s/alpha) alone: twice the patch at a quarter of s has
+    twice the impedance, as long as the section's sides are far."""
+    near, far = Rectangle(0.2, 0.2), Rectangle(0.4, 0.4)
+    s = np.array([5.0, 50.0])
+    one = half_space_impedance(GLASS, near, SquarePatch(0.004), s).value
+    two = half_space_impedance(GLASS, far, SquarePatch(0.008), s / 4).value
+    np.testing.assert_allclose(two, 2 * one, rtol=1e-6, atol=1e-9)
+
+
+def test_uniform_spreading_resistance_of_a_disc() -> None:
+    """Static limit: a uniform flux over a disc of radius a on a half-space has the mean temperature 8 q a / (3 pi k)
+    (Carslaw & Jaeger, section 8.2)."""
+    patch = RoundPatch(0.002)
+    z = half_space_impedance(GLASS, Disc(1.0), patch, np.array([1e-4])).value[0]
+    expected = 8 * patch.radius / (3 * np.pi * GLASS.conductivity)
+    # heat has come only as far as L = sqrt(alpha / s), which takes a^2 / (2 k L) from a point source's field, 2 % here
+    length = np.sqrt(GLASS.diffusivity / 1e-4)
+    static = expected - patch.radius**2 / (2 * GLASS.conductivity * length)
+    assert patch.uniform @ z @ patch.uniform == pytest.approx(static, rel=1e-3)
