@@ -45,7 +45,7 @@ def network_of(geometry: Geometry, orders: Orders, *, cache: bool = True) -> Con
 
 def _one_thread() -> threadpool_limits:
     """Linear algebra in one thread: the products are many and small. Two threads took 40 times as long where other
-    processes kept both cores busy (42 s against 1 s for three networks), and their number could decide the last bits."""
+    processes kept both cores busy (42 s against 1 s for three networks), and their number could decide last bits."""
     return threadpool_limits(1, user_api="blas")
 
 

@@ -98,17 +98,7 @@ def _command(args: argparse.Namespace) -> str:
 
 
 def _print(output: Output, runs: Sequence[ModeRun]) -> None:
-    header = (
-        "material",
-        "mode",
-        "peak K",
-        "after s",
-        "end K",
-        "peak mV",
-        "force N",
-        "area mm2",
-        "h W/(m2 K)",
-    )
+    header = ("material", "mode", "peak K", "after s", "end K", "peak mV", "N", "mm2", "W/(m2 K)")
     rows = []
     for one in runs:
         for row in sorted(

@@ -16,14 +16,9 @@ NAME = "materials"
 HELP = "List materials, or compare some and show where their numbers come from."
 
 _SORTS = ("effusivity", "diffusivity", "conductivity", "density", "specific_heat", "name", "family")
-_HEADER = (
-    "material",
-    "family",
-    "k W/(m K)",
-    "rho kg/m3",
-    "c J/(kg K)",
-    "effusivity W s^½/(m2 K)",
-    "diffusivity mm2/s",
+_HEADER = ("material", "family", "k", "rho", "c", "effusivity", "diffusivity")
+_LEGEND = (
+    "k W/(m K), rho kg/m3, c J/(kg K), effusivity sqrt(k rho c) W s^0.5/(m2 K), diffusivity k/(rho c) mm2/s"
 )
 _UNITS = {
     "conductivity": "W_mK",
@@ -65,6 +60,7 @@ def run(args: argparse.Namespace) -> int:
     chosen = sorted((known[name] for name in args.names or known), key=lambda one: getattr(one, args.sort))
     output = Output(args.json)
     output.table(_HEADER, [_row(one) for one in chosen])
+    output.line(_LEGEND)
     if args.names:
         _sources(output, chosen)
     output.document({"materials": [_document(one) for one in chosen]})
