@@ -39,6 +39,6 @@ def solve(
     resolution: 1, 2, ...; step_per_time: length of a step over the time since the touch or the last jump of the
     conductance. Both errors fall with the square of the step: .02 K of the drop at resolution 1, .005 K at 2, .001 K at
     4 for the seed's sensor and a disc of the area of its plate. For shape="square" the disc of equal area changes the
-    drop by another .005 to .05 K.
+    drop by up to another .06 K (glass, 20 s).
     """
     return march(problem, grid(problem, resolution), t, step_per_time)
