@@ -95,18 +95,17 @@ def test_second_order_in_time_for_a_conductance_that_varies() -> None:
 
 
 @njit
-def _histories(arrays, rows, room, steps, seed, area, jump, extremes):
+def _histories(arrays, rows, room, steps, rng, area, jump, extremes):
     """Largest imbalance of heat, J per J that moved, over histories of random conductance; extremes: (4,) of the two
     surfaces' temperatures."""
-    np.random.seed(seed)
     n, m = rows.shape[1], arrays.ports.shape[0]
     state, weight, drive, flow = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
     drive[0] = jump
     worst = 0.0
     moved = 0.0
     for _ in range(steps):
-        kind = np.random.randint(5)
-        level = 0.0 if kind == 0 else (1e9 if kind == 1 else 10.0 ** np.random.uniform(1, 7))
+        kind = int(5 * rng.random())
+        level = 0.0 if kind == 0 else (1e9 if kind == 1 else 10.0 ** rng.uniform(1, 7))
         weight[:] = level * area
         before = rows[2] @ state
         advance(arrays, state, weight, drive, flow, room)
@@ -131,11 +130,11 @@ def test_heat_balances_and_temperatures_stay_in_range(mode: str, name: str) -> N
     room = workspace(*made.ports.shape)
     extremes = np.zeros(4)
     rng = np.random.default_rng(2)
-    for seed in range(HISTORIES):
+    for _ in range(HISTORIES):
         dt = float(10 ** rng.uniform(-5, 1))
         stepper = propagator(made.rates, made.ports, dt)
         arrays = step_arrays(stepper, modes=made.modes, sensor_states=made.orders.sensor, watched=made.mean)
-        assert _histories(arrays, rows, room, 50, seed, made.geometry.area, jump, extremes) < 1e-10
+        assert _histories(arrays, rows, room, 50, rng, made.geometry.area, jump, extremes) < 1e-10
     # the sensor's face between the object's start and its own, the object's likewise; what the orders cut off shows
     allowed = 0.02 * jump
     assert extremes[0] >= -jump - allowed and extremes[1] <= allowed
