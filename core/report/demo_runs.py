@@ -22,7 +22,6 @@ FORCE = 10.0  # N
 GENTLE = 0.75  # of the force that crushes an object, where that is less
 _STILLS = (0.0, 0.6, 1.1, 1.6, 2.4)  # s; the last picture is at the end
 _WARM_UP = 0.6  # s, beyond the touch: what is compiled on first use is not measured
-_CROP = (0.29, 0.03, 0.71, 0.75)  # of the overview: the gripper on its way up
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +116,7 @@ def run_mode(
         steps / spent["step"],
         spent["heat"] / spent["step"],
         spent["mechanics"] / spent["step"],
-        tuple(_cropped(still) for still in camera.stills) if camera else (),
+        tuple(camera.stills) if camera else (),
         no_picture,
     )
 
@@ -127,16 +126,6 @@ def _film(batch: GraspBatch, names: list[str], seconds: float) -> tuple[Film | N
     low, high = COLOURS
     try:
         row = names.index(FILMED)
-        return Film(batch.plant, times, row, camera="overview", size=(1280, 960), low=low, high=high), ""
+        return Film(batch.plant, times, row, size=(1280, 960), low=low, high=high), ""
     except MissingDependencyError as error:
         return None, str(error)
-
-
-def _cropped(still: Still) -> Still:
-    height, width = still.pixels.shape[:2]
-    left, top, right, bottom = _CROP
-    rows, columns = (
-        slice(int(top * height), int(bottom * height)),
-        slice(int(left * width), int(right * width)),
-    )
-    return Still(still.time, still.pixels[rows, columns], still.across)

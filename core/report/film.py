@@ -17,6 +17,8 @@ from thermograsp.envs.render import Renderer
 from thermograsp.files import atomic_write
 
 _GAP = 6  # pixels between the pictures of a strip
+_CAMERA = "overview"
+_CROP = (0.29, 0.03, 0.71, 0.75)  # left, top, right, bottom of its view: the gripper on its way up
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +32,10 @@ class Still:
 
 
 class Film:
-    """Draws one row of a simulated batch at given times of its episode.
+    """Draws one row of a simulated batch, the gripper's part of the view, at given times of its episode.
 
-    plant: a simulated one. times: s, rising. row: which grasp. low, high: degC, the colours' range.
+    plant: a simulated one. times: s, rising. row: which grasp. size: pixels of the whole view. low, high: degC, the
+    colours' range.
     Raises MissingDependencyError, naming the packages, where there is no OpenGL.
     """
 
@@ -42,13 +45,12 @@ class Film:
         times: Sequence[float],
         row: int = 0,
         *,
-        camera: str = "closeup",
-        size: tuple[int, int] = (480, 360),
+        size: tuple[int, int] = (960, 720),
         low: float = 20.0,
         high: float = 40.0,
     ) -> None:
         self._renderer = Renderer(plant.mechanics, width=size[0], height=size[1], low=low, high=high)
-        self._row, self._camera, self._times = row, camera, list(times)
+        self._row, self._times = row, list(times)
         self.stills: list[Still] = []
 
     def watch(self, time: float, batch: GraspBatch) -> None:
@@ -59,7 +61,7 @@ class Film:
         reading = batch.reading
         assert reading is not None
         celsius = temperatures(reading, self._row)
-        pixels = self._renderer.frame(self._row, camera=self._camera, temperatures=celsius)
+        pixels = _cropped(self._renderer.frame(self._row, camera=_CAMERA, temperatures=celsius))
         sensor, face = (reading.truth[name][self._row] for name in ("sensor_surface", "object_surface"))
         thermostat, mean = reading.thermostat[self._row], reading.truth["object_temperature"][self._row]
         across = (thermostat[0], sensor[0], face[0], mean, face[1], sensor[1], thermostat[1])
@@ -83,6 +85,12 @@ class Film:
     def close(self) -> None:
         """Frees OpenGL's buffers."""
         self._renderer.close()
+
+
+def _cropped(pixels: np.ndarray) -> np.ndarray:
+    height, width = pixels.shape[:2]
+    left, top, right, bottom = _CROP
+    return pixels[int(top * height) : int(bottom * height), int(left * width) : int(right * width)]
 
 
 def strip(pictures: Sequence[Image.Image]) -> Image.Image:

@@ -44,4 +44,5 @@ class ScriptedGrasp:
         self._lifting |= self._pressed >= _SETTLING
         left = LIFTED + _MARGIN - observation["gripper"][:, 2].astype(float)
         rate = np.where(self._lifting, np.clip(left / _APPROACH, 0.0, MAX_LIFT_RATE), 0.0)
-        return np.stack([action_of(0.0, force, one) for force, one in zip(self._force, rate, strict=True)])
+        closed = np.zeros(len(rate))
+        return action_of(closed, self._force, rate).T.copy()  # pyright: ignore[reportArgumentType]
