@@ -65,13 +65,14 @@ def step(
     temperature less the second's, as seen by each port's pattern.
     """
     dt, ports = system.dt, system.ports
-    seen = state @ ports
-    rate = (conductance * (difference - seen)) @ ports.T - system.rates * state
-    gathered = np.einsum("nm,qn,bn->bqm", ports, system.scale, rate)
+    # The flow at each pole is solved for, not its difference from the flow at the start, which large conductances and
+    # steps would make a difference of large numbers: states and flows then balance to round-off.
+    decay = -system.rates * state
+    start = conductance * (difference - state @ ports)
+    heard = np.einsum("nm,qn,bn->bqm", ports, system.scale, decay)
     matrix = dt * conductance[:, None, :, None] * system.gram + np.eye(ports.shape[1])
-    pulled = np.linalg.solve(matrix, (dt * conductance)[:, None, :, None] * gathered[..., None])[..., 0]
-    solved = system.scale * (rate[:, None] - np.einsum("nm,bqm->bqn", ports, pulled))
+    drive = start[:, None] - (dt * conductance)[:, None] * heard
+    flows = np.linalg.solve(matrix, drive[..., None])[..., 0]
+    solved = system.scale * (decay[:, None] + np.einsum("nm,bqm->bqn", ports, flows))
     change = -2 * dt * np.einsum("q,bqn->bn", WEIGHTS, solved).real
-    lag = -2 * dt * np.einsum("q,bqn->bn", WEIGHTS / POLES, solved).real
-    flow = conductance * (difference - (state + lag) @ ports)
-    return state + change, flow
+    return state + change, -2 * np.einsum("q,bqm->bm", WEIGHTS / POLES, flows).real

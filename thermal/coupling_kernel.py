@@ -68,7 +68,6 @@ class Workspace(NamedTuple):
     change: np.ndarray
     real: np.ndarray
     imag: np.ndarray
-    seen: np.ndarray
     lagged: np.ndarray
     gathered: np.ndarray
     matrix: np.ndarray
@@ -82,7 +81,6 @@ def workspace(states: int, ports: int) -> Workspace:
         np.zeros(states),
         np.zeros(states),
         np.zeros(states),
-        np.zeros(ports),
         np.zeros(ports),
         np.zeros(ports, np.complex128),
         np.zeros((ports, ports), np.complex128),
@@ -108,16 +106,13 @@ def advance(
     rates, ports, dt, watched = system.rates, system.ports, system.dt, system.watched
     shared, own, modes = system.object_states, system.sensor_states, system.modes
     rate, change, real, imag = room.rate, room.change, room.real, room.imag
-    seen, lagged, gathered, matrix = room.seen, room.lagged, room.gathered, room.matrix
+    lagged, gathered, matrix = room.lagged, room.gathered, room.matrix
     for j in range(m):
-        seen[j] = _see(ports[j], state, shared, shared + (j // modes) * own, own)
-        flow[j] = conductance[j] * (difference[j] - seen[j])
+        flow[j] = conductance[j] * (difference[j] - _see(ports[j], state, shared, shared + (j // modes) * own, own))
         lagged[j] = 0.0
     for i in range(n):
         rate[i] = -rates[i] * state[i]
         change[i] = 0.0
-    for j in range(m):
-        _push(ports[j], flow[j], rate, shared, shared + (j // modes) * own, own)
     watched_lag = 0.0
     for q in range(_PAIRS):
         scale_real, scale_imag = system.scale_real[q], system.scale_imag[q]
@@ -130,9 +125,8 @@ def advance(
                 _see(ports[j], real, shared, shared + (j // modes) * own, own),
                 _see(ports[j], imag, shared, shared + (j // modes) * own, own),
             )
-            lagged[j] += (_LAGS[q] * heard).real
             weight = dt * conductance[j]
-            gathered[j] = weight * heard
+            gathered[j] = flow[j] - weight * heard
             for k in range(m):
                 matrix[j, k] = weight * gram[j, k]
             matrix[j, j] += 1.0
@@ -141,12 +135,9 @@ def advance(
             real[i] = rate[i]
             imag[i] = 0.0
         for j in range(m):
-            _push(ports[j], -gathered[j].real, real, shared, shared + (j // modes) * own, own)
-            _push(ports[j], -gathered[j].imag, imag, shared, shared + (j // modes) * own, own)
-            back = 0.0 + 0.0j
-            for k in range(m):
-                back += gram[j, k] * gathered[k]
-            lagged[j] -= (_LAGS[q] * back).real
+            _push(ports[j], gathered[j].real, real, shared, shared + (j // modes) * own, own)
+            _push(ports[j], gathered[j].imag, imag, shared, shared + (j // modes) * own, own)
+            lagged[j] += (_LAGS[q] * gathered[j]).real
         a, b = WEIGHTS[q].real, WEIGHTS[q].imag
         for i in range(n):
             solved_real = scale_real[i] * real[i] - scale_imag[i] * imag[i]
@@ -155,7 +146,7 @@ def advance(
         solved = complex(scale_real[watched], scale_imag[watched]) * complex(real[watched], imag[watched])
         watched_lag += (_LAGS[q] * solved).real
     for j in range(m):
-        flow[j] = conductance[j] * (difference[j] - seen[j] + 2 * dt * lagged[j])
+        flow[j] = -2 * lagged[j]
     mean = state[watched] - 2 * dt * watched_lag
     for i in range(n):
         state[i] -= 2 * dt * change[i]
