@@ -199,17 +199,20 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
             level = advance(system, x, weight, drive, flow, room)
             reading.air_loss[b, k] = tables.rates[i, mean] * kept * level
             for f in range(fingertips):
-                reading.drop[b, k, f] = _dot(tables.drop[i, f], x, n)
-                reading.element_heat[b, k, f] = _dot(tables.element_heat[i, f], x, n)
-                reading.sensor_rise[b, k, f] = _dot(tables.sensor_surface[i, f], x, n)
-                reading.object_rise[b, k, f] = _dot(tables.object_surface[i, f], x, n)
+                reading.drop[b, k, f] = _dot(tables.drop, i, f, x, n)
+                reading.element_heat[b, k, f] = _dot(tables.element_heat, i, f, x, n)
+                reading.sensor_rise[b, k, f] = _dot(tables.sensor_surface, i, f, x, n)
+                reading.object_rise[b, k, f] = _dot(tables.object_surface, i, f, x, n)
                 reading.flow[b, k, f] = flow[f * p]
-            reading.object_heat[b, k] = _dot(tables.object_heat[i], x, n)
+            total = 0.0
+            for j in range(n):
+                total += tables.object_heat[i, j] * x[j]
+            reading.object_heat[b, k] = total
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _dot(row, state, count):
+def _dot(rows, i, f, state, count):
     total = 0.0
     for j in range(count):
-        total += row[j] * state[j]
+        total += rows[i, f, j] * state[j]
     return total

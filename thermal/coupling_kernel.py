@@ -104,46 +104,49 @@ def advance(
     n = system.object_states + system.contacts * system.sensor_states
     m = system.contacts * system.modes
     rates, ports, dt, watched = system.rates, system.ports, system.dt, system.watched
+    scale_real, scale_imag, gram = system.scale_real, system.scale_imag, system.gram
     shared, own, modes = system.object_states, system.sensor_states, system.modes
     rate, change, real, imag = room.rate, room.change, room.real, room.imag
     lagged, gathered, matrix = room.lagged, room.gathered, room.matrix
     for j in range(m):
-        flow[j] = conductance[j] * (difference[j] - _see(ports[j], state, shared, shared + (j // modes) * own, own))
+        flow[j] = conductance[j] * (
+            difference[j] - _see(ports, j, state, shared, shared + (j // modes) * own, own)
+        )
         lagged[j] = 0.0
     for i in range(n):
         rate[i] = -rates[i] * state[i]
         change[i] = 0.0
     watched_lag = 0.0
     for q in range(_PAIRS):
-        scale_real, scale_imag = system.scale_real[q], system.scale_imag[q]
-        gram = system.gram[q]
         for i in range(n):
-            real[i] = scale_real[i] * rate[i]
-            imag[i] = scale_imag[i] * rate[i]
+            real[i] = scale_real[q, i] * rate[i]
+            imag[i] = scale_imag[q, i] * rate[i]
         for j in range(m):
             heard = complex(
-                _see(ports[j], real, shared, shared + (j // modes) * own, own),
-                _see(ports[j], imag, shared, shared + (j // modes) * own, own),
+                _see(ports, j, real, shared, shared + (j // modes) * own, own),
+                _see(ports, j, imag, shared, shared + (j // modes) * own, own),
             )
             weight = dt * conductance[j]
             gathered[j] = flow[j] - weight * heard
             for k in range(m):
-                matrix[j, k] = weight * gram[j, k]
+                matrix[j, k] = weight * gram[q, j, k]
             matrix[j, j] += 1.0
         _solve(matrix, gathered, m)
         for i in range(n):
             real[i] = rate[i]
             imag[i] = 0.0
         for j in range(m):
-            _push(ports[j], gathered[j].real, real, shared, shared + (j // modes) * own, own)
-            _push(ports[j], gathered[j].imag, imag, shared, shared + (j // modes) * own, own)
+            _push(ports, j, gathered[j].real, real, shared, shared + (j // modes) * own, own)
+            _push(ports, j, gathered[j].imag, imag, shared, shared + (j // modes) * own, own)
             lagged[j] += (_LAGS[q] * gathered[j]).real
         a, b = WEIGHTS[q].real, WEIGHTS[q].imag
         for i in range(n):
-            solved_real = scale_real[i] * real[i] - scale_imag[i] * imag[i]
-            solved_imag = scale_real[i] * imag[i] + scale_imag[i] * real[i]
+            solved_real = scale_real[q, i] * real[i] - scale_imag[q, i] * imag[i]
+            solved_imag = scale_real[q, i] * imag[i] + scale_imag[q, i] * real[i]
             change[i] += a * solved_real - b * solved_imag
-        solved = complex(scale_real[watched], scale_imag[watched]) * complex(real[watched], imag[watched])
+        solved = complex(scale_real[q, watched], scale_imag[q, watched]) * complex(
+            real[watched], imag[watched]
+        )
         watched_lag += (_LAGS[q] * solved).real
     for j in range(m):
         flow[j] = -2 * lagged[j]
@@ -154,23 +157,23 @@ def advance(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, inline="always")
-def _see(row, values, shared, start, own):
+def _see(ports, j, values, shared, start, own):
     """A port's sum over the states that it sees: the object's, and `own` of its fingertip from `start` on."""
     total = 0.0
     for i in range(shared):
-        total += row[i] * values[i]
+        total += ports[j, i] * values[i]
     for i in range(start, start + own):
-        total += row[i] * values[i]
+        total += ports[j, i] * values[i]
     return total
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, inline="always")
-def _push(row, amount, values, shared, start, own):
+def _push(ports, j, amount, values, shared, start, own):
     """Adds a port's column times amount to the states that it drives."""
     for i in range(shared):
-        values[i] += row[i] * amount
+        values[i] += ports[j, i] * amount
     for i in range(start, start + own):
-        values[i] += row[i] * amount
+        values[i] += ports[j, i] * amount
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
