@@ -38,7 +38,7 @@ def invert_many(transform: Callable[[np.ndarray], np.ndarray], t: np.ndarray) ->
         grown = np.exp(np.outer(t[inside] / last, s)) * weight / last
         if values is None:
             values = np.zeros((len(t), *sampled.shape[1:]))
-        values[inside] = np.tensordot(grown, sampled, axes=1).real
+        values[inside] = np.real(np.tensordot(grown, sampled, axes=1))
     assert values is not None
     return values
 

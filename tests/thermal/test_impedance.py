@@ -1,10 +1,13 @@
 """Impedances from heat kernels against transmission lines and against sums over eigenfunctions."""
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
 from thermograsp.thermal.bodies import Geometry, sample_bodies
 from thermograsp.thermal.impedance import (
+    Far,
     Slab,
     half_space_impedance,
     layered_impedance,
@@ -17,6 +20,7 @@ from thermograsp.thermal.lateral_sum import lateral_sum
 from thermograsp.thermal.layers import sensor
 from thermograsp.thermal.materials import material
 from thermograsp.thermal.patch import RoundPatch, SquarePatch
+from thermograsp.thermal.problem import Mode
 from thermograsp.thermal.section import Disc, Rectangle
 
 GLASS = Slab(0.01, 1.0, 2500 * 840)
@@ -46,7 +50,12 @@ def test_one_dimensional_where_the_patch_is_the_face(section, whole) -> None:
     """The uniform pattern over the whole face sees the transmission line at wave number 0 and stays uniform."""
     uniform, one = whole.uniform, np.zeros(1)
     pole = whole.area / section.area / (S * GLASS.thickness * GLASS.heat_capacity)
-    for slabs, far in ((STACK, "isothermal"), ((GLASS,), "isothermal"), ((GLASS,), "adiabatic")):
+    cases: tuple[tuple[tuple[Slab, ...], Far], ...] = (
+        (STACK, "isothermal"),
+        ((GLASS,), "isothermal"),
+        ((GLASS,), "adiabatic"),
+    )
+    for slabs, far in cases:
         if len(slabs) == 1:
             z = slab_impedance(GLASS, section, whole, far, S).value @ uniform
         else:
@@ -85,11 +94,11 @@ def test_stack_and_transfer_are_sums_over_eigenfunctions(section, patch) -> None
 
 @pytest.mark.parametrize("mode", ["T", "O"])
 @pytest.mark.parametrize("fingertips", [1, 2])
-def test_slopes_are_derivatives(mode: str, fingertips: int) -> None:
+def test_slopes_are_derivatives(mode: Mode, fingertips: Literal[1, 2]) -> None:
     """Central differences: their error falls by 4 when the step is halved, so Richardson's value is good to 1e-9."""
     geometry = Geometry(
         sensor("seed"), material("glass"), mode, 5e-5, "square", (0.04, 0.04, 0.01), fingertips
-    )  # pyright: ignore[reportArgumentType]
+    )
     s = np.array([0.02, 1.0, 300.0])
     sampled = sample_bodies(geometry, s)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thermograsp.errors import InvalidValueError, UnknownNameError
-from thermograsp.thermal import RUNGS, press
+from thermograsp.thermal import RUNGS, Mode, press
 
 REFERENCE = json.loads((Path(__file__).parents[1] / "data" / "press_3d.json").read_text(encoding="utf-8"))[
     "cases"
@@ -19,6 +19,7 @@ TABLE_ERROR = 0.0015  # K, of the reference itself
 @pytest.mark.parametrize("case", REFERENCE)
 def test_keeps_its_tolerance_on_the_reference(case: str, tolerance: float) -> None:
     name, conductance, mode = case.split("/")
+    assert mode in ("T", "O")
     result = press(
         name,
         mode=mode,
@@ -69,7 +70,7 @@ def test_two_fingertips_on_a_thin_plate_share_it() -> None:
 
 
 @pytest.mark.parametrize("mode", ["T", "O"])
-def test_a_constant_function_is_a_number(mode: str) -> None:
+def test_a_constant_function_is_a_number(mode: Mode) -> None:
     one = press(
         "wood",
         mode=mode,

@@ -12,7 +12,7 @@ from thermograsp.thermal.laplace import invert
 from thermograsp.thermal.laplace_window import invert_many
 from thermograsp.thermal.layers import sensor
 from thermograsp.thermal.materials import material
-from thermograsp.thermal.problem import PressProblem
+from thermograsp.thermal.problem import Conductance, Mode, PressProblem, Shape
 
 REFERENCE = json.loads((Path(__file__).parents[1] / "data" / "press_3d.json").read_text(encoding="utf-8"))[
     "cases"
@@ -22,8 +22,14 @@ SEED = sensor("seed")
 
 
 def problem(
-    name="glass", mode="T", conductance=1e4, area=81e-6, shape="square", size=(0.04, 0.04, 0.01), air=0.0
-):
+    name: str = "glass",
+    mode: Mode = "T",
+    conductance: Conductance = 1e4,
+    area: float = 81e-6,
+    shape: Shape = "square",
+    size: tuple[float, float, float] = (0.04, 0.04, 0.01),
+    air: float = 0.0,
+) -> PressProblem:
     return PressProblem(SEED, material(name), mode, conductance, area, shape, size, air, 36.0, 24.0)
 
 
