@@ -37,6 +37,7 @@ def problem(
 def test_reference_table(case: str) -> None:
     """Made with strips of constant flux, good to .001 K (.002 K in O mode)."""
     name, conductance, mode = case.split("/")
+    assert mode in ("T", "O")
     times = np.array(REFERENCE[case]["t"], float)
     curves = semi_analytic.solve(problem(name, mode, float(conductance)), times)
     np.testing.assert_allclose(curves.temperature_drop, REFERENCE[case]["Td"], atol=0.0015)
@@ -44,7 +45,7 @@ def test_reference_table(case: str) -> None:
 
 @pytest.mark.parametrize("mode", ["T", "O"])
 @pytest.mark.parametrize("shape", ["square", "round"])
-def test_one_dimensional_where_patch_and_plate_are_the_face(mode: str, shape: str) -> None:
+def test_one_dimensional_where_patch_and_plate_are_the_face(mode: Mode, shape: Shape) -> None:
     t = np.array([0.0, 0.01, 0.3, 4.0, 50.0])
     case = problem("glass", mode, 3e4, shape=shape, size=(0.009, 0.009, 0.02))
     one, three = layered.solve(case, t), semi_analytic.solve(case, t)
@@ -53,7 +54,7 @@ def test_one_dimensional_where_patch_and_plate_are_the_face(mode: str, shape: st
 
 
 @pytest.mark.parametrize("mode", ["T", "O"])
-def test_heat_that_passes_is_stored(mode: str) -> None:
+def test_heat_that_passes_is_stored(mode: Mode) -> None:
     """Into the object and, in O mode, the element; the thermostat feeds a T-mode element from behind."""
     t = np.linspace(0, 20, 4001)[1:]
     curves = semi_analytic.solve(problem("marble", mode, 5e3, 4e-5), t)
