@@ -122,10 +122,7 @@ def advance(
             real[i] = scale_real[q, i] * rate[i]
             imag[i] = scale_imag[q, i] * rate[i]
         for j in range(m):
-            heard = complex(
-                _see(ports, j, real, shared, shared + (j // modes) * own, own),
-                _see(ports, j, imag, shared, shared + (j // modes) * own, own),
-            )
+            heard = _hear(ports, j, real, imag, shared, shared + (j // modes) * own, own)
             weight = dt * conductance[j]
             gathered[j] = flow[j] - weight * heard
             for k in range(m):
@@ -136,8 +133,7 @@ def advance(
             real[i] = rate[i]
             imag[i] = 0.0
         for j in range(m):
-            _push(ports, j, gathered[j].real, real, shared, shared + (j // modes) * own, own)
-            _push(ports, j, gathered[j].imag, imag, shared, shared + (j // modes) * own, own)
+            _push(ports, j, gathered[j], real, imag, shared, shared + (j // modes) * own, own)
             lagged[j] += (_LAGS[q] * gathered[j]).real
         a, b = WEIGHTS[q].real, WEIGHTS[q].imag
         for i in range(n):
@@ -168,12 +164,28 @@ def _see(ports, j, values, shared, start, own):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, inline="always")
-def _push(ports, j, amount, values, shared, start, own):
-    """Adds a port's column times amount to the states that it drives."""
+def _hear(ports, j, real, imag, shared, start, own):
+    """The same of complex values."""
+    total_real, total_imag = 0.0, 0.0
     for i in range(shared):
-        values[i] += ports[j, i] * amount
+        total_real += ports[j, i] * real[i]
+        total_imag += ports[j, i] * imag[i]
     for i in range(start, start + own):
-        values[i] += ports[j, i] * amount
+        total_real += ports[j, i] * real[i]
+        total_imag += ports[j, i] * imag[i]
+    return complex(total_real, total_imag)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, inline="always")
+def _push(ports, j, amount, real, imag, shared, start, own):
+    """Adds a port's column times a complex amount to the states that it drives."""
+    a, b = amount.real, amount.imag
+    for i in range(shared):
+        real[i] += ports[j, i] * a
+        imag[i] += ports[j, i] * b
+    for i in range(start, start + own):
+        real[i] += ports[j, i] * a
+        imag[i] += ports[j, i] * b
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
