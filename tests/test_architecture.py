@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("assets", "thermal", "envs", "hardware")
 LEAVES = ("errors", "files", "plant")
-ALL = {"root", "cli", "report", *LEAVES, *FOLDERS}
+ALL = {"root", "bench", "cli", "report", *LEAVES, *FOLDERS}
 MAY_IMPORT = {
     "root": set(),
     "errors": set(),
@@ -22,6 +22,7 @@ MAY_IMPORT = {
     "envs": {*LEAVES, "assets", "thermal"},
     "hardware": {*LEAVES, "assets", "thermal"},
     "__main__": ALL,
+    "bench": ALL,
     "cli": ALL,
     "report": ALL,
 }
