@@ -8,12 +8,11 @@ from .meshes import MeshShape, load_mesh
 from .observation import observation_space
 from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
-from .simulated_plant import SEED_MATERIALS, PlantState, SimulatedPlant, SimulationConfig
+from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
 from .tasks import GraspTask
 from .things import Thing
 
 __all__ = [
-    "SEED_MATERIALS",
     "BatchState",
     "ContactRecord",
     "GraspBatch",

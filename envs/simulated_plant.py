@@ -13,6 +13,7 @@ from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 from thermograsp.plant import Command, Reading
 
 from ..thermal import (
+    SEED_MATERIALS,
     SIGNAL_CHAINS,
     Material,
     Mode,
@@ -34,18 +35,6 @@ from .scene import ObjectSpec
 from .things import Thing
 
 SAMPLES = 2  # of voltage and heat in a control step: 100 Hz
-SEED_MATERIALS = (
-    "cotton",
-    "wood",
-    "plastic",
-    "rubber",
-    "glass",
-    "ceramic",
-    "marble",
-    "stainless_steel",
-    "iron",
-    "aluminium",
-)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from .conductance import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, contact_condu
 from .contact_network import network_for, network_of
 from .ladder import RUNGS, Rung, RungInfo
 from .layers import Layer, SensorStack, sensor, sensors
-from .materials import Material, load_materials, material, materials
+from .materials import SEED_MATERIALS, Material, load_materials, material, materials
 from .network import ThermalNetwork
 from .press import Press, press
 from .problem import Mode, PressProblem, Shape
@@ -29,6 +29,7 @@ __all__ = [
     "IDEAL",
     "LAPPED_ALUMINA",
     "RUNGS",
+    "SEED_MATERIALS",
     "SIGNAL_CHAINS",
     "Choice",
     "ContactArea",

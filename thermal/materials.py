@@ -99,6 +99,21 @@ class Material:
         return self.density * self.specific_heat
 
 
+SEED_MATERIALS = (
+    "cotton",
+    "wood",
+    "plastic",
+    "rubber",
+    "glass",
+    "ceramic",
+    "marble",
+    "stainless_steel",
+    "iron",
+    "aluminium",
+)
+"""The ten of Wu et al. 2012, in the paper's order: rising effusivity."""
+
+
 @cache
 def materials() -> Mapping[str, Material]:
     """The package's materials by name, in the order of the table; read-only."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from gymnasium.utils.seeding import np_random
 
-from thermograsp.envs import SEED_MATERIALS, GraspBatch, GraspTask
+from thermograsp.envs import GraspBatch, GraspTask
 from thermograsp.envs.mechanics import SUBSTEPS
 from thermograsp.errors import MissingDependencyError
 from thermograsp.report.film import Film, Still
 from thermograsp.report.recording import Recording, record
 from thermograsp.report.stopwatch import Stopwatch
-from thermograsp.thermal import Mode, material
+from thermograsp.thermal import SEED_MATERIALS, Mode, material
 
 FILMED = "glass"
 COLOURS = (23.0, 37.0)  # degC, the pictures' range

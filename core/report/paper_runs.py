@@ -19,18 +19,7 @@ from thermograsp.thermal.grid_contact import OBJECT, SENSOR
 from thermograsp.thermal.grid_press import March
 from thermograsp.thermal.problem import Mode
 
-MATERIALS = (
-    "cotton",
-    "wood",
-    "plastic",
-    "rubber",
-    "glass",
-    "ceramic",
-    "marble",
-    "stainless_steel",
-    "iron",
-    "aluminium",
-)
+MATERIALS = thermal.SEED_MATERIALS
 """The paper's ten, in its order: rising effusivity."""
 MODES: tuple[Mode, Mode] = ("O", "T")
 SENSOR_TEMPERATURE, OBJECT_TEMPERATURE = 36.0, 24.0

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from thermograsp.cli import main
-from thermograsp.envs import SEED_MATERIALS
 from thermograsp.errors import MissingDependencyError
 from thermograsp.report.curves import Curve, Mark, chart
+from thermograsp.thermal import SEED_MATERIALS
 
 
 class Links(HTMLParser):

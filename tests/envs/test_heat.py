@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.envs import SEED_MATERIALS, GraspBatch, GraspTask, ObjectSpec
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec
+from thermograsp.thermal import SEED_MATERIALS
 
 from .scripted import grasp_action
 
