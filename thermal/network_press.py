@@ -159,6 +159,6 @@ def _values(conductance: Conductance, times: np.ndarray) -> np.ndarray:
     if wrong.any():
         first = int(np.argmax(wrong))
         raise InvalidValueError(
-            f"conductance({times[first]:g} s) is {values[first]!r}: it must be finite and >= 0 W/(m2 K), 0 where apart"
+            f"conductance({times[first]:g} s) is {float(values[first])!r}: it must be finite and >= 0 W/(m2 K), 0 where apart"
         )
     return values
