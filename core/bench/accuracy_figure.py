@@ -8,11 +8,10 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from thermograsp.bench.accuracy import Point
-from thermograsp.bench.labels import Label, place_labels
+from thermograsp.bench.labels import Label, coloured_key, place_labels
 from thermograsp.bench.saving import save_figure
 from thermograsp.report.style import FAINT, readable, style
 
@@ -78,11 +77,11 @@ def draw_accuracy(stem: Path, points: Sequence[Point], mode: str, footnote: str)
             "3-D semi-analytic solution.",
             size=10.5,
         )
-        _key(figure, 1 - 0.95 / height, 0.2 / height)
+        coloured_key(figure, _GROUPS, 0.055, 1 - 0.95 / height, 0.2 / height)
         low = 10 ** np.floor(np.log10(min(p.seconds for p in shown)))
         high = 2 * max(p.seconds for p in shown)
         errors = [p.error for p in shown]
-        for axes, name in zip(grid.flat, names, strict=False):
+        for axes in grid.flat:
             axes.set(xscale="log", yscale="log", xlim=(low, high), ylim=(0.6 * min(errors), 2 * max(errors)))
         for i, name in enumerate(names):
             _panel(grid.flat[i], name, [p for p in shown if p.material == name], i >= len(names) - across)
@@ -90,19 +89,6 @@ def draw_accuracy(stem: Path, points: Sequence[Point], mode: str, footnote: str)
             row[0].set_ylabel("largest error from 0.05 s on (K)")
         figure.text(0.055, 0.12 / height, footnote, size=7, color=FAINT)
         return save_figure(figure, stem, 110)
-
-
-def _key(figure: Figure, top: float, line: float) -> None:
-    """What the colours stand for, as coloured words, wrapped at the figure's edge."""
-    renderer = FigureCanvasAgg(figure).get_renderer()
-    x, y = 0.055, top
-    for color, group in _GROUPS:
-        word = figure.text(x, y, group, size=9, color=color, weight="semibold")
-        width = word.get_window_extent(renderer).width / figure.bbox.width
-        if x + width > 0.99:
-            x, y = 0.055, y - line
-            word.set_position((x, y))
-        x += width + 0.018
 
 
 def _panel(axes: Axes, name: str, points: Sequence[Point], bottom: bool) -> None:

@@ -1,4 +1,4 @@
-"""Labels beside points where they cover neither points nor each other."""
+"""Labels beside points where they cover neither points nor each other, and keys of coloured words."""
 
 from __future__ import annotations
 
@@ -24,6 +24,22 @@ class Label:
     color: str
     size: float = 8.0
     weight: str = "normal"
+
+
+def coloured_key(
+    figure: Figure, words: Sequence[tuple[str, str]], left: float, top: float, line: float
+) -> None:
+    """What colours stand for, as (colour, words) written in a row from (left, top), wrapped at the figure's right edge;
+    line: distance of rows. All in shares of the figure."""
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    x, y = left, top
+    for color, words_here in words:
+        written = figure.text(x, y, words_here, size=9, color=color, weight="semibold")
+        width = written.get_window_extent(renderer).width / figure.bbox.width
+        if x + width > 0.99:
+            x, y = left, y - line
+            written.set_position((x, y))
+        x += width + 0.018
 
 
 def place_labels(axes: Axes, labels: Sequence[Label], avoid: np.ndarray) -> None:

@@ -1,9 +1,9 @@
 """The contact temperature of one touch beside what a peer simulates: Genesis World's TemperatureGrid sensor.
 
 The peer's figures were measured by this project with Genesis World 1.4.5 (8 x 8 x 1 grid, dt 10 ms, float32) and are
-quoted, not measured again: how far the temperature of its touched cells was from the exact contact temperature. Its cells
-are 10 mm deep, so their mean is set against a surface; the fair figures are those of a 1 x 1 x 10 grid, the mean over
-the first millimetre. Ours is thermal.press with the fingertip as a SensorStack of one layer.
+quoted, not measured again: how far the temperature of its touched cells was from the exact contact temperature. Its
+cells are 10 mm deep, so their mean is set against a surface; the fair figures are those of a 1 x 1 x 10 grid, the mean
+over the first millimetre. Ours is thermal.press with the fingertip as a SensorStack of one layer.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ PEER_HEAT = {"aluminium": 10e3}
 @dataclass(frozen=True, slots=True)
 class Touch:
     """One plate. Temperatures in degC, at TIMES where there are three. exact: two half-spaces. column: ours, a plate of
-    the tip's section 0.5 m deep, to be compared with exact. plate: ours, 40 x 40 x 10 mm. soft: the same with a contact
+    the tip's section 0.5 m deep, to be compared with exact. slab: ours, 40 x 40 x 10 mm. soft: the same with a contact
     of 1e4 W/(m2 K). peer: quoted. first_millimetre: exact mean at 5 s. heat: J/m2 lost by the tip in 5 s, exact and
     ours (column)."""
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
+from thermograsp.bench.labels import coloured_key
 from thermograsp.bench.peer import COLD, PUBLISHED_BY, TIMES, WARM, Touch
 from thermograsp.bench.saving import save_figure
 from thermograsp.report.style import FAINT, INK, readable, style
@@ -20,18 +21,17 @@ def draw_peer(stem: Path, touches: Sequence[Touch], footnote: str) -> list[Path]
     with style(), mpl.rc_context({"font.size": 9}):
         figure = Figure(figsize=(10.5, 4.9), dpi=120)
         panels = figure.subplots(1, len(TIMES), sharey=True)
-        figure.subplots_adjust(left=0.06, right=0.99, top=0.74, bottom=0.16, wspace=0.08)
+        figure.subplots_adjust(left=0.06, right=0.99, top=0.74, bottom=0.19, wspace=0.08)
         figure.text(0.06, 0.93, "Contact temperature of a fingertip", size=15, weight="semibold")
         figure.text(
             0.06, 0.875, "A 16 x 16 x 10 mm tip at 36 °C on plates at 24 °C, perfect contact.", size=10
         )
         words = (
             (INK, "exact, two half-spaces"),
-            (_OURS, "thermograsp, 1-D and 40 x 40 x 10 mm plate"),
-            (_PEER, "Genesis World 1.4.5"),
+            (_OURS, "thermograsp: dots 1-D, squares on a 40 x 40 x 10 mm plate"),
+            (_PEER, "Genesis World 1.4.5, quoted"),
         )
-        for x, (color, text) in zip((0.06, 0.23, 0.54), words, strict=True):
-            figure.text(x, 0.825, text, size=9.5, color=color, weight="semibold")
+        coloured_key(figure, words, 0.06, 0.825, 0.04)
         for i, (axes, time) in enumerate(zip(panels, TIMES, strict=True)):
             axes.set_title(f"after {time:g} s")
             for n, touch in enumerate(touches):
@@ -54,6 +54,12 @@ def draw_peer(stem: Path, touches: Sequence[Touch], footnote: str) -> list[Path]
             axes.set(xlim=(-0.6, len(touches) - 0.4), ylim=(COLD - 0.5, WARM + 1.4))
             axes.grid(axis="y", color="#eef0f3", lw=0.7)
         panels[0].set_ylabel("°C")
-        figure.text(0.06, 0.05, f"Peer's figures published by {PUBLISHED_BY}; not measured again.", size=7.5)
+        figure.text(
+            0.06,
+            0.05,
+            f"Peer's figures published by {PUBLISHED_BY}.\n"
+            "Not measured again; its cells are 10 mm deep, and their mean is set against a surface.",
+            size=7.5,
+        )
         figure.text(0.06, 0.02, footnote, size=6.5, color=FAINT)
         return save_figure(figure, stem, 120)
