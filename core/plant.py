@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 from typing import Any, Protocol
 
@@ -45,6 +45,27 @@ class Reading:
     error: tuple[str, ...]
 
 
+def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
+    """The old reading with the named rows from the new one; both are left as they are."""
+    chosen = list(rows)
+
+    def merge(a: Any, b: Any) -> Any:
+        if isinstance(a, np.ndarray):
+            a = a.copy()
+            a[chosen] = b[chosen]
+            return a
+        if isinstance(a, list | tuple):
+            return type(a)(b[i] if i in chosen else value for i, value in enumerate(a))
+        return b
+
+    parts = {
+        f.name: merge(getattr(old, f.name), getattr(new, f.name))
+        for f in fields(Reading)
+        if f.name != "truth"
+    }
+    return Reading(**parts, truth={name: merge(value, new.truth[name]) for name, value in old.truth.items()})
+
+
 class Plant(Protocol):
     """dt: s, the control period. sample_rate: Hz of the voltage. num_envs: B."""
 
@@ -55,7 +76,8 @@ class Plant(Protocol):
     def reset(
         self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
     ) -> Reading:
-        """Start the named environments anew, each drawing from its own generator; the reading is of all."""
+        """Start the named environments anew, each drawing from its own generator. Of the reading only
+        their rows count."""
         ...
 
     def step(self, command: Command) -> Reading:

@@ -14,7 +14,7 @@ import gymnasium
 import numpy as np
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.plant import Command, Plant, Reading, plant_factory
+from thermograsp.plant import Command, Plant, Reading, merged, plant_factory
 
 from .mechanics import MAX_FORCE, MAX_LIFT_RATE
 from .observation import Observation, Observer, observation_space
@@ -107,6 +107,8 @@ class GraspBatch:
     ) -> tuple[Observation, list[dict[str, Any]]]:
         """Starts the rows anew, each with its generator; the observations are of all environments."""
         reading = self.plant.reset(rows, rngs, options or {})
+        if self.reading is not None:
+            reading = merged(self.reading, reading, rows)
         chosen = np.array(list(rows), int)
         self._observer.restart(chosen)
         for values in (self._judged.elapsed, self._judged.held, self._judged.lifted):

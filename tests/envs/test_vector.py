@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import thermograsp  # noqa: F401  registers the ids
-from thermograsp.envs import GraspEnv
+from thermograsp.envs import GraspBatch, GraspEnv
 from thermograsp.errors import InvalidValueError
+
+from .scripted import grasp_action
 
 
 def make(num_envs: int, **keywords):
@@ -59,3 +61,20 @@ def test_bad_calls_say_what_to_do():
     vector.reset(seed=0)
     with pytest.raises(InvalidValueError, match="finite"):
         vector.step(np.full((2, 3), np.nan))
+
+
+def test_resetting_one_row_leaves_what_the_others_last_read():
+    batch = GraspBatch(2, material="glass")
+    rngs = [np.random.default_rng(i) for i in range(2)]
+    batch.reset([0, 1], rngs)
+    for _ in range(60):
+        batch.step(grasp_action(batch))
+    before = batch.reading
+    seen, infos = batch.reset([0], rngs[:1])
+    after = batch.reading
+    assert before is not None and after is not None
+    assert not after.truth["temperature_drop"][0].any() and not infos[0]["temperature_drop"].any()
+    for name in ("temperature_drop", "heat_imbalance", "heat", "sensor_surface"):
+        assert np.array_equal(after.truth[name][1], before.truth[name][1])
+    assert np.array_equal(after.force[1], before.force[1]) and before.force[1].any()
+    assert seen["voltage"][1].any() and not seen["voltage"][0].any()
