@@ -180,7 +180,7 @@ def _network(modes: int, sensor: int, body: int) -> Prepare:
         orders = (
             Orders(modes, sensor, body, None)
             if problem.mode == "T"
-            else Orders(modes, 0, sensor + body, None)
+            else Orders(modes, 0, body + sensor // 2, None)
         )
         system = network_of(network_press.geometry_of(problem), orders)
         return f"network:{system.orders}", lambda: network_press.solve(problem, t, system).temperature_drop

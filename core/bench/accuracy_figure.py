@@ -96,7 +96,9 @@ def _panel(axes: Axes, name: str, points: Sequence[Point], bottom: bool) -> None
     axes.set_axisbelow(True)
     axes.set_title(readable(name), pad=20)
     best = next(p for p in points if p.ratio == 1.0)
-    top = axes.secondary_xaxis("top", functions=(lambda x: x / best.seconds, lambda r: r * best.seconds))
+    top = axes.secondary_xaxis(
+        "top", functions=(lambda x: np.asarray(x) / best.seconds, lambda r: np.asarray(r) * best.seconds)
+    )
     top.spines["top"].set_visible(False)
     top.tick_params(labelsize=7.5, length=2, pad=1)
     top.xaxis.set_major_formatter(lambda value, _: f"{value:g}x" if value >= 1 else "")

@@ -78,6 +78,7 @@ def classify(
 
     The bars touch and stay together, which shows ringing, and once more as bouncing (steps, P) says."""
     rows = len(fourier)
+    u = bars.first_temperatures(rows)
     grown, outside, heat = np.zeros(rows), np.zeros(rows), np.zeros(rows)
     with np.errstate(all="ignore"):
         for closed in (np.ones_like(bouncing), bouncing):

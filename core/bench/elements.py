@@ -62,7 +62,7 @@ def element_press(problem: PressProblem, cells: int) -> SemiDiscrete:
     # heat of the whole sensor and object, not of their quarter
     stiffness = sparse.csr_matrix(4 * sparse.block_diag([stiff_up, stiff_low]))
     mass = sparse.csr_matrix(4 * sparse.block_diag([mass_up, mass_low]))
-    n, offset = stiffness.shape[0], upper.N
+    n, offset = upper.N + lower.N, upper.N
     load, above, h = np.zeros(n), problem.temperature_difference, problem.conductance
     top, bottom = _face(upper, bounds[-1]), _face(upper, 0.0)
     touched = _face(lower, 0.0, half) + offset
@@ -101,11 +101,11 @@ def element_press(problem: PressProblem, cells: int) -> SemiDiscrete:
 
 def _matrices(basis: Any, conductivity: Any, heat_capacity: Any) -> tuple[Any, Any]:
     from skfem import BilinearForm
-    from skfem.helpers import dot, grad
+    from skfem.helpers import dot
 
     shape = np.asarray(basis.global_coordinates())[2].shape
     k, c = np.broadcast_to(conductivity, shape), np.broadcast_to(heat_capacity, shape)
-    stiffness = BilinearForm(lambda u, v, w: k * dot(grad(u), grad(v))).assemble(basis)
+    stiffness = BilinearForm(lambda u, v, w: k * dot(u.grad, v.grad)).assemble(basis)
     return stiffness, BilinearForm(lambda u, v, w: c * u * v).assemble(basis)
 
 

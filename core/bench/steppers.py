@@ -6,6 +6,7 @@ A march returns the temperature drop (count + 1,) K at 0, spacing, 2 spacing, ..
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -21,7 +22,7 @@ _SDIRK = 1 - 1 / np.sqrt(2)
 
 def ftcs_limit(system: SemiDiscrete) -> float:
     """s, step below which explicit steps are stable (Gershgorin: a bound, at most a factor 2 below the true one)."""
-    return float(np.min(system.mass.diagonal() / system.stiffness.diagonal()))
+    return float(np.min(np.asarray(system.mass.diagonal()) / np.asarray(system.stiffness.diagonal())))
 
 
 def ftcs(system: SemiDiscrete, spacing: float, count: int, of_limit: float = 0.95) -> March:
@@ -96,7 +97,7 @@ def ivp(
         width = int(np.max(np.abs(coo.row - coo.col)))
         banded = np.zeros((2 * width + 1, len(source)))
         banded[width + coo.row - coo.col, coo.col] = coo.data
-        options = {"lband": width, "uband": width, "jac": lambda time, u: banded}
+        options: dict[str, Any] = {"lband": width, "uband": width, "jac": lambda time, u: banded}
     else:
         options = {"jac": jacobian}
 

@@ -130,13 +130,12 @@ def _stability(
     with output.progress(10) as advance:
         maps = atlas.atlas(pixels, steps, args.seed, lambda doing: advance(doing, 1))
     output.line(f"share of the map, and how far the range was left at most ({steps} steps)")
-    header = ("scheme", "stable", "rings", "leaves range", "blows up", "outside", "heat from nowhere")
+    header = ("scheme", "stable", "rings", "leaves range", "blows up", "outside")
     rows = [
         (
             each.title,
             *(f"{100 * each.share(kind):.1f} %" for kind in range(4)),
             f"{each.outside.max():.2g}",
-            f"{each.heat.max():.1e}",
         )
         for each in maps
     ]
