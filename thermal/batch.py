@@ -14,17 +14,17 @@ from numba import njit
 
 from thermograsp.errors import InvalidValueError
 
+from .air import with_air
 from .coupling import POLES, propagator
 from .coupling_kernel import FAST, StepArrays, advance, workspace
-from .network_press import with_air
 from .system import ContactSystem
 
 
 class HeatTables(NamedTuple):
     """Networks of the same fingertips, padded to one size, for steps of dt s. states, object_states, sensor_states and
     modes: (T,) true sizes. rates (T, K), ports (T, M, K), scale_real and scale_imag (T, Q, K), gram (T, Q, M, M), drop,
-    element_heat, sensor_surface and object_surface (T, F, K), object_heat (T, K), mean (T,): the index of the object's
-    mean temperature."""
+    element_heat, sensor_surface and object_surface (T, F, K), object_heat and air_loss (W) (T, K), mean (T,): the
+    index of the object's mean temperature (T mode)."""
 
     dt: float
     states: np.ndarray
@@ -41,6 +41,7 @@ class HeatTables(NamedTuple):
     sensor_surface: np.ndarray
     object_surface: np.ndarray
     object_heat: np.ndarray
+    air_loss: np.ndarray
     mean: np.ndarray
 
     @property
@@ -88,12 +89,14 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
         scale_imag=np.zeros((count, pairs, k)),
         gram=np.zeros((count, pairs, m, m), complex),
         object_heat=np.zeros((count, k)),
+        air_loss=np.zeros((count, k)),
         mean=np.array([s.mean for s in systems]),
         **rows,
     )
     for i, (system, film) in enumerate(zip(systems, air, strict=True)):
         n, p = len(system.rates), system.ports.shape[1]
-        stepper = propagator(with_air(system, film), system.ports, dt)
+        aired, tables.air_loss[i, :n] = with_air(system, film)
+        stepper = propagator(aired.rates, aired.ports, dt)
         tables.rates[i, :n], tables.ports[i, :p, :n] = stepper.rates, stepper.ports.T
         tables.scale_real[i, :, :n], tables.scale_imag[i, :, :n] = (
             np.real(stepper.scale),
@@ -101,8 +104,8 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
         )
         tables.gram[i, :, :p, :p] = stepper.gram
         for name, table in rows.items():
-            table[i, :, :n] = getattr(system, name)
-        tables.object_heat[i, :n] = system.object_heat
+            table[i, :, :n] = getattr(aired, name)
+        tables.object_heat[i, :n] = aired.object_heat
     return tables
 
 
@@ -174,7 +177,7 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
         if not active[b]:
             continue
         i = network[b]
-        n, p, mean = tables.states[i], tables.modes[i], tables.mean[i]
+        n, p = tables.states[i], tables.modes[i]
         system = StepArrays(
             tables.dt,
             tables.rates[i],
@@ -186,18 +189,15 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
             tables.sensor_states[i],
             p,
             fingertips,
-            mean,
+            tables.air_loss[i],
         )
         drive[:] = 0.0
-        kept = tables.object_heat[i, mean]
         for f in range(fingertips):
             drive[f * p] = difference[b, f]
             weight[f * p : (f + 1) * p] = conductance[b, f]
-            kept += tables.element_heat[i, f, mean]
         x = state[b]
         for k in range(samples):
-            level = advance(system, x, weight, drive, flow, room)
-            reading.air_loss[b, k] = tables.rates[i, mean] * kept * level
+            reading.air_loss[b, k] = advance(system, x, weight, drive, flow, room)
             for f in range(fingertips):
                 reading.drop[b, k, f] = _dot(tables.drop, i, f, x, n)
                 reading.element_heat[b, k, f] = _dot(tables.element_heat, i, f, x, n)

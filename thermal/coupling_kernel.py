@@ -23,8 +23,8 @@ FAST = {"reassoc", "contract", "nsz"}
 class StepArrays(NamedTuple):
     """One system's matrices for one step length, laid out for the kernel and possibly padded behind their true sizes.
     dt: s. rates: (n,) 1/s. ports: (M, n). scale_real, scale_imag: (Q, n). gram: (Q, M, M) complex. object_states,
-    sensor_states: how many, the latter of each fingertip. modes: ports of each of `contacts` contacts. watched: index
-    of the state whose mean `advance` returns."""
+    sensor_states: how many, the latter of each fingertip. modes: ports of each of `contacts` contacts. watched: (n,)
+    a row on the state whose mean `advance` returns."""
 
     dt: float
     rates: np.ndarray
@@ -36,11 +36,15 @@ class StepArrays(NamedTuple):
     sensor_states: int
     modes: int
     contacts: int
-    watched: int
+    watched: np.ndarray
 
 
 def step_arrays(
-    propagator: Propagator, *, modes: int | None = None, sensor_states: int = 0, watched: int = 0
+    propagator: Propagator,
+    *,
+    modes: int | None = None,
+    sensor_states: int = 0,
+    watched: np.ndarray | None = None,
 ) -> StepArrays:
     """Arrays of a propagator. modes: ports of each contact (None: all belong to one). sensor_states: of each fingertip,
     at the end of the states, seeing only its own contact's ports."""
@@ -57,7 +61,7 @@ def step_arrays(
         sensor_states,
         own,
         ports // own,
-        watched,
+        np.zeros(states) if watched is None else np.ascontiguousarray(watched),
     )
 
 
@@ -99,7 +103,7 @@ def advance(
     """One step of one system: state (n,) in place, flow (M,) filled with the mean heat flow W during the step.
 
     conductance: (M,) W/K, >= 0. difference: (M,) K. room: workspace of at least this size. Returns the mean during the
-    step of the watched state.
+    step of the watched row on the state.
     """
     n = system.object_states + system.contacts * system.sensor_states
     m = system.contacts * system.modes
@@ -116,7 +120,9 @@ def advance(
     for i in range(n):
         rate[i] = -rates[i] * state[i]
         change[i] = 0.0
-    watched_lag = 0.0
+    watched_now, watched_lag = 0.0, 0.0
+    for i in range(n):
+        watched_now += watched[i] * state[i]
     for q in range(_PAIRS):
         for i in range(n):
             real[i] = scale_real[q, i] * rate[i]
@@ -136,17 +142,15 @@ def advance(
             _push(ports, j, gathered[j], real, imag, shared, shared + (j // modes) * own, own)
             lagged[j] += (_LAGS[q] * gathered[j]).real
         a, b = WEIGHTS[q].real, WEIGHTS[q].imag
+        c, d = _LAGS[q].real, _LAGS[q].imag
         for i in range(n):
             solved_real = scale_real[q, i] * real[i] - scale_imag[q, i] * imag[i]
             solved_imag = scale_real[q, i] * imag[i] + scale_imag[q, i] * real[i]
             change[i] += a * solved_real - b * solved_imag
-        solved = complex(scale_real[q, watched], scale_imag[q, watched]) * complex(
-            real[watched], imag[watched]
-        )
-        watched_lag += (_LAGS[q] * solved).real
+            watched_lag += watched[i] * (c * solved_real - d * solved_imag)
     for j in range(m):
         flow[j] = -2 * lagged[j]
-    mean = state[watched] - 2 * dt * watched_lag
+    mean = watched_now - 2 * dt * watched_lag
     for i in range(n):
         state[i] -= 2 * dt * change[i]
     return mean

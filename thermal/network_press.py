@@ -10,6 +10,7 @@ from numba import njit
 
 from thermograsp.errors import InvalidValueError
 
+from .air import with_air
 from .bodies import Geometry
 from .coupling import propagator
 from .coupling_kernel import StepArrays, advance, step_arrays, workspace
@@ -34,21 +35,6 @@ def geometry_of(problem: PressProblem, fingertips: Literal[1, 2] | None = None) 
     )
 
 
-def with_air(system: ContactSystem, air: float) -> np.ndarray:
-    """Rates (K,) 1/s of the system in air (W/(m2 K)): the object's mean temperature relaxes at h A / (m c), its free
-    faces at that mean (lumped; small where the object's own Biot number is)."""
-    rates = system.rates.copy()
-    geometry = system.geometry
-    width, depth, thickness = geometry.object_size
-    touched = geometry.stack.face_area if geometry.mode == "O" else geometry.area
-    free = 2 * (width * depth + width * thickness + depth * thickness) - geometry.fingertips * touched
-    capacity = geometry.material.volumetric_heat_capacity * width * depth * thickness
-    if geometry.mode == "O":
-        capacity += geometry.fingertips * geometry.element_capacity
-    rates[system.mean] += air * free / capacity
-    return rates
-
-
 def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressCurves:
     """Curves at the samples t = 0, dt, 2 dt, ... (n,) s. A constant conductance is stepped exactly from sample to
     sample, one that varies in equal steps of at most LONGEST_STEP. A second fingertip of the system stays apart unless
@@ -63,22 +49,21 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
         raise InvalidValueError(
             f"network {system.orders} has one fingertip, the problem two: give modes/sensor/even/odd"
         )
-    rates = with_air(system, problem.air)
+    system, _ = with_air(system, problem.air)
     spacing = t[1] - t[0] if len(t) > 1 else 1.0
     held = problem.thermostat is None and not any(map(callable, pressed))
     steps = 1 if held else max(1, int(np.ceil(spacing / LONGEST_STEP - 1e-9)))
     dt = spacing / steps
     arrays = step_arrays(
-        propagator(rates, system.ports, dt),
+        propagator(system.rates, system.ports, dt),
         modes=system.modes,
         sensor_states=system.orders.sensor,
-        watched=system.mean,
     )
     middles = (np.arange(steps * (len(t) - 1)) + 0.5) * dt
     weights = np.zeros((len(middles), fingertips))
     for tip, conductance in enumerate(pressed):
         weights[:, tip] = _values(conductance, middles) * problem.area
-    states = np.zeros((len(t), len(rates)))
+    states = np.zeros((len(t), len(system.rates)))
     offset = np.zeros(len(t))
     if problem.thermostat is None:
         _march(arrays, weights, problem.temperature_difference, steps, states)
@@ -159,6 +144,7 @@ def _values(conductance: Conductance, times: np.ndarray) -> np.ndarray:
     if wrong.any():
         first = int(np.argmax(wrong))
         raise InvalidValueError(
-            f"conductance({times[first]:g} s) is {float(values[first])!r}: it must be finite and >= 0 W/(m2 K), 0 where apart"
+            f"conductance({times[first]:g} s) is {float(values[first])!r}: "
+            "it must be finite and >= 0 W/(m2 K), 0 where apart"
         )
     return values

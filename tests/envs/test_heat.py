@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, action_of
 from thermograsp.thermal import SEED_MATERIALS
 
 from .scripted import grasp_action
@@ -197,3 +197,29 @@ def test_heat_drawn_from_thermostats_is_what_elements_and_object_gain():
     assert batch.reading is not None
     assert batch.reading.thermostat.min() < 35.0
     assert batch.reading.truth["heat"].sum() == pytest.approx(drawn, rel=1e-9)
+
+
+def test_a_grasp_elsewhere_is_a_new_patch_and_keeps_the_heat():
+    batch = GraspBatch(1, task=ENDLESS, material="glass", air=0.0, placement=(0.0, 0.0))
+    batch.reset([0], [np.random.default_rng(0)])
+    plant = batch.plant
+    kinds = []
+
+    def run(steps, opening):
+        for _ in range(steps):
+            step = batch.step(action_of(opening, 10.0, 0.0)[None])
+            kinds.extend(kind for kind, _ in step.infos[0]["events"])
+
+    run(120, 0.0)
+    run(60, 0.085)
+    assert batch.reading is not None
+    before = batch.reading.truth["heat"][0, 2]
+    along_y = plant.mechanics.model.joint("object_free").qposadr[0] + 1  # pyright: ignore[reportAttributeAccessIssue]
+    plant.mechanics._qpos[0, along_y] += 0.009  # pyright: ignore[reportAttributeAccessIssue]
+    run(1, 0.085)
+    assert batch.reading.truth["heat"][0, 2] == pytest.approx(before, rel=1e-9)
+    run(60, 0.0)
+    assert kinds.count("touch") == 4 and kinds.count("release") == 2
+    assert kinds.count("new patch") == 2
+    truth = batch.reading.truth
+    assert abs(truth["heat_imbalance"][0]) <= 1e-6 * truth["heat_exchanged"][0]

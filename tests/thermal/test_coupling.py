@@ -64,7 +64,7 @@ def test_compiled_step_is_the_plain_one(mode: str, fingertips: int) -> None:
     rng = np.random.default_rng(1)
     for _ in range(40):
         stepper = propagator(made.rates, made.ports, float(np.exp(rng.uniform(-11, 2))))
-        arrays = step_arrays(stepper, modes=made.modes, sensor_states=made.orders.sensor, watched=made.mean)
+        arrays = step_arrays(stepper, modes=made.modes, sensor_states=made.orders.sensor)
         state, difference = rng.normal(size=n), rng.normal(size=m)
         weight = np.repeat(np.exp(rng.uniform(-8, 2, fingertips)), made.modes) * rng.integers(0, 2)
         after, flow = step(stepper, state[None], weight[None], difference[None])
@@ -133,7 +133,7 @@ def test_heat_balances_and_temperatures_stay_in_range(mode: str, name: str) -> N
     for _ in range(HISTORIES):
         dt = float(10 ** rng.uniform(-5, 1))
         stepper = propagator(made.rates, made.ports, dt)
-        arrays = step_arrays(stepper, modes=made.modes, sensor_states=made.orders.sensor, watched=made.mean)
+        arrays = step_arrays(stepper, modes=made.modes, sensor_states=made.orders.sensor)
         assert _histories(arrays, rows, room, 50, rng, made.geometry.area, jump, extremes) < 1e-10
     allowed = 0.005  # K, the smallest tolerance that is promised
     assert extremes[0] >= -jump - allowed and extremes[1] <= allowed

@@ -1,0 +1,42 @@
+"""A system of contacts whose object gives heat to the air."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .system import ContactSystem
+
+
+def with_air(system: ContactSystem, air: float) -> tuple[ContactSystem, np.ndarray]:
+    """The system in air of `air` W/(m2 K) at the object's first temperature, and the row (K,) W of its heat loss.
+
+    The object's free faces are taken at its mean temperature and lose heat evenly (lumped: small errors where the
+    object's own Biot number is small). The loss adds a symmetric non-negative rank-one term to the rates, so what is
+    passive stays so; in T mode the mean is a state of its own and only its rate grows.
+    """
+    geometry = system.geometry
+    width, depth, thickness = geometry.object_size
+    touched = geometry.stack.face_area if geometry.mode == "O" else geometry.area
+    free = 2 * (width * depth + width * thickness + depth * thickness) - geometry.fingertips * touched
+    capacity = geometry.material.volumetric_heat_capacity * width * depth * thickness
+    mean = system.object_heat / capacity
+    if air == 0:
+        return system, np.zeros_like(mean)
+    if geometry.mode == "T":
+        rates = system.rates.copy()
+        rates[system.mean] += air * free / capacity
+        return replace(system, rates=rates), air * free * mean
+    rates, turn = np.linalg.eigh(np.diag(system.rates) + air * free * np.outer(mean, mean))
+    turned = replace(
+        system,
+        rates=np.maximum(rates, 0.0),
+        ports=turn.T @ system.ports,
+        drop=system.drop @ turn,
+        element_heat=system.element_heat @ turn,
+        object_heat=system.object_heat @ turn,
+        sensor_surface=system.sensor_surface @ turn,
+        object_surface=system.object_surface @ turn,
+    )
+    return turned, air * free * mean @ turn
