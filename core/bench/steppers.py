@@ -22,7 +22,9 @@ _SDIRK = 1 - 1 / np.sqrt(2)
 
 def ftcs_limit(system: SemiDiscrete) -> float:
     """s, step below which explicit steps are stable (Gershgorin: a bound, at most a factor 2 below the true one)."""
-    return float(np.min(np.asarray(system.mass.diagonal()) / np.asarray(system.stiffness.diagonal())))
+    return float(
+        np.min(np.asarray(system.mass.diagonal(), float) / np.asarray(system.stiffness.diagonal(), float))
+    )
 
 
 def ftcs(system: SemiDiscrete, spacing: float, count: int, of_limit: float = 0.95) -> March:
