@@ -227,6 +227,6 @@ def series_map(pixels: int) -> Map:
         kinds,
         errors,
         np.zeros_like(errors),
-        (Line("|γ|ᴺ erfc(N/√F)\n= tolerance", fine, least, (0.013, 1.5e-3)),),
+        (Line(r"$|\gamma|^N$ erfc$(N/\sqrt{F})$" "\n= tolerance", fine, least, (0.013, 1.5e-3)),),
         ("Fourier number of the time, α t/L²", "1 - |γ|, object better than sensor"),
     )
