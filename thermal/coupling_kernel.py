@@ -206,7 +206,8 @@ def _solve(matrix: np.ndarray, vector: np.ndarray, m: int) -> None:
                 matrix[c, k], matrix[pivot, k] = matrix[pivot, k], matrix[c, k]
             vector[c], vector[pivot] = vector[pivot], vector[c]
         real, imag = matrix[c, c].real, matrix[c, c].imag
-        inverse = complex(real, -imag) / (real * real + imag * imag)
+        size = 1 / (real * real + imag * imag)
+        inverse = complex(real * size, -imag * size)
         for r in range(c + 1, m):
             factor = matrix[r, c] * inverse
             for k in range(c + 1, m):
