@@ -10,6 +10,7 @@ only when one of them is made, so mechanics run without it.
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Mapping
 from typing import Any
 
@@ -23,6 +24,7 @@ from .mechanics import Mechanics
 
 MAX_WIDTH, MAX_HEIGHT = 1280, 960  # the offscreen buffer of assets/gripper.xml
 _MAX_GEOMS = 500
+_CLOSING = 5.0  # s, at most, that a closing window is waited for
 _HELP = (
     "on Debian or Ubuntu: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri (software rendering, no screen needed); "
     "MUJOCO_GL=egl, osmesa or glfw chooses the library"
@@ -152,9 +154,11 @@ class Window:
         try:
             import mujoco.viewer
 
+            others = set(threading.enumerate())
             self._viewer = mujoco.viewer.launch_passive(
                 self._stage.model, self._stage.data, show_left_ui=False, show_right_ui=False
             )
+            self._threads = set(threading.enumerate()) - others
         except Exception as error:  # glfw and the viewer raise several kinds
             raise MissingDependencyError(
                 f"the viewer cannot open ({error}); check DISPLAY and OpenGL"
@@ -172,8 +176,10 @@ class Window:
         self._viewer.sync()
 
     def close(self) -> None:
-        """Close the window."""
+        """Close the window, and wait for the thread that draws it: X kills a process that ends while it still draws."""
         self._viewer.close()
+        for thread in self._threads:
+            thread.join(_CLOSING)
 
 
 def _has_display() -> bool:

@@ -1,3 +1,7 @@
+import shutil
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -124,3 +128,23 @@ def test_temperatures_beyond_the_range_show_the_end_colours():
     assert low.sum() < mid.sum() < high.sum()
     with pytest.raises(InvalidValueError, match="finite"):
         temperature_colour(float("nan"))
+
+
+@pytest.mark.skipif(shutil.which("xvfb-run") is None, reason="needs xvfb-run, a screen for nobody")
+def test_a_window_opens_follows_and_closes() -> None:
+    program = (
+        "import gymnasium, thermograsp\n"
+        "from thermograsp.envs import action_of\n"
+        "env = gymnasium.make('thermograsp/Grasp-v0', material='glass', render_mode='human')\n"
+        "env.reset(seed=0)\n"
+        "for _ in range(10):\n"
+        "    env.step(action_of(0.0, 10.0, 0.0))\n"
+        "assert env.unwrapped._renderer._window.open\n"
+        "env.close()\n"
+        "print('closed')\n"
+    )
+    screen = ["xvfb-run", "-a", "-s", "-screen 0 1024x768x24"]
+    done = subprocess.run(
+        [*screen, sys.executable, "-c", program], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0 and done.stdout.strip() == "closed", done.stderr
