@@ -164,6 +164,11 @@ class Window:
                 f"the viewer cannot open ({error}); check DISPLAY and OpenGL"
             ) from error
 
+        with self._viewer.lock():
+            camera = self._viewer.cam
+            camera.lookat[:] = (0.0, 0.0, 0.08)
+            camera.distance, camera.azimuth, camera.elevation = 0.7, 120.0, -20.0
+
     @property
     def open(self) -> bool:
         """False once the user has closed it."""
