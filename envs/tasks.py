@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermograsp.errors import InvalidValueError
+
 LIFTED = 0.05  # m
 _TOUCHING = 0.2  # N on each pad that counts as holding
 
@@ -16,6 +18,7 @@ _TOUCHING = 0.2  # N on each pad that counts as holding
 @dataclass(frozen=True, slots=True)
 class GraspTask:
     """Close, lift the object by 5 cm, hold it for hold_seconds without dropping or crushing it. seconds: time limit.
+    Raises InvalidValueError where one of them is not above 0.
 
     Reward per second: .2 while both fingertips press, .3 times the height reached (as a share of 5 cm), .5 while it is
     held there; 1 once on success, -1 on dropping or crushing.
@@ -23,6 +26,11 @@ class GraspTask:
 
     hold_seconds: float = 2.0
     seconds: float = 10.0
+
+    def __post_init__(self) -> None:
+        for name in ("hold_seconds", "seconds"):
+            if not getattr(self, name) > 0:
+                raise InvalidValueError(f"{name} must be above 0 s, got {getattr(self, name)!r}")
 
 
 @dataclass(frozen=True, slots=True)

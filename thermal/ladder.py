@@ -151,8 +151,10 @@ def _auto(problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool) -
     )
     curves = network_press.solve(problem, t, system)
     late = np.flatnonzero(t >= FIRST)
+    if not len(late):  # nothing by which a simpler rung could show itself fit
+        return chosen, curves
     # A few samples show a simpler rung unfit; only one that passes them is computed whole.
-    probe = np.unique(late[np.geomspace(1, len(late), _PROBES).astype(int) - 1]) if len(late) else late
+    probe = np.unique(late[np.geomspace(1, len(late), _PROBES).astype(int) - 1])
     for info in RUNGS.values():
         simpler = info.solve is not None and 0 < info.multiply_adds < system.orders.multiply_adds
         if not simpler or not _possible(info, problem):

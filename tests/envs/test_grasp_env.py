@@ -142,6 +142,10 @@ def test_bad_keywords_say_what_to_do():
         GraspEnv(mode="X")
     with pytest.raises(InvalidValueError, match="tolerance"):
         GraspEnv(tolerance=-1.0)
+    with pytest.raises(InvalidValueError, match="hold_seconds"):
+        GraspEnv(hold_seconds=-1.0)
+    with pytest.raises(InvalidValueError, match="seconds"):
+        GraspEnv(seconds=float("nan"))
     with pytest.raises(InvalidValueError, match="colour"):
         GraspEnv(colour="red")
     with pytest.raises(UnknownNameError, match="rgb_array"):

@@ -48,3 +48,9 @@ def test_two_equal_presses_see_half_the_plate_each(mode: Mode, name: str) -> Non
     half = press(name, mode=mode, object_size=(0.04, 0.04, 0.005), seconds=10.0, dt=0.1, tolerance=0.005)
     assert np.max(np.abs(both.temperature_drop - half.temperature_drop)[1:]) < 0.01
     assert both.stored_heat[-1, 1] == pytest.approx(2 * half.stored_heat[-1, 1], rel=2e-3)
+
+
+def test_auto_takes_no_simpler_rung_that_no_sample_has_shown_fit() -> None:
+    """One sample at the touch: the lumped rung's drop would be there at once."""
+    run = press("glass", seconds=0.5, dt=1.0)
+    assert run.rung.name == "network" and run.temperature_drop[0] == 0
