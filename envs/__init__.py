@@ -9,6 +9,7 @@ from .observation import observation_space
 from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
+from .solver_settings import SolverSettings
 from .tasks import GraspTask
 from .things import Thing
 
@@ -27,6 +28,7 @@ __all__ = [
     "Renderer",
     "SimulatedPlant",
     "SimulationConfig",
+    "SolverSettings",
     "Thing",
     "Window",
     "action_of",

@@ -19,6 +19,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from .scene import MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
+from .solver_settings import SHIPPED, SolverSettings
 
 SUBSTEPS = 10
 MAX_FORCE = 40.0  # N
@@ -86,7 +87,7 @@ class Mechanics:
     """`num_envs` grippers, each over its own objects.
 
     objects: what every environment holds at first; later ones may differ in all but name and number. Meshes that
-    come later must be in `library`. threads: 0 means all CPUs. timestep: s, of a substep.
+    come later must be in `library`. threads: 0 means all CPUs. settings: of MuJoCo.
     model: the compiled model of the first objects (MjModel).
 
     The gripper's low-level law is in the model: a servo on the opening whose set point moves at a bounded
@@ -100,18 +101,18 @@ class Mechanics:
         *,
         threads: int = 1,
         library: Sequence[ObjectSpec] = (),
-        timestep: float = 0.002,
+        settings: SolverSettings = SHIPPED,
     ) -> None:
         if num_envs < 1 or threads < 0:
             raise InvalidValueError(f"num_envs {num_envs}, threads {threads}: give >= 1 and >= 0")
         self._library = tuple(library) + tuple(o for o in objects if o.mesh)
-        self._timestep = timestep
+        self._settings = settings
         self.num_envs = num_envs
         self.objects: list[tuple[ObjectSpec, ...]] = [tuple(objects)] * num_envs
         self.names = tuple(o.name for o in objects)
         # At the origin, so that two batches with the same objects share every model field.
         at_origin = tuple(placeless(o) for o in objects)
-        self.model = build_scene(at_origin, library=self._library, timestep=timestep)
+        self.model = build_scene(at_origin, library=self._library, settings=settings)
         self._batch = mujoco.batch.Batch(self.model, num_envs, threads)
         self._rows = self._batch.state  # every simulation's mjSTATE_INTEGRATION, live
         self._qpos, self._qvel, self._act, self._ctrl = (
@@ -206,7 +207,7 @@ class Mechanics:
                 within(name, values, low, high)
         if substeps < 1:
             raise InvalidValueError(f"substeps {substeps}: give at least 1")
-        self._command(command[0], command[1], command[2], substeps * self._timestep)
+        self._command(command[0], command[1], command[2], substeps * self._settings.timestep)
         before = self._batch.warning[:, :, 1].copy()
         out = self._batch.rollout(substeps, record=_RECORD)
         risen = self._batch.warning[:, :, 1] > before
@@ -294,7 +295,7 @@ class Mechanics:
         if key not in self._compiled:
             if len(self._compiled) >= _KEPT_MODELS:
                 self._compiled.pop(next(iter(self._compiled)))
-            model = build_scene(key, library=self._library, timestep=self._timestep)
+            model = build_scene(key, library=self._library, settings=self._settings)
             pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)
             # bvh_aabb goes on with the meshes' boxes, which all environments share
             bodies = int(model.body_bvhnum.sum())

@@ -21,6 +21,7 @@ from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 
 from ..assets import asset
 from .meshes import MeshShape, load_mesh
+from .solver_settings import SHIPPED, SolverSettings
 
 TIPS = ("left", "right")
 MAX_OPENING = 0.085  # m, between the pads
@@ -36,9 +37,7 @@ _GEOMS = {
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
     "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
 }
-# Contact softness that holds a grasp without creeping at 2 ms (slip below .1 mm in 10 s at 10 N).
-_SOLREF = (0.005, 1.0)
-_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
+_MIDPOINT, _POWER = 0.5, 2.0  # of the impedance's rise with depth, MuJoCo's defaults
 _TORSION, _ROLLING = 0.005, 0.0001  # m, MuJoCo's defaults; a flat patch has its torsion from its corners
 
 
@@ -196,7 +195,7 @@ def build_scene(
     objects: Sequence[ObjectSpec] = (ObjectSpec(),),
     *,
     library: Iterable[ObjectSpec] = (),
-    timestep: float = 0.002,
+    settings: SolverSettings = SHIPPED,
 ) -> mujoco.MjModel:
     """Compile gripper, table and objects; the gripper is down at the first object's grasp height.
 
@@ -204,7 +203,7 @@ def build_scene(
     (names: `contact_sensor`): number of contacts, net force of the tip on the object (world frame, N), and the
     force-weighted centroid (world frame, m). Sensors are ordered by tip, then by object.
     library: mesh objects whose files are compiled in besides, so that models with other objects from it
-    have the same layout. timestep: s.
+    have the same layout. settings: MuJoCo's solver and the softness of contacts.
     Raises InvalidValueError for no objects or a name given twice.
     """
     objects, library = tuple(objects), tuple(library)
@@ -212,13 +211,13 @@ def build_scene(
     if not objects or len(set(names)) < len(names):
         raise InvalidValueError(f"objects {names}: give at least one and every name once")
     spec = _gripper().copy()
-    spec.option.timestep = positive("timestep", timestep)
+    settings.apply(spec.option)
     for shape in dict.fromkeys(o.geometry for o in (*library, *objects) if o.mesh):
         for name, (vertices, faces) in zip(_mesh_names(shape), shape.hulls, strict=True):
             spec.add_mesh(name=name, uservert=vertices.ravel(), userface=faces.ravel())
     _keep_hulls(spec, [item.geometry for item in library if item.mesh])
     for item in objects:
-        _add_object(spec, item)
+        _add_object(spec, item, settings)
     for tip in TIPS:
         for item in objects:
             _add_contact_sensor(spec, tip, item.name)
@@ -249,7 +248,7 @@ def _keep_hulls(spec: mujoco.MjSpec, shapes: Sequence[MeshShape]) -> None:
         geom.meshname, geom.rgba, geom.group = name, (0, 0, 0, 0), 5
 
 
-def _add_object(spec: mujoco.MjSpec, item: ObjectSpec) -> None:
+def _add_object(spec: mujoco.MjSpec, item: ObjectSpec, settings: SolverSettings) -> None:
     com, inertia = item.inertia
     moments, quat = _principal(inertia)
     pose = item.pose
@@ -273,8 +272,8 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec) -> None:
         "priority": 1,
         "condim": 4,
         "friction": (DEFAULT_FRICTION if item.friction is None else item.friction, _TORSION, _ROLLING),
-        "solref": _SOLREF,
-        "solimp": _SOLIMP,
+        "solref": settings.solref,
+        "solimp": (*settings.solimp, _MIDPOINT, _POWER),
     }
     meshes = _mesh_names(item.geometry) if item.mesh else [None]
     for i, mesh in enumerate(meshes):
