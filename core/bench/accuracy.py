@@ -1,10 +1,10 @@
 """Work and precision of a press: what each way of computing the temperature drop costs, and how far off it is.
 
-Ours: every rung of the ladder, and what rung="auto" chooses for tolerances. Beside them what one would write instead: a
-plain uniform grid (semi_discrete) with textbook time steps or scipy's integrators, and 3-D finite elements. All answer
-the same question, the drop every 20 ms for 8 s. The error is the largest difference from the semi-analytic solution in
-three dimensions, itself good to .0003 K, from 0.05 s on. What can be prepared once for a material (grids, matrices,
-factors, networks) is timed apart and not counted; the package's own grids are timed with their factors.
+Ours: every rung of the ladder, and what rung="auto" chooses for tolerances. Beside them what one would write instead:
+a plain uniform grid (semi_discrete) with textbook time steps, scipy's integrators or FiPy, and 3-D finite elements.
+All answer the same question, the drop every 20 ms for 8 s. The error is the largest difference from the semi-analytic
+solution in three dimensions, itself good to .0003 K, from 0.05 s on. What can be prepared once for a material (grids,
+matrices, factors, networks) is timed apart and not counted; the package's own grids are timed with their factors.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from thermograsp import thermal
-from thermograsp.bench import elements, steppers
+from thermograsp.bench import elements, fipy_press, steppers
 from thermograsp.bench.semi_discrete import disc_press
 from thermograsp.thermal import (
     RUNGS,
@@ -85,8 +85,8 @@ def press_problem(name: str, mode: str) -> PressProblem:
     )
 
 
-def methods(quick: bool, finite_elements: bool) -> list[Method]:
-    """What is compared. quick: without the finest settings. finite_elements: needs scikit-fem."""
+def methods(quick: bool) -> list[Method]:
+    """What is compared; scikit-fem and FiPy where they are installed. quick: without the finest settings."""
     found = [Method(name, "", _rung(name)) for name in ("lumped", "half_space", "closed_form", "layered")]
     found += [Method("auto", f"{tolerance:g} K", _auto(tolerance, quick)) for tolerance in TOLERANCES]
     found += [Method("network", "/".join(map(str, orders)), _network(*orders)) for orders in _ORDERS]
@@ -108,7 +108,10 @@ def methods(quick: bool, finite_elements: bool) -> list[Method]:
         Method("1-D FTCS", "0.1 mm", _ftcs(1e-4, lateral=False), 1),
         Method("1-D BDF", "0.1 mm", _ivp(1e-4, "BDF", lateral=False), 2),
     ]
-    if finite_elements:
+    if fipy_press.available():
+        for cell in (1e-3,) if quick else (1e-3, 0.5e-3):
+            found.append(Method("FiPy", f"{1e3 * cell:g} mm", _fipy(cell), 1))
+    if elements.available():
         sizes = (2,) if quick else (2, 4, 6)
         found += [Method("finite elements", f"{cells} a half side", _elements(cells), 1) for cells in sizes]
     return found
@@ -215,6 +218,10 @@ def _ftcs(cell: float, lateral: bool = True) -> Prepare:
 
 def _ivp(cell: float, method: str, lateral: bool = True) -> Prepare:
     return lambda problem, t: ("", steppers.ivp(disc_press(problem, cell, lateral), *_steps(t), method))
+
+
+def _fipy(cell: float) -> Prepare:
+    return lambda problem, t: ("", fipy_press.fipy_press(problem, *_steps(t), cell))
 
 
 def _elements(cells: int) -> Prepare:

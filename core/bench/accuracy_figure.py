@@ -15,7 +15,15 @@ from thermograsp.bench.labels import Label, coloured_key, place_labels
 from thermograsp.bench.saving import save_figure
 from thermograsp.report.style import FAINT, readable, style
 
-OURS, FORMS, GRIDS, PLAIN, ELEMENTS, COLUMN = "#1d4f91", "#0f8a8a", "#7b3fa0", "#b5651d", "#2e7d32", "#8a6d3b"
+OURS, FORMS, GRIDS, PLAIN, ELEMENTS, COLUMN, FIPY = (
+    "#1d4f91",
+    "#0f8a8a",
+    "#7b3fa0",
+    "#b5651d",
+    "#2e7d32",
+    "#8a6d3b",
+    "#b3266b",
+)
 _LOOKS = {
     "auto": (OURS, "o", ""),
     "network": (OURS, ".", "network"),
@@ -34,6 +42,7 @@ _LOOKS = {
     "1-D Crank-Nicolson": (COLUMN, "<", "1-D Crank-Nicolson"),
     "1-D FTCS": (COLUMN, "v", "1-D FTCS"),
     "1-D BDF": (COLUMN, "P", "1-D BDF"),
+    "FiPy": (FIPY, "d", "FiPy"),
     "finite elements": (ELEMENTS, "h", "3-D elements"),
 }
 
@@ -44,6 +53,7 @@ _GROUPS = (
     (GRIDS, "thermograsp's graded grids"),
     (PLAIN, "uniform grid in r and z, cells of 1, 0.5, 0.25, 0.125 mm"),
     (COLUMN, "the same in z alone"),
+    (FIPY, "FiPy on that grid, backward Euler"),
     (ELEMENTS, "scikit-fem, a quarter"),
     ("#8fb3dc", "band: nothing is both cheaper and better"),
 )

@@ -1,4 +1,4 @@
-"""A press by finite elements in three dimensions with scikit-fem, as one would write it (optional extra `fem`).
+"""A press by finite elements in three dimensions with scikit-fem, as one would write it (optional extra `bench`).
 
 Quarter symmetry; triquadratic hexahedra on a tensor mesh; the contact is a conductance between coinciding nodes; in O
 mode the element shares the nodes of its bond with the object. Much coarser, and plainer in time, than the project's
@@ -36,7 +36,7 @@ def element_press(problem: PressProblem, cells: int) -> SemiDiscrete:
         from skfem import Basis, ElementHex2, MeshHex
     except ImportError as error:
         raise MissingDependencyError(
-            "finite elements need scikit-fem: pip install thermograsp[fem]"
+            "finite elements need scikit-fem: pip install thermograsp[bench]"
         ) from error
     assert not callable(problem.conductance) and problem.air == 0
     half, size = problem.stack.width / 2, problem.object_size

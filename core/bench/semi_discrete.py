@@ -37,14 +37,14 @@ def disc_press(problem: PressProblem, cell: float, lateral: bool = True) -> Semi
     layers = problem.stack.layers
     face, plate = problem.stack.face_area, problem.object_size[0] * problem.object_size[1]
     if lateral:
-        inner = _uniform(0.0, np.sqrt(face / np.pi), cell)
-        radius = np.append(inner, _uniform(inner[-1], np.sqrt(plate / np.pi), cell)[1:])
+        inner = uniform(0.0, np.sqrt(face / np.pi), cell)
+        radius = np.append(inner, uniform(inner[-1], np.sqrt(plate / np.pi), cell)[1:])
     else:
         inner = radius = np.array([0.0, np.sqrt(face / np.pi)])
-    parts = [_uniform(0.0, layer.thickness, cell) for layer in layers]
+    parts = [uniform(0.0, layer.thickness, cell) for layer in layers]
     heights = np.concatenate([np.diff(part) for part in parts])
     layer_of = np.repeat(np.arange(len(layers)), [len(part) - 1 for part in parts])
-    depths = np.diff(_uniform(0.0, problem.object_size[2], cell))
+    depths = np.diff(uniform(0.0, problem.object_size[2], cell))
     material = problem.material
     sensor = _Block(
         inner,
@@ -117,5 +117,6 @@ class _Block:
         return [(self.number[:, :-1], self.number[:, 1:], along), (self.number[:-1], self.number[1:], down)]
 
 
-def _uniform(start: float, stop: float, cell: float) -> np.ndarray:
+def uniform(start: float, stop: float, cell: float) -> np.ndarray:
+    """Bounds from start to stop of equal cells of about `cell`, all m; one cell at least."""
     return np.linspace(start, stop, max(1, round((stop - start) / cell)) + 1)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermograsp.bench import accuracy, elements
+from thermograsp.bench import accuracy, elements, fipy_press
 from thermograsp.bench.accuracy_figure import draw_accuracy
 from thermograsp.cli.output import Output
 
@@ -18,12 +18,12 @@ def measure(
     args: argparse.Namespace, output: Output, folder: Path, footnote: str
 ) -> tuple[list[Path], object]:
     """Measures, prints and draws. Returns the files of its figure and what goes into the JSON document."""
-    with_elements = elements.available()
-    if not with_elements:
-        output.warn("scikit-fem is not installed, so its points are left out: pip install thermograsp[fem]")
+    beside = {"scikit-fem": elements.available(), "FiPy": fipy_press.available()}
+    for name in (name for name, here in beside.items() if not here):
+        output.warn(f"{name} is not installed, so its points are left out: pip install thermograsp[bench]")
     names = _QUICK_MATERIALS if args.quick else accuracy.MATERIALS
     cases = [(name, mode) for mode in "TO" for name in names]
-    methods = accuracy.methods(args.quick, with_elements)
+    methods = accuracy.methods(args.quick)
     rng = np.random.default_rng(args.seed)
     points = []
     with output.progress(len(cases)) as advance:
@@ -58,7 +58,7 @@ def measure(
     return figures, {
         "reference": "semi_analytic, 3-D, good to 0.0003 K of 12 K",
         "ratio_to": accuracy.RATIO_TO,
-        "finite_elements": with_elements,
+        "installed": beside,
         "auto_kept_tolerance": sum(kept),
         "auto_cases": len(kept),
         "points": [
