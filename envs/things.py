@@ -12,6 +12,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..thermal import (
     LAPPED_ALUMINA,
+    THERMOSTAT_FACE,
     ContactArea,
     Geometry,
     Joint,
@@ -29,16 +30,6 @@ from .scene import ObjectSpec
 
 PAD = Pad()
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
-
-# A thermostat's face: nickel-plated copper, lapped (Incropera & DeWitt, table A.1; roughness and hardness estimates).
-THERMOSTAT_FACE = Surface(
-    conductivity=400.0,
-    roughness=0.4e-6,
-    slope=0.1,
-    youngs_modulus=120e9,
-    poisson_ratio=0.34,
-    microhardness=1.3e9,
-)
 
 
 @dataclass(frozen=True)

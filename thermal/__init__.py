@@ -1,10 +1,22 @@
 """Heat physics: arrays in, arrays out."""
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
+from .array_step import array_forget, array_step
+from .array_tables import ArrayTables, array_tables
 from .batch import HeatReading, HeatTables, advance_heat, forget_field, heat_tables, shift_thermostats
 from .bodies import Geometry
 from .choice import Choice, Demand
-from .conductance import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, contact_conductance, joint, stack_joints
+from .conductance import (
+    AIR,
+    LAPPED_ALUMINA,
+    THERMOSTAT_FACE,
+    Gas,
+    Joint,
+    Surface,
+    contact_conductance,
+    joint,
+    stack_joints,
+)
 from .contact_network import network_for, network_of
 from .ladder import RUNGS, Rung, RungInfo
 from .layers import Layer, SensorStack, sensor, sensors
@@ -12,7 +24,17 @@ from .materials import SEED_MATERIALS, Material, load_materials, material, mater
 from .network import ThermalNetwork
 from .press import Press, press
 from .problem import Mode, PressProblem, Shape
-from .signal import ADS1115, IDEAL, SIGNAL_CHAINS, SignalChain, SignalState, measure, saturated, settled
+from .signal import (
+    ADS1115,
+    IDEAL,
+    SIGNAL_CHAINS,
+    SignalChain,
+    SignalState,
+    measure,
+    measure_sample,
+    saturated,
+    settled,
+)
 from .states import Orders
 from .system import ContactSystem
 from .thermostat import (
@@ -31,6 +53,8 @@ __all__ = [
     "RUNGS",
     "SEED_MATERIALS",
     "SIGNAL_CHAINS",
+    "THERMOSTAT_FACE",
+    "ArrayTables",
     "Choice",
     "ContactArea",
     "ContactSystem",
@@ -58,6 +82,9 @@ __all__ = [
     "Thermostat",
     "ThermostatState",
     "advance_heat",
+    "array_forget",
+    "array_step",
+    "array_tables",
     "contact_conductance",
     "cylinder_contact",
     "flat_contact",
@@ -69,6 +96,7 @@ __all__ = [
     "material",
     "materials",
     "measure",
+    "measure_sample",
     "network_for",
     "network_of",
     "press",

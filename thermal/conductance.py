@@ -16,22 +16,25 @@ Solid spots and the gas around them conduct in parallel: h = h_solid + h_gas. So
 All hold for 2 <= Y/sigma <= 4.75 (Yovanovich 1982), P/H from 1e-6 to 0.023. Y stays at these ends beyond them: faces
 that touch without force are 4.75 sigma apart, so pressure 0 leaves the gas, the limit of small pressures. Faces that do
 not touch are the caller's business: conductance 0. Radiation, some 6 W/(m2 K), is neglected.
+
+Pressures may be arrays of NumPy, PyTorch or JAX; a joint's arrays are then of the same kind.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.special import erfc, erfcinv
 
 from thermograsp.errors import InvalidValueError, finite, positive
 
+from .erfc_inverse import FARTHEST, NEAREST, erfc_inverse
 from .materials import Material
+from .namespace import Array, namespace_of
 
 _PLASTIC_BELOW, _ELASTIC_ABOVE = 0.33, 3.0
-_LEAST, _MOST = float(erfc(4.75 / np.sqrt(2))), float(erfc(2 / np.sqrt(2)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +101,17 @@ LAPPED_ALUMINA = Surface(
 )
 """The fingertip's face."""
 
+# Nickel-plated copper, lapped: Incropera & DeWitt, table A.1; roughness and hardness are estimates.
+THERMOSTAT_FACE = Surface(
+    conductivity=400.0,
+    roughness=0.4e-6,
+    slope=0.1,
+    youngs_modulus=120e9,
+    poisson_ratio=0.34,
+    microhardness=1.3e9,
+)
+"""What touches the glued-on element in O mode."""
+
 
 @dataclass(frozen=True, slots=True)
 class Gas:
@@ -132,14 +146,14 @@ class Joint:
     gas_conductivity: W/(m K), 0 in vacuum. jump: m, the gas parameter M.
     """
 
-    conductivity: float | np.ndarray
-    roughness: float | np.ndarray
-    slope: float | np.ndarray
-    hardness: float | np.ndarray
-    elastic_hardness: float | np.ndarray
-    elastic_share: float | np.ndarray
-    gas_conductivity: float | np.ndarray
-    jump: float | np.ndarray
+    conductivity: float | Array
+    roughness: float | Array
+    slope: float | Array
+    hardness: float | Array
+    elastic_hardness: float | Array
+    elastic_share: float | Array
+    gas_conductivity: float | Array
+    jump: float | Array
 
 
 def joint(first: Surface, second: Surface, gas: Gas | None = AIR) -> Joint:
@@ -155,7 +169,7 @@ def joint(first: Surface, second: Surface, gas: Gas | None = AIR) -> Joint:
         roughness=float(np.hypot(first.roughness, second.roughness)),
         slope=slope,
         hardness=hardness,
-        elastic_hardness=slope / compliance / np.sqrt(2),
+        elastic_hardness=slope / compliance / math.sqrt(2),
         elastic_share=_elastic_share(hardness * compliance / slope),
         gas_conductivity=gas.conductivity if gas else 0.0,
         jump=gas.jump if gas else 0.0,
@@ -173,15 +187,16 @@ def stack_joints(joints: Sequence[Joint]) -> Joint:
     return Joint(**{name: np.array([getattr(one, name) for one in joints], dtype=float) for name in names})
 
 
-def contact_conductance(joint: Joint, pressure: np.ndarray | float) -> np.ndarray:
+def contact_conductance(joint: Joint, pressure: Array | float) -> Array:
     """Solid and gas together, W/(m2 K), elementwise. pressure: Pa, >= 0, any shape that fits the joint's.
 
-    Raises InvalidValueError for a pressure that is negative or not finite.
+    Raises InvalidValueError for a NumPy pressure that is negative or not finite. Tensors are not looked into, so that
+    the function can be traced: negative ones give NaN.
     """
     return solid_conductance(joint, pressure) + gas_conductance(joint, pressure)
 
 
-def solid_conductance(joint: Joint, pressure: np.ndarray | float) -> np.ndarray:
+def solid_conductance(joint: Joint, pressure: Array | float) -> Array:
     """That of the touching spots, W/(m2 K), elementwise; 0 at pressure 0."""
     pressure = _pressure(pressure)
     plastic = 1.25 * (pressure / joint.hardness) ** 0.95
@@ -190,16 +205,18 @@ def solid_conductance(joint: Joint, pressure: np.ndarray | float) -> np.ndarray:
     return joint.conductivity * joint.slope / joint.roughness * shape
 
 
-def gas_conductance(joint: Joint, pressure: np.ndarray | float) -> np.ndarray:
+def gas_conductance(joint: Joint, pressure: Array | float) -> Array:
     """That of the gas between the spots, W/(m2 K), elementwise."""
     pressure = _pressure(pressure)
-    plastic = erfcinv(np.clip(2 * pressure / joint.hardness, _LEAST, _MOST))
-    elastic = erfcinv(np.clip(4 * pressure / joint.elastic_hardness, _LEAST, _MOST))
-    separation = np.sqrt(2) * (plastic * (1 - joint.elastic_share) + elastic * joint.elastic_share)
+    plastic = erfc_inverse((2 * pressure / joint.hardness).clip(FARTHEST, NEAREST))
+    elastic = erfc_inverse((4 * pressure / joint.elastic_hardness).clip(FARTHEST, NEAREST))
+    separation = math.sqrt(2) * (plastic * (1 - joint.elastic_share) + elastic * joint.elastic_share)
     return joint.gas_conductivity / (joint.roughness * separation + joint.jump)
 
 
-def _pressure(pressure: np.ndarray | float) -> np.ndarray:
+def _pressure(pressure: Array | float) -> Array:
+    if namespace_of(pressure) is not np:
+        return pressure
     # Contiguous: NumPy may take another loop, of other rounding, for strided rows.
     pressure = np.ascontiguousarray(pressure, dtype=float).reshape(np.shape(pressure))
     if not (np.isfinite(pressure) & (pressure >= 0)).all():

@@ -1,6 +1,7 @@
 """From temperature drop to the voltage that a driver reports: Seebeck effect, amplifier, noise and converter.
 
 B: rows (environments, fingertips), n: samples. Everything is elementwise, so a row does not depend on the others.
+measure_sample takes arrays of any shape, of NumPy, PyTorch or JAX alike.
 """
 
 from __future__ import annotations
@@ -8,10 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, finite, non_negative, positive
+
+from .namespace import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,12 +73,11 @@ ADS1115 = SignalChain(
 SIGNAL_CHAINS: Mapping[str, SignalChain] = MappingProxyType({"ideal": IDEAL, "ads1115": ADS1115})
 
 
-@dataclass(frozen=True, slots=True)
-class SignalState:
+class SignalState(NamedTuple):
     """Of the low-pass, V before the gain: its output and its last input, (B,) each."""
 
-    filtered: np.ndarray
-    last: np.ndarray
+    filtered: Array
+    last: Array
 
 
 def settled(drop: np.ndarray, seebeck: np.ndarray | float) -> SignalState:
@@ -97,17 +100,28 @@ def measure(
     noise: (B, n) standard normal numbers; not used where the chain has none. The reported voltage is referred to the
     amplifier's input, as a driver does that divides by gain. A voltage beyond limits reports the limit: see saturated.
     """
-    filtered, last = state.filtered, state.last
-    lag = 0.0 if np.isinf(chain.bandwidth) else 1 / (2 * np.pi * chain.bandwidth)
-    decay = np.exp(-dt / lag) if lag else 0.0
     reported = np.zeros_like(drop, dtype=float)
     for i in range(drop.shape[1]):
-        volts = drop[:, i] * seebeck
-        slope_lag = (volts - last) * (lag / dt)
-        filtered = volts - slope_lag + (filtered - last + slope_lag) * decay
-        last = volts
-        reported[:, i] = _convert(chain, filtered + noise[:, i] * chain.noise)
-    return SignalState(filtered, last), reported
+        state, reported[:, i] = measure_sample(chain, state, drop[:, i], seebeck, dt, noise[:, i])
+    return state, reported
+
+
+def measure_sample(
+    chain: SignalChain,
+    state: SignalState,
+    drop: Array,
+    seebeck: Array | float,
+    dt: float,
+    noise: Array | float = 0.0,
+) -> tuple[SignalState, Array]:
+    """The next sample: (new state, reported voltage V), elementwise. drop: K, dt s after the last one; others as in
+    measure. Quantisation has no gradient: where one is wanted, take a chain of 0 bits."""
+    lag = 0.0 if np.isinf(chain.bandwidth) else 1 / (2 * np.pi * chain.bandwidth)
+    decay = float(np.exp(-dt / lag)) if lag else 0.0
+    volts = drop * seebeck
+    slope_lag = (volts - state.last) * (lag / dt)
+    filtered = volts - slope_lag + (state.filtered - state.last + slope_lag) * decay
+    return SignalState(filtered, volts), _convert(chain, filtered + noise * chain.noise)
 
 
 def saturated(chain: SignalChain, voltage: np.ndarray) -> np.ndarray:
@@ -117,9 +131,9 @@ def saturated(chain: SignalChain, voltage: np.ndarray) -> np.ndarray:
     return (voltage <= low + margin) | (voltage >= high - margin)
 
 
-def _convert(chain: SignalChain, volts: np.ndarray) -> np.ndarray:
+def _convert(chain: SignalChain, volts: Array) -> Array:
     low, high = chain.limits
     volts = (volts + chain.offset) * (1 + chain.gain_error)
     if chain.bits:
-        volts = np.rint(volts / chain.resolution) * chain.resolution
-    return np.clip(volts, low, high)
+        volts = (volts / chain.resolution).round() * chain.resolution
+    return volts.clip(low, high)
