@@ -1,6 +1,7 @@
 """Heat physics: arrays in, arrays out."""
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
+from .array_fingertips import ArrayFingertips, FingertipState, array_fingertips
 from .array_step import array_forget, array_step
 from .array_tables import ArrayTables, array_tables
 from .batch import HeatReading, HeatTables, advance_heat, forget_field, heat_tables, shift_thermostats
@@ -54,11 +55,13 @@ __all__ = [
     "SEED_MATERIALS",
     "SIGNAL_CHAINS",
     "THERMOSTAT_FACE",
+    "ArrayFingertips",
     "ArrayTables",
     "Choice",
     "ContactArea",
     "ContactSystem",
     "Demand",
+    "FingertipState",
     "Gas",
     "Geometry",
     "HeatReading",
@@ -82,6 +85,7 @@ __all__ = [
     "Thermostat",
     "ThermostatState",
     "advance_heat",
+    "array_fingertips",
     "array_forget",
     "array_step",
     "array_tables",

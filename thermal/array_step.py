@@ -20,6 +20,9 @@ pairs.
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import add
+
 from .array_tables import ArrayTables
 from .batch import HeatReading
 from .namespace import Array
@@ -50,8 +53,9 @@ def array_step(
     bodies = [[(gram[..., 0, j, k, :], gram[..., 1, j, k, :]) for k in range(j, ports)] for j in range(ports)]
     flows = _flows(contact, bodies, drive)
 
-    pushed = sum(
-        (flows[j][c][..., None] * push[..., c, j, :, :]).sum(-2) for j in range(ports) for c in range(2)
+    pushed = reduce(
+        add,
+        ((flows[j][c][..., None] * push[..., c, j, :, :]).sum(-2) for j in range(ports) for c in range(2)),
     )
     states = state.shape[-1]
     state = keep * state + pushed[..., :states]

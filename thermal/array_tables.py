@@ -82,7 +82,7 @@ def _network(own: HeatTables, most: int) -> tuple[np.ndarray, ...]:
         1 + 2 * dt * own.rates * np.real(WEIGHTS @ scale),
         hear,
         dt * _parts(gram.transpose(1, 2, 0), 0),
-        np.stack((pushed.real, -pushed.imag)),
+        np.stack((np.real(pushed), -np.imag(pushed))),
         np.concatenate(rows).T,
         settled,
     )
@@ -90,4 +90,4 @@ def _network(own: HeatTables, most: int) -> tuple[np.ndarray, ...]:
 
 def _parts(values: np.ndarray, axis: int) -> np.ndarray:
     """Real and imaginary parts along a new axis."""
-    return np.stack((values.real, values.imag), axis=axis)
+    return np.stack((np.real(values), np.imag(values)), axis=axis)

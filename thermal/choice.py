@@ -27,8 +27,8 @@ class Demand:
 
     tolerance: float
     difference: float
-    conductances: tuple[float, ...]
-    horizon: float
+    conductances: tuple[float, ...] = (1e2, 1e3, 1e4, 1e5)
+    horizon: float = 20.0
 
 
 @dataclass(frozen=True, slots=True)

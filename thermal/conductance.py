@@ -198,18 +198,18 @@ def contact_conductance(joint: Joint, pressure: Array | float) -> Array:
 
 def solid_conductance(joint: Joint, pressure: Array | float) -> Array:
     """That of the touching spots, W/(m2 K), elementwise; 0 at pressure 0."""
-    pressure = _pressure(pressure)
-    plastic = 1.25 * (pressure / joint.hardness) ** 0.95
-    elastic = 1.55 * (pressure / joint.elastic_hardness) ** 0.94
+    pressed = _pressure(pressure)
+    plastic = 1.25 * (pressed / joint.hardness) ** 0.95
+    elastic = 1.55 * (pressed / joint.elastic_hardness) ** 0.94
     shape = plastic ** (1 - joint.elastic_share) * elastic**joint.elastic_share
     return joint.conductivity * joint.slope / joint.roughness * shape
 
 
 def gas_conductance(joint: Joint, pressure: Array | float) -> Array:
     """That of the gas between the spots, W/(m2 K), elementwise."""
-    pressure = _pressure(pressure)
-    plastic = erfc_inverse((2 * pressure / joint.hardness).clip(FARTHEST, NEAREST))
-    elastic = erfc_inverse((4 * pressure / joint.elastic_hardness).clip(FARTHEST, NEAREST))
+    pressed = _pressure(pressure)
+    plastic = erfc_inverse((2 * pressed / joint.hardness).clip(FARTHEST, NEAREST))
+    elastic = erfc_inverse((4 * pressed / joint.elastic_hardness).clip(FARTHEST, NEAREST))
     separation = math.sqrt(2) * (plastic * (1 - joint.elastic_share) + elastic * joint.elastic_share)
     return joint.gas_conductivity / (joint.roughness * separation + joint.jump)
 
