@@ -81,8 +81,8 @@ class Result(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """voltage: V of each Peltier element, after the converter, before calibration. thermostat: °C. force: N on each pad,
-    normal (> 0 when pressing) and two tangential, pad frame."""
+    """voltage: V of each Peltier element, after the converter, before calibration. thermostat: °C. force: N on each
+    pad, normal (> 0 when pressing) and two tangential, pad frame."""
 
     voltage: Pair
     thermostat: Pair
@@ -115,8 +115,8 @@ class Status:
 @dataclass(frozen=True, slots=True)
 class Identity:
     """protocol: (major, minor) that the device speaks in this session, major 0 where the host speaks none of its.
-    firmware: (major, minor). boots: how often it has started. max_rate: Hz. serial: number of this device. voltage_step,
-    voltage_limit: V, of the converter, referred to the element."""
+    firmware: (major, minor). boots: how often it has started. max_rate: Hz. serial: number of this device.
+    voltage_step, voltage_limit: V, of the converter, referred to the element."""
 
     model: int
     protocol: tuple[int, int]

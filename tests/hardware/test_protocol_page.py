@@ -1,4 +1,4 @@
-"""docs/protocol.md and the code say the same, and an encoder of its own, written from the page, makes the same bytes."""
+"""docs/protocol.md and the code say the same; an encoder of its own, written from the page, makes the same bytes."""
 
 import json
 import math

@@ -1,0 +1,371 @@
+"""A device of the fingertips' protocol in software: what arrives, what time it is, and what it sends in return.
+
+It follows docs/protocol.md from the device's side and has no input or output of its own: VirtualLine and PtyDevice do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..thermal import (
+    IDEAL,
+    SignalChain,
+    Thermostat,
+    ThermostatState,
+    measure,
+    saturated,
+    settled,
+    thermostat_step,
+)
+from .decoder import Decoder
+from .feel import Feel, Source, untouched
+from .frame import MICROSECONDS, SEQUENCE, Frame, encode_frame
+from .line_faults import LineFaults
+from .messages import (
+    MODEL,
+    PROTOCOL,
+    Acknowledgement,
+    Calibration,
+    Check,
+    Code,
+    Flag,
+    Identify,
+    Identity,
+    Message,
+    Pair,
+    Request,
+    Result,
+    RunSelfTest,
+    Sample,
+    SelfTest,
+    SetCalibration,
+    SetRate,
+    SetSetpoint,
+    Status,
+    ThermostatReport,
+    code_of,
+    decode_message,
+    encode_message,
+)
+
+_TICK = 0.5e-6  # s, half a step of its clock: what is due so soon is due
+_CONTROL = 0.02  # s, period of the thermostats' controllers
+_REPORT = 1.0  # s between status messages while sampling
+_SELF_TEST = 0.3  # s that it takes
+_REMEMBERED = 8  # commands
+_ROOM = 4096  # bytes that wait to be sent
+_OFF_SETPOINT = 1.0  # K
+_TOO_HOT = 70.0  # °C
+_SETPOINTS = (0.0, 60.0)  # °C
+_OFF = -1000.0  # °C, a setpoint at which no heater works
+_MOST_VOLTAGE = (2**31 - 1) / 1e9  # V in the sample's field
+_SUPPLY = 5.0  # V
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceModel:
+    """chain: amplifier and converter. thermostat: of each fingertip; its setpoint is what a host sets. drift: of the
+    clock, relative. max_rate: Hz. serial, firmware, protocol, model: what it says of itself."""
+
+    chain: SignalChain = IDEAL
+    thermostat: Thermostat = Thermostat()
+    drift: float = 0.0
+    max_rate: int = 1000
+    serial: int = 1
+    firmware: tuple[int, int] = (0, 1)
+    protocol: tuple[int, int] = PROTOCOL
+    model: int = MODEL
+
+
+class EmulatedFingertips:
+    """Starts at time 0, booting. source: what it feels. rng: of the converter's noise and the line's faults.
+
+    line: faults of its line; broken_thermistors, broken_heaters, saturated: fingertips (0 left, 1 right) of which that
+    is so. All may be changed at any time, as may stall_until, s, up to which it neither hears nor says anything.
+    """
+
+    def __init__(
+        self,
+        source: Source = untouched,
+        model: DeviceModel | None = None,
+        *,
+        rng: np.random.Generator | None = None,
+        calibration: Calibration | None = None,
+    ) -> None:
+        self.model = model or DeviceModel()
+        self.source = source
+        self.rng = rng or np.random.default_rng(0)
+        self.calibration = calibration or Calibration()
+        self.line = LineFaults()
+        self.broken_thermistors: set[int] = set()
+        self.broken_heaters: set[int] = set()
+        self.saturated: set[int] = set()
+        self.stall_until = 0.0
+        self.executed: list[Message] = []
+        self.boots = 0
+        self._now = 0.0
+        self._out: deque[bytes] = deque()
+        self._late: list[tuple[float, bytes]] = []
+        self._planned: list[tuple[float, Callable[[], None]]] = []
+        ambient = np.array([self.model.thermostat.ambient])
+        zero = np.zeros(1)
+        self._plates = [ThermostatState(ambient, ambient, ambient, zero, zero) for _ in range(2)]
+        self._controlled = 0.0
+        self.reboot()
+
+    def reboot(self) -> None:
+        """Starts anew: time, numbers and settings from 0, heaters off, calibration kept."""
+        self.boots += 1
+        self._booted = self._now
+        self._decoder = Decoder()
+        self._sequence = 0
+        self._rate = 0
+        self._samples = self._overruns = self._repeats = 0
+        self._next_sample = self._next_report = self._test_done = math.inf
+        self._tested = Check(0)
+        self._setpoint: Pair = (math.nan, math.nan)
+        self._hot = False
+        self._unidentified = True
+        self._session: int | None = None
+        self._results: dict[int, Result] = {}
+        self._chain = settled(np.array(self.source(self._now).voltage), 1.0)
+        self._out.clear()
+        self._late.clear()
+        self._send(self._identity(self.model.protocol))
+
+    def overheat(self, fingertip: int) -> None:
+        """Its plate is at 80 °C from now on, cooling."""
+        hot = np.array([80.0])
+        self._plates[fingertip] = replace(
+            self._plates[fingertip], temperature=hot, measured=hot, previous=hot
+        )
+
+    def plan(self, time: float, action: Callable[[], None]) -> None:
+        """Has `action` done at that time, s."""
+        self._planned.append((time, action))
+        self._planned.sort(key=lambda item: item[0])
+
+    @property
+    def due(self) -> float:
+        """s, when `advance` next has something to do."""
+        times = [self._next_sample, self._next_report, self._test_done]
+        times += [time for time, _ in self._late] + [time for time, _ in self._planned[:1]]
+        return max(min(times), self.stall_until)
+
+    def advance(self, now: float) -> None:
+        """Does all that is due up to time `now`, s. Missed samples of a stall are not made up for."""
+        while (due := self.due) <= now + _TICK:
+            self._now = max(self._now, due)
+            self._act()
+        self._now = max(self._now, now)
+
+    def receive(self, data: bytes) -> None:
+        """Bytes from the host, now."""
+        if self._now < self.stall_until:
+            return
+        for frame in self._decoder.feed(data):
+            if frame.code & 0x80:
+                self._command(frame)
+
+    def outgoing(self) -> list[bytes]:
+        """What to send, a frame each."""
+        frames = list(self._out)
+        self._out.clear()
+        return frames
+
+    def _act(self) -> None:
+        while self._planned and self._planned[0][0] <= self._now:
+            self._planned.pop(0)[1]()
+        ready = [wire for time, wire in self._late if time <= self._now]
+        self._late = [item for item in self._late if item[0] > self._now]
+        self._out.extend(ready)
+        if self._next_sample <= self._now:
+            self._sample()
+            behind = max(0, math.floor((self._now - self._next_sample) * self._rate))  # in a stall
+            self._next_sample += (1 + behind) / self._rate
+        if self._next_report <= self._now:
+            self._send(self._thermostats())
+            self._send(self._status())
+            self._next_report = self._now + _REPORT
+        if self._test_done <= self._now:
+            self._test_done = math.inf
+            self._send(self._self_test())
+
+    def _command(self, frame: Frame) -> None:
+        message = decode_message(frame.code, frame.payload)
+        if isinstance(message, Identify):
+            self._identify(message)
+            result = Result.DONE
+        elif isinstance(message, Request):
+            result = self._report(message.wanted)
+        elif frame.sequence in self._results:
+            self._repeats += 1
+            result = self._results[frame.sequence]
+        else:
+            result = self._execute(message)
+            if result != Result.BUSY:
+                self.executed.append(message)
+                self._results[frame.sequence] = result
+                while len(self._results) > _REMEMBERED:
+                    del self._results[next(iter(self._results))]
+        self._send(Acknowledgement(frame.sequence, frame.code, result))
+
+    def _identify(self, message: Identify) -> None:
+        mine = self.model.protocol
+        common = message.oldest <= mine[0] <= message.newest
+        self._unidentified = False
+        if message.session != self._session:
+            self._session = message.session
+            self._results.clear()
+        self._send(self._identity(mine if common else (0, 0)))
+
+    def _report(self, wanted: int) -> Result:
+        makers = {
+            Code.THERMOSTAT: self._thermostats,
+            Code.STATUS: self._status,
+            Code.CALIBRATION: lambda: self.calibration,
+        }
+        if wanted not in makers:
+            return Result.BAD_VALUE
+        self._send(makers[Code(wanted)]())
+        return Result.DONE
+
+    def _execute(self, message: Message) -> Result:
+        if isinstance(message, SetRate):
+            if message.rate > self.model.max_rate:
+                return Result.BAD_VALUE
+            self._rate = message.rate
+            self._next_sample = self._now + 1.0 / message.rate if message.rate else math.inf
+            self._next_report = self._now + _REPORT if message.rate else math.inf
+            self._chain = settled(np.array(self.source(self._now).voltage), 1.0)
+        elif isinstance(message, SetSetpoint):
+            low, high = _SETPOINTS
+            if not all(math.isnan(value) or low <= value <= high for value in message.setpoint):
+                return Result.BAD_VALUE
+            self._control(self._now, self.source(self._now))
+            self._setpoint, self._hot = message.setpoint, False
+        elif isinstance(message, SetCalibration):
+            self.calibration = Calibration(**{name: getattr(message, name) for name in Calibration.__slots__})
+        elif isinstance(message, RunSelfTest):
+            if self._test_done < math.inf:
+                return Result.BUSY
+            self._tested, self._test_done = Check(message.checks & 0x7F), self._now + _SELF_TEST
+        return Result.DONE
+
+    def _sample(self) -> None:
+        feel = self.source(self._now)
+        self._control(self._now, feel)
+        volts, flags = self._convert(feel)
+        temperatures = self._temperatures() if feel.thermostat is None else feel.thermostat
+        if sum(map(len, self._out)) > _ROOM:
+            self._overruns += 1
+            return
+        self._samples += 1
+        self._send(Sample(volts, temperatures, feel.force), flags)
+
+    def _convert(self, feel: Feel) -> tuple[Pair, Flag]:
+        """What the converter says of the voltages, and which are at an end of its range."""
+        chain, volts = self.model.chain, np.array(feel.voltage, float)
+        if chain is not IDEAL:
+            noise = self.rng.standard_normal((2, 1)) if chain.noise else np.zeros((2, 1))
+            self._chain, read = measure(chain, self._chain, volts[:, None], 1.0, 1.0 / self._rate, noise)
+            volts = read[:, 0]
+        top = min(chain.limits[1], _MOST_VOLTAGE)
+        for fingertip in self.saturated:
+            volts[fingertip] = top
+        full = saturated(chain, volts) | (np.abs(volts) >= top)
+        volts = np.clip(volts, -_MOST_VOLTAGE, _MOST_VOLTAGE)
+        flags = Flag.SATURATED_LEFT * int(full[0]) | Flag.SATURATED_RIGHT * int(full[1])
+        return (float(volts[0]), float(volts[1])), Flag(flags)
+
+    def _control(self, now: float, feel: Feel) -> None:
+        """The thermostats up to now, in whole periods of their controllers."""
+        while self._controlled + _CONTROL <= now:
+            self._controlled += _CONTROL
+            for i in range(2):
+                setpoint = self._setpoint[i]
+                off = math.isnan(setpoint) or self._hot or i in self.broken_heaters | self.broken_thermistors
+                model = replace(self.model.thermostat, setpoint=_OFF if off else setpoint)
+                self._plates[i] = thermostat_step(model, self._plates[i], np.array([feel.heat[i]]), _CONTROL)
+        self._hot |= any(float(plate.measured[0]) >= _TOO_HOT for plate in self._plates)
+
+    def _temperatures(self) -> Pair:
+        left, right = (
+            math.nan if i in self.broken_thermistors else float(plate.measured[0])
+            for i, plate in enumerate(self._plates)
+        )
+        return left, right
+
+    def _flags(self) -> Flag:
+        flags = Flag.UNIDENTIFIED if self._unidentified else Flag(0)
+        if self._hot:
+            flags |= Flag.OVER_TEMPERATURE
+        for i, temperature in enumerate(self._temperatures()):
+            if math.isnan(temperature):
+                flags |= Flag(Flag.OPEN_LEFT << i)
+            elif abs(temperature - self._setpoint[i]) > _OFF_SETPOINT:  # never where it is off, NaN
+                flags |= Flag(Flag.OFF_SETPOINT_LEFT << i)
+        return flags
+
+    def _identity(self, protocol: tuple[int, int]) -> Identity:
+        model, chain = self.model, self.model.chain
+        limit = min(chain.span / chain.gain, _MOST_VOLTAGE)
+        return Identity(
+            model.model,
+            protocol,
+            model.firmware,
+            self.boots,
+            model.max_rate,
+            model.serial,
+            chain.resolution,
+            limit,
+        )
+
+    def _thermostats(self) -> ThermostatReport:
+        left, right = (max(0.0, float(plate.power[0])) for plate in self._plates)
+        return ThermostatReport(self._setpoint, self._temperatures(), (left, right))
+
+    def _status(self) -> Status:
+        return Status(
+            uptime=int(self._now - self._booted),
+            samples=self._samples,
+            overruns=self._overruns % SEQUENCE,
+            bad_frames=self._decoder.counts.rejected % SEQUENCE,
+            repeats=self._repeats % SEQUENCE,
+            supply=_SUPPLY,
+            rate=self._rate,
+        )
+
+    def _self_test(self) -> SelfTest:
+        failed = Check(0)
+        if self.saturated:
+            failed |= Check.CONVERTER
+        for i in self.broken_thermistors:
+            failed |= Check(Check.LEFT_THERMISTOR << i)
+        for i in self.broken_heaters:
+            failed |= Check(Check.LEFT_HEATER << i)
+        noise = self.model.chain.noise
+        left, right = (
+            0.0 if i in self.broken_heaters else self.model.thermostat.power_limit / _SUPPLY for i in range(2)
+        )
+        return SelfTest(self._tested, failed & self._tested, (noise, noise), (left, right))
+
+    def _send(self, message: Message, flags: Flag = Flag(0)) -> None:  # noqa: B008  (an immutable 0)
+        elapsed = (self._now - self._booted) * (1 + self.model.drift)
+        device_us = round(elapsed * 1e6) % MICROSECONDS
+        payload = encode_message(message)
+        frame = Frame(code_of(message), flags | self._flags(), self._sequence, device_us, payload)
+        self._sequence = (self._sequence + 1) % SEQUENCE
+        answer = isinstance(message, Acknowledgement)
+        if answer and self.line.drop_answer and self.rng.random() < self.line.drop_answer:
+            return
+        wire = self.line.spoil(encode_frame(frame), self.rng)
+        if answer and self.line.answer_delay:
+            self._late.append((self._now + self.line.answer_delay, wire))
+        elif wire:
+            self._out.append(wire)

@@ -1,0 +1,234 @@
+"""Commands over a line: sent, repeated, acknowledged. The line is read by a thread of its own, or by whoever waits."""
+
+from __future__ import annotations
+
+import itertools
+import random
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+from .errors import (
+    CommandRefusedError,
+    DeviceError,
+    LinkLostError,
+    NoAnswerError,
+    ProtocolVersionError,
+    WrongDeviceError,
+)
+from .frame import SEQUENCE, Frame, encode_frame
+from .messages import (
+    CODES,
+    MODEL,
+    PROTOCOL,
+    Acknowledgement,
+    Identify,
+    Identity,
+    Message,
+    Request,
+    Result,
+    code_of,
+    encode_message,
+)
+from .session import Session
+from .transport import Transport
+
+Report = TypeVar("Report")
+
+
+class Tap(Protocol):
+    """Sees all that goes over a line: a recorder. Times are the host's clock, s."""
+
+    def received(self, now: float, data: bytes) -> None:
+        """Bytes from the device."""
+        ...
+
+    def sent(self, now: float, data: bytes) -> None:
+        """Bytes to the device."""
+        ...
+
+    def event(self, now: float, what: str) -> None:
+        """What happened to the line itself."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class LinkSettings:
+    """answer_within: s to wait for an acknowledgement before a command is sent again. tries: of a command, at most.
+    open_within: s for a device to identify itself; a board that restarts when its port is opened needs 2.
+    stale_after: s without a sample, while there should be some, after which the sensor is stale and its port is opened
+    anew. reopen_every: s between attempts at that. kept: samples that wait to be taken; then the oldest go."""
+
+    answer_within: float = 0.08
+    tries: int = 8
+    open_within: float = 3.0
+    stale_after: float = 0.5
+    reopen_every: float = 0.05
+    kept: int = 100_000
+
+
+class Link:
+    """One line to one device. Everybody may send; exactly one thread may read, and wakes those who wait."""
+
+    def __init__(self, settings: LinkSettings, clock: Callable[[], float], tap: Tap | None) -> None:
+        self.settings = settings
+        self.session = Session(settings.kept)
+        self.changed = threading.Condition()  # guards the session; notified when bytes have come
+        self.repeats = 0
+        self.bytes_received = 0
+        self.reader: threading.Thread | None = None  # who reads, None for whoever waits
+        self.stopped: Callable[[], DeviceError | None] = lambda: None  # why a waiter must not wait on
+        self.closing = threading.Event()  # ends whoever reads
+        self._clock = clock
+        self._tap = tap
+        self._transport: Transport | None = None
+        self._sending = threading.Lock()
+        self._numbers = itertools.count(random.SystemRandom().randrange(SEQUENCE))
+
+    def use(self, transport: Transport) -> None:
+        """From now on over this transport."""
+        self.close()
+        self._transport = transport
+        with self.changed:
+            self.session.reopened()
+
+    def close(self) -> None:
+        """Releases the transport."""
+        if self._transport is not None:
+            self._transport.close()
+
+    def note(self, what: str) -> None:
+        """Tells the tap what happened."""
+        if self._tap is not None:
+            self._tap.event(self._clock(), what)
+
+    def pump(self, timeout: float) -> bool:
+        """Reads once, waiting up to timeout s; whether anything came. Raises LinkLostError."""
+        assert self._transport is not None
+        if self.closing.is_set():
+            raise LinkLostError("the driver was closed; open another one")
+        data = self._transport.read(timeout)
+        if not data:
+            return False
+        now = self._clock()
+        self.bytes_received += len(data)
+        if self._tap is not None:
+            self._tap.received(now, data)
+        with self.changed:
+            self.session.receive(data, now)
+            self.changed.notify_all()
+        return True
+
+    def wait(self, ready: Callable[[], bool], seconds: float) -> bool:
+        """Whether `ready` came true within that time. Raises what `stopped` tells, or LinkLostError."""
+        deadline = self._clock() + seconds
+        if self.reader not in (None, threading.current_thread()):
+            with self.changed:
+                self.changed.wait_for(lambda: ready() or self.stopped() is not None, seconds)
+                if not ready() and (error := self.stopped()) is not None:
+                    raise error
+                return ready()
+        while not ready():
+            left = deadline - self._clock()
+            if left <= 0:
+                return False
+            self.pump(left)
+        return True
+
+    def command(self, message: Message) -> None:
+        """Has the device execute a command once. Raises NoAnswerError, CommandRefusedError, LinkLostError."""
+        number = next(self._numbers) % SEQUENCE
+        wire = encode_frame(Frame(code_of(message), 0, number, 0, encode_message(message)))
+        awaited = self.session.awaited
+        name = code_of(message).name
+        answer = awaited[number] = None
+        try:
+            for attempt in range(self.settings.tries):
+                self.repeats += attempt > 0
+                self._send(wire)
+                self.wait(lambda: awaited[number] is not None, self.settings.answer_within)
+                answer = awaited[number]
+                if answer is not None and answer.result != Result.BUSY:
+                    return _check(name, answer)
+                if answer is not None:
+                    awaited[number] = None
+                    self.wait(lambda: False, self.settings.answer_within)
+        finally:
+            del awaited[number]
+        if answer is not None:
+            return _check(name, answer)
+        raise NoAnswerError(
+            f"{name}: no answer after {self.settings.tries} tries of {self.settings.answer_within:g} s; "
+            "is the device alive, and the line's baud rate right?"
+        )
+
+    def report(self, kind: type[Report]) -> Report:
+        """The device's present message of that kind. Raises what command raises."""
+        for _ in range(self.settings.tries):
+            with self.changed:
+                self.session.reports.pop(kind, None)
+            self.command(Request(CODES[kind]))
+            with self.changed:  # it came before the acknowledgement, unless the line has lost it
+                found = self.session.reports.get(kind)
+            if found is not None:
+                return found[1]  # pyright: ignore[reportReturnType]
+        raise NoAnswerError(f"{kind.__name__}: acknowledged, but it never came; the line loses too much")
+
+    def identify(self) -> Identity:
+        """Begins a session. Raises NoAnswerError, WrongDeviceError, ProtocolVersionError, LinkLostError."""
+        begun, bytes_before = self._clock(), self.bytes_received
+        message = Identify(1, PROTOCOL[0], random.SystemRandom().randrange(1 << 16))
+        while True:
+            with self.changed:
+                self.session.renumber()
+                self.session.reports.pop(Identity, None)
+            try:
+                self.command(message)
+            except NoAnswerError:
+                pass
+            found = self.session.reports.get(Identity)
+            if found is not None and isinstance(found[1], Identity) and not self.session.unidentified:
+                return _check_identity(found[1])
+            if self._clock() - begun > self.settings.open_within:
+                break
+        if self.bytes_received == bytes_before:
+            raise NoAnswerError(
+                f"nothing came within {self.settings.open_within:g} s: not a fingertip, not powered, or it hangs"
+            )
+        raise NoAnswerError(
+            f"{self.bytes_received - bytes_before} bytes came within {self.settings.open_within:g} s and no answer "
+            "among them: not a fingertip, or another baud rate"
+        )
+
+    def _send(self, wire: bytes) -> None:
+        assert self._transport is not None
+        with self._sending:
+            self._transport.write(wire)
+        if self._tap is not None:
+            self._tap.sent(self._clock(), wire)
+
+
+def _check(name: str, answer: Acknowledgement) -> None:
+    if answer.result == Result.BAD_VALUE:
+        raise CommandRefusedError(
+            f"{name}: the device refuses this value; see docs/protocol.md for its range"
+        )
+    if answer.result == Result.BUSY:
+        raise CommandRefusedError(f"{name}: the device stays busy; try again when it has finished")
+    if answer.result != Result.DONE:
+        raise CommandRefusedError(f"{name}: the device could not do it (result {answer.result})")
+
+
+def _check_identity(identity: Identity) -> Identity:
+    if identity.model != MODEL:
+        raise WrongDeviceError(
+            f"the device says that it is model {identity.model:#06x}, a fingertip is {MODEL:#06x}"
+        )
+    if identity.protocol[0] != PROTOCOL[0]:
+        theirs = identity.protocol[0] or "none that this package knows"
+        raise ProtocolVersionError(
+            f"the device (firmware {identity.firmware[0]}.{identity.firmware[1]}) speaks protocol {theirs}, this "
+            f"package {PROTOCOL[0]}; update the older of the two"
+        )
+    return identity

@@ -1,0 +1,84 @@
+"""Samples of both fingertips as arrays, calibrated.
+
+n: samples; 2: left and right fingertip; 3: normal and two tangential forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .errors import SensorFaultError
+from .messages import LAYOUTS, Calibration, Flag, Sample
+
+_FAULTS = {
+    Flag.SATURATED_LEFT: "the left voltage is at an end of the converter's range: press less, or use less gain",
+    Flag.SATURATED_RIGHT: "the right voltage is at an end of the converter's range: press less, or use less gain",
+    Flag.OPEN_LEFT: "the left thermistor is open: look at its wires",
+    Flag.OPEN_RIGHT: "the right thermistor is open: look at its wires",
+    Flag.OFF_SETPOINT_LEFT: "the left thermostat is off its setpoint: wait for it, or look at its heater",
+    Flag.OFF_SETPOINT_RIGHT: "the right thermostat is off its setpoint: wait for it, or look at its heater",
+    Flag.OVER_TEMPERATURE: "a thermostat was too hot and both heaters are off: let it cool, set the setpoint again",
+}
+
+
+class SampleRow(NamedTuple):
+    """A sample as it came. time: s, when it was taken, on the host's clock. device_time: s since the device's boot.
+    arrival: s, host clock. flags: of its frame. lost: frames missing just before it. payload: not yet decoded."""
+
+    time: float
+    device_time: float
+    arrival: float
+    flags: int
+    lost: int
+    payload: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Samples:
+    """time, device_time, arrival: (n,) s, when each was taken on the host's clock (never falling, never after arrival)
+    and on the device's since its boot, and when it came. voltage: (n, 2) V. thermostat: (n, 2) °C, NaN where a
+    thermistor is open. force: (n, 2, 3) N. flags: (n,) Flag. lost: (n,) frames that are missing just before it."""
+
+    time: np.ndarray
+    device_time: np.ndarray
+    arrival: np.ndarray
+    voltage: np.ndarray
+    thermostat: np.ndarray
+    force: np.ndarray
+    flags: np.ndarray
+    lost: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def faults(self) -> Flag:
+        """What was wrong with any of them."""
+        return Flag(int(np.bitwise_or.reduce(self.flags, initial=0))) & ~Flag.UNIDENTIFIED
+
+    def require_healthy(self, but: int = 0) -> None:
+        """Raises SensorFaultError where a sample has a fault, except those in `but`."""
+        wrong = self.faults & ~but
+        if wrong:
+            raise SensorFaultError("; ".join(_FAULTS[flag] for flag in Flag if flag in wrong))
+
+
+def samples_of(rows: Sequence[SampleRow], calibration: Calibration) -> Samples:
+    """Rows as calibrated arrays."""
+    columns = LAYOUTS[Sample].columns(b"".join(row.payload for row in rows))
+    voltage = (columns["voltage"] - calibration.voltage_offset) * (1 + np.array(calibration.voltage_gain))
+    force = (columns["force"] - calibration.force_offset) * (1 + np.array(calibration.force_gain))
+    return Samples(
+        time=np.array([row.time for row in rows], float),
+        device_time=np.array([row.device_time for row in rows], float),
+        arrival=np.array([row.arrival for row in rows], float),
+        voltage=voltage,
+        thermostat=columns["thermostat"] - calibration.thermostat_offset,
+        force=force,
+        flags=np.array([row.flags for row in rows], np.uint8),
+        lost=np.array([row.lost for row in rows], int),
+    )
