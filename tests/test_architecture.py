@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("assets", "thermal", "envs", "hardware")
 LEAVES = ("errors", "files", "plant")
-ALL = {"root", "bench", "cli", "report", *LEAVES, *FOLDERS}
+ALL = {"root", "bench", "cli", "dataset", "report", *LEAVES, *FOLDERS}
 MAY_IMPORT = {
     "root": set(),
     "errors": set(),
@@ -24,6 +24,7 @@ MAY_IMPORT = {
     "__main__": ALL,
     "bench": ALL,
     "cli": ALL,
+    "dataset": ALL,
     "report": ALL,
 }
 

@@ -47,15 +47,18 @@ class Output:
 
     @contextmanager
     def progress(self, total: float) -> Iterator[Callable[[str, float], None]]:
-        """A bar up to `total`; call what it yields with what is being done and by how much it advanced."""
+        """A bar up to `total`, with the time gone and an estimate of what is left; call what it yields with what is
+        being done and by how much it advanced."""
         if self.as_json or not sys.stderr.isatty():
             yield lambda doing, advance: None
             return
         from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-        with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
+        times = (TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn())
+        columns = (TextColumn("{task.description}"), BarColumn(), *times)
+        console = Console(stderr=True)
+        with Progress(*columns, console=console, transient=True, speed_estimate_period=300) as bars:
             bar = bars.add_task("", total=total)
             yield lambda doing, advance: bars.update(bar, description=doing, advance=advance)
 
