@@ -66,7 +66,7 @@ def draw_accuracy(stem: Path, points: Sequence[Point], mode: str, footnote: str)
     across = min(len(names), 2)
     down = -(-len(names) // across)
     with style(), mpl.rc_context({"font.size": 9}):
-        figure = Figure(figsize=(6.9 * across, 4.75 * down + 1.45), dpi=110)
+        figure = Figure(figsize=(13.8, 4.75 * down + 1.45), dpi=110)
         grid = figure.subplots(down, across, squeeze=False, sharex=True, sharey=True)
         height = 4.75 * down + 1.45
         figure.subplots_adjust(

@@ -1,6 +1,5 @@
 """The benchmarks: methods fail where theory says, ours nowhere; what is written is complete. No timing decides."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -19,19 +18,6 @@ STEPS = 200
 @pytest.fixture(scope="module")
 def maps() -> dict[str, atlas.Map]:
     return {each.key: each for each in atlas.atlas(20, STEPS, 0, lambda doing: None)}
-
-
-@pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
-    """`thermograsp bench --quick --json` and its folder."""
-    import contextlib
-    import io
-
-    folder = tmp_path_factory.mktemp("bench")
-    out = io.StringIO()
-    with contextlib.redirect_stdout(out):
-        assert cli.main(["bench", "--quick", "--json", "--out", str(folder)]) == 0
-    return folder, json.loads(out.getvalue())
 
 
 def pairs(each: atlas.Map) -> tuple[np.ndarray, np.ndarray]:
@@ -222,8 +208,8 @@ def test_quick_run_writes_figures_and_a_complete_document(written: tuple[Path, d
         for suffix in (".png", ".svg"):
             file = folder / (name + suffix)
             assert file.stat().st_size > 10_000 and str(file) in document["figures"]
-        assert "seed 0" in (folder / f"{name}.svg").read_text(encoding="utf-8")
-    assert document["provenance"]["seed"] == 0
+        assert "seed 3" in (folder / f"{name}.svg").read_text(encoding="utf-8")
+    assert document["provenance"]["seed"] == 3
     assert {"thermograsp", "python", "numpy", "scipy", "numba"} <= set(document["provenance"]["versions"])
     assert len(document["stability"]["maps"]) == 10
     assert {m["scheme"] for m in document["stability"]["maps"]} >= {"ours", "ftcs", "series"}

@@ -15,9 +15,9 @@ from thermograsp.cli.output import Output
 from thermograsp.errors import InvalidValueError
 
 NAME = "bench"
-HELP = "Measure what accuracy costs, map where time steps fail, compare with a peer's published figures."
+HELP = "Measure what accuracy and touch cost, map where time steps fail, compare with a peer's published figures."
 
-BENCHMARKS = ("accuracy", "stability", "peer")
+BENCHMARKS = ("accuracy", "stability", "speed", "peer")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,164 @@
+"""How near Grasp-v0 comes to bare MuJoCo, and where the rest goes.
+
+Five nested layers carry out the same control steps from the same state: mujoco.batch alone, Mechanics (commands in,
+contact forces of every substep out), the simulated plant (heat, electronics), GraspBatch (observation, reward), and the
+vector environment. Each ends with the same bits, so contacts are the same; the difference of two layers' times is what
+the outer one adds. Layers take turns in short blocks, in random order, so that a busy moment of the machine hits none
+alone, and the ratio is taken within each block.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+from thermograsp.bench.bare import BareBatch, Inputs, inputs_of
+from thermograsp.envs import command_of
+from thermograsp.envs.mechanics import SUBSTEPS
+
+ID = "thermograsp/Grasp-v0"
+LAYERS = ("mujoco.batch", "mechanics", "plant", "batch", "environment")
+PARTS = ("physics", "contact", "heat and electronics", "observation and task", "Gymnasium")
+"""What each layer adds to the one before it."""
+_WARM = 100  # control steps before the first block: grippers have met their objects
+_EPISODE = 500  # control steps of the environment's 10 s
+
+
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """Times of `num_envs` environments. seconds: of CPU per environment and control step, a layer each (medians).
+    ratio: bare time over the environment's, CPU, median and quartiles of the blocks; wall_ratio: the same by the wall
+    clock. reset: s of CPU to start one environment anew. touching: share of control steps in which a fingertip
+    presses. blocks: that were timed. same: every layer ended each block with the same bits."""
+
+    num_envs: int
+    seconds: dict[str, float]
+    ratio: float
+    quartiles: tuple[float, float]
+    wall_ratio: float
+    reset: float
+    touching: float
+    blocks: int
+    same: bool
+
+    @property
+    def ratio_with_resets(self) -> float:
+        """Bare time over the environment's with one reset per episode of 500 control steps."""
+        bare = self.seconds[LAYERS[0]]
+        return bare / (bare / self.ratio + self.reset / _EPISODE)
+
+    @property
+    def parts(self) -> dict[str, float]:
+        """Shares of the environment's time by PARTS; they add up to 1. One within the timing's noise may be below 0."""
+        times = [0.0, *(self.seconds[name] for name in LAYERS)]
+        return {name: (b - a) / times[-1] for name, a, b in zip(PARTS, times, times[1:], strict=False)}
+
+
+def measure(num_envs: int, blocks: int, steps: int, seed: int, shown: Callable[[], None]) -> Speed:
+    """Times `blocks` blocks of `steps` control steps with random actions of Grasp-v0 as shipped. shown: called after
+    each block."""
+    rng = np.random.default_rng(seed)
+    env = gymnasium.make_vec(ID, num_envs=num_envs, vectorization_mode="vector_entry_point")
+    env.reset(seed=seed)  # compiles, and fills caches
+    begun = time.process_time()
+    env.reset(seed=seed)
+    reset = (time.process_time() - begun) / num_envs
+    layers = _Layers(env)
+    for action in _actions(rng, min(_WARM, 10 * steps), num_envs):
+        env.step(action)
+    timed, touching, same = [], [], True
+    for _ in range(blocks):
+        actions = _actions(rng, steps, num_envs)
+        count = layers.rehearse(actions)
+        if count == steps:
+            timed.append(layers.time(actions, rng))
+            same &= layers.same
+            touching.append(layers.touching)
+        else:  # an episode ends: the environment's own step sees to it, and to the reset after it
+            for action in (*actions[: count + 1], actions[0]):
+                env.step(action)
+        shown()
+    env.close()
+    cpu = np.array([[times[name][0] for name in LAYERS] for times in timed]) / (steps * num_envs)
+    wall = np.array([[times[name][1] for name in LAYERS] for times in timed])
+    ratio = cpu[:, 0] / cpu[:, -1]
+    low, middle, high = (float(x) for x in np.percentile(ratio, [25, 50, 75]))
+    return Speed(
+        num_envs,
+        dict(zip(LAYERS, np.median(cpu, axis=0).tolist(), strict=True)),
+        middle,
+        (low, high),
+        float(np.median(wall[:, 0] / wall[:, -1])),
+        reset,
+        float(np.mean(touching)),
+        len(timed),
+        same,
+    )
+
+
+def _actions(rng: np.random.Generator, steps: int, num_envs: int) -> np.ndarray:
+    return rng.uniform(-1.0, 1.0, (steps, num_envs, 3)).astype(np.float32)
+
+
+class _Layers:
+    """The layers of one vector environment, and a bare batch beside it."""
+
+    def __init__(self, env: Any) -> None:
+        self._env = env
+        self._batch = env.unwrapped.batch
+        self._plant = self._batch.plant
+        self._mechanics = self._plant.mechanics
+        self._bare = BareBatch(self._mechanics, self._plant.config.threads, SUBSTEPS)
+        self._inputs: list[Inputs] = []
+        self._start: Any = None
+        self.touching = 0.0
+        self.same = True
+
+    def rehearse(self, actions: np.ndarray) -> int:
+        """Takes the steps once, untimed, and goes back to where it began. Returns how many come before an episode
+        ends, all of them where none does."""
+        self._start, self._inputs, pressed = self._batch.state(), [], []
+        count = len(actions)
+        for k, action in enumerate(actions):
+            step = self._batch.step(action)
+            self._inputs.append(inputs_of(self._mechanics.model, self._mechanics.state()))
+            pressed.append(np.any(step.observation["force"][:, :, 0] > 0, axis=1).mean())
+            if step.terminated.any() or step.truncated.any():
+                count = k
+                break
+        self._end = self._mechanics.state().rows
+        self.touching = float(np.mean(pressed))
+        self._batch.set_state(self._start)
+        return count
+
+    def time(self, actions: np.ndarray, rng: np.random.Generator) -> dict[str, tuple[float, float]]:
+        """(CPU, wall) s of the rehearsed steps by layer; the environment is left where they end."""
+        commands = [command_of(action) for action in actions]
+        runs: dict[str, tuple[Callable[..., Any], Sequence[tuple[Any, ...]]]] = {
+            "mujoco.batch": (self._bare.step, [(inputs,) for inputs in self._inputs]),
+            "mechanics": (
+                self._mechanics.step,
+                [(each.opening, each.force_limit, each.lift_rate) for each in commands],
+            ),
+            "plant": (self._plant.step, [(each,) for each in commands]),
+            "batch": (self._batch.step, [(action,) for action in actions]),
+            "environment": (self._env.step, [(action,) for action in actions]),
+        }
+        self.same, found = True, {}
+        for name in [LAYERS[i] for i in rng.permutation(len(LAYERS) - 1)] + [LAYERS[-1]]:
+            self._batch.set_state(self._start)
+            if name == "mujoco.batch":
+                self._bare.copy(self._mechanics, self._start.plant.mechanics)
+            step, arguments = runs[name]
+            wall, cpu = time.perf_counter(), time.process_time()
+            for each in arguments:
+                step(*each)
+            found[name] = (time.process_time() - cpu, time.perf_counter() - wall)
+            rows = self._bare.batch.state if name == "mujoco.batch" else self._mechanics.state().rows
+            self.same &= np.array_equal(rows, self._end)
+        return found
