@@ -1,0 +1,215 @@
+"""Work against precision of a grasp, one panel an error: cost across, error up, the best toward the lower left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
+
+from thermograsp.bench.grasp import SHAPES, Point, front
+from thermograsp.bench.grasp_errors import HELD, Errors
+from thermograsp.bench.labels import Label, coloured_key, place_labels
+from thermograsp.bench.saving import save_figure
+from thermograsp.report.style import FAINT, style
+
+OURS, EULER, FAST, CONE, SQUARE, SOLVER, SOFT, OTHER = (
+    "#1d4f91", "#b5651d", "#c0392b", "#0f8a8a", "#7b3fa0", "#8a6d3b", "#2e7d32", "#5b6470"
+)  # fmt: skip
+_LOOKS = {
+    "time step": (OURS, "o"),
+    "Euler": (EULER, "^"),
+    "implicitfast": (FAST, "v"),
+    "RK4": (OTHER, "P"),
+    "elliptic cone": (CONE, "s"),
+    "pyramidal cone": (SQUARE, "D"),
+    "noslip": (OTHER, "X"),
+    "Newton": (SOLVER, "<"),
+    "CG": (SOLVER, "h"),
+    "PGS": (SOLVER, "p"),
+    "contact time": (SOFT, "d"),
+    "discrete": (OTHER, "*"),
+}
+_KEY = (
+    (OURS, "ring: shipped; dots: other time steps"),
+    (EULER, "Euler"),
+    (FAST, "implicitfast"),
+    (CONE, "elliptic cone, other impratio"),
+    (SQUARE, "pyramidal cone"),
+    (SOLVER, "solver and iterations"),
+    (SOFT, "softness of contacts"),
+    (OTHER, "RK4, noslip, others"),
+    ("#8fb3dc", "band: nothing is both cheaper and better"),
+)
+_PANELS = (
+    ("slip", "Slip", "largest slip while held and shaken (mm)"),
+    ("force", "Force against the command", "RMS error of the normal force (N)"),
+    ("force_reference", "Force against a 0.1 ms run", "RMS error of the normal force (N)"),
+    ("jitter", "Jitter of the contact", "RMS scatter of its centroid in 20 ms (µm)"),
+    ("drop", "Temperature drop", "largest error from 0.05 s on (K)"),
+)
+_COURSE = "Close with 10 N, lift, shake up and down at 4 Hz, hold"
+_WORDS = {"breaks down": "breaks"}
+_FATE_COLORS = {"jams": "#c58b00", "dropped": "#c8571b", "ejected": "#a3262a", "breaks down": "#4a1942"}
+_BAND = "#c9dcf2"
+_SLIPS = 1.0  # mm, from which a held object is marked as slipping
+
+
+def draw_grasp(stem: Path, points: Sequence[Point], reference_ms: float, footnote: str) -> list[Path]:
+    """Draws stem.png and stem.svg: the worst of the four shapes, and what fails. Returns both."""
+    with style(), mpl.rc_context({"font.size": 9}):
+        figure, grid = _page(
+            2,
+            3,
+            "What it costs to hold an object well",
+            f"{_COURSE}, the worst of an aluminium box, cylinder, sphere and mesh (hexagonal nut). Reference: "
+            f"a time step of {reference_ms:g} ms.",
+        )
+        for axes, (metric, title, label) in zip(grid.flat, _PANELS, strict=False):
+            every = [getattr(p.worst, metric) for p in points]
+            _panel(axes, points, lambda p, m=metric: getattr(p.worst, m), title, every)
+            axes.set_ylabel(label)
+        for axes in (grid[1, 0], grid[1, 1], grid[0, 2]):
+            axes.set_xlabel("cost: CPU time of the mechanics over that of what is shipped")
+        _failures(grid[1, 2], points)
+        figure.text(0.045, 0.12 / _height(2), footnote, size=7, color=FAINT)
+        return save_figure(figure, stem, 110)
+
+
+def draw_grasp_shapes(stem: Path, points: Sequence[Point], footnote: str) -> list[Path]:
+    """Draws stem.png and stem.svg: slip and error in temperature drop, shape by shape. Returns both."""
+    with style(), mpl.rc_context({"font.size": 9}):
+        figure, grid = _page(
+            2, 4, "What it costs to hold an object well, by shape", f"{_COURSE}, objects of aluminium."
+        )
+        for row, (metric, _, label) in zip(grid, (_PANELS[0], _PANELS[4]), strict=True):
+            every = [getattr(p.shapes[shape], metric) for p in points for shape in SHAPES]
+            for axes, shape in zip(row, SHAPES, strict=True):
+                title = "mesh (hexagonal nut)" if shape == "mesh" else shape
+                _panel(axes, points, lambda p, s=shape, m=metric: getattr(p.shapes[s], m), title, every)
+            row[0].set_ylabel(label)
+        for axes in grid[1]:
+            axes.set_xlabel("cost over that of what is shipped")
+        figure.text(0.045, 0.12 / _height(2), footnote, size=7, color=FAINT)
+        return save_figure(figure, stem, 110)
+
+
+def _height(down: int) -> float:
+    return 4.1 * down + 1.75
+
+
+def _page(down: int, across: int, title: str, subtitle: str) -> tuple[Figure, np.ndarray]:
+    height = _height(down)
+    figure = Figure(figsize=(14.0 if across == 3 else 16.0, height), dpi=110)
+    grid = figure.subplots(down, across, squeeze=False)
+    figure.subplots_adjust(
+        left=0.05, right=0.99, top=1 - 1.62 / height, bottom=0.75 / height, wspace=0.19, hspace=0.27
+    )
+    figure.text(0.045, 1 - 0.4 / height, title, size=16, weight="semibold")
+    figure.text(0.045, 1 - 0.68 / height, subtitle, size=10.5)
+    coloured_key(figure, _KEY, 0.045, 1 - 0.95 / height, 0.2 / height)
+    return figure, grid
+
+
+def _panel(
+    axes: Axes,
+    points: Sequence[Point],
+    value: Callable[[Point], float],
+    title: str,
+    every: Sequence[float],
+) -> None:
+    """One error of all points that hold. every: values that the vertical axis must span."""
+    held = [p for p in points if np.isfinite(value(p))]
+    axes.grid(color="#eef0f3", lw=0.7)
+    axes.set_axisbelow(True)
+    axes.set_title(title)
+    costs = [p.ratio for p in held]
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlim(0.75 * min(costs), 1.35 * max(costs))
+    axes.set_ylim(0.6 * float(np.nanmin(every)), 2.0 * float(np.nanmax(every)))
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}x")
+    axes.xaxis.set_minor_locator(NullLocator())
+    best = front(held, value)
+    axes.plot(
+        [best[0].ratio, *(p.ratio for p in best), axes.get_xlim()[1]],
+        [axes.get_ylim()[1], *(value(p) for p in best), value(best[-1])],
+        drawstyle="steps-post",
+        color=_BAND,
+        lw=6,
+        solid_capstyle="butt",
+        solid_joinstyle="miter",
+        zorder=1,
+    )
+    shipped = next(p for p in points if p.variant.family == "shipped")
+    labels = [Label(shipped.ratio, value(shipped), "shipped", OURS, 9.0, "bold")]
+    for family, (color, marker) in _LOOKS.items():
+        chain = [p for p in held if p.variant.family == family]
+        axes.plot(
+            [p.ratio for p in chain],
+            [value(p) for p in chain],
+            marker,
+            color=color,
+            ms=5,
+            mew=0,
+            zorder=3,
+            alpha=0.95,
+        )
+        labels += [Label(p.ratio, value(p), _short(p), color, 7.5) for p in chain]
+    axes.plot(shipped.ratio, value(shipped), "o", ms=10, mfc="white", mec=OURS, mew=2.2, zorder=4)
+    place_labels(axes, _thinned(axes, labels), np.array([[p.ratio, value(p)] for p in held]))
+
+
+def _short(point: Point) -> str:
+    family, label = point.variant.family, point.variant.label
+    if family == "time step":
+        return label
+    label = label.replace(" iterations", " it.").replace(" iteration", " it.").replace("impratio ", "")
+    names = {"elliptic cone": "impratio", "pyramidal cone": "pyramidal", "contact time": "contact"}
+    return f"{names.get(family, family)} {label}"
+
+
+def _thinned(axes: Axes, labels: Sequence[Label]) -> list[Label]:
+    """Without those whose points lie on top of one that is labelled already."""
+    kept: list[Label] = []
+    spots: list[np.ndarray] = []
+    for label in labels:
+        spot = axes.transData.transform((label.x, label.y))
+        if all(np.linalg.norm(spot - other) > 16 for other in spots):
+            kept.append(label)
+            spots.append(spot)
+    return kept
+
+
+def _failures(axes: Axes, points: Sequence[Point]) -> None:
+    """A table of variants that lose or badly slip a shape, and of what is shipped."""
+    axes.set_axis_off()
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    axes.set_title("What fails (mm: slips that far)")
+    shipped = next(p for p in points if p.variant.family == "shipped")
+    failing = [p for p in points if p.worst.fate != HELD or p.worst.slip > _SLIPS]
+    rows = [shipped, *sorted(failing, key=lambda p: p.variant.family)]
+    rows += [p for p in points if p.variant.family == "discrete"]
+    step = min(0.075, 0.92 / (len(rows) + 1))
+    columns = np.linspace(0.54, 0.96, len(SHAPES))
+    for x, shape in zip(columns, SHAPES, strict=True):
+        axes.text(x, 0.97, shape, size=8, ha="center", weight="semibold")
+    for i, point in enumerate(rows):
+        y = 0.97 - (i + 1) * step
+        name = "shipped" if point is shipped else point.variant.name
+        axes.text(-0.04, y, name, size=8, va="center", weight="semibold" if point is shipped else "normal")
+        for x, shape in zip(columns, SHAPES, strict=True):
+            word, color = _word(point.shapes[shape])
+            axes.text(x, y, word, size=8, ha="center", va="center", color=color)
+
+
+def _word(errors: Errors) -> tuple[str, str]:
+    if errors.fate != HELD:
+        return _WORDS.get(errors.fate, errors.fate), _FATE_COLORS[errors.fate]
+    if errors.slip > _SLIPS:
+        return f"{errors.slip:.1f} mm", "#c58b00"
+    return "held", FAINT
