@@ -74,7 +74,7 @@ class ArrayFingertips:
 
     def start(self, rows: int, object_temperature: Array | None = None) -> FingertipState:
         """Everything at its first temperature, for so many rows. object_temperature: (rows,) °C where it differs."""
-        like = self.tables.keep
+        like = self.tables.decay
         still = as_like(np.zeros((rows, self.fingertips)), like)
         first = self.object_temperature if object_temperature is None else object_temperature[..., None]
         heat = as_like(np.zeros((rows, like.shape[-1])), like)
@@ -183,7 +183,8 @@ def array_fingertips(
     systems, joints, areas = [], [], []
     for of, size in zip(map(material, named), sizes, strict=True):
         faces, newton = _contact(stack, of, mode, size)
-        geometry = Geometry(stack, of, mode, float(newton.face), "square", size, fingertips)
+        touched = min(float(newton.face), stack.face_area)
+        geometry = Geometry(stack, of, mode, touched, "square", size, fingertips)
         systems.append(network_for(geometry, demand).system)
         joints.append(faces)
         areas.append((newton.face, newton.face_force))

@@ -40,7 +40,7 @@ def array_step(
     step, >= 0; 0 where nothing touches. difference: (B, F) K, what sensor less object was when both were uniform.
     A value that is not finite makes its own row's results not finite; nothing is raised.
     """
-    keep, hear, gram, push, read, _ = (table[network] for table in tables)
+    decay, hear, gram, push, read, _ = (table[network] for table in tables)
     fingertips, ports, pairs = conductance.shape[-1], gram.shape[-2], gram.shape[-1]
     modes = ports // fingertips
     heard = (state[..., None] * hear).sum(-2)
@@ -58,7 +58,7 @@ def array_step(
         ((flows[j][c][..., None] * push[..., c, j, :, :]).sum(-2) for j in range(ports) for c in range(2)),
     )
     states = state.shape[-1]
-    state = keep * state + pushed[..., :states]
+    state = state + (decay * state + pushed[..., :states])
     rows = (state[..., None] * read).sum(-2)
     per_tip = [rows[..., i * fingertips : (i + 1) * fingertips] for i in range(4)]
     reading = HeatReading(

@@ -4,9 +4,10 @@ With y the complex heat flows at the poles, a step of coupling.py is linear befo
 
     v = u - pole P' S x                the driving differences, K; P' (1 - dt rates S) = pole P' S needs no subtraction
     (1 + dt H G) y = H v               M equations a pole pair
-    x <- R x - 2 dt Re sum w S P y     R the propagator of a state that no contact touches
+    x <- x + (R - 1) x - 2 dt Re sum w S P y     R the propagator of a state that no contact touches
 
-so that products of tables are all that is left. Every table has a leading axis T of networks.
+so that products of tables are all that is left. R is near 1 for slow states; R - 1 keeps its digits in float32. Every
+table has a leading axis T of networks.
 
 T: networks, K: states of the largest, F: fingertips, P: modes of a contact, M = F P: ports, Q: pole pairs.
 """
@@ -25,14 +26,14 @@ from .namespace import Array, as_like
 class ArrayTables(NamedTuple):
     """Networks for steps of one length, in a namespace, dtype and device; a pytree of arrays.
 
-    keep: (T, K), the factor R of each state. hear: (T, K, 2 M Q + 1), from the states to the real, then the imaginary
+    decay: (T, K), R - 1 of each state. hear: (T, K, 2 M Q + 1), from the states to the real, then the imaginary
     parts of the driving differences K, and to the air's part of the loss W. gram: (T, 2, M, M, Q) K/W, dt G. push:
     (T, 2, M, Q, K + F + 1), from the flows' real and imaginary parts to the states, the mean flows of the step W and
     the loss to the air W. read: (T, K, 4 F + 1), from the states to drop, element_heat, sensor_rise, object_rise and
     object_heat. settled: (T, K), 0 at the states that an object at one temperature has at 0, 1 at the others.
     """
 
-    keep: Array
+    decay: Array
     hear: Array
     gram: Array
     push: Array
@@ -79,7 +80,7 @@ def _network(own: HeatTables, most: int) -> tuple[np.ndarray, ...]:
     settled[: own.object_states] = 0.0
     settled[own.mean] = 1.0
     return (
-        1 + 2 * dt * own.rates * np.real(WEIGHTS @ scale),
+        2 * dt * own.rates * np.real(WEIGHTS @ scale),
         hear,
         dt * _parts(gram.transpose(1, 2, 0), 0),
         np.stack((np.real(pushed), -np.imag(pushed))),
