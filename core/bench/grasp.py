@@ -34,7 +34,7 @@ class Variant:
     family: str
     label: str
     settings: SolverSettings
-    repeats: int = 2
+    repeats: int = 3
 
     @property
     def name(self) -> str:
@@ -67,13 +67,13 @@ def reference(quick: bool) -> SolverSettings:
 
 def placement_count(quick: bool) -> int:
     """How often each shape is placed anew."""
-    return 1 if quick else 10
+    return 1 if quick else 8
 
 
 def variants(quick: bool) -> list[Variant]:
     """What is compared: what is shipped, one knob turned at a time, MuJoCo's defaults, and settings known to fail."""
 
-    def turned(family: str, label: str, repeats: int = 2, **knobs: Any) -> Variant:
+    def turned(family: str, label: str, repeats: int = 3, **knobs: Any) -> Variant:
         return Variant(family, label, replace(SHIPPED, **knobs), repeats)
 
     def implicitfast(label: str, **knobs: Any) -> Variant:

@@ -18,14 +18,15 @@ from thermograsp.thermal import material, sensor
 
 HELD, JAMS, DROPPED, EJECTED, BROKEN = "held", "jams", "dropped", "ejected", "breaks down"
 FATES = (HELD, JAMS, DROPPED, EJECTED, BROKEN)
-"""From best to worst. jams: held, but with more than a fifth too much or too little force in the end. ejected: faster
-than 1 m/s above the table, which nothing reaches that falls from the gripper. breaks down: MuJoCo warns of numbers that
-are not finite or of a matrix that it cannot factor."""
+"""From best to worst. jams: held, but with more than a fifth too much or too little force in the end. dropped: not
+between both fingertips in the end, or on the table. ejected: faster than 1 m/s above the table, which nothing reaches
+that falls from the gripper. breaks down: MuJoCo warns of numbers that are not finite or of a matrix that it cannot
+factor."""
 METRICS = {"slip": "mm", "force": "N", "force_reference": "N", "jitter": "um", "drop": "K", "drop_late": "K"}
 """Errors and their units."""
 FIRST, LATE = 0.05, 0.5
 """s after the touch, from which `drop` and `drop_late` are taken."""
-_JAM, _FAST = 0.2, 1.0  # of the force, m/s
+_JAM, _FAST, _OFF = 0.2, 1.0, 0.001  # of the force; m/s; m over its rest that a held object is in the end
 _SENSOR, _OBJECT = 36.0, 24.0  # degC
 _SAMPLES = 2  # of heat in a control step
 
@@ -56,7 +57,8 @@ def fates(grasp: Grasp) -> list[str]:
     end = grasp.normal[end_of("shake") :].mean(axis=2)  # (K, B, T)
     speed = np.linalg.norm(np.diff(grasp.offset, axis=0), axis=-1) / PERIOD
     fast = ((speed > _FAST) & (grasp.height[1:] > 0)).any(axis=0)
-    lost = (end <= 0).any(axis=(0, 2))
+    on_table = grasp.height[-1] - grasp.height[0] < _OFF
+    lost = (end <= 0).any(axis=(0, 2)) | on_table
     jammed = (np.abs(end.mean(axis=0) - FORCE) > _JAM * FORCE).any(axis=1)
     kinds = zip(grasp.failed, fast, lost, jammed, strict=True)
     return [BROKEN if b else EJECTED if f else DROPPED if d else JAMS if j else HELD for b, f, d, j in kinds]
