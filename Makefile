@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test bench lint install clean distclean FORCE
+.PHONY: demo test test-ray bench lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -21,6 +21,10 @@ demo: build/.run
 
 test: build/.test
 	$(PY) -m pytest $(TEST_FLAGS)
+
+# What needs Ray and Minari; without them `make test` skips it.
+test-ray: build/.ray
+	$(PY) -m pytest $(TEST_FLAGS) tests/ray
 
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)
@@ -36,8 +40,9 @@ install: build/.test
 # file, or editing setup.cfg reinstalls.
 build/.run: EXTRA :=
 build/.test: EXTRA := [test]
+build/.ray: EXTRA := [test,ray,minari]
 build/.dev: EXTRA := [dev]
-build/.run build/.test build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+build/.run build/.test build/.ray build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
 	$(INSTALL) --no-build-isolation -e '.$(EXTRA)'
 	@touch $@
 

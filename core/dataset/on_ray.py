@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import socket
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -13,6 +14,7 @@ from thermograsp.dataset.shards import shard_bytes
 from thermograsp.errors import InvalidValueError, MissingDependencyError, SimulationError
 
 _STORE = 256 * 2**20  # bytes for shards on their way: each is a few MB
+_PATIENCE = 10.0  # s
 _QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
 
 
@@ -72,8 +74,9 @@ def _connected(ray: Any, workers: int, address: str | None) -> Iterator[None]:
                     **quiet,
                 )
             else:
+                _knock(address)
                 ray.init(address=address, **quiet)
-    except (ConnectionError, ValueError) as error:
+    except (OSError, ValueError) as error:
         raise InvalidValueError(
             f"no Ray cluster at {address!r}: {error}; start one with `ray start`"
         ) from error
@@ -81,6 +84,13 @@ def _connected(ray: Any, workers: int, address: str | None) -> Iterator[None]:
         yield
     finally:
         ray.shutdown()
+
+
+def _knock(address: str) -> None:
+    """Raises OSError where nobody listens at host:port: Ray itself would try for minutes."""
+    host, _, port = address.rpartition(":")
+    if host and port.isdecimal() and "/" not in host:
+        socket.create_connection((host, int(port)), _PATIENCE).close()
 
 
 @contextmanager
