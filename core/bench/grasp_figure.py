@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -48,11 +49,12 @@ _KEY = (
 _PANELS = (
     ("slip", "Slip", "largest slip while held and shaken (mm)"),
     ("force", "Force against the command", "RMS error of the normal force (N)"),
-    ("force_reference", "Force against a 0.1 ms run", "RMS error of the normal force (N)"),
+    ("force_reference", "Force against the reference run", "RMS error of the normal force (N)"),
     ("jitter", "Jitter of the contact", "RMS scatter of its centroid in 20 ms (µm)"),
     ("drop", "Temperature drop", "largest error from 0.05 s on (K)"),
 )
-_COURSE = "Close with 10 N, lift, shake up and down at 4 Hz, hold"
+_COURSE = "An object of aluminium is closed on with 10 N, lifted, shaken at 4 Hz and held"
+_COST = "cost: CPU time over that of what is shipped"
 _WORDS = {"breaks down": "breaks"}
 _FATE_COLORS = {"jams": "#c58b00", "dropped": "#c8571b", "ejected": "#a3262a", "breaks down": "#4a1942"}
 _BAND = "#c9dcf2"
@@ -61,57 +63,63 @@ _SLIPS = 1.0  # mm, from which a held object is marked as slipping
 
 def draw_grasp(stem: Path, points: Sequence[Point], reference_ms: float, footnote: str) -> list[Path]:
     """Draws stem.png and stem.svg: the worst of the four shapes, and what fails. Returns both."""
-    with style(), mpl.rc_context({"font.size": 9}):
+    with style(), mpl.rc_context({"font.size": 9.5}):
         figure, grid = _page(
-            2,
             3,
             "What it costs to hold an object well",
-            f"{_COURSE}, the worst of an aluminium box, cylinder, sphere and mesh (hexagonal nut). Reference: "
-            f"a time step of {reference_ms:g} ms.",
+            f"{_COURSE}: the worst of box, cylinder, sphere and mesh.\n"
+            f"Reference run: time step {reference_ms:g} ms. Slip needs none: nothing should slip.",
+            footnote,
         )
         for axes, (metric, title, label) in zip(grid.flat, _PANELS, strict=False):
             every = [getattr(p.worst, metric) for p in points]
-            _panel(axes, points, lambda p, m=metric: getattr(p.worst, m), title, every)
+            _panel(axes, points, partial(_of_worst, metric=metric), title, every)
             axes.set_ylabel(label)
-        for axes in (grid[1, 0], grid[1, 1], grid[0, 2]):
-            axes.set_xlabel("cost: CPU time of the mechanics over that of what is shipped")
-        _failures(grid[1, 2], points)
-        figure.text(0.045, 0.12 / _height(2), footnote, size=7, color=FAINT)
+        for axes in (grid[2, 0], grid[1, 1]):
+            axes.set_xlabel(_COST)
+        _failures(grid[2, 1], points)
         return save_figure(figure, stem, 110)
 
 
 def draw_grasp_shapes(stem: Path, points: Sequence[Point], footnote: str) -> list[Path]:
     """Draws stem.png and stem.svg: slip and error in temperature drop, shape by shape. Returns both."""
-    with style(), mpl.rc_context({"font.size": 9}):
+    with style(), mpl.rc_context({"font.size": 9.5}):
         figure, grid = _page(
-            2, 4, "What it costs to hold an object well, by shape", f"{_COURSE}, objects of aluminium."
+            len(SHAPES),
+            "What it costs to hold an object well, by shape",
+            f"{_COURSE}.\nThe mesh is a hexagonal nut with its flats to the pads.",
+            footnote,
         )
-        for row, (metric, _, label) in zip(grid, (_PANELS[0], _PANELS[4]), strict=True):
+        for column, (metric, title, label) in zip(grid.T, (_PANELS[0], _PANELS[4]), strict=True):
             every = [getattr(p.shapes[shape], metric) for p in points for shape in SHAPES]
-            for axes, shape in zip(row, SHAPES, strict=True):
-                title = "mesh (hexagonal nut)" if shape == "mesh" else shape
-                _panel(axes, points, lambda p, s=shape, m=metric: getattr(p.shapes[s], m), title, every)
-            row[0].set_ylabel(label)
-        for axes in grid[1]:
-            axes.set_xlabel("cost over that of what is shipped")
-        figure.text(0.045, 0.12 / _height(2), footnote, size=7, color=FAINT)
+            for axes, shape in zip(column, SHAPES, strict=True):
+                value = partial(_of_shape, shape=shape, metric=metric)
+                _panel(axes, points, value, f"{title}, {shape}", every)
+                axes.set_ylabel(label)
+            column[-1].set_xlabel(_COST)
         return save_figure(figure, stem, 110)
 
 
-def _height(down: int) -> float:
-    return 4.1 * down + 1.75
+def _of_shape(point: Point, shape: str, metric: str) -> float:
+    return getattr(point.shapes[shape], metric)
 
 
-def _page(down: int, across: int, title: str, subtitle: str) -> tuple[Figure, np.ndarray]:
-    height = _height(down)
-    figure = Figure(figsize=(14.0 if across == 3 else 16.0, height), dpi=110)
-    grid = figure.subplots(down, across, squeeze=False)
+def _of_worst(point: Point, metric: str) -> float:
+    return getattr(point.worst, metric)
+
+
+def _page(down: int, title: str, subtitle: str, footnote: str) -> tuple[Figure, np.ndarray]:
+    """A page of two columns, narrow enough to be read in a README."""
+    height = 3.75 * down + 2.6
+    figure = Figure(figsize=(10.5, height), dpi=110)
+    grid = figure.subplots(down, 2, squeeze=False)
     figure.subplots_adjust(
-        left=0.05, right=0.99, top=1 - 1.62 / height, bottom=0.75 / height, wspace=0.19, hspace=0.27
+        left=0.075, right=0.985, top=1 - 2.15 / height, bottom=0.8 / height, wspace=0.2, hspace=0.24
     )
-    figure.text(0.045, 1 - 0.4 / height, title, size=16, weight="semibold")
-    figure.text(0.045, 1 - 0.68 / height, subtitle, size=10.5)
-    coloured_key(figure, _KEY, 0.045, 1 - 0.95 / height, 0.2 / height)
+    figure.text(0.06, 1 - 0.45 / height, title, size=17, weight="semibold")
+    figure.text(0.06, 1 - 0.97 / height, subtitle, size=11, linespacing=1.35)
+    coloured_key(figure, _KEY, 0.06, 1 - 1.27 / height, 0.21 / height)
+    figure.text(0.06, 0.15 / height, footnote, size=7, color=FAINT)
     return figure, grid
 
 
@@ -146,7 +154,7 @@ def _panel(
         zorder=1,
     )
     shipped = next(p for p in points if p.variant.family == "shipped")
-    labels = [Label(shipped.ratio, value(shipped), "shipped", OURS, 9.0, "bold")]
+    labels = [Label(shipped.ratio, value(shipped), "shipped", OURS, 10.0, "bold")]
     for family, (color, marker) in _LOOKS.items():
         chain = [p for p in held if p.variant.family == family]
         axes.plot(
@@ -159,7 +167,7 @@ def _panel(
             zorder=3,
             alpha=0.95,
         )
-        labels += [Label(p.ratio, value(p), _short(p), color, 7.5) for p in chain]
+        labels += [Label(p.ratio, value(p), _short(p), color, 8.5) for p in chain]
     axes.plot(shipped.ratio, value(shipped), "o", ms=10, mfc="white", mec=OURS, mew=2.2, zorder=4)
     place_labels(axes, _thinned(axes, labels), np.array([[p.ratio, value(p)] for p in held]))
 
@@ -179,7 +187,7 @@ def _thinned(axes: Axes, labels: Sequence[Label]) -> list[Label]:
     spots: list[np.ndarray] = []
     for label in labels:
         spot = axes.transData.transform((label.x, label.y))
-        if all(np.linalg.norm(spot - other) > 16 for other in spots):
+        if all(np.linalg.norm(spot - other) > 20 for other in spots):
             kept.append(label)
             spots.append(spot)
     return kept
@@ -189,22 +197,22 @@ def _failures(axes: Axes, points: Sequence[Point]) -> None:
     """A table of variants that lose or badly slip a shape, and of what is shipped."""
     axes.set_axis_off()
     axes.set(xlim=(0, 1), ylim=(0, 1))
-    axes.set_title("What fails (mm: slips that far)")
+    axes.text(-0.06, 1.04, "What fails (mm: slips that far)", size=11, weight="semibold")
     shipped = next(p for p in points if p.variant.family == "shipped")
     failing = [p for p in points if p.worst.fate != HELD or p.worst.slip > _SLIPS]
     rows = [shipped, *sorted(failing, key=lambda p: p.variant.family)]
     rows += [p for p in points if p.variant.family == "discrete"]
     step = min(0.075, 0.92 / (len(rows) + 1))
-    columns = np.linspace(0.54, 0.96, len(SHAPES))
+    columns = np.linspace(0.53, 0.96, len(SHAPES))
     for x, shape in zip(columns, SHAPES, strict=True):
-        axes.text(x, 0.97, shape, size=8, ha="center", weight="semibold")
+        axes.text(x, 0.97, shape, size=8.5, ha="center", weight="semibold")
     for i, point in enumerate(rows):
         y = 0.97 - (i + 1) * step
         name = "shipped" if point is shipped else point.variant.name
-        axes.text(-0.04, y, name, size=8, va="center", weight="semibold" if point is shipped else "normal")
+        axes.text(-0.06, y, name, size=8.5, va="center", weight="semibold" if point is shipped else "normal")
         for x, shape in zip(columns, SHAPES, strict=True):
             word, color = _word(point.shapes[shape])
-            axes.text(x, y, word, size=8, ha="center", va="center", color=color)
+            axes.text(x, y, word, size=8.5, ha="center", va="center", color=color)
 
 
 def _word(errors: Errors) -> tuple[str, str]:
