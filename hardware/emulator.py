@@ -110,7 +110,7 @@ class EmulatedFingertips:
         self.boots = 0
         self._now = 0.0
         self._out: deque[bytes] = deque()
-        self._late: list[tuple[float, bytes]] = []
+        self._late: list[tuple[float, Acknowledgement]] = []
         self._planned: list[tuple[float, Callable[[], None]]] = []
         ambient = np.array([self.model.thermostat.ambient])
         zero = np.zeros(1)
@@ -181,9 +181,10 @@ class EmulatedFingertips:
     def _act(self) -> None:
         while self._planned and self._planned[0][0] <= self._now:
             self._planned.pop(0)[1]()
-        ready = [wire for time, wire in self._late if time <= self._now]
+        ready = [answer for time, answer in self._late if time <= self._now]
         self._late = [item for item in self._late if item[0] > self._now]
-        self._out.extend(ready)
+        for answer in ready:
+            self._send(answer)
         if self._next_sample <= self._now:
             self._sample()
             behind = max(0, math.floor((self._now - self._next_sample) * self._rate))  # in a stall
@@ -213,7 +214,13 @@ class EmulatedFingertips:
                 self._results[frame.sequence] = result
                 while len(self._results) > _REMEMBERED:
                     del self._results[next(iter(self._results))]
-        self._send(Acknowledgement(frame.sequence, frame.code, result))
+        answer = Acknowledgement(frame.sequence, frame.code, result)
+        if self.line.drop_answer and self.rng.random() < self.line.drop_answer:
+            return
+        if self.line.answer_delay:
+            self._late.append((self._now + self.line.answer_delay, answer))
+        else:
+            self._send(answer)
 
     def _identify(self, message: Identify) -> None:
         mine = self.model.protocol
@@ -361,11 +368,6 @@ class EmulatedFingertips:
         payload = encode_message(message)
         frame = Frame(code_of(message), flags | self._flags(), self._sequence, device_us, payload)
         self._sequence = (self._sequence + 1) % SEQUENCE
-        answer = isinstance(message, Acknowledgement)
-        if answer and self.line.drop_answer and self.rng.random() < self.line.drop_answer:
-            return
         wire = self.line.spoil(encode_frame(frame), self.rng)
-        if answer and self.line.answer_delay:
-            self._late.append((self._now + self.line.answer_delay, wire))
-        elif wire:
+        if wire:
             self._out.append(wire)

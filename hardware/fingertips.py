@@ -125,8 +125,7 @@ class Fingertips:
         """All samples since the last call, maybe none. Raises StaleSensorError while the device should send and does
         not, LinkLostError while the port is gone."""
         if self._link.reader is None:
-            while self._link.pump(0.0):
-                pass
+            self._link.drain()
             self._check_silence()
         return self._taken()
 
@@ -262,7 +261,6 @@ class Fingertips:
                 self._link.closing.wait(self._settings.reopen_every)
                 continue
             self._reconnects += 1
-            self._link.note("reopened")
             self._set_error(None)
             return
 

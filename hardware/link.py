@@ -35,6 +35,7 @@ from .session import Session
 from .transport import Transport
 
 Report = TypeVar("Report")
+OPENED = "opened"  # the event of a transport put to use
 
 
 class Tap(Protocol):
@@ -90,6 +91,7 @@ class Link:
         """From now on over this transport."""
         self.close()
         self._transport = transport
+        self.note(OPENED)
         with self.changed:
             self.session.reopened()
 
@@ -120,6 +122,11 @@ class Link:
             self.changed.notify_all()
         return True
 
+    def drain(self) -> None:
+        """Reads all that has come."""
+        while self.pump(0.0):
+            pass
+
     def wait(self, ready: Callable[[], bool], seconds: float) -> bool:
         """Whether `ready` came true within that time. Raises what `stopped` tells, or LinkLostError."""
         deadline = self._clock() + seconds
@@ -146,6 +153,8 @@ class Link:
         try:
             for attempt in range(self.settings.tries):
                 self.repeats += attempt > 0
+                if self.reader is None:  # what has come by now is no answer, and must not cost its time
+                    self.drain()
                 self._send(wire)
                 self.wait(lambda: awaited[number] is not None, self.settings.answer_within)
                 answer = awaited[number]
@@ -204,9 +213,9 @@ class Link:
     def _send(self, wire: bytes) -> None:
         assert self._transport is not None
         with self._sending:
+            if self._tap is not None:
+                self._tap.sent(self._clock(), wire)
             self._transport.write(wire)
-        if self._tap is not None:
-            self._tap.sent(self._clock(), wire)
 
 
 def _check(name: str, answer: Acknowledgement) -> None:

@@ -60,6 +60,18 @@ class Samples:
         """What was wrong with any of them."""
         return Flag(int(np.bitwise_or.reduce(self.flags, initial=0))) & ~Flag.UNIDENTIFIED
 
+    @property
+    def columns(self) -> dict[str, np.ndarray]:
+        """As columns of a CSV file, name_unit -> (n,), time from the first sample."""
+        named = {"time_s": self.time - self.time[:1], "device_time_s": self.device_time}
+        for i, side in enumerate(("left", "right")):
+            named[f"voltage_{side}_V"] = self.voltage[:, i]
+            named[f"thermostat_{side}_degC"] = self.thermostat[:, i]
+            named[f"force_{side}_N"] = self.force[:, i, 0]
+            named[f"shear_1_{side}_N"] = self.force[:, i, 1]
+            named[f"shear_2_{side}_N"] = self.force[:, i, 2]
+        return {**named, "flags": self.flags, "lost_frames": self.lost}
+
     def require_healthy(self, but: int = 0) -> None:
         """Raises SensorFaultError where a sample has a fault, except those in `but`."""
         wrong = self.faults & ~but

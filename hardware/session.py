@@ -77,6 +77,7 @@ class Session:
         self.unidentified = unidentified
         self.flags = Flag(frame.flags)
         self._sequence, self._device, self._host = frame.sequence, device, now
+        self.clock.add(device, now)
         if frame.code == Code.SAMPLE:
             self._sample(frame, device, now)
             return
@@ -96,7 +97,6 @@ class Session:
     def _sample(self, frame: Frame, device: float, now: float) -> None:
         self.counts.samples += 1
         self.last_sample = now
-        self.clock.add(device, now)
         self._time = max(self._time, min(self.clock.host_time(device), now))
         self.counts.overruns += len(self.rows) == self.rows.maxlen
         self.rows.append(SampleRow(self._time, device, now, frame.flags, self._lost, frame.payload))

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 from .emulator import EmulatedFingertips
 
 
 class VirtualLine:
     """Opener, transport and clock of a driver: Fingertips(line.open, clock=line.clock, background=False).
 
-    Time goes on by `advance`, and while the driver waits for an answer.
+    Time goes on by `advance`, and while the driver waits for an answer. The driver's clock follows as it reads: each
+    frame comes at the moment when the device sent it.
     """
 
     def __init__(self, device: EmulatedFingertips) -> None:
         self.device = device
-        self._now = 0.0
+        self._now = self._read = 0.0
+        self._sent: deque[tuple[float, bytes]] = deque()
 
     def clock(self) -> float:
-        """Virtual time, s."""
-        return self._now
+        """Virtual time, s, up to which the driver has read."""
+        return self._read
 
     def open(self) -> VirtualLine:
         """The line itself: it has two ends only."""
@@ -30,17 +34,27 @@ class VirtualLine:
     def read(self, timeout: float) -> bytes:
         """See Transport."""
         deadline = self._now + timeout
-        while not (frames := self.device.outgoing()) and self._now < deadline:
-            self._until(min(deadline, max(self.device.due, self._now)))
-        return b"".join(frames)
+        while not self._sent and self._now < deadline:
+            self._until(min(deadline, self.device.due))
+        self._read, data = self._sent.popleft() if self._sent else (self._now, b"")
+        return data
 
     def write(self, data: bytes) -> None:
         """See Transport."""
         self.device.receive(data)
+        self._collect()
 
     def close(self) -> None:
         """See Transport; there is nothing to release."""
 
     def _until(self, now: float) -> None:
-        self._now = now
-        self.device.advance(now)
+        while (due := self.device.due) < now:
+            self.device.advance(due)
+            self._now = max(self._now, due)
+            self._collect()
+        self._now = max(self._now, now)
+        self.device.advance(self._now)
+        self._collect()
+
+    def _collect(self) -> None:
+        self._sent.extend((self._now, frame) for frame in self.device.outgoing())

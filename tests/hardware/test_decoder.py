@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from .tiers import size
 from thermograsp.hardware import cobs
 from thermograsp.hardware.decoder import Decoder
 from thermograsp.hardware.frame import LONGEST, Frame, encode_frame
 from thermograsp.hardware.messages import LENGTHS
+
+from .tiers import size
 
 
 def frames() -> st.SearchStrategy[Frame]:

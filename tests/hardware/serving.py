@@ -1,0 +1,64 @@
+"""An emulated device on a pseudo-terminal and an impatient driver for tests, and what they leave behind."""
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from thermograsp.hardware import EmulatedFingertips, Fingertips, LinkSettings, PtyDevice
+from thermograsp.hardware.errors import DeviceError
+
+PATIENCE = 1.0  # s, in which a fault is repaired or told
+QUICK = LinkSettings(open_within=0.7, stale_after=0.25, reopen_every=0.02)
+
+
+@contextmanager
+def serving(folder: Path, device: EmulatedFingertips | None = None) -> Iterator[PtyDevice]:
+    with PtyDevice(device or EmulatedFingertips(), folder / "fingertips") as served:
+        yield served
+
+
+def driver(served: PtyDevice, **keywords: Any) -> Fingertips:
+    return Fingertips(served.path, **{"rate": 200, "settings": QUICK, **keywords})
+
+
+@contextmanager
+def nothing_left() -> Iterator[None]:
+    """The block leaves no thread, no descriptor."""
+    threads, files = set(threading.enumerate()), os.listdir("/proc/self/fd")
+    yield
+    deadline = time.monotonic() + 1.0
+    while set(threading.enumerate()) - threads and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not set(threading.enumerate()) - threads
+    assert len(os.listdir("/proc/self/fd")) == len(files)
+
+
+def error_within(act: Callable[[], object], kind: type[DeviceError]) -> DeviceError:
+    """The error that `act`, again and again, raises in time."""
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        try:
+            act()
+        except kind as error:
+            return error
+        except DeviceError:  # what comes before it
+            pass
+        time.sleep(0.002)
+    raise AssertionError(f"no {kind.__name__} within {PATIENCE} s")
+
+
+def healthy_within(tips: Fingertips) -> None:
+    """Samples come again in time."""
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        try:
+            if len(tips.take()):
+                return
+        except DeviceError:
+            pass
+        time.sleep(0.002)
+    raise AssertionError(f"no sample within {PATIENCE} s")
