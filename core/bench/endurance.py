@@ -52,13 +52,14 @@ def endure(steps: int, seed: int, shown: Callable[[], None]) -> Endurance:
         for k in range(steps // _BINS):
             action = closed if k % _PERIOD < _PERIOD // 2 else opened
             begun = time.process_time()
-            step = batch.step(action)
+            batch.step(action)
             ours += time.process_time() - begun
             inputs = inputs_of(mechanics.model, mechanics.state())
             begun = time.process_time()
             bare.step(inputs)
             theirs += time.process_time() - begun
-            touches += sum(kind == "touch" for kind, _ in step.infos[0]["events"])
+            assert batch.reading is not None
+            touches += sum(kind == "touch" for kind, _ in batch.reading.truth["events"][0])
         relative.append(ours / theirs)
         shown()
     return Endurance(steps, touches, tuple(relative))
