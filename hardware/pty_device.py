@@ -7,7 +7,7 @@ import secrets
 import select
 import threading
 import time
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 
 from thermograsp.errors import InvalidValueError
@@ -36,8 +36,9 @@ class PtyDevice:
             raise InvalidValueError(f"there is no folder {self.link.parent}; create it first")
         self._begun = time.monotonic()
         self._pending = b""
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._closing = False
+        self._failure: Exception | None = None
         self._ends: tuple[int, int] | None = None
         self._own = ""
         self._wake_read, self._wake_write = os.pipe()
@@ -61,7 +62,7 @@ class PtyDevice:
         """The device's time, s."""
         return time.monotonic() - self._begun
 
-    def paused(self) -> threading.Lock:
+    def paused(self) -> AbstractContextManager[bool]:
         """Held while the device's state is changed."""
         return self._lock
 
@@ -91,7 +92,8 @@ class PtyDevice:
         os.write(self._wake_write, b"!")
 
     def close(self) -> None:
-        """Ends the thread and removes port and link. Does nothing the second time."""
+        """Ends the thread, removes port and link, and raises what broke the thread, such as an error of the device's
+        source. Does nothing the second time."""
         if self._closing:
             return
         self._closing = True
@@ -100,6 +102,8 @@ class PtyDevice:
         self._drop()
         os.close(self._wake_read)
         os.close(self._wake_write)
+        if self._failure is not None:
+            raise self._failure
 
     def _drop(self) -> None:
         if self._ends is None:
@@ -111,6 +115,13 @@ class PtyDevice:
             self.link.unlink(missing_ok=True)
 
     def _serve(self) -> None:
+        try:
+            self._work()
+        except Exception as error:  # noqa: BLE001  (raised by close)
+            self._failure = error
+            self.unplug()
+
+    def _work(self) -> None:
         while not self._closing:
             with self._lock:
                 master = self._step()

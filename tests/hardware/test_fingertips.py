@@ -13,6 +13,7 @@ from thermograsp.hardware import (
     EmulatedFingertips,
     Feel,
     Fingertips,
+    LinkLostError,
     PtyDevice,
     StaleSensorError,
     VirtualLine,
@@ -36,9 +37,7 @@ CONSTANTS = Calibration(
 
 def ramp(time: float) -> Feel:
     """Voltages that tell when they were taken."""
-    return Feel(
-        voltage=(time * 1e-3, -time * 1e-3), thermostat=(36.0, 35.0), force=((time, 0, 0), (0, time, -time))
-    )
+    return Feel(voltage=(time * 1e-3, -time * 1e-3), thermostat=(36.0, 35.0), force=((5, 0, 0), (0, 6, -7)))
 
 
 def lockstep(device: EmulatedFingertips, **keywords: object) -> tuple[Fingertips, VirtualLine]:
@@ -216,6 +215,14 @@ def test_without_pyserial_the_extra_is_named(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setitem(sys.modules, "serial", None)
     with pytest.raises(MissingDependencyError, match=r"thermograsp\[hardware\]"):
         Fingertips(str(tmp_path / "port"))
+
+
+def test_a_source_that_breaks_is_told(tmp_path: Path) -> None:
+    served = PtyDevice(EmulatedFingertips(lambda time: Feel(force=((1e3 * (time > 0.2), 0, 0), (0, 0, 0)))))
+    with pytest.raises(ValueError, match="force must be -327.67 to 327.67"), served, driver(served) as tips:
+        time.sleep(0.4)
+        with pytest.raises(LinkLostError):
+            tips.take()
 
 
 def test_the_link_goes_with_the_device(tmp_path: Path) -> None:

@@ -1,0 +1,35 @@
+"""`thermograsp device ACTION`: real and emulated fingertips on serial ports, one module an action.
+
+An action's module has HELP, add_arguments(parser) and run(args) -> exit status; only the chosen one's run is imported.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+
+NAME = "device"
+HELP = "Fingertips on a serial port: list, monitor, record, replay, test, calibrate and emulate them."
+
+ACTIONS = ("list", "monitor", "record", "replay", "selftest", "calibrate", "emulate")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """A parser of its own for each action."""
+    actions = parser.add_subparsers(metavar="ACTION", required=True)
+    for name in ACTIONS:
+        module = importlib.import_module(f"{__name__}.{name}")
+        sub = actions.add_parser(name, help=module.HELP, description=module.HELP, allow_abbrev=False)
+        module.add_arguments(sub)
+        sub.add_argument(
+            "--json",
+            action="store_true",
+            default=argparse.SUPPRESS,
+            help="print one JSON document and nothing else",
+        )
+        sub.set_defaults(act=module.run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Runs the action."""
+    return args.act(args)

@@ -1,0 +1,56 @@
+"""The port, and how to open it: arguments that the actions share."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from thermograsp.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from thermograsp.hardware import Fingertips, LinkStatistics, Tap
+
+_BAUD = 500_000
+_RATE = 100
+
+
+def add_port(parser: argparse.ArgumentParser) -> None:
+    """PORT and --baud."""
+    parser.add_argument(
+        "port", metavar="PORT", help="such as /dev/serial/by-id/..., see `thermograsp device list`"
+    )
+    parser.add_argument("--baud", type=int, default=_BAUD, help=f"bits a second (default {_BAUD})")
+
+
+def add_sampling(parser: argparse.ArgumentParser) -> None:
+    """--rate and --setpoint."""
+    parser.add_argument("--rate", type=int, default=_RATE, help=f"samples a second (default {_RATE})")
+    parser.add_argument(
+        "--setpoint", type=float, help="of both thermostats, degC (default: leave the heaters as they are)"
+    )
+
+
+def connect(args: argparse.Namespace, tap: Tap | None = None) -> Fingertips:
+    """The driver that the arguments describe, sampling."""
+    from thermograsp.hardware import Fingertips
+
+    rate = getattr(args, "rate", _RATE)
+    if not 1 <= rate <= 65535:
+        raise InvalidValueError(f"rate must be 1 to 65535 samples a second, got {rate}")
+    setpoint = getattr(args, "setpoint", None)
+    return Fingertips(args.port, baud=args.baud, rate=rate, setpoint=setpoint, tap=tap)
+
+
+def link_document(statistics: LinkStatistics) -> Mapping[str, Any]:
+    """The line's statistics for a JSON document."""
+    names = [name for name in statistics.__slots__ if name not in ("drift", "age")]
+    return {**{name: getattr(statistics, name) for name in names}, "drift_ppm": 1e6 * statistics.drift}
+
+
+def link_line(statistics: LinkStatistics) -> str:
+    """The line's statistics for people."""
+    return (
+        f"{statistics.samples} samples, {statistics.lost} frames lost, {statistics.rejected} rejected, "
+        f"{statistics.reconnects} reconnects, {statistics.reboots} reboots, clock {1e6 * statistics.drift:+.0f} ppm"
+    )

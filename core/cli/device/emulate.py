@@ -1,0 +1,82 @@
+"""`thermograsp device emulate`: fingertips in software, on a port that any serial driver opens."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from typing import TYPE_CHECKING
+
+from thermograsp.cli.output import Output
+from thermograsp.errors import InvalidValueError, positive, unknown_name
+
+if TYPE_CHECKING:
+    from thermograsp.hardware import Source
+
+HELP = "Emulate fingertips that press an object again and again, or feel a recording again, on a pseudo-terminal."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the action."""
+    add = parser.add_argument
+    add(
+        "--material",
+        default="glass",
+        help="what they press: a name of `thermograsp materials` (default glass)",
+    )
+    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
+    add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K) (default 1e4)")
+    add("--force", type=float, default=10.0, help="while touching, N (default 10)")
+    add("--replay", metavar="FILE", help="feel a recording again instead of a press")
+    add("--link", metavar="PATH", help="a stable name for the port (default none)")
+    add("--chain", default="ads1115", help="amplifier and converter: ads1115 (default) or ideal")
+    add("--drift", type=float, default=0.0, help="of the device's clock, ppm (default 0)")
+    add("--seed", type=int, default=0, help="of noise and faults (default 0)")
+    add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
+    add(
+        "--fault",
+        action="append",
+        default=[],
+        metavar="NAME[=VALUE][@SECONDS]",
+        help="what goes wrong, and when, such as corrupt=0.01, reboot@5, unplug=2@10; may be repeated; "
+        "an unknown one lists all",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Serves until the end of the time or an interrupt."""
+    import numpy as np
+
+    from thermograsp.hardware import DeviceModel, EmulatedFingertips, PtyDevice
+    from thermograsp.hardware.planned_faults import plan_fault
+    from thermograsp.thermal import SIGNAL_CHAINS
+
+    if args.chain not in SIGNAL_CHAINS:
+        raise unknown_name("signal chain", args.chain, SIGNAL_CHAINS)
+    if args.seed < 0:
+        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
+    seconds = None if args.seconds is None else positive("seconds", args.seconds)
+    model = DeviceModel(chain=SIGNAL_CHAINS[args.chain], drift=1e-6 * args.drift)
+    device = EmulatedFingertips(_source(args), model, rng=np.random.default_rng(args.seed))
+    with PtyDevice(device, args.link) as served:
+        for text in args.fault:
+            plan_fault(served, text)
+        output = Output(args.json)
+        output.line(f"{served.path}  (Ctrl-C ends it)")
+        output.document(
+            {"port": served.path, "material": None if args.replay else args.material, "mode": args.mode}
+        )
+        sys.stdout.flush()
+        try:
+            time.sleep(seconds if seconds is not None else np.iinfo(np.int32).max)
+        except KeyboardInterrupt:
+            pass
+    return 0
+
+
+def _source(args: argparse.Namespace) -> Source:
+    from thermograsp.hardware import press_source, replay, samples_source
+
+    if args.replay is not None:
+        return samples_source(replay(args.replay).samples)
+    return press_source(args.material, mode=args.mode, conductance=args.conductance, force=args.force)

@@ -1,0 +1,76 @@
+"""`thermograsp device record`: every byte of the line into a file."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+from thermograsp.cli.arguments import target
+from thermograsp.cli.device.connection import add_port, add_sampling, connect, link_document, link_line
+from thermograsp.cli.output import Output
+from thermograsp.errors import InvalidValueError, positive
+
+HELP = "Record the line, raw, until the end of the time or Ctrl-C; replayed by `thermograsp device replay`."
+
+_PERIOD = 0.1  # s
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the action."""
+    add_port(parser)
+    parser.add_argument("file", metavar="FILE", help="a new file")
+    add_sampling(parser)
+    parser.add_argument("--seconds", type=float, help="stop then (default: at Ctrl-C)")
+    parser.add_argument("--note", default="", help="text to keep in the file")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Records and prints. 1 where frames were lost or the line was broken; the file has what came."""
+    from thermograsp import __version__
+    from thermograsp.hardware import Recorder
+    from thermograsp.hardware.errors import DeviceError
+
+    file = target(args.file, ())
+    if file is None:
+        raise InvalidValueError("name the recording's file")
+    seconds = None if args.seconds is None else positive("seconds", args.seconds)
+    output = Output(args.json)
+    metadata = {
+        "port": args.port,
+        "baud": args.baud,
+        "rate_Hz": args.rate,
+        "note": args.note,
+        "version": __version__,
+    }
+    with Recorder(file, metadata) as recorder:
+        try:
+            tips = connect(args, recorder)
+        except BaseException:
+            recorder.close()
+            file.unlink()
+            raise
+        with tips, output.progress(seconds or 1.0) as advance:
+            begun = last = time.monotonic()
+            broken = ""
+            try:
+                while seconds is None or last - begun < seconds:
+                    time.sleep(min(_PERIOD, seconds or _PERIOD))
+                    try:
+                        tips.take()
+                        broken = ""
+                    except DeviceError as error:
+                        if type(error).__name__ != broken:
+                            output.warn(str(error))
+                        broken = type(error).__name__
+                    now = time.monotonic()
+                    advance("recording", now - last if seconds else 0.0)
+                    last = now
+            except KeyboardInterrupt:
+                pass
+            statistics = tips.statistics()
+    output.line(link_line(statistics))
+    output.line(f"wrote {file}")
+    output.document(
+        {"file": str(file), "bytes": recorder.bytes, "seconds": last - begun, **link_document(statistics)}
+    )
+    return 1 if statistics.lost or statistics.reconnects or not statistics.samples else 0
