@@ -9,7 +9,7 @@ from pathlib import Path
 
 import thermograsp
 
-_PACKAGES = ("mujoco", "numpy", "scipy", "numba", "mujoco", "scikit-fem", "FiPy")
+_PACKAGES = ("mujoco", "numpy", "scipy", "numba", "scikit-fem", "FiPy")
 
 
 def provenance(seed: int) -> dict[str, object]:
