@@ -1,0 +1,248 @@
+"""`thermograsp device`, and the pages that tell of it."""
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermograsp.cli import main
+from thermograsp.cli.device.live_plot import LivePlot, braille
+from thermograsp.errors import InvalidValueError, UnknownNameError
+from thermograsp.hardware import EmulatedFingertips, Flag, LineFaults, PtyDevice, VirtualLine, replay
+from thermograsp.hardware.planned_faults import plan_fault
+
+from .serving import serving
+from .test_fingertips import CONSTANTS, lockstep, ramp
+
+pytest.importorskip("serial")
+
+PAGE = (Path(__file__).parents[2] / "docs" / "hardware.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Iterator[PtyDevice]:
+    with serving(tmp_path, EmulatedFingertips(ramp)) as device:
+        yield device
+
+
+def told(capsys: pytest.CaptureFixture[str], *argv: str, status: int = 0) -> dict[str, Any]:
+    """The JSON document of a command."""
+    assert main([*argv, "--json"]) == status
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_page_s_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert len(blocks) == 2
+    for block in blocks:
+        exec(compile(block, "hardware.md", "exec"), {})
+    assert "mV at most" in capsys.readouterr().out
+
+
+def test_the_page_s_commands_parse(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = re.findall(r"^    thermograsp (.*)$", PAGE, re.MULTILINE)
+    assert len(lines) >= 8
+    for line in lines:
+        assert main([*shlex.split(line), "--help"]) == 0
+    capsys.readouterr()
+
+
+def test_list(capsys: pytest.CaptureFixture[str]) -> None:
+    assert isinstance(told(capsys, "device", "list")["ports"], list)
+    assert main(["device", "list"]) == 0
+    assert capsys.readouterr().out
+
+
+def test_no_action_or_a_wrong_one_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["device"]) == 2
+    assert main(["device", "fly"]) == 2
+    assert "ACTION" in capsys.readouterr().err
+
+
+def test_monitor_in_a_pipe(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["device", "monitor", served.path, "--seconds", "0.3"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r" +\S+ +-\S+ mV +36.00 +35.00 degC +5.00 +0.00 N", lines[0])
+    assert "0 frames lost" in lines[-1]
+
+
+def test_monitor_tells_a_line_that_breaks(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
+    plan_fault(served, f"unplug=60@{served.now + 0.3}")
+    document = told(capsys, "device", "monitor", served.path, "--seconds", "0.6", status=1)
+    assert "plugged in" in document["broken"]
+
+
+def test_record_and_replay(served: PtyDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, csv = str(tmp_path / "line.tgr"), tmp_path / "line.csv"
+    seen = told(
+        capsys, "device", "record", served.path, file, "--seconds", "0.5", "--rate", "200", "--note", "hello"
+    )
+    assert seen["samples"] >= 90 and seen["lost"] == 0
+    again = told(capsys, "device", "replay", file, "--csv", str(csv))
+    assert again["samples"] >= seen["samples"] and again["complete"]
+    assert again["metadata"]["note"] == "hello"
+    table = np.genfromtxt(csv, delimiter=",", names=True)
+    samples = replay(file).samples
+    assert len(table) == len(samples)
+    np.testing.assert_allclose(table["voltage_left_V"], samples.voltage[:, 0], rtol=1e-8)
+    np.testing.assert_allclose(table["time_s"], samples.time - samples.time[0], atol=1e-8)
+    assert main(["device", "record", served.path, file, "--seconds", "0.1"]) == 2
+    assert "exists" in capsys.readouterr().err
+
+
+def test_record_through_a_bad_line_is_not_a_success(served: PtyDevice, tmp_path: Path) -> None:
+    plan_fault(served, "drop_frame=0.2@0.5")
+    file = str(tmp_path / "line.tgr")
+    assert main(["device", "record", served.path, file, "--seconds", "0.8", "--json"]) == 1
+    assert replay(file).counts.lost > 0
+
+
+def test_record_leaves_no_file_where_there_is_no_device(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "line.tgr"
+    assert main(["device", "record", str(tmp_path / "port"), str(file)]) == 2
+    assert not file.exists()
+    assert "no such port" in capsys.readouterr().err
+
+
+def test_selftest(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
+    good = told(capsys, "device", "selftest", served.path)
+    assert good["good"] and good["protocol"] == "1.0" and good["samples"] >= 100
+    plan_fault(served, "open_thermistor=left")
+    bad = told(capsys, "device", "selftest", served.path, status=1)
+    assert bad["failed"] == ["LEFT_THERMISTOR"]
+
+
+def test_calibrate(served: PtyDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ("device", "calibrate", served.path)
+    assert told(capsys, *command)["calibration"]["date"] == 0
+    changed = told(
+        capsys, *command, "--set", "voltage_offset=20e-6,-10e-6", "--set", "force_gain=.05,0,0,0,0,.1"
+    )
+    assert served.device.calibration.voltage_offset == CONSTANTS.voltage_offset
+    assert served.device.calibration.force_gain == CONSTANTS.force_gain
+    file = tmp_path / "constants.json"
+    file.write_text(json.dumps(changed))
+    told(capsys, *command, "--set", "voltage_offset=0,0")
+    assert served.device.calibration.voltage_offset == (0.0, 0.0)
+    loaded = told(capsys, *command, "--load", str(file))["calibration"]
+    assert {**loaded, "date": 0} == {**changed["calibration"], "date": 0}
+    assert main(list(command)) == 0
+    assert "voltage_offset     2e-05  -1e-05" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--set", "voltage_ofset=1,2"], "did you mean 'voltage_offset'"),
+        (["--set", "voltage_offset=1"], "takes 2 numbers"),
+        (["--set", "voltage_offset"], "NAME=NUMBER"),
+        (["--set", "voltage_gain=1e9,0"], "voltage_gain must be"),
+        (["--load", "/nowhere"], "cannot load constants"),
+    ],
+)
+def test_calibrate_with_bad_input(
+    served: PtyDevice, more: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["device", "calibrate", served.path, *more]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_emulate_serves_another_process(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    link = str(tmp_path / "port")
+    words = [
+        "device",
+        "emulate",
+        "--material",
+        "aluminium",
+        "--mode",
+        "T",
+        "--link",
+        link,
+        "--seconds",
+        "60",
+        "--json",
+    ]
+    with subprocess.Popen(
+        [sys.executable, "-m", "thermograsp", *words], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        printed = process.stdout.readline() + process.stdout.readline() + process.stdout.readline()
+        assert json.loads(printed + process.stdout.readline() + process.stdout.readline())["port"] == link
+        assert told(capsys, "device", "monitor", link, "--seconds", "0.5")["lost"] == 0
+        process.terminate()
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "said"),
+    [
+        ("corupt=0.1", UnknownNameError, "did you mean 'corrupt'"),
+        ("corrupt=2", InvalidValueError, "chance"),
+        ("corrupt", InvalidValueError, "no number"),
+        ("saturate=up", InvalidValueError, "saturate=left"),
+        ("reboot@soon", InvalidValueError, "no number"),
+    ],
+)
+def test_a_fault_that_cannot_be_planned(
+    served: PtyDevice, text: str, error: type[Exception], said: str
+) -> None:
+    with pytest.raises(error, match=said):
+        plan_fault(served, text)
+
+
+def test_planned_faults_happen() -> None:
+    class Served:
+        """What plan_fault uses of a PtyDevice, in virtual time."""
+
+        def __init__(self) -> None:
+            self.device = EmulatedFingertips()
+            self.paused = served_paused
+
+    from contextlib import nullcontext as served_paused
+
+    served = Served()
+    tips, line = lockstep(served.device, setpoint=30.0)
+    for text in (
+        "saturate=left@0.5",
+        "open_thermistor=right@0.5",
+        "overheat=left@1",
+        "break_heater=left",
+        "corrupt=0@1",
+    ):
+        plan_fault(served, text)  # pyright: ignore[reportArgumentType]
+    line.advance(0.4)
+    assert not tips.take().faults & (Flag.SATURATED_LEFT | Flag.OPEN_RIGHT | Flag.OVER_TEMPERATURE)
+    line.advance(1.0)
+    faults = tips.take().faults
+    assert Flag.SATURATED_LEFT | Flag.OPEN_RIGHT | Flag.OVER_TEMPERATURE in faults
+    assert served.device.line == LineFaults()
+
+
+def test_braille_dots_are_where_the_points_are() -> None:
+    lines = braille(np.array([0.0, 1.0, 0.5]), np.array([0.0, 1.0, 0.5]), 4, 3)
+    assert [len(line) for line in lines] == [4, 4, 4]
+    assert lines[2][0] == chr(0x2840)  # bottom left dot
+    assert lines[0][3] == chr(0x2808)  # top right dot
+    assert sum(bin(ord(c) - 0x2800).count("1") for line in lines for c in line) == 3
+
+
+def test_the_live_plot_draws(capsys: pytest.CaptureFixture[str]) -> None:
+    line = VirtualLine(EmulatedFingertips(ramp))
+    tips, line = lockstep(line.device)
+    with LivePlot("a port") as plot:
+        plot.show(None, "the line is lost")
+        for _ in range(30):
+            line.advance(0.5)
+            plot.show(tips.take(), "")
+        picture = plot._plot()
+    assert "10 s" in picture and "mV" in picture
+    assert sum(len(part[0]) for part in plot._parts) <= 1050
+    capsys.readouterr()
