@@ -8,10 +8,11 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
+from numba import njit
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Command, Plant, Reading, merged, plant_factory
@@ -19,8 +20,9 @@ from thermograsp.plant import Command, Plant, Reading, merged, plant_factory
 from .mechanics import MAX_FORCE, MAX_LIFT_RATE
 from .observation import Observation, Observer, observation_space
 from .scene import MAX_OPENING
-from .tasks import GraspTask, Outcome, TaskState, fresh, judge
+from .tasks import GraspTask, Outcome, TaskState, fresh, judge, stopped
 
+_ENDS = ("dropped", "crushed")
 _EVERY_STEP = ("material", "temperature_drop", "contact_area", "conductance", "rung", "events")
 
 
@@ -32,20 +34,31 @@ def action_space() -> gymnasium.spaces.Box:
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
     finite."""
-    array = np.asarray(action, dtype=float)
+    array = np.ascontiguousarray(action, dtype=float)
     if array.ndim != 2 or array.shape[1] != 3:
         raise InvalidValueError(
             f"an action is (3,): opening, force limit, lift rate, each -1 .. 1; got shape {np.shape(action)[1:]}"
         )
-    if not np.isfinite(array).all():
-        row = int(np.argmax(~np.isfinite(array).all(axis=1)))
+    command = Command(np.empty(len(array)), np.empty(len(array)), np.empty(len(array)))
+    row = _scale(array, command.opening, command.force_limit, command.lift_rate)
+    if row >= 0:
         raise InvalidValueError(
             f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
         )
-    array = np.clip(array, -1.0, 1.0)
-    return Command(
-        (array[:, 0] + 1) / 2 * MAX_OPENING, (array[:, 1] + 1) / 2 * MAX_FORCE, array[:, 2] * MAX_LIFT_RATE
-    )
+    return command
+
+
+@njit(cache=True, error_model="numpy")
+def _scale(action, opening, force_limit, lift_rate):
+    """Fills the commands; returns the first row that is not finite, -1 where all are."""
+    for b in range(len(action)):
+        for i in range(3):
+            if not np.isfinite(action[b, i]):
+                return b
+        opening[b] = (min(max(action[b, 0], -1.0), 1.0) + 1) / 2 * MAX_OPENING
+        force_limit[b] = (min(max(action[b, 1], -1.0), 1.0) + 1) / 2 * MAX_FORCE
+        lift_rate[b] = min(max(action[b, 2], -1.0), 1.0) * MAX_LIFT_RATE
+    return -1
 
 
 def action_of(opening: float, force_limit: float, lift_rate: float) -> np.ndarray:
@@ -60,20 +73,75 @@ class BatchState:
 
     plant: Any
     history: np.ndarray
+    last: tuple[np.ndarray, ...]
     task: TaskState
-    last: Observation
     reading: Reading | None
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """observation: dict of (B, ...). reward (B,), terminated (B,), truncated (B,). infos: one dict per environment."""
+class Step(NamedTuple):
+    """observation: dict of (B, ...). reward (B,), terminated (B,), truncated (B,). outcome says why an environment
+    ended; reading is what it all follows from."""
 
     observation: Observation
     reward: np.ndarray
     terminated: np.ndarray
     truncated: np.ndarray
-    infos: list[dict[str, Any]]
+    outcome: Outcome
+    reading: Reading
+
+    def info(self, row: int) -> dict[str, Any]:
+        """One environment's info."""
+        return info_of(self.reading, self.outcome, row)
+
+    @property
+    def infos(self) -> list[dict[str, Any]]:
+        """All of them."""
+        return [self.info(row) for row in range(len(self.reward))]
+
+
+def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, Any]:
+    """One environment's info after a step, or, without an outcome, after a reset."""
+    info: dict[str, Any] = {"success": False}
+    if outcome is not None:
+        info["success"] = bool(outcome.success[row])
+        for name in _ENDS:
+            if getattr(outcome, name)[row]:
+                info[name] = True
+        if reading.error[row]:
+            info["error"] = reading.error[row]
+    for name in _EVERY_STEP:
+        if name in reading.truth:
+            value = reading.truth[name][row]
+            info[name] = value.copy() if isinstance(value, np.ndarray) else value
+    return info
+
+
+def infos_of(reading: Reading, outcome: Outcome | None, rows: np.ndarray) -> dict[str, Any]:
+    """The same of the environments where `rows` (B,) is True, as a vector environment gives it: name -> (B, ...) and
+    _name -> (B,), which rows have it."""
+    infos: dict[str, Any] = {}
+
+    def add(name: str, values: np.ndarray, have: np.ndarray) -> None:
+        infos[name], infos["_" + name] = values, have
+
+    add("success", outcome.success & rows if outcome else np.zeros(len(rows), bool), rows.copy())
+    if outcome is not None:
+        for name in _ENDS:
+            ended = getattr(outcome, name) & rows
+            if ended.any():
+                add(name, ended, ended.copy())
+        broken = np.array([bool(error) for error in reading.error]) & rows
+        if broken.any():
+            reasons = np.array([error or None for error in reading.error], object)
+            reasons[~rows] = None
+            add("error", reasons, broken)
+    for name in _EVERY_STEP:
+        if name in reading.truth:
+            values = reading.truth[name].copy()
+            if not rows.all():
+                values[~rows] = None if values.dtype == object else 0
+            add(name, values, rows.copy())
+    return infos
 
 
 class GraspBatch:
@@ -90,8 +158,8 @@ class GraspBatch:
         self.action_space = action_space()
         self._observer = Observer(num_envs)
         self._judged = fresh(num_envs)
-        self._idle = Command(np.full(num_envs, MAX_OPENING), np.zeros(num_envs), np.zeros(num_envs))
-        self._last: Observation = {}
+        self._all = np.ones(num_envs, bool)
+        self._unbreakable = np.full(num_envs, np.inf)
         self.reading: Reading | None = None
 
     @property
@@ -104,51 +172,34 @@ class GraspBatch:
         rows: Sequence[int],
         rngs: Sequence[np.random.Generator],
         options: Mapping[str, Any] | None = None,
-    ) -> tuple[Observation, list[dict[str, Any]]]:
-        """Starts the rows anew, each with its generator; the observations are of all environments."""
+    ) -> tuple[Observation, Reading]:
+        """Starts the rows anew, each with its generator; observations and reading are of all environments."""
         reading = self.plant.reset(rows, rngs, options or {})
         if self.reading is not None:
             reading = merged(self.reading, reading, rows)
-        chosen = np.array(list(rows), int)
+        chosen = np.zeros(self.num_envs, bool)
+        chosen[list(rows)] = True
         self._observer.restart(chosen)
         for values in (self._judged.elapsed, self._judged.held, self._judged.lifted):
             values[chosen] = 0
-        history = self._observer.history.copy()
-        seen = self._observer.observe(reading, self._idle)
-        # Only the rows that start have a new reading; the others keep what they last saw.
-        self._observer.history = history
-        if self._last:
-            seen = {name: _where(chosen, value, self._last[name]) for name, value in seen.items()}
-        self._last, self.reading = seen, reading
-        return _copies(seen), self._infos(reading, None)
+        self.reading = reading
+        return self._observer.observe(reading, np.zeros(self.num_envs), chosen), reading
 
     def step(self, action: np.ndarray) -> Step:
         """One control step of all environments. action: (B, 3). An environment whose simulation broke down is
         truncated, the reason in info["error"], with its last finite observation."""
         command = command_of(action)
-        reading = self.plant.step(command)
-        broken = np.array([bool(error) for error in reading.error])
-        seen = self._observer.observe(reading, command)
-        if broken.any():
-            seen = {
-                name: _where(np.flatnonzero(~broken), value, self._last[name]) for name, value in seen.items()
-            }
-        lift = np.asarray(reading.truth.get("lift", reading.height), float)
-        crushing = np.asarray(reading.truth.get("crushing_force", np.full(self.num_envs, np.inf)))
-        self._judged, outcome = judge(
-            self.task, self._judged, self.dt, reading.force[:, :, 0], lift, crushing
-        )
-        infos = self._infos(reading, outcome)
-        for row in np.flatnonzero(broken):
-            infos[row]["error"] = reading.error[row]
-        self._last, self.reading = seen, reading
-        return Step(
-            _copies(seen),
-            np.where(broken, 0.0, outcome.reward),
-            outcome.terminated & ~broken,
-            outcome.truncated | broken,
-            infos,
-        )
+        self.reading = reading = self.plant.step(command)
+        running = self._all
+        if any(reading.error):
+            running = np.array([not error for error in reading.error])
+        seen = self._observer.observe(reading, command.force_limit, running)
+        lift = reading.truth["lift"] if "lift" in reading.truth else reading.height
+        crushing = reading.truth["crushing_force"] if "crushing_force" in reading.truth else self._unbreakable
+        self._judged, outcome = judge(self.task, self._judged, self.dt, reading.force, lift, crushing)
+        if running is not self._all:
+            outcome = stopped(outcome, ~running)
+        return Step(seen, outcome.reward, outcome.terminated, outcome.truncated, outcome, reading)
 
     def state(self) -> BatchState:
         """A copy of the whole batch in mid-episode. Raises InvalidValueError where the plant has no state to copy."""
@@ -157,7 +208,9 @@ class GraspBatch:
         plant: Any = self.plant
         rows = range(self.num_envs)
         return copy.deepcopy(
-            BatchState(plant.state(rows), self._observer.history, self._judged, self._last, self.reading)
+            BatchState(
+                plant.state(rows), self._observer.history, self._observer.last, self._judged, self.reading
+            )
         )
 
     def set_state(self, state: BatchState) -> tuple[np.random.Generator, ...]:
@@ -166,35 +219,10 @@ class GraspBatch:
         state = copy.deepcopy(state)
         plant: Any = self.plant
         rngs = plant.set_state(range(self.num_envs), state.plant)
-        self._observer.history, self._judged = state.history, state.task
-        self._last, self.reading = state.last, state.reading
+        self._observer.history, self._observer.last = state.history, state.last
+        self._judged, self.reading = state.task, state.reading
         return rngs
 
     def close(self) -> None:
         """Releases the plant."""
         self.plant.close()
-
-    def _infos(self, reading: Reading, outcome: Outcome | None) -> list[dict[str, Any]]:
-        infos: list[dict[str, Any]] = []
-        for row in range(self.num_envs):
-            info: dict[str, Any] = {"success": bool(outcome.success[row]) if outcome else False}
-            if outcome and outcome.dropped[row]:
-                info["dropped"] = True
-            if outcome and outcome.crushed[row]:
-                info["crushed"] = True
-            for name in _EVERY_STEP:
-                if name in reading.truth:
-                    value = reading.truth[name][row]
-                    info[name] = value.copy() if isinstance(value, np.ndarray) else value
-            infos.append(info)
-        return infos
-
-
-def _where(rows: np.ndarray, new: np.ndarray, old: np.ndarray) -> np.ndarray:
-    merged = old.copy()
-    merged[rows] = new[rows]
-    return merged
-
-
-def _copies(observation: Observation) -> Observation:
-    return {name: value.copy() for name, value in observation.items()}

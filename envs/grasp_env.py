@@ -9,7 +9,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, unknown_name
 
-from .grasp import BatchState, GraspBatch
+from .grasp import BatchState, GraspBatch, info_of
 from .observation import Observation
 from .tasks import GraspTask
 
@@ -86,11 +86,11 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
     ) -> tuple[Observation, dict[str, Any]]:
         """A new episode; the same seed gives the same bits."""
         super().reset(seed=seed)
-        seen, infos = self.batch.reset([0], [self.np_random], options)
+        seen, reading = self.batch.reset([0], [self.np_random], options)
         self._started = True
         if self.render_mode == "human":
             self.render()
-        return _first(seen), infos[0]
+        return _first(seen), info_of(reading, None, 0)
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """One control step of 20 ms."""
@@ -104,7 +104,7 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
             float(step.reward[0]),
             bool(step.terminated[0]),
             bool(step.truncated[0]),
-            step.infos[0],
+            step.info(0),
         )
 
     def render(self) -> np.ndarray | None:

@@ -11,9 +11,9 @@ from gymnasium.vector.utils import batch_space
 
 from thermograsp.errors import InvalidValueError
 
-from .grasp import GraspBatch
+from .grasp import GraspBatch, infos_of
 from .observation import Observation
-from .tasks import GraspTask
+from .tasks import GraspTask, cleared
 
 
 class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
@@ -77,9 +77,9 @@ class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
             if seeds[row] is not None:
                 rngs[row] = np_random(seeds[row])[0]
         self._rngs = rngs
-        seen, infos = self.batch.reset(rows, [rngs[row] for row in rows], options)
+        seen, reading = self.batch.reset(rows, [rngs[row] for row in rows], options)
         self._ended[rows] = False
-        return seen, self._collect(infos, rows)
+        return seen, infos_of(reading, None, mask)
 
     def step(
         self, actions: np.ndarray
@@ -93,24 +93,18 @@ class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
             # What the step does to a row that is about to start anew does not matter; its action must only be valid.
             actions = np.where(starting[:, None], 0.0, actions)
         step = self.batch.step(actions)
-        seen, reward = step.observation, step.reward
-        terminated, truncated, infos = step.terminated, step.truncated, step.infos
-        if starting.any():
-            rows = [int(row) for row in np.flatnonzero(starting)]
-            seen, begun = self.batch.reset(rows, [self._rngs[row] for row in rows])
-            reward = np.where(starting, 0.0, reward)
-            terminated, truncated = terminated & ~starting, truncated & ~starting
-            infos = [begun[row] if starting[row] else infos[row] for row in range(self.num_envs)]
-        self._ended = terminated | truncated
-        return seen, reward, terminated, truncated, self._collect(infos, range(self.num_envs))
+        if not starting.any():
+            self._ended = step.terminated | step.truncated
+            infos = infos_of(step.reading, step.outcome, ~starting)
+            return step.observation, step.reward, step.terminated, step.truncated, infos
+        rows = [int(row) for row in np.flatnonzero(starting)]
+        seen, reading = self.batch.reset(rows, [self._rngs[row] for row in rows])
+        outcome = cleared(step.outcome, starting)
+        self._ended = outcome.terminated | outcome.truncated
+        infos = infos_of(reading, outcome, np.ones(self.num_envs, bool))
+        return seen, outcome.reward, outcome.terminated, outcome.truncated, infos
 
     def close_extras(self, **kwargs: Any) -> None:
         """Releases the plant."""
         del kwargs
         self.batch.close()
-
-    def _collect(self, infos: list[dict[str, Any]], rows: Any) -> dict[str, Any]:
-        collected: dict[str, Any] = {}
-        for row in rows:
-            collected = self._add_info(collected, infos[row], row)
-        return collected

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import mujoco.batch
@@ -18,6 +19,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from .mechanics_kernel import ADDRESSES, Motion, any_risen, set_points, summarise
 from .scene import MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
 from .solver_settings import SHIPPED, SolverSettings
 
@@ -25,16 +27,13 @@ SUBSTEPS = 10
 MAX_FORCE = 40.0  # N
 MAX_LIFT_RATE = 0.05  # m/s
 MAX_HEIGHT = 0.15  # m
-OPENING_SPEED = 0.1  # m/s, the fastest the pads move relative to each other (a Robotiq 2F-85: .02 to .15)
-LIFT_ACCELERATION = 1.0  # m/s2, how fast the commanded lift rate is followed
-_LOWEST = np.array([[0.0], [0.0], [-MAX_LIFT_RATE]])  # of opening, force limit, lift rate
-_HIGHEST = np.array([[MAX_OPENING], [MAX_FORCE], [MAX_LIFT_RATE]])
-_WINDUP = 0.002  # m, how far the set point runs beyond where the force limit is reached
-_STILL, _SHORT = (
-    0.005,
-    0.0002,
-)  # m/s, m: slower than this, and this far from the target, the fingers are blocked
 _KEPT_MODELS = 512
+_RANGES = (
+    ("opening", 0.0, MAX_OPENING),
+    ("force_limit", 0.0, MAX_FORCE),
+    ("lift_rate", -MAX_LIFT_RATE, MAX_LIFT_RATE),
+)
+_HIGHEST = tuple(high for _, _, high in _RANGES)
 _RECORD: tuple = ("sensordata", "site_xpos", "site_xmat", "qpos", "qvel")
 # The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
 _FAMILIES = ("body_", "bvh_", "cam_", "dof_", "geom_", "light_", "qpos")
@@ -119,6 +118,13 @@ class Mechanics:
             self._batch.bind(name) for name in ("qpos", "qvel", "act", "ctrl")
         )
         self._force_range = self._batch.expand("actuator_forcerange")
+        self._warning = self._batch.warning  # (B, kinds, 2) last and count, live
+        self._warned = self._warning[:, :, 1].copy()
+        self._live = (
+            *(self._qpos, self._qvel, self._act, self._ctrl, self._force_range),
+            *(self._warning, self._warned),
+        )
+        self._out: dict[int, dict[Any, np.ndarray]] = {}
         self._compiled: dict[tuple[ObjectSpec, ...], dict[str, np.ndarray]] = {}
         self._base = {name: getattr(self.model, name).tobytes() for name in _MODEL_ARRAYS}
         self._varying: set[str] = set()
@@ -127,31 +133,42 @@ class Mechanics:
         self.reset()
 
     def _index(self, model: mujoco.MjModel) -> None:
-        self._fingers = [model.joint(f"finger_{tip}").qposadr[0] for tip in TIPS]
-        self._finger_dofs = [model.joint(f"finger_{tip}").dofadr[0] for tip in TIPS]
-        self._height = model.joint("lift").qposadr[0]
-        self._grip, self._lift = model.actuator("grip").id, model.actuator("lift").id
-        self._grip_act, self._lift_act = model.actuator_actadr[[self._grip, self._lift]]
-        self._stiffness = -float(model.actuator_biasprm[self._grip, 1])
+        left, right = (model.joint(f"finger_{tip}") for tip in TIPS)
+        grip, lift = model.actuator("grip").id, model.actuator("lift").id
         # build_scene lays out free joints, pads and contact sensors in order, so that slices find them.
-        free = [model.joint(f"{name}_free").qposadr[0] for name in self.names]
+        free = [int(model.joint(f"{name}_free").qposadr[0]) for name in self.names]
         self._poses = slice(free[0], free[0] + 7 * len(free))
         sensors = [contact_sensor(tip, name) for tip in TIPS for name in self.names]
         assert free == list(range(free[0], self._poses.stop, 7)) and self._poses.stop == model.nq
         assert [model.site(i).name for i in range(model.nsite)] == [f"pad_{tip}" for tip in TIPS]
         assert [model.sensor(i).name for i in range(model.nsensor)] == sensors
         self._contacts = len(TIPS), len(self.names), model.nsensordata // len(sensors)
+        places = {
+            "left": left.qposadr[0],
+            "right": right.qposadr[0],
+            "left_dof": left.dofadr[0],
+            "right_dof": right.dofadr[0],
+            "height": model.joint("lift").qposadr[0],
+            "grip": grip,
+            "lift": lift,
+            "grip_act": model.actuator_actadr[grip],
+            "lift_act": model.actuator_actadr[lift],
+            "poses": free[0],
+            "sensor": self._contacts[2],
+        }
+        self._layout = np.array([tuple(places[name] for name in ADDRESSES.names or ())], ADDRESSES)
+        self._at: Any = self._layout.view(np.recarray)[0]
+        self._stiffness = -float(model.actuator_biasprm[grip, 1])
 
     @property
     def opening(self) -> np.ndarray:
         """(B,) m between the pads, now."""
-        left, right = self._fingers
-        return self._qpos[:, left] + self._qpos[:, right]
+        return self._qpos[:, self._at.left] + self._qpos[:, self._at.right]
 
     @property
     def height(self) -> np.ndarray:
         """(B,) m over the lowest position, now."""
-        return self._qpos[:, self._height].copy()
+        return self._qpos[:, self._at.height].copy()
 
     @property
     def object_pose(self) -> np.ndarray:
@@ -184,43 +201,54 @@ class Mechanics:
         within("height", np.array([height]), 0.0, MAX_HEIGHT)
         self._batch.reset(rows, stage=mujoco.mjtStage.mjSTAGE_NONE)
         for i in rows:
-            self._qpos[i, self._fingers] = opening / 2
-            self._qpos[i, self._height] = height
+            self._qpos[i, [self._at.left, self._at.right]] = opening / 2
+            self._qpos[i, self._at.height] = height
             self._qpos[i, self._poses] = np.concatenate([item.pose for item in self.objects[i]])
-            self._act[i, self._grip_act] = opening
-            self._act[i, self._lift_act] = height
+            self._act[i, self._at.grip_act] = opening
+            self._act[i, self._at.lift_act] = height
             self.failure[i] = ""
 
     def step(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
     ) -> ContactRecord:
-        """Advance every environment by `substeps` with one command each, all (B,).
+        """Advance every environment by `substeps` with one command each, all (B,), and tell all of every substep.
 
         opening: m, target, 0 .. 0.085. force_limit: N, closing force on an object that blocks the fingers, 0 .. 40.
         lift_rate: m/s, -0.05 .. 0.05; the lift stops by itself at 0 and 0.15 m.
         Raises InvalidValueError for a shape, a non-finite value or one outside its range, naming it.
         """
-        given = {"opening": opening, "force_limit": force_limit, "lift_rate": lift_rate}
-        command = np.array([self._batched(name, values) for name, values in given.items()])
-        if not ((command >= _LOWEST) & (command <= _HIGHEST)).all():
-            for name, values, low, high in zip(given, command, _LOWEST[:, 0], _HIGHEST[:, 0], strict=True):
-                within(name, values, low, high)
-        if substeps < 1:
-            raise InvalidValueError(f"substeps {substeps}: give at least 1")
-        self._command(command[0], command[1], command[2], substeps * self._settings.timestep)
-        before = self._batch.warning[:, :, 1].copy()
-        out = self._batch.rollout(substeps, record=_RECORD)
-        risen = self._batch.warning[:, :, 1] > before
-        if risen.any():
-            self._note_failures(risen)
-        return self._record(out)
+        return self._record(self._roll(opening, force_limit, lift_rate, substeps))
+
+    def advance(
+        self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
+    ) -> Motion:
+        """The same step, told of the first object in brief: all that heat and observations need, at a fraction of the
+        cost. The arrays are the caller's own."""
+        out = self._roll(opening, force_limit, lift_rate, substeps)
+        rows, tips = self.num_envs, len(TIPS)
+        motion = Motion(
+            np.empty((rows, substeps, tips)),
+            np.empty((rows, tips, 3)),
+            np.empty((rows, tips, 3)),
+            *(np.empty(rows) for _ in range(4)),
+        )
+        summarise(
+            self._layout,
+            out["sensordata"],
+            out["site_xpos"],
+            out["site_xmat"],
+            out["qpos"],
+            out["qvel"],
+            *motion,
+        )
+        return motion
 
     def state(self, ids: Sequence[int] | np.ndarray | None = None) -> MechanicsState:
         """A copy of the state of some environments (None: all), for `set_state` here or in another batch."""
         rows = self._ids(ids)
         return MechanicsState(
             rows=self._rows[rows].copy(),
-            force_limit=-self._force_range[rows, self._grip, 0],
+            force_limit=-self._force_range[rows, self._at.grip, 0],
             objects=tuple(self.objects[i] for i in rows),
             failure=tuple(self.failure[i] for i in rows),
         )
@@ -241,7 +269,7 @@ class Mechanics:
             self._set_objects(int(i), state.objects[k])
             self.failure[i] = state.failure[k]
         self._rows[rows] = state.rows
-        self._force_range[rows, self._grip, 0] = -state.force_limit
+        self._force_range[rows, self._at.grip, 0] = -state.force_limit
 
     def env_model(self, env: int, model: mujoco.MjModel | None = None) -> mujoco.MjModel:
         """Environment `env`'s own model, e.g. to render it; written into `model` where given."""
@@ -258,12 +286,6 @@ class Mechanics:
         if rows.dtype.kind not in "iu" or rows.ndim != 1 or ((rows < 0) | (rows >= self.num_envs)).any():
             raise InvalidValueError(f"ids {ids}: give whole numbers from 0 to {self.num_envs - 1}")
         return rows
-
-    def _batched(self, name: str, values: np.ndarray) -> np.ndarray:
-        array = np.asarray(values, dtype=float)
-        if array.shape != (self.num_envs,):
-            raise InvalidValueError(f"{name} has shape {array.shape}, expected ({self.num_envs},)")
-        return array
 
     def _check_layout(self, items: tuple[ObjectSpec, ...]) -> None:
         names = tuple(o.name for o in items)
@@ -303,26 +325,31 @@ class Mechanics:
             self._compiled[key] = {n: (a[:bodies] if n == "bvh_aabb" else a).copy() for n, a in own.items()}
         return self._compiled[key]
 
-    def _command(
-        self, opening: np.ndarray, force: np.ndarray, lift_rate: np.ndarray, duration: float
-    ) -> None:
-        """Rates of the two servos' set points over the coming control step.
-
-        The grip's set point moves to the target. Where something blocks the fingers short of it, it goes on until the
-        force saturates, and little further, so that it does not wind up.
-        """
-        self._force_range[:, self._grip, 0] = -force
-        width, setpoint = self.opening, self._act[:, self._grip_act]
-        left, right = self._finger_dofs
-        still = np.abs(self._qvel[:, left] + self._qvel[:, right]) < _STILL
-        blocked = still & (width > opening + _SHORT) & (setpoint < opening + _SHORT)
-        lowest = width - force / self._stiffness - _WINDUP
-        goal = np.where(blocked, lowest, np.maximum(opening, lowest))
-        self._ctrl[:, self._grip] = np.minimum(
-            np.maximum((goal - setpoint) / duration, -OPENING_SPEED), OPENING_SPEED
+    def _roll(
+        self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int
+    ) -> dict[Any, np.ndarray]:
+        """MuJoCo's records of the substeps; the next call with as many writes over them."""
+        if substeps < 1:
+            raise InvalidValueError(f"substeps {substeps}: give at least 1")
+        command = (
+            self._batched("opening", opening),
+            self._batched("force_limit", force_limit),
+            self._batched("lift_rate", lift_rate),
         )
-        last, change = self._ctrl[:, self._lift], LIFT_ACCELERATION * duration
-        self._ctrl[:, self._lift] = np.minimum(np.maximum(lift_rate, last - change), last + change)
+        duration = substeps * self._settings.timestep
+        if not set_points(self._layout, *command, duration, self._stiffness, _HIGHEST, *self._live):
+            for (name, low, high), values in zip(_RANGES, command, strict=True):
+                within(name, values, low, high)
+        self._out[substeps] = out = self._batch.rollout(substeps, record=_RECORD, out=self._out.get(substeps))
+        if any_risen(self._warning, self._warned):
+            self._note_failures(self._warning[:, :, 1] > self._warned)
+        return out
+
+    def _batched(self, name: str, values: np.ndarray) -> np.ndarray:
+        array = np.ascontiguousarray(values, dtype=float)
+        if array.shape != (self.num_envs,):
+            raise InvalidValueError(f"{name} has shape {np.shape(values)}, expected ({self.num_envs},)")
+        return array
 
     def _note_failures(self, risen: np.ndarray) -> None:
         for env, kind in np.argwhere(risen):
@@ -332,12 +359,11 @@ class Mechanics:
                     f"the simulation broke down (MuJoCo warning {warning}); reset this environment"
                 )
 
-    def _record(self, out: dict) -> ContactRecord:
+    def _record(self, out: dict[str, np.ndarray]) -> ContactRecord:
         qpos, qvel, positions = out["qpos"], out["qvel"], out["site_xpos"]
-        contacts = out["sensordata"].reshape(
-            *qpos.shape[:2], *self._contacts
-        )  # (B, S, T, O, found force position)
-        vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3)  # world frame; rollout made it for us
+        # (B, S, T, O, found force position), in the world's frame
+        contacts = out["sensordata"].reshape(*qpos.shape[:2], *self._contacts)
+        vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3).copy()
         vectors[..., 1, :] -= positions[:, :, :, None]
         axes = out["site_xmat"].reshape(*contacts.shape[:3], 1, 1, 3, 3)
         # Written out: a matmul's rounding may depend on the number of environments.
@@ -346,16 +372,15 @@ class Mechanics:
         touching = contacts[..., 0] > 0
         poses = qpos[..., self._poses].reshape(*qpos.shape[:2], -1, 7).copy()
         before = max(qpos.shape[1] - 2, 0)  # the pads are where they were before the last substep
-        left, right = self._fingers
-        left_dof, right_dof = self._finger_dofs
+        at = self._at
         return ContactRecord(
             force=local[..., 0, :].copy(),
             touching=touching,
             centroid=np.where(touching[..., None], local[..., 1, 1:], 0.0),
             place=_in_frame(positions[:, -1:, :, None], poses[:, before : before + 1, None]),
-            opening=qpos[..., left] + qpos[..., right],
-            opening_rate=qvel[..., left_dof] + qvel[..., right_dof],
-            height=qpos[..., self._height].copy(),
+            opening=qpos[..., at.left] + qpos[..., at.right],
+            opening_rate=qvel[..., at.left_dof] + qvel[..., at.right_dof],
+            height=qpos[..., at.height].copy(),
             object_pose=poses,
             failed=np.array([bool(reason) for reason in self.failure]),
         )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import gymnasium
 import numpy as np
+from numba import njit
 
-from thermograsp.plant import Command, Reading
+from thermograsp.plant import Reading
 
 from .mechanics import MAX_FORCE, MAX_HEIGHT
 from .scene import MAX_OPENING
@@ -31,11 +32,7 @@ def observation_space() -> gymnasium.spaces.Dict:
 
     return gymnasium.spaces.Dict(
         {
-            "gripper": box(
-                [-0.005, -MOST_RATE, -0.005, 0.0],
-                [MAX_OPENING + 0.005, MOST_RATE, MAX_HEIGHT + 0.005, MAX_FORCE],
-                (4,),
-            ),
+            "gripper": box(_LOWEST, _HIGHEST, (4,)),
             "force": box(-MOST_FORCE, MOST_FORCE, (2, 3)),
             "voltage": box(-MOST_VOLTAGE, MOST_VOLTAGE, (2, HISTORY)),
             "thermostat": box(THERMOSTAT[0], THERMOSTAT[1], (2,)),
@@ -49,29 +46,89 @@ class Observer:
     A reading beyond the space's bounds saturates there, as the instruments' own ranges would have it."""
 
     def __init__(self, num_envs: int) -> None:
-        self._space = observation_space()
         self.history = np.zeros((num_envs, 2, HISTORY))
+        self.last: tuple[np.ndarray, ...] = tuple(
+            np.zeros((num_envs, *shape), np.float32) for shape in _SHAPES.values()
+        )
 
     def restart(self, rows: np.ndarray) -> None:
         """Forgets the rows' history."""
         self.history[rows] = 0.0
 
-    def observe(self, reading: Reading, command: Command) -> Observation:
-        """Observations (B, ...) after a reading; arrays of their own."""
-        fresh = np.moveaxis(reading.voltage, 1, 2)
-        self.history = np.concatenate((self.history, fresh), axis=2)[:, :, -HISTORY:]
-        gripper = np.stack(
-            (reading.opening, reading.opening_rate, reading.height, command.force_limit), axis=1
+    def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
+        """Observations (B, ...) after a reading; arrays of their own. force_limit: (B,) N, as commanded. Rows of which
+        `seen` (B,) is False keep what they last observed."""
+        fresh = [np.empty_like(values) for values in self.last]
+        _observe_rows(
+            seen,
+            _flat(reading.opening),
+            _flat(reading.opening_rate),
+            _flat(reading.height),
+            _flat(force_limit),
+            _flat(reading.force),
+            _flat(reading.voltage),
+            _flat(reading.thermostat),
+            self.history,
+            *self.last,
+            *fresh,
         )
-        values = {
-            "gripper": gripper,
-            "force": reading.force,
-            "voltage": self.history,
-            "thermostat": reading.thermostat,
-        }
-        bounded = {}
-        for name, value in values.items():
-            space = self._space[name]
-            assert isinstance(space, gymnasium.spaces.Box)
-            bounded[name] = np.clip(value, space.low, space.high).astype(np.float32)
-        return bounded
+        gripper, force, voltage, thermostat = fresh
+        return {"gripper": gripper, "force": force, "voltage": voltage, "thermostat": thermostat}
+
+
+def _flat(values: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(values, dtype=float)
+
+
+_SHAPES = {"gripper": (4,), "force": (2, 3), "voltage": (2, HISTORY), "thermostat": (2,)}
+_LOWEST = (-0.005, -MOST_RATE, -0.005, 0.0)
+_HIGHEST = (MAX_OPENING + 0.005, MOST_RATE, MAX_HEIGHT + 0.005, MAX_FORCE)
+
+
+@njit(cache=True, error_model="numpy")
+def _observe_rows(
+    seen,
+    opening,
+    opening_rate,
+    height,
+    force_limit,
+    force,
+    voltage,
+    thermostat,
+    history,
+    last_gripper,
+    last_force,
+    last_voltage,
+    last_thermostat,
+    new_gripper,
+    new_force,
+    new_voltage,
+    new_thermostat,
+):
+    samples = voltage.shape[1]
+    kept = max(HISTORY - samples, 0)
+    for b in range(len(seen)):
+        if seen[b]:
+            gripper = (opening[b], opening_rate[b], height[b], force_limit[b])
+            for i in range(4):
+                last_gripper[b, i] = _within(gripper[i], _LOWEST[i], _HIGHEST[i])
+            for f in range(2):
+                for i in range(3):
+                    last_force[b, f, i] = _within(force[b, f, i], -MOST_FORCE, MOST_FORCE)
+                for i in range(kept):
+                    history[b, f, i] = history[b, f, i + samples]
+                for i in range(kept, HISTORY):
+                    history[b, f, i] = voltage[b, samples - HISTORY + i, f]
+                for i in range(HISTORY):
+                    last_voltage[b, f, i] = _within(history[b, f, i], -MOST_VOLTAGE, MOST_VOLTAGE)
+                last_thermostat[b, f] = _within(thermostat[b, f], THERMOSTAT[0], THERMOSTAT[1])
+    new_gripper[:] = last_gripper
+    new_force[:] = last_force
+    new_voltage[:] = last_voltage
+    new_thermostat[:] = last_thermostat
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _within(value, low, high):
+    """In float32, whose rounding of a bound is the space's."""
+    return np.float32(min(max(value, low), high))

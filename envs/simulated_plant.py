@@ -19,22 +19,23 @@ from ..thermal import (
     Mode,
     SensorStack,
     SignalChain,
-    SignalState,
     Thermostat,
     ThermostatState,
     material,
     materials,
-    measure,
     sensor,
     settled_thermostat,
     thermostat_step,
 )
+from ..thermal.signal_kernel import chain_numbers, measure_rows
 from .heat import GraspHeat, HeatState, HeatStep
-from .mechanics import SUBSTEPS, ContactRecord, Mechanics, MechanicsState
+from .mechanics import SUBSTEPS, Mechanics, MechanicsState
 from .scene import ObjectSpec
+from .solver_settings import SHIPPED, SolverSettings
 from .things import Thing
+from .truth import Truth
 
-SAMPLES = 2  # of voltage and heat in a control step: 100 Hz
+SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +44,9 @@ class SimulationConfig:
     materials. mode: T or O. objects: the object's shape (density and friction are the material's where it gives
     none). tolerance: K that the thermal network keeps. air: W/(m2 K). Temperatures in °C. thermostat: one of finite
     power (its setpoint is sensor_temperature), None for an ideal one. placement: m and degree; the object lies within
-    +- these of the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). threads: of
-    MuJoCo, 0 for all. cache: keep thermal networks on disk."""
+    +- these of the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). solver: MuJoCo's
+    time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10 ms samples.
+    threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -58,6 +60,8 @@ class SimulationConfig:
     object_temperature: float = 24.0
     placement: tuple[float, float] = (0.002, 2.0)
     fingertips: Literal[1, 2] = 2
+    solver: SolverSettings = SHIPPED
+    substeps: int = SUBSTEPS
     threads: int = 1
     cache: bool = True
 
@@ -72,6 +76,12 @@ class SimulationConfig:
         finite("object_temperature (°C)", self.object_temperature)
         for value in self.placement:
             non_negative("placement (m, degree)", value)
+        period = self.substeps * self.solver.timestep
+        if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
+            raise InvalidValueError(
+                f"{self.substeps} substeps of {self.solver.timestep:g} s make a control step of {period:g} s: "
+                f"give a whole number of {SAMPLE_PERIOD:g} s samples"
+            )
 
     @property
     def choices(self) -> tuple[Material, ...]:
@@ -83,6 +93,11 @@ class SimulationConfig:
                 f"material is an empty list: give one of {len(materials())} names, or None"
             )
         return tuple(material(name) for name in listed)
+
+    @property
+    def samples(self) -> int:
+        """Of voltage and heat in a control step."""
+        return round(self.substeps * self.solver.timestep / SAMPLE_PERIOD)
 
     @property
     def chain(self) -> SignalChain:
@@ -105,7 +120,6 @@ class PlantState:
     thermostats: tuple[np.ndarray, ...]
     rest: np.ndarray
     generators: tuple[np.random.Generator, ...]
-    books: np.ndarray
 
 
 class SimulatedPlant:
@@ -114,30 +128,35 @@ class SimulatedPlant:
     def __init__(self, num_envs: int, config: SimulationConfig) -> None:
         self.config = config
         self.num_envs = num_envs
-        self._choices, self._chain, self._stack = config.choices, config.chain, sensor(config.sensor)
+        self._choices, self._stack = config.choices, sensor(config.sensor)
         self._shape = config.objects or ObjectSpec()
         first = self._thing(self._choices[0], self._shape)
-        self.mechanics = Mechanics((first.spec,), num_envs, threads=config.threads)
-        self.dt = SUBSTEPS * float(self.mechanics.model.opt.timestep)
-        self.sample_rate = SAMPLES / self.dt
+        self.mechanics = Mechanics((first.spec,), num_envs, threads=config.threads, settings=config.solver)
+        self.dt = config.substeps * config.solver.timestep
+        self.sample_rate = 1 / SAMPLE_PERIOD
         self.heat = GraspHeat(
             num_envs,
             tolerance=config.tolerance,
             air=config.air,
-            dt=self.dt / SAMPLES,
-            samples=SAMPLES,
+            dt=SAMPLE_PERIOD,
+            samples=config.samples,
             sensor_temperature=config.sensor_temperature,
             cache=config.cache,
         )
         self.things: list[Thing] = [first] * num_envs
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
-        self._signal = SignalState(np.zeros(2 * num_envs), np.zeros(2 * num_envs))
+        self._chain = chain_numbers(config.chain, self._stack.seebeck, SAMPLE_PERIOD)
+        self._filtered, self._last = np.zeros((num_envs, 2)), np.zeros((num_envs, 2))
+        self._noise = np.empty((num_envs, config.samples, 2))
+        self._setpoints = np.full((num_envs, 2), config.sensor_temperature)
         self._rest = np.zeros(num_envs)
+        # Replaced, never written to: readings keep them.
+        self._material, self._rung = np.full(num_envs, "", object), np.full(num_envs, "", object)
+        self._crushing_force = np.full(num_envs, np.inf)
         self._thermostat = config.thermostat
         if self._thermostat is not None:
             self._thermostat = replace(self._thermostat, setpoint=config.sensor_temperature)
             self._thermostats = _distinct(settled_thermostat(self._thermostat, 2 * num_envs))
-        self._books = np.zeros((num_envs, 3))  # J: flowed in, its absolute sum, lost to the air
 
     @property
     def model(self) -> Any:
@@ -169,27 +188,42 @@ class SimulatedPlant:
         self.heat.reset(
             rows, [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things]
         )
-        both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
-        for values in (self._signal.filtered, self._signal.last):
-            values[both] = 0.0
+        chosen = list(rows)
+        self._filtered[chosen] = self._last[chosen] = 0.0
         if self._thermostat is not None:
+            both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
             settled = settled_thermostat(self._thermostat, 2 * self.num_envs)
             for mine, theirs in zip(_arrays(self._thermostats), _arrays(settled), strict=True):
                 mine[both] = theirs[both]
-        self._rest[list(rows)] = self.mechanics.object_pose[list(rows), 0, 2]
-        self._books[list(rows)] = 0.0
+        self._rest[chosen] = self.mechanics.object_pose[chosen, 0, 2]
+        self._relabel(chosen)
         return self._still()
 
     def step(self, command: Command) -> Reading:
         """One control step of all environments."""
-        record = self.mechanics.step(command.opening, command.force_limit, command.lift_rate)
-        normal = np.where(record.touching[..., 0], np.maximum(record.force[..., 0, 0], 0.0), 0.0)
-        step = self.heat.advance(normal, record.place[:, -1, :, 0])
+        motion = self.mechanics.advance(
+            command.opening, command.force_limit, command.lift_rate, self.config.substeps
+        )
+        step = self.heat.advance(motion.normal, motion.place)
         if self._thermostat is not None:
-            after = thermostat_step(self._thermostat, self._thermostats, step.drawn.ravel(), self.dt)
+            after = thermostat_step(self._thermostat, self._thermostats, step.told["drawn"].ravel(), self.dt)
             self._thermostats = _distinct(after)
             self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2))
-        return self._reading(record, step)
+        for row, rng in enumerate(self._rngs):
+            rng.standard_normal(out=self._noise[row])
+        voltage = np.empty_like(step.drop)
+        measure_rows(self._chain, self._filtered, self._last, step.drop, self._noise, voltage)
+        error = tuple(self.mechanics.failure)
+        return Reading(
+            opening=motion.opening,
+            opening_rate=motion.opening_rate,
+            height=motion.height,
+            force=motion.force,
+            voltage=voltage,
+            thermostat=self._measured_thermostats(),
+            truth=self._truth(motion.object_height, step, error),
+            error=error,
+        )
 
     def close(self) -> None:
         """Nothing is held."""
@@ -201,12 +235,11 @@ class SimulatedPlant:
         return PlantState(
             self.mechanics.state(np.array(chosen)),
             self.heat.state(chosen),
-            self._signal.filtered[both],
-            self._signal.last[both],
+            self._filtered[chosen],
+            self._last[chosen],
             tuple(array[both] for array in self._thermostat_arrays()),
             self._rest[chosen],
             tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
-            self._books[chosen],
         )
 
     def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
@@ -219,12 +252,11 @@ class SimulatedPlant:
         for k, row in enumerate(chosen):
             self.things[row] = replace(state.heat.things[k], spec=state.mechanics.objects[k][0])
             self._rngs[row] = rngs[k]
-            self._signal.filtered[2 * row : 2 * row + 2] = state.filtered[k]
-            self._signal.last[2 * row : 2 * row + 2] = state.last[k]
+            self._filtered[row], self._last[row] = state.filtered[k], state.last[k]
             for mine, theirs in zip(self._thermostat_arrays(), state.thermostats, strict=True):
                 mine[2 * row : 2 * row + 2] = theirs[k]
         self._rest[chosen] = state.rest
-        self._books[chosen] = state.books
+        self._relabel(chosen)
         return rngs
 
     def _thing(self, chosen: Material, spec: ObjectSpec) -> Thing:
@@ -238,59 +270,25 @@ class SimulatedPlant:
             spec = replace(spec, elements=(self._stack.width, self._stack.thickness))
         return Thing(spec, chosen, config.object_temperature, config.mode, self._stack, config.fingertips)
 
-    def _reading(self, record: ContactRecord, step: HeatStep) -> Reading:
-        rows = self.num_envs
-        noise = np.stack([rng.standard_normal((SAMPLES, 2)) for rng in self._rngs])
-        self._signal, volts = measure(
-            self._chain,
-            self._signal,
-            np.moveaxis(step.drop, 1, 2).reshape(2 * rows, SAMPLES),
-            self._stack.seebeck,
-            self.dt / SAMPLES,
-            np.moveaxis(noise, 1, 2).reshape(2 * rows, SAMPLES),
-        )
-        force = np.zeros((rows, 2, 3))
-        for k in range(record.force.shape[1]):  # in fixed order: a row's bits must not depend on the others
-            force += record.force[:, k, :, 0]
-        force /= record.force.shape[1]
-        flow = step.flow[:, 0] + step.flow[:, 1]
-        self._books[:, 0] += flow * self.dt
-        self._books[:, 1] += (np.abs(step.flow[:, 0]) + np.abs(step.flow[:, 1])) * self.dt
-        self._books[:, 2] += step.air_loss * self.dt
-        return Reading(
-            opening=record.opening[:, -1],
-            opening_rate=record.opening_rate[:, -1],
-            height=record.height[:, -1],
-            force=force,
-            voltage=np.moveaxis(volts.reshape(rows, 2, SAMPLES), 1, 2),
-            thermostat=self._measured_thermostats(),
-            truth=self._truth(record.object_pose[:, -1, 0, 2], step, record.failed),
-            error=tuple(self.mechanics.failure),
-        )
+    def _relabel(self, rows: Sequence[int]) -> None:
+        """Names what the rows hold now, in arrays of their own."""
+        self._material, self._rung = self._material.copy(), self._rung.copy()
+        self._crushing_force = self._crushing_force.copy()
+        for row in rows:
+            thing = self.things[row]
+            self._material[row], self._rung[row] = thing.material.name, self.heat.rung(row)
+            self._crushing_force[row] = thing.crushing_force
 
-    def _truth(self, object_height: np.ndarray, step: HeatStep, failed: np.ndarray) -> dict[str, Any]:
-        gained = step.heat[:, 2] + (step.heat[:, 0] + step.heat[:, 1] if self.config.mode == "O" else 0.0)
-        return {
-            "mode": self.config.mode,
-            "material": [thing.material.name for thing in self.things],
-            "temperature_drop": step.drop[:, -1],
-            "temperature_drops": step.drop,
-            "contact_area": step.area,
-            "conductance": step.conductance,
-            "sensor_surface": step.sensor_surface,
-            "object_surface": step.object_surface,
-            "object_temperature": step.object_temperature,
-            "heat_flow": step.flow,
-            "heat_drawn": step.drawn,
-            "heat": step.heat,
-            "heat_imbalance": gained + self._books[:, 2] - self._books[:, 0],
-            "heat_exchanged": self._books[:, 1].copy(),
-            "events": step.events,
-            "rung": [self.heat.rung(row) for row in range(self.num_envs)],
-            "lift": object_height - self._rest,
-            "crushing_force": np.array([thing.crushing_force for thing in self.things]),
-            "failed": failed,
-        }
+    def _truth(self, object_height: np.ndarray, step: HeatStep, error: tuple[str, ...]) -> Truth:
+        return Truth(
+            heat=step,
+            mode=self.config.mode,
+            material=self._material,
+            rung=self._rung,
+            crushing_force=self._crushing_force,
+            lift=object_height - self._rest,
+            error=error,
+        )
 
     def _thermostat_arrays(self) -> list[np.ndarray]:
         return [] if self._thermostat is None else _arrays(self._thermostats)
@@ -298,35 +296,21 @@ class SimulatedPlant:
     def _measured_thermostats(self) -> np.ndarray:
         """(B, F) °C by the thermostats' own sensors."""
         if self._thermostat is None:
-            return np.full((self.num_envs, 2), self.config.sensor_temperature)
+            return self._setpoints.copy()
         return self._thermostats.measured.reshape(-1, 2).copy()
 
     def _still(self) -> Reading:
         """The reading before anything moves: nothing is touched, no voltage."""
-        rows = self.num_envs
-        none = np.zeros((rows, 2))
-        rest = HeatStep(
-            drop=np.zeros((rows, SAMPLES, 2)),
-            conductance=none,
-            area=none,
-            sensor_surface=none + self.config.sensor_temperature,
-            object_surface=none + self.config.object_temperature,
-            object_temperature=np.full(rows, self.config.object_temperature),
-            heat=np.zeros((rows, 3)),
-            flow=none,
-            air_loss=np.zeros(rows),
-            drawn=none,
-            events=((),) * rows,
-        )
+        rows, error = self.num_envs, tuple(self.mechanics.failure)
         return Reading(
             opening=self.mechanics.opening,
             opening_rate=np.zeros(rows),
             height=self.mechanics.height,
             force=np.zeros((rows, 2, 3)),
-            voltage=np.zeros((rows, SAMPLES, 2)),
+            voltage=np.zeros((rows, self.config.samples, 2)),
             thermostat=self._measured_thermostats(),
-            truth=self._truth(self.mechanics.object_pose[:, 0, 2], rest, np.zeros(rows, bool)),
-            error=tuple(self.mechanics.failure),
+            truth=self._truth(self.mechanics.object_pose[:, 0, 2], self.heat.rest(), error),
+            error=error,
         )
 
 

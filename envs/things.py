@@ -22,9 +22,12 @@ from ..thermal import (
     SensorStack,
     Surface,
     cylinder_contact,
+    cylinder_law,
     flat_contact,
+    flat_law,
     joint,
     sphere_contact,
+    sphere_law,
 )
 from .scene import ObjectSpec
 
@@ -80,13 +83,27 @@ class Thing:
 
     def contact(self, force: np.ndarray) -> ContactArea:
         """Areas and force share at that normal force N on a pad."""
-        x, y, z = self.spec.size
+        x, _, z = self.spec.size
         if self.contact_shape == "cylinder":
             return cylinder_contact(PAD, force, x / 2, z)
         if self.contact_shape == "sphere":
             return sphere_contact(PAD, force, x / 2)
-        size = (y, z) if self.mode == "T" else (self.stack.width, self.stack.width)
-        return flat_contact(PAD, force, size)
+        return flat_contact(PAD, force, self._face)
+
+    @property
+    def _face(self) -> tuple[float, float]:
+        """m, the flat face that the pads meet."""
+        return self.spec.size[1:] if self.mode == "T" else (self.stack.width, self.stack.width)
+
+    @cached_property
+    def law(self) -> np.void:
+        """Area and conductance by force, for compiled code."""
+        x, _, z = self.spec.size
+        if self.contact_shape == "cylinder":
+            return cylinder_law(PAD, self.joint, x / 2, z)
+        if self.contact_shape == "sphere":
+            return sphere_law(PAD, self.joint, x / 2)
+        return flat_law(PAD, self.joint, self._face)
 
     @cached_property
     def heat_capacity(self) -> float:

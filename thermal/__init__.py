@@ -18,6 +18,7 @@ from .conductance import (
     joint,
     stack_joints,
 )
+from .contact_law import CONTACT_LAW, cylinder_law, flat_law, sphere_law
 from .contact_network import network_for, network_of
 from .ladder import RUNGS, Rung, RungInfo
 from .layers import Layer, SensorStack, sensor, sensors
@@ -49,6 +50,7 @@ from .thermostat import (
 __all__ = [
     "ADS1115",
     "AIR",
+    "CONTACT_LAW",
     "IDEAL",
     "LAPPED_ALUMINA",
     "RUNGS",
@@ -91,7 +93,9 @@ __all__ = [
     "array_tables",
     "contact_conductance",
     "cylinder_contact",
+    "cylinder_law",
     "flat_contact",
+    "flat_law",
     "forget_field",
     "heat_tables",
     "ideal_thermostat",
@@ -111,6 +115,7 @@ __all__ = [
     "settled",
     "settled_thermostat",
     "sphere_contact",
+    "sphere_law",
     "stack_joints",
     "thermostat_step",
 ]

@@ -145,10 +145,7 @@ def forget_field(tables: HeatTables, network: np.ndarray, state: np.ndarray, row
     new place finds. The object's heat is unchanged (only its mean state holds any); the fingertips' states stay."""
     state = state.copy()
     for row in np.flatnonzero(rows):
-        table = network[row]
-        mean = state[row, tables.mean[table]]
-        state[row, : tables.object_states[table]] = 0.0
-        state[row, tables.mean[table]] = mean
+        forget_row(tables, network[row], state[row])
     return state
 
 
@@ -169,45 +166,56 @@ def shift_thermostats(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _advance_rows(tables, network, state, conductance, difference, active, reading):
-    rows, samples, fingertips = reading.drop.shape
     room = workspace(tables.rates.shape[1], tables.ports.shape[1])
-    ports = tables.ports.shape[1]
-    weight, drive, flow = np.zeros(ports), np.zeros(ports), np.zeros(ports)
-    for b in range(rows):
-        if not active[b]:
-            continue
-        i = network[b]
-        n, p = tables.states[i], tables.modes[i]
-        system = StepArrays(
-            tables.dt,
-            tables.rates[i],
-            tables.ports[i],
-            tables.scale_real[i],
-            tables.scale_imag[i],
-            tables.gram[i],
-            tables.object_states[i],
-            tables.sensor_states[i],
-            p,
-            fingertips,
-            tables.air_loss[i],
-        )
-        drive[:] = 0.0
+    for b in range(len(active)):
+        if active[b]:
+            advance_row(tables, network[b], state[b], conductance[b], difference[b], room, reading, b)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def advance_row(tables, i, x, conductance, difference, room, reading, b):
+    """advance_heat of one row for compiled callers: network i, state x (K,) in place, conductance and difference (F,),
+    into row b of the reading. room: a workspace of the tables' size."""
+    samples, fingertips = reading.drop.shape[1:]
+    n, p = tables.states[i], tables.modes[i]
+    system = StepArrays(
+        tables.dt,
+        tables.rates[i],
+        tables.ports[i],
+        tables.scale_real[i],
+        tables.scale_imag[i],
+        tables.gram[i],
+        tables.object_states[i],
+        tables.sensor_states[i],
+        p,
+        fingertips,
+        tables.air_loss[i],
+    )
+    weight, drive, flow = room.weight, room.drive, room.flow
+    drive[:] = 0.0
+    for f in range(fingertips):
+        drive[f * p] = difference[f]
+        weight[f * p : (f + 1) * p] = conductance[f]
+    for k in range(samples):
+        reading.air_loss[b, k] = advance(system, x, weight, drive, flow, room)
         for f in range(fingertips):
-            drive[f * p] = difference[b, f]
-            weight[f * p : (f + 1) * p] = conductance[b, f]
-        x = state[b]
-        for k in range(samples):
-            reading.air_loss[b, k] = advance(system, x, weight, drive, flow, room)
-            for f in range(fingertips):
-                reading.drop[b, k, f] = _dot(tables.drop, i, f, x, n)
-                reading.element_heat[b, k, f] = _dot(tables.element_heat, i, f, x, n)
-                reading.sensor_rise[b, k, f] = _dot(tables.sensor_surface, i, f, x, n)
-                reading.object_rise[b, k, f] = _dot(tables.object_surface, i, f, x, n)
-                reading.flow[b, k, f] = flow[f * p]
-            total = 0.0
-            for j in range(n):
-                total += tables.object_heat[i, j] * x[j]
-            reading.object_heat[b, k] = total
+            reading.drop[b, k, f] = _dot(tables.drop, i, f, x, n)
+            reading.element_heat[b, k, f] = _dot(tables.element_heat, i, f, x, n)
+            reading.sensor_rise[b, k, f] = _dot(tables.sensor_surface, i, f, x, n)
+            reading.object_rise[b, k, f] = _dot(tables.object_surface, i, f, x, n)
+            reading.flow[b, k, f] = flow[f * p]
+        total = 0.0
+        for j in range(n):
+            total += tables.object_heat[i, j] * x[j]
+        reading.object_heat[b, k] = total
+
+
+@njit(cache=True, error_model="numpy")
+def forget_row(tables, i, x):
+    """forget_field of one row for compiled callers: network i, state x (K,) in place."""
+    mean = x[tables.mean[i]]
+    x[: tables.object_states[i]] = 0.0
+    x[tables.mean[i]] = mean
 
 
 @njit(cache=True, fastmath=FAST, inline="always")

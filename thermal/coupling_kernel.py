@@ -66,7 +66,8 @@ def step_arrays(
 
 
 class Workspace(NamedTuple):
-    """Memory of `advance`, for systems of at most its sizes; what it holds between calls does not matter."""
+    """Memory of `advance` and of what calls it, for systems of at most its sizes; what it holds between calls does not
+    matter."""
 
     rate: np.ndarray
     change: np.ndarray
@@ -75,6 +76,9 @@ class Workspace(NamedTuple):
     lagged: np.ndarray
     gathered: np.ndarray
     matrix: np.ndarray
+    weight: np.ndarray
+    drive: np.ndarray
+    flow: np.ndarray
 
 
 @njit(cache=True)
@@ -88,6 +92,9 @@ def workspace(states: int, ports: int) -> Workspace:
         np.zeros(ports),
         np.zeros(ports, np.complex128),
         np.zeros((ports, ports), np.complex128),
+        np.zeros(ports),
+        np.zeros(ports),
+        np.zeros(ports),
     )
 
 

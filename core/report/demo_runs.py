@@ -97,7 +97,7 @@ def run_mode(
     watch = Stopwatch()
     watch.put_on(batch, "step", "step")
     watch.put_on(batch.plant.heat, "advance", "heat")  # pyright: ignore[reportAttributeAccessIssue]
-    watch.put_on(batch.plant.mechanics, "step", "mechanics")  # pyright: ignore[reportAttributeAccessIssue]
+    watch.put_on(batch.plant.mechanics, "advance", "mechanics")  # pyright: ignore[reportAttributeAccessIssue]
 
     def tell(time: float, now: GraspBatch) -> None:
         advance(f"{mode} mode: grasping", 10 * now.dt / seconds if time else 0.0)

@@ -148,7 +148,7 @@ def test_touch_off_the_element_is_not_felt_in_o_mode():
     batch = GraspBatch(1, task=ENDLESS, material="glass", mode="O", placement=(0.0, 0.0))
     batch.reset([0], [np.random.default_rng(0)])
     heat = batch.plant.heat  # pyright: ignore[reportAttributeAccessIssue]
-    heat._anchor[0] += np.array([0.0, 0.0, 0.006])
+    heat._rows["anchor"][0] += np.array([0.0, 0.0, 0.006])
     kinds = []
     for _ in range(100):
         step = batch.step(grasp_action(batch))

@@ -70,11 +70,32 @@ def test_resetting_one_row_leaves_what_the_others_last_read():
     for _ in range(60):
         batch.step(grasp_action(batch))
     before = batch.reading
-    seen, infos = batch.reset([0], rngs[:1])
+    seen, reading = batch.reset([0], rngs[:1])
     after = batch.reading
     assert before is not None and after is not None
-    assert not after.truth["temperature_drop"][0].any() and not infos[0]["temperature_drop"].any()
+    assert not after.truth["temperature_drop"][0].any() and not reading.truth["temperature_drop"][0].any()
     for name in ("temperature_drop", "heat_imbalance", "heat", "sensor_surface"):
         assert np.array_equal(after.truth[name][1], before.truth[name][1])
     assert np.array_equal(after.force[1], before.force[1]) and before.force[1].any()
     assert seen["voltage"][1].any() and not seen["voltage"][0].any()
+
+
+def test_infos_are_what_gymnasium_makes_of_the_single_ones():
+    vector = make(3, material=["glass", "aluminium"], seconds=0.3)
+    seen, info = vector.reset(seed=3)
+    singles = [GraspEnv(material=["glass", "aluminium"], seconds=0.3) for _ in range(3)]
+    firsts = [single.reset(seed=3 + i)[1] for i, single in enumerate(singles)]
+    squeeze = np.tile(np.array([-1.0, 1.0, 0.0], np.float32), (3, 1))
+    for k in range(14):
+        expected: dict = {}
+        for i, first in enumerate(firsts):
+            own = first if k == 0 else singles[i].step(squeeze[i])[4]
+            expected = vector._add_info(expected, own, i)
+        if k:
+            seen, _, _, _, info = vector.step(squeeze)
+        assert set(info) == set(expected)
+        for name, values in expected.items():
+            assert info[name].dtype == values.dtype and np.array_equal(info[name], values), name
+    some = vector.reset(options={"reset_mask": np.array([False, True, False])})[1]
+    assert not some["_success"][0] and some["_success"][1] and some["material"][0] is None
+    assert seen["voltage"].shape == (3, 2, 16)

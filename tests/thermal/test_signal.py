@@ -3,7 +3,17 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal.signal import ADS1115, IDEAL, SIGNAL_CHAINS, SignalChain, measure, saturated, settled
+from thermograsp.thermal.signal import (
+    ADS1115,
+    IDEAL,
+    SIGNAL_CHAINS,
+    SignalChain,
+    SignalState,
+    measure,
+    saturated,
+    settled,
+)
+from thermograsp.thermal.signal_kernel import chain_numbers, measure_rows
 
 SEEBECK, DT = 1e-3, 0.01
 
@@ -119,3 +129,23 @@ def test_refuses_impossible_chains(wrong: dict[str, float]) -> None:
 
 def test_presets_by_name() -> None:
     assert SIGNAL_CHAINS["ads1115"] is ADS1115 and SIGNAL_CHAINS["ideal"] is IDEAL
+
+
+@pytest.mark.parametrize(
+    "chain", [IDEAL, ADS1115, SignalChain(gain=100.0, bandwidth=5.0, span=2.048, bits=12)]
+)
+def test_compiled_electronics_are_the_same(chain):
+    rng = np.random.default_rng(0)
+    drop, noise = rng.normal(0, 8, (7, 40, 2)), rng.standard_normal((7, 40, 2))
+    filtered, last = rng.normal(0, 1e-3, (7, 2)), rng.normal(0, 1e-3, (7, 2))
+    expected = np.empty_like(drop)
+    for tip in range(2):
+        begun = SignalState(filtered[:, tip], last[:, tip])
+        expected[:, :, tip] = measure(chain, begun, drop[:, :, tip], 1e-3, 0.01, noise[:, :, tip])[1]
+    voltage = np.empty_like(drop)
+    for samples in (slice(0, 13), slice(13, 40)):
+        part = np.ascontiguousarray(drop[:, samples])
+        some = np.empty_like(part)
+        measure_rows(chain_numbers(chain, 1e-3, 0.01), filtered, last, part, noise[:, samples].copy(), some)
+        voltage[:, samples] = some
+    assert np.abs(voltage - expected).max() <= 1e-15 + 1e-12 * np.abs(expected).max()

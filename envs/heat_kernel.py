@@ -1,0 +1,127 @@
+"""One control step of heat, compiled row by row: contact laws, touches and releases, thermal networks.
+
+B: environments, S: substeps, F = 2 fingertips, N: heat samples, K: states of the largest network.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ..thermal.batch import HeatReading, HeatTables, advance_row, forget_row
+from ..thermal.contact_law import conductance, contact
+from ..thermal.coupling_kernel import FAST, workspace
+from .heat_rows import NEW_PATCH, OFF_ELEMENT, RELEASE, TOUCH
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def advance_grasps(laws, rows, state, normal, place, thermostat, drop, told, *numbers):
+    """Advances rows (B,) HEAT_ROW and state (B, K) by the samples of drop (B, N, F) K and fills drop and told (B,)
+    HEAT_TOLD. laws: (B,) CONTACT_LAW. normal: (B, S, F) N. place: (B, F, 3) m. thermostat: °C at the start. numbers: a
+    HeatTables' fields, which cost less to hand over one by one."""
+    tables = HeatTables(*numbers)
+    samples, tips = drop.shape[1], tables.drop.shape[1]
+    room = workspace(tables.rates.shape[1], tables.ports.shape[1])
+    per_tip, per_row = (1, samples, tips), (1, samples)
+    reading = HeatReading(
+        np.zeros(per_tip),
+        np.zeros(per_tip),
+        np.zeros(per_row),
+        np.zeros(per_tip),
+        np.zeros(per_tip),
+        np.zeros(per_tip),
+        np.zeros(per_row),
+    )
+    felt = np.zeros(tips)
+    duration = tables.dt * samples
+    for b in range(len(rows)):
+        row, one, x = rows[b], told[b], state[b]
+        renewed = False
+        for f in range(2):
+            touching = _mean_contact(laws[b], normal[b, :, f], one, f)
+            renewed |= _follow(row, one, f, touching, place[b, f])
+            row.begun |= touching
+        if renewed:
+            forget_row(tables, row.network, x)
+        for f in range(2):
+            one.heat[f] = one.flow[f] = 0.0
+            one.sensor_surface[f] = thermostat + row.offset[f]
+            one.object_surface[f] = one.sensor_surface[f] - row.difference[f]
+            for k in range(samples):
+                drop[b, k, f] = 0.0
+        one.heat[2] = one.air_loss = 0.0
+        one.object_temperature = one.object_surface[0]
+        if row.begun:
+            for f in range(tips):  # a fingertip without a sensor takes no part
+                sensed = row.glued == 0 or _distance(place[b, f], row.anchor[f]) <= row.reach
+                felt[f] = one.conductance[f] * one.area[f] if sensed else 0.0
+            advance_row(tables, row.network, x, felt, row.difference, room, reading, 0)
+            for f in range(tips):
+                one.heat[f] = reading.element_heat[0, samples - 1, f]
+                one.sensor_surface[f] += reading.sensor_rise[0, samples - 1, f]
+                one.object_surface[f] += reading.object_rise[0, samples - 1, f]
+                for k in range(samples):
+                    drop[b, k, f] = reading.drop[0, k, f]
+                    one.flow[f] += reading.flow[0, k, f] / samples
+            one.heat[2] = reading.object_heat[0, samples - 1]
+            one.object_temperature += one.heat[2] / row.capacity
+            for k in range(samples):
+                one.air_loss += reading.air_loss[0, k] / samples
+        for f in range(2):
+            one.drawn[f] = one.flow[f]
+            if row.glued == 0:
+                one.heat[f] += row.element_capacity * row.offset[f]
+                one.drawn[f] += (one.heat[f] - row.stored[f]) / duration
+            row.stored[f] = one.heat[f]
+        row.books[0] += (one.flow[0] + one.flow[1]) * duration
+        row.books[1] += (abs(one.flow[0]) + abs(one.flow[1])) * duration
+        row.books[2] += one.air_loss * duration
+        gained = one.heat[2] + (one.heat[0] + one.heat[1] if row.glued else 0.0)
+        one.imbalance = gained + row.books[2] - row.books[0]
+        one.exchanged = row.books[1]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _mean_contact(law, normal, one, f):
+    """Writes conductance W/(m2 K) and area m2, whose product is the mean of their products over the substeps; the area
+    is the mean over those that press. Returns whether any does."""
+    total, area, pressing = 0.0, 0.0, 0
+    for s in range(len(normal)):
+        if normal[s] > 0:
+            face, load = contact(law, normal[s])
+            if face > 0:
+                total += conductance(law, load / face) * face
+                area += face
+                pressing += 1
+    one.area[f] = area / pressing if pressing else 0.0
+    one.conductance[f] = total / len(normal) / one.area[f] if pressing else 0.0
+    return pressing > 0
+
+
+@njit(cache=True, error_model="numpy")
+def _follow(row, one, f, touching, place):
+    """Notes a touch, a release or a new patch since the last step. Returns whether the patch is a new one."""
+    touched, events, renewed = row.touching[f] > 0, 0, False
+    moved = _distance(place, row.anchor[f]) > row.reach
+    row.touching[f] = touching
+    if touched and not touching:
+        events = RELEASE
+    if touching and not touched:
+        events = OFF_ELEMENT if row.glued and moved else TOUCH
+    if touching and not row.glued and (moved or not row.known[f]):
+        if row.known[f]:
+            events |= NEW_PATCH
+            renewed = True
+        row.known[f] = 1
+        for i in range(3):
+            row.anchor[f, i] = place[i]
+    one.events[f] = events
+    return renewed
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _distance(a, b):
+    x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return math.sqrt(x * x + y * y + z * z)

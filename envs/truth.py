@@ -1,0 +1,68 @@
+"""What only a simulation knows of a control step, worked out when it is asked for.
+
+B: environments, F = 2 fingertips, N: heat samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .heat import HeatStep
+
+
+@dataclass(frozen=True, slots=True)
+class Truth(Mapping[str, Any]):
+    """A mapping name -> (B, ...); see HeatStep for what heat tells. mode: T or O. material, rung, crushing_force N:
+    (B,), not written to later. lift (B,) m: the object above where it lay. error: (B,) why an environment broke
+    down."""
+
+    heat: HeatStep
+    mode: str
+    material: np.ndarray
+    rung: np.ndarray
+    crushing_force: np.ndarray
+    lift: np.ndarray
+    error: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> Any:
+        return _VALUES[name](self)
+
+    def __contains__(self, name: object) -> bool:
+        return name in _VALUES
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_VALUES)
+
+    def __len__(self) -> int:
+        return len(_VALUES)
+
+
+def _told(name: str) -> Callable[[Truth], np.ndarray]:
+    return lambda truth: truth.heat.told[name]
+
+
+_VALUES: dict[str, Callable[[Truth], Any]] = {
+    "mode": lambda truth: truth.mode,
+    "material": lambda truth: truth.material,
+    "temperature_drop": lambda truth: truth.heat.drop[:, -1],
+    "temperature_drops": lambda truth: truth.heat.drop,
+    "contact_area": _told("area"),
+    "conductance": _told("conductance"),
+    "sensor_surface": _told("sensor_surface"),
+    "object_surface": _told("object_surface"),
+    "object_temperature": _told("object_temperature"),
+    "heat_flow": _told("flow"),
+    "heat_drawn": _told("drawn"),
+    "heat": _told("heat"),
+    "heat_imbalance": _told("imbalance"),
+    "heat_exchanged": _told("exchanged"),
+    "events": lambda truth: truth.heat.events,
+    "rung": lambda truth: truth.rung,
+    "lift": lambda truth: truth.lift,
+    "crushing_force": lambda truth: truth.crushing_force,
+    "failed": lambda truth: np.array([bool(reason) for reason in truth.error]),
+}
