@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray bench lint install clean distclean FORCE
+.PHONY: demo test test-ray test-hardware-long bench lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -25,6 +25,10 @@ test: build/.test
 # What needs Ray and Minari; without them `make test` skips it.
 test-ray: build/.ray
 	$(PY) -m pytest $(TEST_FLAGS) tests/ray
+
+# The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
+test-hardware-long: build/.test
+	THERMOGRASP_LONG=1 $(PY) -m pytest $(TEST_FLAGS) tests/hardware
 
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)

@@ -15,7 +15,7 @@ import pytest
 from thermograsp.cli import main
 from thermograsp.cli.device.live_plot import LivePlot, braille
 from thermograsp.errors import InvalidValueError, UnknownNameError
-from thermograsp.hardware import EmulatedFingertips, Flag, LineFaults, PtyDevice, VirtualLine, replay
+from thermograsp.hardware import EmulatedFingertips, Flag, LineFaults, PtyDevice, replay
 from thermograsp.hardware.planned_faults import plan_fault
 
 from .serving import serving
@@ -210,13 +210,8 @@ def test_planned_faults_happen() -> None:
 
     served = Served()
     tips, line = lockstep(served.device, setpoint=30.0)
-    for text in (
-        "saturate=left@0.5",
-        "open_thermistor=right@0.5",
-        "overheat=left@1",
-        "break_heater=left",
-        "corrupt=0@1",
-    ):
+    faults = "saturate=left@0.5 open_thermistor=right@0.5 overheat=left@1 break_heater=left corrupt=0@1"
+    for text in faults.split():
         plan_fault(served, text)  # pyright: ignore[reportArgumentType]
     line.advance(0.4)
     assert not tips.take().faults & (Flag.SATURATED_LEFT | Flag.OPEN_RIGHT | Flag.OVER_TEMPERATURE)
@@ -235,8 +230,7 @@ def test_braille_dots_are_where_the_points_are() -> None:
 
 
 def test_the_live_plot_draws(capsys: pytest.CaptureFixture[str]) -> None:
-    line = VirtualLine(EmulatedFingertips(ramp))
-    tips, line = lockstep(line.device)
+    tips, line = lockstep(EmulatedFingertips(ramp))
     with LivePlot("a port") as plot:
         plot.show(None, "the line is lost")
         for _ in range(30):
