@@ -51,3 +51,11 @@ class ProtocolVersionError(DeviceError):
 
 class SensorFaultError(DeviceError):
     """A sensor of the device cannot be believed: open thermistor, saturated converter, thermostat off its setpoint."""
+
+
+class GripperFaultError(DeviceError):
+    """The gripper says that something is wrong with it, or that it is not ready to move."""
+
+
+class GripperTimeoutError(DeviceError, TimeoutError):
+    """The gripper answers, and has not done in time what it was told."""

@@ -9,17 +9,18 @@ import threading
 import time
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
+from typing import Generic
 
 from thermograsp.errors import InvalidValueError
 
-from .emulator import EmulatedFingertips
+from .emulated import Device
 
 _LONGEST_WAIT = 0.05  # s
 _SHORTEST_WAIT = 0.0005  # s
 _CHUNK = 4096
 
 
-class PtyDevice:
+class PtyDevice(Generic[Device]):
     """Serves the device from its making until `close` or the end of its `with` block. path: of the port. link: a stable
     name to make for it, replaced where it is a link already. The device's time 0 is when this was made.
 
@@ -27,7 +28,7 @@ class PtyDevice:
     `with served.paused():` around whatever changes the device. Raises InvalidValueError for a link that cannot be.
     """
 
-    def __init__(self, device: EmulatedFingertips, link: str | os.PathLike[str] | None = None) -> None:
+    def __init__(self, device: Device, link: str | os.PathLike[str] | None = None) -> None:
         self.device = device
         self.link = None if link is None else Path(link)
         if self.link is not None and self.link.exists() and not self.link.is_symlink():

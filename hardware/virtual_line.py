@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections import deque
+from typing import Generic
 
-from .emulator import EmulatedFingertips
+from .emulated import Device
 
 
-class VirtualLine:
+class VirtualLine(Generic[Device]):
     """Opener, transport and clock of a driver: Fingertips(line.open, clock=line.clock, background=False).
 
     Time goes on by `advance`, and while the driver waits for an answer. The driver's clock follows as it reads: each
     frame comes at the moment when the device sent it.
     """
 
-    def __init__(self, device: EmulatedFingertips) -> None:
+    def __init__(self, device: Device) -> None:
         self.device = device
         self._now = self._read = 0.0
         self._sent: deque[tuple[float, bytes]] = deque()
