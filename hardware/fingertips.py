@@ -150,10 +150,12 @@ class Fingertips:
         self._setpoint = wanted
 
     def set_calibration(self, calibration: Calibration) -> None:
-        """Has the device keep these constants, and applies them from the next take on."""
+        """Has the device keep these constants, and applies them from the next take on, and to the setpoint."""
         with self._commanding:
             self._link.command(constants_command(calibration))
             self.calibration = self._link.report(Calibration)
+            if self._setpoint is not None:
+                self._link.command(self._setpoint_command(self._setpoint))
 
     def status(self) -> Status:
         """The device's counters."""

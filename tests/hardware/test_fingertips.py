@@ -20,6 +20,7 @@ from thermograsp.hardware import (
     press_source,
     samples_source,
 )
+from thermograsp.hardware.messages import RunSelfTest
 from thermograsp.thermal import ADS1115, Thermostat
 
 from .serving import driver, nothing_left, serving
@@ -47,7 +48,7 @@ def lockstep(device: EmulatedFingertips, **keywords: object) -> tuple[Fingertips
 
 def test_a_kilohertz_without_a_loss(tmp_path: Path) -> None:
     pytest.importorskip("serial")
-    seconds = size(3.0, 60.0)
+    seconds = size(1.5, 60.0)
     with (
         nothing_left(),
         serving(tmp_path, EmulatedFingertips(ramp)) as served,
@@ -71,8 +72,8 @@ def test_times_are_the_host_s(tmp_path: Path) -> None:
     pytest.importorskip("serial")
     device = EmulatedFingertips(ramp, DeviceModel(drift=2e-3))
     with serving(tmp_path, device) as served, driver(served, rate=200) as tips:
-        tips.wait(300, 5.0)
-        samples = tips.wait(100, 5.0)
+        tips.wait(150, 5.0)
+        samples = tips.wait(50, 5.0)
         begun = served._begun
     true = begun + samples.voltage[:, 0] * 1e3  # the ramp is in true time
     assert np.median(abs(samples.time - true)) < 2e-3
@@ -130,8 +131,9 @@ def test_calibration_is_kept_by_the_device_and_applied_by_the_host() -> None:
 def test_a_setpoint_is_meant_as_calibrated() -> None:
     device = EmulatedFingertips()
     tips, line = lockstep(device)
-    tips.set_calibration(CONSTANTS)
     tips.set_setpoint(36.0, None)
+    assert tips.thermostats().setpoint[0] == 36.0
+    tips.set_calibration(CONSTANTS)
     report = tips.thermostats()
     assert report.setpoint[0] == 36.5
     assert report.setpoint[1] != report.setpoint[1]  # NaN: off
@@ -171,6 +173,17 @@ def test_self_test_finds_what_is_broken() -> None:
     device.broken_heaters.add(1)
     assert tips.self_test().failed == 0x02 | 0x10
     assert tips.self_test(checks=0x02).failed == 0x02
+
+
+def test_a_busy_device_is_asked_again() -> None:
+    device = EmulatedFingertips()
+    tips, line = lockstep(device)
+    device.executed.clear()
+    tips._link.command(RunSelfTest(0x01))
+    begun = line.clock()
+    tips._link.command(RunSelfTest(0x02))  # refused while the first one runs
+    assert line.clock() - begun > 0.2
+    assert device.executed == [RunSelfTest(0x01), RunSelfTest(0x02)]
 
 
 def test_a_press_is_felt() -> None:

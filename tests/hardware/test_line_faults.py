@@ -301,10 +301,10 @@ def test_a_host_that_does_not_read_costs_whole_samples(tmp_path: Path) -> None:
             tips.wait(10, 1.0)
         with served.paused():
             served.device.advance(served.now)
-        for _ in range(20):  # 2 s of samples at once, in steps that a real device would take
+        for _ in range(60):  # 6 s of samples at once, in steps that a real device would take
             with served.paused():
                 served._begun -= 0.1
-            time.sleep(0.02)
+            time.sleep(0.005)
         time.sleep(0.1)
         port = SerialPort(served.path)  # which forgets what the kernel had kept
         port.close()
