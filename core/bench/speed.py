@@ -1,10 +1,10 @@
 """How near Grasp-v0 comes to bare MuJoCo, and where the rest goes.
 
-Five nested layers carry out the same control steps from the same state: mujoco.batch alone, Mechanics (commands in,
-contact forces of every substep out), the simulated plant (heat, electronics), GraspBatch (observation, reward), and the
+Nested layers carry out the same control steps from the same state: mujoco.batch alone, Mechanics (commands in, contact
+forces of every substep out), the simulated plant (heat, noise, electronics), GraspBatch (observation, reward), and the
 vector environment. Each ends with the same bits, so contacts are the same; the difference of two layers' times is what
-the outer one adds. Layers take turns in short blocks, in random order, so that a busy moment of the machine hits none
-alone, and the ratio is taken within each block.
+the outer one adds. Heat is also run alone, on the recorded forces. Layers take turns in short blocks, in random order,
+so that a busy moment of the machine hits none alone, and the ratio is taken within each block.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ import numpy as np
 
 from thermograsp.bench.bare import BareBatch, Inputs, inputs_of
 from thermograsp.envs import command_of
+from thermograsp.envs.heat import HeatStep
 from thermograsp.envs.mechanics import SUBSTEPS
 
 ID = "thermograsp/Grasp-v0"
-LAYERS = ("mujoco.batch", "mechanics", "plant", "batch", "environment")
-PARTS = ("physics", "contact", "heat and electronics", "observation and task", "Gymnasium")
-"""What each layer adds to the one before it."""
+LAYERS = ("mujoco.batch", "mechanics", "heat", "plant", "batch", "environment")
+PARTS = ("physics", "contact", "heat", "noise, electronics", "observation, task", "Gymnasium")
 _WARM = 100  # control steps before the first block: grippers have met their objects
 _EPISODE = 500  # control steps of the environment's 10 s
 
@@ -55,8 +55,9 @@ class Speed:
     @property
     def parts(self) -> dict[str, float]:
         """Shares of the environment's time by PARTS; they add up to 1. One within the timing's noise may be below 0."""
-        times = [0.0, *(self.seconds[name] for name in LAYERS)]
-        return {name: (b - a) / times[-1] for name, a, b in zip(PARTS, times, times[1:], strict=False)}
+        bare, mechanics, heat, plant, batch, whole = (self.seconds[name] for name in LAYERS)
+        times = (bare, mechanics - bare, heat, plant - mechanics - heat, batch - plant, whole - batch)
+        return {name: time / whole for name, time in zip(PARTS, times, strict=True)}
 
 
 def measure(num_envs: int, blocks: int, steps: int, seed: int, shown: Callable[[], None]) -> Speed:
@@ -127,6 +128,7 @@ class _Layers:
         for k, action in enumerate(actions):
             step = self._batch.step(action)
             self._inputs.append(inputs_of(self._mechanics.model, self._mechanics.state()))
+            self._drop = step.reading.truth["temperature_drop"].copy()
             pressed.append(np.any(step.observation["force"][:, :, 0] > 0, axis=1).mean())
             if step.terminated.any() or step.truncated.any():
                 count = k
@@ -139,12 +141,13 @@ class _Layers:
     def time(self, actions: np.ndarray, rng: np.random.Generator) -> dict[str, tuple[float, float]]:
         """(CPU, wall) s of the rehearsed steps by layer; the environment is left where they end."""
         commands = [command_of(action) for action in actions]
+        moves = [(each.opening, each.force_limit, each.lift_rate, SUBSTEPS) for each in commands]
+        self._batch.set_state(self._start)
+        motions = [self._mechanics.advance(*each) for each in moves]
         runs: dict[str, tuple[Callable[..., Any], Sequence[tuple[Any, ...]]]] = {
             "mujoco.batch": (self._bare.step, [(inputs,) for inputs in self._inputs]),
-            "mechanics": (
-                self._mechanics.step,
-                [(each.opening, each.force_limit, each.lift_rate) for each in commands],
-            ),
+            "mechanics": (self._mechanics.advance, moves),
+            "heat": (self._plant.heat.advance, [(each.normal, each.place) for each in motions]),
             "plant": (self._plant.step, [(each,) for each in commands]),
             "batch": (self._batch.step, [(action,) for action in actions]),
             "environment": (self._env.step, [(action,) for action in actions]),
@@ -156,9 +159,13 @@ class _Layers:
                 self._bare.copy(self._mechanics, self._start.plant.mechanics)
             step, arguments = runs[name]
             wall, cpu = time.perf_counter(), time.process_time()
+            last = None
             for each in arguments:
-                step(*each)
+                last = step(*each)
             found[name] = (time.process_time() - cpu, time.perf_counter() - wall)
+            if isinstance(last, HeatStep):
+                self.same &= np.array_equal(last.drop[:, -1], self._drop)
+                continue
             rows = self._bare.batch.state if name == "mujoco.batch" else self._mechanics.state().rows
             self.same &= np.array_equal(rows, self._end)
         return found

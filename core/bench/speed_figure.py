@@ -18,7 +18,7 @@ from thermograsp.bench.vector_modes import ModeSpeed
 from thermograsp.report.style import FAINT, INK, style
 
 _OURS = "#1d4f91"
-_COLORS = ("#c3c9d1", "#8fb3dc", "#d4691e", "#1d4f91", "#5b8c5a")
+_COLORS = ("#c3c9d1", "#8fb3dc", "#d4691e", "#e3b23c", "#1d4f91", "#5b8c5a")
 _WIDTH, _HEIGHT = 10.0, 8.6
 
 
@@ -93,7 +93,7 @@ def _parts(axes: Axes, speeds: Sequence[Speed]) -> None:
     for i, (name, color) in enumerate(zip(PARTS, _COLORS, strict=True)):
         axes.text(
             0.97,
-            0.34 - 0.075 * i,
+            0.42 - 0.075 * i,
             name,
             color=color if i else FAINT,
             transform=axes.transAxes,
