@@ -41,6 +41,7 @@ from .problem import Mode
 from .signal import ADS1115, SignalChain, SignalState, measure_sample
 
 Size = tuple[float, float, float]
+_LAW = tuple(field.name for field in fields(Joint))
 LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
 
 
@@ -106,10 +107,10 @@ class ArrayFingertips:
             entry = table[chosen]
             return entry[(...,) + (None,) * (force.ndim - entry.ndim)]
 
-        law = Joint(**{field.name: own(getattr(self.contact, field.name)) for field in fields(Joint)})
+        law = Joint(**{name: own(getattr(self.contact, name)) for name in _LAW})
         area, share = own(self.area), own(self.share)
-        touching = force > 0
-        # A contact apart is evaluated at 1 N and masked, so that its gradient is 0 and a NaN stays one.
+        touching = ~(force <= 0)  # so that NaN stays NaN
+        # A contact apart is evaluated at 1 N and masked: its gradient is 0, where that of the law is infinite.
         pressure = (force * touching + ~touching) * (share / area)
         return contact_conductance(law, pressure) * area * touching
 
@@ -197,7 +198,7 @@ def array_fingertips(
         fingertips=fingertips,
         tables=array_tables(heat_tables(systems, [air] * len(systems), dt), like),
         rungs=tuple(f"network:{system.orders}" for system in systems),
-        contact=Joint(**{field.name: as_like(getattr(law, field.name), like) for field in fields(Joint)}),
+        contact=Joint(**{name: as_like(getattr(law, name), like) for name in _LAW}),
         area=as_like(area, like),
         share=as_like(share, like),
         sensor_temperature=sensor_temperature,

@@ -6,6 +6,7 @@ measure_sample takes arrays of any shape, of NumPy, PyTorch or JAX alike.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -116,8 +117,8 @@ def measure_sample(
 ) -> tuple[SignalState, Array]:
     """The next sample: (new state, reported voltage V), elementwise. drop: K, dt s after the last one; others as in
     measure. Quantisation has no gradient: where one is wanted, take a chain of 0 bits."""
-    lag = 0.0 if np.isinf(chain.bandwidth) else 1 / (2 * np.pi * chain.bandwidth)
-    decay = float(np.exp(-dt / lag)) if lag else 0.0
+    lag = 1 / (2 * math.pi * chain.bandwidth)
+    decay = math.exp(-dt / lag) if lag else 0.0
     volts = drop * seebeck
     slope_lag = (volts - state.last) * (lag / dt)
     filtered = volts - slope_lag + (state.filtered - state.last + slope_lag) * decay
