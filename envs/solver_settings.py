@@ -37,7 +37,7 @@ class SolverSettings:
     iterations the most per substep. noslip_iterations: of a pass afterwards that pulls creep back. solref: softness of
     the object's contacts, (time constant s, damping ratio), or (-stiffness, -damping) per unit of effective mass,
     1/s2 and 1/s. solimp: their impedance (at no depth, at full depth, depth m between the two); 1 would be rigid.
-    refsafe: keep the time constant above twice the time step.
+    refsafe: raise time constants that are too short for the time step.
 
     Names and meanings are MuJoCo's (its documentation, "Computation" and "XML reference: option").
     Raises UnknownNameError for a name, InvalidValueError for a number out of range.
