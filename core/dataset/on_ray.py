@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import socket
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -20,7 +20,7 @@ _QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": 
 
 def produce(
     plan: Plan, shards: Sequence[Shard], workers: int, address: str | None = None
-) -> Iterator[tuple[Shard, bytes]]:
+) -> Generator[tuple[Shard, bytes]]:
     """(shard, file) in the order in which they are done, `workers` at a time.
 
     A task whose worker or node dies is run again elsewhere. address: of a cluster, None for a Ray of our own on this
@@ -36,7 +36,7 @@ def produce(
             shard = running.pop(done)
             running |= {task.remote(plan, after): after for after in itertools.islice(waiting, 1)}
             try:
-                yield shard, ray.get(done)
+                content = ray.get(done)
             except ray.exceptions.RayTaskError as error:
                 raise error.cause from None
             except ray.exceptions.RayError as error:
@@ -44,6 +44,7 @@ def produce(
                     f"seeds {shard.first} .. {shard.seeds[-1]} were lost with their workers again and again; "
                     f"what is done is kept, the same command goes on: {error}"
                 ) from error
+            yield shard, content
 
 
 def _ray() -> Any:

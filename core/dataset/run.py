@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,13 +55,14 @@ def make(
     if todo:
         with progress(sum(shard.count for shard in todo)) as advance:
             made = on_ray.produce(plan, todo, workers, address) if workers else _here(plan, todo, advance)
-            for shard, content in made:
-                store(folder, shard, content)
-                if workers:
-                    advance("", shard.count)
+            with closing(made):  # Ray ends with it, whatever happens here
+                for shard, content in made:
+                    store(folder, shard, content)
+                    if workers:
+                        advance("", shard.count)
     return Made(len(plan.shards), len(plan.shards) - len(todo))
 
 
-def _here(plan: Plan, shards: Sequence[Shard], advance: Advance) -> Iterator[tuple[Shard, bytes]]:
+def _here(plan: Plan, shards: Sequence[Shard], advance: Advance) -> Generator[tuple[Shard, bytes]]:
     for shard in shards:
         yield shard, shard_bytes(plan, shard, lambda: advance("", 1))
