@@ -58,6 +58,10 @@ class Gripper(Protocol):
         """Sets a target and returns at once; force limits what the fingers press with."""
         ...
 
+    def wait(self, seconds: float = 6.0) -> GripperStatus:
+        """Waits until the fingers have arrived or are stopped by something."""
+        ...
+
     def stop(self) -> GripperStatus:
         """The fingers stay where they are."""
         ...

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,6 +81,7 @@ class EmulatedGripper:
         self._serial = SlaveLine(self.model.pacing)
         self._now = 0.0
         self._ticks = 0
+        self._planned: list[tuple[float, Callable[[], None]]] = []
         self.power_cycle()
 
     def power_cycle(self) -> None:
@@ -92,6 +94,10 @@ class EmulatedGripper:
         self._sequence: deque[float] = deque()
         self._heard_at = self._now
         self._forgotten = False
+
+    def plan(self, time: float, action: Callable[[], None]) -> None:
+        """Has `action` done at that time, s."""
+        self._planned.append((time, action))
 
     def fail(self, fault: Fault) -> None:
         """A fault that stays until a reset (from 0xA on), or until the next `fail`."""
@@ -179,6 +185,10 @@ class EmulatedGripper:
         self._now = max(self._now, now)
 
     def _tick(self, now: float) -> None:
+        ready = [happen for time, happen in self._planned if time <= now]
+        self._planned = [item for item in self._planned if item[0] > now]
+        for happen in ready:
+            happen()
         self._forgotten |= now - self._heard_at > _SILENCE and self._action.activate
         self._obey(action(self._written))
         if self.lasting:

@@ -1,4 +1,4 @@
-"""`thermograsp device ACTION`: real and emulated fingertips on serial ports, one module an action.
+"""`thermograsp device ACTION`: real and emulated fingertips and grippers on serial ports, one module an action.
 
 An action's module has HELP, add_arguments(parser) and run(args) -> exit status; only the chosen one's run is imported.
 """
@@ -9,16 +9,26 @@ import argparse
 import importlib
 
 NAME = "device"
-HELP = "Fingertips on a serial port: list, monitor, record, replay, test, calibrate and emulate them."
+HELP = "Fingertips and grippers on serial ports: list, monitor, record, replay, test, calibrate and emulate them."
 
-ACTIONS = ("list", "monitor", "record", "replay", "selftest", "calibrate", "emulate")
+ACTIONS = (
+    "list",
+    "monitor",
+    "record",
+    "replay",
+    "selftest",
+    "calibrate",
+    "emulate",
+    "gripper",
+    "emulate-gripper",
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """A parser of its own for each action."""
     actions = parser.add_subparsers(metavar="ACTION", required=True)
     for name in ACTIONS:
-        module = importlib.import_module(f"{__name__}.{name}")
+        module = importlib.import_module(f"{__name__}.{name.replace('-', '_')}")
         sub = actions.add_parser(name, help=module.HELP, description=module.HELP, allow_abbrev=False)
         module.add_arguments(sub)
         sub.add_argument(
