@@ -20,6 +20,10 @@ from .conductance import (
 )
 from .contact_law import CONTACT_LAW, cylinder_law, flat_law, sphere_law
 from .contact_network import network_for, network_of
+from .identify import Identifier, identify
+from .identify_effusivity import EffusivityPosterior
+from .identify_result import Identification, Verdict
+from .identify_setup import TouchSetup
 from .ladder import RUNGS, Rung, RungInfo
 from .layers import Layer, SensorStack, sensor, sensors
 from .materials import SEED_MATERIALS, Material, load_materials, material, materials
@@ -64,10 +68,13 @@ __all__ = [
     "ContactSystem",
     "Demand",
     "FingertipState",
+    "EffusivityPosterior",
     "Gas",
     "Geometry",
     "HeatReading",
     "HeatTables",
+    "Identification",
+    "Identifier",
     "Joint",
     "Layer",
     "Material",
@@ -86,6 +93,8 @@ __all__ = [
     "ThermalNetwork",
     "Thermostat",
     "ThermostatState",
+    "TouchSetup",
+    "Verdict",
     "advance_heat",
     "array_fingertips",
     "array_forget",
@@ -99,6 +108,7 @@ __all__ = [
     "forget_field",
     "heat_tables",
     "ideal_thermostat",
+    "identify",
     "joint",
     "load_materials",
     "material",

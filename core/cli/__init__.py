@@ -17,7 +17,18 @@ from typing import NoReturn
 import thermograsp
 from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
 
-COMMANDS = ("demo", "grasp", "press", "materials", "reproduce", "rollout", "dataset", "device", "bench")
+COMMANDS = (
+    "demo",
+    "grasp",
+    "press",
+    "identify",
+    "materials",
+    "reproduce",
+    "rollout",
+    "dataset",
+    "device",
+    "bench",
+)
 
 _BAD_INPUT = 2
 _INTERRUPTED = 130

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from collections.abc import Mapping
 
 import numpy as np
 
+from thermograsp.errors import InvalidValueError
 from thermograsp.files import atomic_write
 
 
@@ -16,3 +18,27 @@ def write_csv(path: str | os.PathLike[str], columns: Mapping[str, np.ndarray]) -
     rows = np.column_stack(list(columns.values()))
     with atomic_write(path) as temporary:
         np.savetxt(temporary, rows, fmt="%.9g", delimiter=",", header=header, comments="", encoding="utf-8")
+
+
+def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
+    """Columns name -> (N,) of such a file; an empty or wordy cell is NaN. Raises InvalidValueError where the file
+    cannot be read, has no rows, or a row of another length than the header."""
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            header, *rows = [row for row in csv.reader(file) if row] or [[]]
+    except (OSError, ValueError, csv.Error) as error:
+        raise InvalidValueError(f"cannot read {path}: {error}") from error
+    if not rows:
+        raise InvalidValueError(f"{path} has no rows: it must hold a header of names and one row a sample")
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(header):
+            raise InvalidValueError(f"{path}, row {number}: {len(row)} cells under {len(header)} names")
+    table = np.array([[_number(cell) for cell in row] for row in rows])
+    return {name.strip(): table[:, k] for k, name in enumerate(header)}
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
