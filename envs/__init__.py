@@ -6,6 +6,19 @@ from .grasp_vector import GraspVectorEnv
 from .mechanics import ContactRecord, Mechanics, MechanicsState
 from .meshes import MeshShape, load_mesh
 from .observation import observation_space
+from .randomization import (
+    EVERYTHING,
+    Delay,
+    Friction,
+    Gain,
+    Mass,
+    Noise,
+    ObjectTemperature,
+    Offset,
+    Roughness,
+    Size,
+    ThermostatError,
+)
 from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
@@ -14,21 +27,32 @@ from .tasks import GraspTask
 from .things import Thing
 
 __all__ = [
+    "EVERYTHING",
     "BatchState",
     "ContactRecord",
+    "Delay",
+    "Friction",
+    "Gain",
     "GraspBatch",
     "GraspEnv",
     "GraspTask",
     "GraspVectorEnv",
+    "Mass",
     "Mechanics",
     "MechanicsState",
     "MeshShape",
+    "Noise",
     "ObjectSpec",
+    "ObjectTemperature",
+    "Offset",
     "PlantState",
     "Renderer",
+    "Roughness",
     "SimulatedPlant",
     "SimulationConfig",
+    "Size",
     "SolverSettings",
+    "ThermostatError",
     "Thing",
     "Window",
     "action_of",

@@ -23,7 +23,9 @@ from .scene import MAX_OPENING
 from .tasks import GraspTask, Outcome, TaskState, fresh, judge, stopped
 
 _ENDS = ("dropped", "crushed")
-_EVERY_STEP = ("material", "temperature_drop", "contact_area", "conductance", "rung", "events")
+_EVERY_STEP = (
+    "material", "temperature_drop", "contact_area", "conductance", "rung", "events", "unknown", "late",
+)  # fmt: skip
 
 
 def action_space() -> gymnasium.spaces.Box:
@@ -113,6 +115,9 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
         if name in reading.truth:
             value = reading.truth[name][row]
             info[name] = value.copy() if isinstance(value, np.ndarray) else value
+    randomized = reading.truth.get("randomized")
+    if randomized:
+        info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
     return info
 
 
@@ -141,6 +146,12 @@ def infos_of(reading: Reading, outcome: Outcome | None, rows: np.ndarray) -> dic
             if not rows.all():
                 values[~rows] = None if values.dtype == object else 0
             add(name, values, rows.copy())
+    randomized = reading.truth.get("randomized")
+    if randomized:
+        nested: dict[str, Any] = {}
+        for name, values in randomized.items():
+            nested[name], nested["_" + name] = np.where(rows, values, 0.0), rows.copy()
+        infos["randomized"], infos["_randomized"] = nested, rows.copy()
     return infos
 
 

@@ -36,11 +36,12 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
     truncated after `seconds`.
 
     info: success; in simulation also material, temperature_drop (2,) K, contact_area (2,) m2, conductance (2,) W/(m2
-    K), rung, events (of this step: (kind, fingertip)); dropped or crushed where it ended so; error where the
-    simulation broke down.
+    K), rung, randomized (what randomize drew, by name), events (of this step: (kind, fingertip)); dropped or crushed
+    where it ended so; error where the simulation broke down.
 
     Keywords: material (a name, a Material, a list, None = the ten seed materials; drawn per episode), mode ("T",
-    "O"), plant ("simulated" or a URL), objects (ObjectSpec), tolerance (K), hold_seconds and seconds (s), render_mode
+    "O"), plant ("simulated" or a URL), objects (an ObjectSpec, or a list to draw from), randomize (records of
+    envs.randomization, what else differs between episodes), tolerance (K), hold_seconds and seconds (s), render_mode
     ("human", "rgb_array"), and the fields of SimulationConfig. reset(options={"material": name}) fixes one episode's
     material.
     """

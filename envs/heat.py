@@ -88,13 +88,18 @@ class GraspHeat:
         self._laws = np.zeros(num_envs, CONTACT_LAW)
         self._state = np.zeros((num_envs, 0))
 
-    def reset(self, rows: Sequence[int], things: Sequence[Thing]) -> None:
-        """The rows start with new objects, everything at its first temperature."""
-        for row, thing in zip(rows, things, strict=True):
-            self._place(row, thing)
+    def reset(
+        self, rows: Sequence[int], things: Sequence[Thing], sensor_temperatures: Sequence[float] | None = None
+    ) -> None:
+        """The rows start with new objects, everything at its first temperature. sensor_temperatures: °C of each row's
+        thermostats where they differ from the batch's."""
+        temperatures = sensor_temperatures or [self._sensor_temperature] * len(rows)
+        for row, thing, temperature in zip(rows, things, temperatures, strict=True):
+            self._place(row, thing, temperature)
             self._state[row] = 0.0
             fresh = self._rows[row]
-            fresh["difference"] = self._sensor_temperature - thing.temperature
+            fresh["sensor_temperature"] = temperature
+            fresh["difference"] = temperature - thing.temperature
             fresh["known"] = thing.mode == "O"
             fresh["anchor"] = thing.spec.element_places
             for name in ("begun", "offset", "stored", "touching", "books"):
@@ -117,7 +122,6 @@ class GraspHeat:
             self._state,
             np.ascontiguousarray(force, dtype=float),
             np.ascontiguousarray(place, dtype=float),
-            self._sensor_temperature,
             drop,
             told,
             *self._tables,
@@ -127,14 +131,14 @@ class GraspHeat:
     def rest(self) -> HeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
         told = np.zeros(len(self._rows), HEAT_TOLD)
-        told["sensor_surface"] = self._sensor_temperature + self._rows["offset"]
+        told["sensor_surface"] = self._rows["sensor_temperature"][:, None] + self._rows["offset"]
         told["object_surface"] = told["sensor_surface"] - self._rows["difference"]
         told["object_temperature"] = told["object_surface"][:, 0]
         return HeatStep(np.zeros((len(self._rows), self._samples, 2)), told)
 
     def set_thermostats(self, celsius: np.ndarray) -> None:
         """Temperatures (B, F) °C of the thermostats from now on."""
-        change = celsius - self._sensor_temperature - self._rows["offset"]
+        change = celsius - self._rows["sensor_temperature"][:, None] - self._rows["offset"]
         self._rows["offset"] += change
         if self._tables is not None:
             tips = self._tables.fingertips
@@ -155,7 +159,7 @@ class GraspHeat:
     def set_state(self, rows: Sequence[int], state: HeatState) -> None:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
-            self._place(row, state.things[k])
+            self._place(row, state.things[k], float(state.rows["sensor_temperature"][k]))
             network = self._rows["network"][row]  # this batch's own number of it
             self._rows[row] = state.rows[k]
             self._rows["network"][row] = network
@@ -163,7 +167,12 @@ class GraspHeat:
             self._state[row] = 0.0
             self._state[row, :width] = state.state[k, :width]
 
-    def _place(self, row: int, thing: Thing) -> None:
+    @property
+    def sensor_temperatures(self) -> np.ndarray:
+        """(B,) °C of the thermostats at the start."""
+        return self._rows["sensor_temperature"]
+
+    def _place(self, row: int, thing: Thing, sensor_temperature: float) -> None:
         self._things[row] = thing
         self._laws[row] = thing.law
         mine = self._rows[row]
@@ -171,7 +180,9 @@ class GraspHeat:
         mine["reach"] = thing.stack.width / 2
         mine["capacity"] = thing.heat_capacity
         mine["element_capacity"] = thing.stack.heat_capacity
-        difference = max(abs(self._sensor_temperature - thing.temperature), LEAST_DIFFERENCE)
+        # In steps, so that nearly equal temperatures share a network.
+        above = abs(sensor_temperature - thing.temperature) / LEAST_DIFFERENCE
+        difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
         key = (thing.geometry, difference)
         if key not in self._networks:
             demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)

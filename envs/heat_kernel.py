@@ -17,9 +17,9 @@ from .heat_rows import NEW_PATCH, OFF_ELEMENT, RELEASE, TOUCH
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def advance_grasps(laws, rows, state, normal, place, thermostat, drop, told, *numbers):
+def advance_grasps(laws, rows, state, normal, place, drop, told, *numbers):
     """Advances rows (B,) HEAT_ROW and state (B, K) by the samples of drop (B, N, F) K and fills drop and told (B,)
-    HEAT_TOLD. laws: (B,) CONTACT_LAW. normal: (B, S, F) N. place: (B, F, 3) m. thermostat: °C at the start. numbers: a
+    HEAT_TOLD. laws: (B,) CONTACT_LAW. normal: (B, S, F) N. place: (B, F, 3) m.  numbers: a
     HeatTables' fields, which cost less to hand over one by one."""
     tables = HeatTables(*numbers)
     samples, tips = drop.shape[1], tables.drop.shape[1]
@@ -47,7 +47,7 @@ def advance_grasps(laws, rows, state, normal, place, thermostat, drop, told, *nu
             forget_row(tables, row.network, x)
         for f in range(2):
             one.heat[f] = one.flow[f] = 0.0
-            one.sensor_surface[f] = thermostat + row.offset[f]
+            one.sensor_surface[f] = row.sensor_temperature + row.offset[f]
             one.object_surface[f] = one.sensor_surface[f] - row.difference[f]
             for k in range(samples):
                 drop[b, k, f] = 0.0

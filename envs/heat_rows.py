@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-# difference: K, sensor less object when both were uniform. offset: K, of the thermostats. stored: J, that the elements
+# difference: K, sensor less object when both were uniform. sensor_temperature: °C, of the thermostats at first.
+# offset: K, of theirs since. stored: J, that the elements
 # gained. anchor: m, where on the object, in its frame, each patch is, if it is known. reach: m, how far from there a
 # contact may move. books: J since the start, that flowed into the object's side, its absolute sum, and lost to the air.
 # capacity, element_capacity: J/K. network: the index of the environment's network. begun: something
@@ -19,6 +20,7 @@ HEAT_ROW = np.dtype(
         ("stored", "f8", (2,)),
         ("anchor", "f8", (2, 3)),
         ("books", "f8", (3,)),
+        ("sensor_temperature", "f8"),
         ("reach", "f8"),
         ("capacity", "f8"),
         ("element_capacity", "f8"),

@@ -176,6 +176,19 @@ class ObjectSpec:
         return max(self.size[2] / 2, lowest, self.size[2] + CLEARANCE - REACH)
 
 
+def scaled(spec: ObjectSpec, size: float = 1.0, *, mass: float = 1.0, friction: float = 1.0) -> ObjectSpec:
+    """The object with its size, mass and friction times these factors. A larger one of given density is heavier; one of
+    given mass is not."""
+    if size == mass == friction == 1.0:
+        return spec
+    extents = (
+        {"scale": spec.scale * size} if spec.mesh else {"size": tuple(size * side for side in spec.size)}
+    )
+    heavier = {"density": spec.density * mass} if spec.density is not None else {"mass": spec.weight * mass}
+    rougher = {"friction": (DEFAULT_FRICTION if spec.friction is None else spec.friction) * friction}
+    return replace(spec, **extents, **heavier, **rougher)
+
+
 def placeless(spec: ObjectSpec) -> ObjectSpec:
     """The same object at the origin: what the compiled model depends on (the pose is state)."""
     return replace(spec, position=(0.0, 0.0), yaw=0.0)

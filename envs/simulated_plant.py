@@ -27,10 +27,11 @@ from ..thermal import (
     settled_thermostat,
     thermostat_step,
 )
-from ..thermal.signal_kernel import chain_numbers, measure_rows
+from .electronics import Electronics, ElectronicsState
 from .heat import GraspHeat, HeatState, HeatStep
 from .mechanics import SUBSTEPS, Mechanics, MechanicsState
-from .scene import ObjectSpec
+from .randomization import CAUSES, Cause, Delay, Size, checked, draw
+from .scene import ObjectSpec, scaled
 from .solver_settings import SHIPPED, SolverSettings
 from .things import Thing
 from .truth import Truth
@@ -41,16 +42,17 @@ SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
 @dataclass(frozen=True, slots=True)
 class SimulationConfig:
     """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed
-    materials. mode: T or O. objects: the object's shape (density and friction are the material's where it gives
-    none). tolerance: K that the thermal network keeps. air: W/(m2 K). Temperatures in °C. thermostat: one of finite
-    power (its setpoint is sensor_temperature), None for an ideal one. placement: m and degree; the object lies within
-    +- these of the middle, drawn per episode. fingertips: how many carry a sensor (1: the left one). solver: MuJoCo's
-    time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10 ms samples.
-    threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
+    materials. mode: T or O. objects: the object's shape, or a list to draw from per episode (density and friction
+    are the material's where a shape gives none). tolerance: K that the thermal network keeps. air: W/(m2 K).
+    Temperatures in °C. thermostat: one of finite power (its setpoint is sensor_temperature), None for an ideal one.
+    placement: m and degree; the object lies within +- these of the middle, drawn per episode. randomize: what else
+    differs from episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one).
+    solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10
+    ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
-    objects: ObjectSpec | None = None
+    objects: ObjectSpec | Sequence[ObjectSpec] | None = None
     tolerance: float = 0.05
     sensor: str | SensorStack = "seed"
     signal: str | SignalChain = "ads1115"
@@ -59,6 +61,7 @@ class SimulationConfig:
     thermostat: Thermostat | None = None
     object_temperature: float = 24.0
     placement: tuple[float, float] = (0.002, 2.0)
+    randomize: Sequence[Cause] = ()
     fingertips: Literal[1, 2] = 2
     solver: SolverSettings = SHIPPED
     substeps: int = SUBSTEPS
@@ -76,6 +79,7 @@ class SimulationConfig:
         finite("object_temperature (°C)", self.object_temperature)
         for value in self.placement:
             non_negative("placement (m, degree)", value)
+        checked(self.randomize)
         period = self.substeps * self.solver.timestep
         if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
             raise InvalidValueError(
@@ -93,6 +97,19 @@ class SimulationConfig:
                 f"material is an empty list: give one of {len(materials())} names, or None"
             )
         return tuple(material(name) for name in listed)
+
+    @property
+    def shapes(self) -> tuple[ObjectSpec, ...]:
+        """Shapes that an episode draws from. Raises InvalidValueError for an empty list, and where their names or
+        numbers of convex pieces differ, which all environments of a batch share."""
+        given = ObjectSpec() if self.objects is None else self.objects
+        listed = (given,) if isinstance(given, ObjectSpec) else tuple(given)
+        if len({(shape.name, shape.hulls) for shape in listed}) != 1:
+            raise InvalidValueError(
+                f"objects {[shape.name for shape in listed]} of {[shape.hulls for shape in listed]} convex pieces: "
+                "give at least one, all of the same name and number of pieces"
+            )
+        return listed
 
     @property
     def samples(self) -> int:
@@ -115,11 +132,11 @@ class PlantState:
 
     mechanics: MechanicsState
     heat: HeatState
-    filtered: np.ndarray
-    last: np.ndarray
+    electronics: ElectronicsState
     thermostats: tuple[np.ndarray, ...]
     rest: np.ndarray
     generators: tuple[np.random.Generator, ...]
+    drawn: tuple[dict[str, float], ...]
 
 
 class SimulatedPlant:
@@ -129,9 +146,24 @@ class SimulatedPlant:
         self.config = config
         self.num_envs = num_envs
         self._choices, self._stack = config.choices, sensor(config.sensor)
-        self._shape = config.objects or ObjectSpec()
-        first = self._thing(self._choices[0], self._shape)
-        self.mechanics = Mechanics((first.spec,), num_envs, threads=config.threads, settings=config.solver)
+        self._causes = checked(config.randomize)
+        plain = draw((), np.random.default_rng(0))
+        self._shapes = config.shapes
+        # Every shape and size that may come, so that one too large is refused here and not in some later episode.
+        sizes = [1.0, *(f for cause in self._causes if isinstance(cause, Size) for f in cause.factors)]
+        possible = [
+            self._thing(self._choices[0], shape, {**plain, "size_factor": size})
+            for shape in self._shapes
+            for size in sizes
+        ]
+        first = possible[0]
+        self.mechanics = Mechanics(
+            (first.spec,),
+            num_envs,
+            threads=config.threads,
+            library=[thing.spec for thing in possible if thing.spec.mesh],
+            settings=config.solver,
+        )
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.heat = GraspHeat(
@@ -145,14 +177,17 @@ class SimulatedPlant:
         )
         self.things: list[Thing] = [first] * num_envs
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
-        self._chain = chain_numbers(config.chain, self._stack.seebeck, SAMPLE_PERIOD)
-        self._filtered, self._last = np.zeros((num_envs, 2)), np.zeros((num_envs, 2))
-        self._noise = np.empty((num_envs, config.samples, 2))
+        most_delay = max((cause.most for cause in self._causes if isinstance(cause, Delay)), default=0)
+        self._electronics = Electronics(
+            num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, most_delay
+        )
+        self._drawn = [plain] * num_envs
         self._setpoints = np.full((num_envs, 2), config.sensor_temperature)
         self._rest = np.zeros(num_envs)
         # Replaced, never written to: readings keep them.
         self._material, self._rung = np.full(num_envs, "", object), np.full(num_envs, "", object)
         self._crushing_force = np.full(num_envs, np.inf)
+        self._randomized: dict[str, np.ndarray] = {}
         self._thermostat = config.thermostat
         if self._thermostat is not None:
             self._thermostat = replace(self._thermostat, setpoint=config.sensor_temperature)
@@ -178,18 +213,21 @@ class SimulatedPlant:
         for row, rng in zip(rows, rngs, strict=True):
             chosen = choices[int(rng.integers(len(choices)))]
             x, y, angle = rng.uniform(-1.0, 1.0, 3)
-            spec = replace(
-                self._shape, position=(x * reach, y * reach), yaw=self._shape.yaw + np.deg2rad(angle * turn)
-            )
-            self.things[row] = self._thing(chosen, spec)
+            shape = self._shapes[int(rng.integers(len(self._shapes))) if len(self._shapes) > 1 else 0]
+            turned = shape.yaw + np.deg2rad(angle * turn)
+            spec = replace(shape, position=(x * reach, y * reach), yaw=turned)
+            self._drawn[row] = drawn = draw(self._causes, rng)
+            self.things[row] = self._thing(chosen, spec, drawn)
             self._rngs[row] = rng
+            self._electronics.reset(row, drawn)
         things = [self.things[row] for row in rows]
         self.mechanics.reset(rows, [(thing.spec,) for thing in things])
         self.heat.reset(
-            rows, [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things]
+            rows,
+            [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things],
+            [self.config.sensor_temperature + self._drawn[row]["thermostat_error"] for row in rows],
         )
         chosen = list(rows)
-        self._filtered[chosen] = self._last[chosen] = 0.0
         if self._thermostat is not None:
             both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
             settled = settled_thermostat(self._thermostat, 2 * self.num_envs)
@@ -208,18 +246,16 @@ class SimulatedPlant:
         if self._thermostat is not None:
             after = thermostat_step(self._thermostat, self._thermostats, step.told["drawn"].ravel(), self.dt)
             self._thermostats = _distinct(after)
-            self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2))
-        for row, rng in enumerate(self._rngs):
-            rng.standard_normal(out=self._noise[row])
-        voltage = np.empty_like(step.drop)
-        measure_rows(self._chain, self._filtered, self._last, step.drop, self._noise, voltage)
+            # The controller keeps its own sensor at the setpoint; where that errs, the plate is as much warmer.
+            warmer = self.heat.sensor_temperatures - self.config.sensor_temperature
+            self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2) + warmer[:, None])
         error = tuple(self.mechanics.failure)
         return Reading(
             opening=motion.opening,
             opening_rate=motion.opening_rate,
             height=motion.height,
             force=motion.force,
-            voltage=voltage,
+            voltage=self._electronics.measure(step.drop, self._rngs),
             thermostat=self._measured_thermostats(),
             truth=self._truth(motion.object_height, step, error),
             error=error,
@@ -235,11 +271,11 @@ class SimulatedPlant:
         return PlantState(
             self.mechanics.state(np.array(chosen)),
             self.heat.state(chosen),
-            self._filtered[chosen],
-            self._last[chosen],
+            self._electronics.state(chosen),
             tuple(array[both] for array in self._thermostat_arrays()),
             self._rest[chosen],
             tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
+            tuple(self._drawn[row] for row in chosen),
         )
 
     def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
@@ -248,32 +284,46 @@ class SimulatedPlant:
         chosen = list(rows)
         self.mechanics.set_state(state.mechanics, np.array(chosen))
         self.heat.set_state(chosen, state.heat)
+        self._electronics.set_state(chosen, state.electronics)
         rngs = tuple(copy.deepcopy(rng) for rng in state.generators)
         for k, row in enumerate(chosen):
             self.things[row] = replace(state.heat.things[k], spec=state.mechanics.objects[k][0])
             self._rngs[row] = rngs[k]
-            self._filtered[row], self._last[row] = state.filtered[k], state.last[k]
+            self._drawn[row] = state.drawn[k]
             for mine, theirs in zip(self._thermostat_arrays(), state.thermostats, strict=True):
                 mine[2 * row : 2 * row + 2] = theirs[k]
         self._rest[chosen] = state.rest
         self._relabel(chosen)
         return rngs
 
-    def _thing(self, chosen: Material, spec: ObjectSpec) -> Thing:
+    def _thing(self, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]) -> Thing:
         """The object of that material: the material's density and friction where the shape gives none."""
         if spec.mass is None and spec.density is None:
             spec = replace(spec, density=chosen.density)
         if spec.friction is None and chosen.friction is not None:
             spec = replace(spec, friction=chosen.friction)
         config = self.config
+        spec = scaled(
+            spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
+        )
         if config.mode == "O":
             spec = replace(spec, elements=(self._stack.width, self._stack.thickness))
-        return Thing(spec, chosen, config.object_temperature, config.mode, self._stack, config.fingertips)
+        return Thing(
+            spec,
+            chosen,
+            config.object_temperature + drawn["object_temperature_shift"],
+            config.mode,
+            self._stack,
+            config.fingertips,
+            drawn["roughness_factor"],
+        )
 
     def _relabel(self, rows: Sequence[int]) -> None:
         """Names what the rows hold now, in arrays of their own."""
         self._material, self._rung = self._material.copy(), self._rung.copy()
         self._crushing_force = self._crushing_force.copy()
+        names = [CAUSES[type(cause)][0] for cause in self._causes]
+        self._randomized = {name: np.array([drawn[name] for drawn in self._drawn]) for name in names}
         for row in rows:
             thing = self.things[row]
             self._material[row], self._rung[row] = thing.material.name, self.heat.rung(row)
@@ -288,6 +338,7 @@ class SimulatedPlant:
             crushing_force=self._crushing_force,
             lift=object_height - self._rest,
             error=error,
+            randomized=self._randomized,
         )
 
     def _thermostat_arrays(self) -> list[np.ndarray]:

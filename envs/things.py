@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -38,7 +38,8 @@ NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 @dataclass(frozen=True)
 class Thing:
     """An object between the fingertips. spec: its shape and place. material: what it is made of. temperature: °C at
-    first. mode: T or O, where the element sits. stack: the sensor. fingertips: how many carry one."""
+    first. mode: T or O, where the element sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on
+    the object's surface."""
 
     spec: ObjectSpec
     material: Material
@@ -46,6 +47,7 @@ class Thing:
     mode: Mode
     stack: SensorStack
     fingertips: Literal[1, 2] = 2
+    roughness_factor: float = 1.0
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:
@@ -67,8 +69,10 @@ class Thing:
     @cached_property
     def joint(self) -> Joint:
         """The opening contact's faces: the lapped element on the object (T) or on the thermostat (O)."""
-        other = Surface.of(self.material) if self.mode == "T" else THERMOSTAT_FACE
-        return joint(LAPPED_ALUMINA, other)
+        if self.mode == "O":
+            return joint(LAPPED_ALUMINA, THERMOSTAT_FACE)
+        surface = Surface.of(self.material)
+        return joint(LAPPED_ALUMINA, replace(surface, roughness=surface.roughness * self.roughness_factor))
 
     @cached_property
     def geometry(self) -> Geometry:

@@ -18,7 +18,7 @@ from .heat import HeatStep
 class Truth(Mapping[str, Any]):
     """A mapping name -> (B, ...); see HeatStep for what heat tells. mode: T or O. material, rung, crushing_force N:
     (B,), not written to later. lift (B,) m: the object above where it lay. error: (B,) why an environment broke
-    down."""
+    down. randomized: (B,) by name of what differs between episodes, not written to later."""
 
     heat: HeatStep
     mode: str
@@ -27,6 +27,7 @@ class Truth(Mapping[str, Any]):
     crushing_force: np.ndarray
     lift: np.ndarray
     error: tuple[str, ...]
+    randomized: dict[str, np.ndarray]
 
     def __getitem__(self, name: str) -> Any:
         return _VALUES[name](self)
@@ -64,5 +65,6 @@ _VALUES: dict[str, Callable[[Truth], Any]] = {
     "rung": lambda truth: truth.rung,
     "lift": lambda truth: truth.lift,
     "crushing_force": lambda truth: truth.crushing_force,
+    "randomized": lambda truth: truth.randomized,
     "failed": lambda truth: np.array([bool(reason) for reason in truth.error]),
 }
