@@ -31,8 +31,9 @@ class Reading:
 
     opening (B,) m, opening_rate (B,) m/s, height (B,) m of the arm over its lowest position. force (B, F, 3) N: each
     fingertip's load cell in the pad's frame, normal (> 0 when pressing) and two tangential. voltage (B, S, F) V after
-    the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows, empty on
-    hardware. error: (B,) why an environment can't go on, "" while it can.
+    the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows; on
+    hardware `unknown`, the names that are missing, and `late`, s by which the step's end was missed. error: (B,) why an
+    environment can't go on, "" while it can.
     """
 
     opening: np.ndarray
@@ -90,7 +91,10 @@ class Plant(Protocol):
 
 
 _SCHEMES: Mapping[str, str] = MappingProxyType(
-    {"simulated": "thermograsp.envs.simulated_plant:simulated_plant"}
+    {
+        "simulated": "thermograsp.envs.simulated_plant:simulated_plant",
+        "serial": "thermograsp.hardware.serial_plant:serial_plant",
+    }
 )
 
 

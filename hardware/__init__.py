@@ -35,6 +35,7 @@ from .robotiq_emulator import EmulatedGripper, GripperModel
 from .robotiq_registers import Fault
 from .robotiq_units import RobotiqUnits
 from .samples import Samples
+from .serial_plant import SerialConfig, SerialPlant
 from .serial_port import PortInfo, SerialPort, ports
 from .transport import Opener, Transport
 from .virtual_line import VirtualLine
@@ -83,6 +84,8 @@ __all__ = [
     "Samples",
     "SelfTest",
     "SensorFaultError",
+    "SerialConfig",
+    "SerialPlant",
     "SerialPort",
     "Source",
     "SpringFingers",

@@ -268,12 +268,11 @@ class EmulatedFingertips:
         feel = self.source(self._now)
         self._control(self._now, feel)
         volts, flags = self._convert(feel)
-        temperatures = self._temperatures() if feel.thermostat is None else feel.thermostat
         if sum(map(len, self._out)) > _ROOM:
             self._overruns += 1
             return
         self._samples += 1
-        self._send(Sample(volts, temperatures, feel.force), flags)
+        self._send(Sample(volts, self._temperatures(), feel.force), flags)
 
     def _convert(self, feel: Feel) -> tuple[Pair, Flag]:
         """What the converter says of the voltages, and which are at an end of its range."""
@@ -299,6 +298,10 @@ class EmulatedFingertips:
                 off = math.isnan(setpoint) or self._hot or i in self.broken_heaters | self.broken_thermistors
                 model = replace(self.model.thermostat, setpoint=_OFF if off else setpoint)
                 self._plates[i] = thermostat_step(model, self._plates[i], np.array([feel.heat[i]]), _CONTROL)
+        if feel.thermostat is not None:
+            for i, given in enumerate(feel.thermostat):
+                plate = np.array([given])
+                self._plates[i] = replace(self._plates[i], temperature=plate, measured=plate, previous=plate)
         self._hot |= any(float(plate.measured[0]) >= _TOO_HOT for plate in self._plates)
 
     def _temperatures(self) -> Pair:

@@ -22,7 +22,8 @@ _NO_FORCE = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 @dataclass(frozen=True, slots=True)
 class Feel:
     """At one moment, left and right. voltage: V at each Peltier element. heat: W drawn from each thermostat. force: N
-    on each pad, normal and two tangential. thermostat: °C, None to have the device's own thermostats say it."""
+    on each pad, normal and two tangential. thermostat: °C of the plates, None for what
+    the device's own heaters make of them."""
 
     voltage: Pair = (0.0, 0.0)
     heat: Pair = (0.0, 0.0)

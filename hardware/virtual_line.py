@@ -24,6 +24,11 @@ class VirtualLine(Generic[Device]):
         """Virtual time, s, up to which the driver has read."""
         return self._read
 
+    @property
+    def now(self) -> float:
+        """Virtual time, s, up to which the device has acted."""
+        return self._now
+
     def open(self) -> VirtualLine:
         """The line itself: it has two ends only."""
         return self

@@ -1,0 +1,300 @@
+"""The serial plant: a real gripper with real fingertips behind the interface of the simulated one.
+
+F = 2 fingertips, S: voltage samples of a control step. There is one environment.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, positive
+from thermograsp.plant import Command, Reading
+
+from .errors import DeviceError, LinkLostError, NoAnswerError, SensorFaultError, StaleSensorError
+from .fingertips import Fingertips
+from .gripper import Gripper, GripperStatus, open_gripper
+from .messages import Flag
+from .pacing import Pace, RealTime
+from .samples import Samples
+
+UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height")
+_STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
+_LATE = 1e-3  # s after which a step's end counts as overrun
+_TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
+_WARMING = Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT | _TOLERATED
+_SETTLING = 0.2  # s between looks at a thermostat that warms up
+
+
+@dataclass(frozen=True, slots=True)
+class SerialConfig:
+    """rate: Hz of the voltage. dt: s, the control period, a whole number of samples. setpoint: °C of both thermostats.
+    speed: m/s of the fingers. most_force: N on a pad, above which the gripper lets go. watchdog: s without a step
+    after which it lets go; 0 for never. settle_within, open_within: s that a reset waits for the thermostats, and for
+    the fingers to open."""
+
+    rate: int = 100
+    dt: float = 0.02
+    setpoint: float = 36.0
+    speed: float = 0.1
+    most_force: float = 100.0
+    watchdog: float = 0.5
+    settle_within: float = 60.0
+    open_within: float = 6.0
+
+    def __post_init__(self) -> None:
+        for name in ("dt", "speed", "most_force", "settle_within", "open_within"):
+            positive(f"serial plant: {name}", getattr(self, name))
+        if self.samples < 1 or abs(self.dt * self.rate - self.samples) > 1e-9:
+            raise InvalidValueError(
+                f"serial plant: {self.rate} Hz and steps of {self.dt:g} s: give a whole number of samples a step"
+            )
+        if self.watchdog and self.watchdog < 2 * self.dt:
+            raise InvalidValueError(
+                f"serial plant: watchdog must be 0 or at least 2 steps, got {self.watchdog:g} s"
+            )
+
+    @property
+    def samples(self) -> int:
+        """Of the voltage in a control step."""
+        return round(self.dt * self.rate)
+
+
+@dataclass(slots=True)
+class PaceCounts:
+    """steps. overruns: that ended more than 1 ms late. latest: s, the worst. repeated, skipped: samples that were not
+    there in time, so that the one before stood in for it, and that came too many."""
+
+    steps: int = 0
+    overruns: int = 0
+    latest: float = 0.0
+    repeated: int = 0
+    skipped: int = 0
+
+
+class SerialPlant:
+    """See thermograsp.plant.Plant; owns fingertips and gripper, and closes them.
+
+    A step sends the command, waits for the step's end, and reads. The voltages are the oldest samples not yet read, so
+    that they are at most a step and a sample old. What goes wrong in a step opens the gripper and ends the episode: the
+    reading has the last values and says why in error. Without a lift axis the height is 0 and lift_rate does nothing.
+    truth has `unknown`, names that only a simulation knows or that need a lift axis, and `late`, s by which the step's
+    end was missed. The fingers stay as they are on close.
+    """
+
+    num_envs = 1
+
+    def __init__(
+        self,
+        fingertips: Fingertips,
+        gripper: Gripper,
+        config: SerialConfig | None = None,
+        pace: Pace | None = None,
+        widest: float = 0.085,
+    ) -> None:
+        self.config = config or SerialConfig()
+        self.dt, self.sample_rate = self.config.dt, float(self.config.rate)
+        self.counts = PaceCounts()
+        self._tips, self._gripper, self._pace = fingertips, gripper, pace or RealTime()
+        self._widest = widest
+        self._queue: deque[tuple[np.ndarray, np.ndarray, np.ndarray]] = deque()
+        self._held = (np.zeros(2), np.zeros((2, 3)), np.full(2, np.nan))
+        self._opening = 0.0
+        self._end = 0.0
+        self._trouble = "reset the environment first"
+        self._fed = 0.0
+        self._armed = False
+        self._guarding = threading.Lock()
+        self._closing = threading.Event()
+        self._guard: threading.Thread | None = None
+        if self.config.watchdog and isinstance(self._pace, RealTime):
+            self._guard = threading.Thread(target=self._watch, name="gripper watchdog", daemon=True)
+            self._guard.start()
+
+    def reset(
+        self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
+    ) -> Reading:
+        """Opens the gripper and waits for it and for the thermostats. Nothing is drawn: the object is what lies there.
+        Raises DeviceError and its kinds, InvalidValueError for options."""
+        del rows, rngs
+        if options:
+            raise InvalidValueError(f"a serial plant has no reset options, got {sorted(options)}")
+        self._armed = False
+        self._await(self._heated, self.config.open_within, "the fingertips to answer")
+        self._gripper.activate()
+        self._gripper.move(self._widest, 0.0, self.config.speed)
+        self._await(lambda: not self._gripper.status().moving, self.config.open_within, "the gripper to open")
+        self._await(self._settled, self.config.settle_within, "the thermostats to reach their setpoint")
+        self._opening = self._gripper.status().opening
+        self._queue.clear()
+        self._take(self._tips.wait(1, self.config.open_within))
+        self._trouble = ""
+        self._end = self._pace.now()
+        return self._still()
+
+    def step(self, command: Command) -> Reading:
+        """One control step."""
+        if self._trouble:
+            return self._still()
+        self._end += self.dt
+        try:
+            with self._guarding:
+                self._fed, self._armed = self._pace.now(), True
+                self._require_unreleased()
+                opening, force = float(command.opening[0]), float(command.force_limit[0])
+                self._gripper.move(opening, force, self.config.speed)
+            self._pace.until(self._end - _STATUS_LEAD)
+            status = self._checked(self._gripper.status())
+            self._pace.until(self._end)
+            self._take(self._tips.take())
+            voltage = self._oldest()
+        except DeviceError as error:
+            self._let_go(str(error))
+            return self._still()
+        late = self._late()
+        rate = (status.opening - self._opening) / self.dt
+        self._opening = status.opening
+        return self._reading(voltage, rate, late)
+
+    def close(self) -> None:
+        """Ends the watchdog and releases both lines. Does nothing the second time."""
+        self._closing.set()
+        if self._guard is not None:
+            self._guard.join()
+        self._tips.close()
+        self._gripper.close()
+
+    def _still(self) -> Reading:
+        """The last values, once more."""
+        return self._reading(np.tile(self._held[0], (self.config.samples, 1)), 0.0, 0.0)
+
+    def _reading(self, voltage: np.ndarray, rate: float, late: float) -> Reading:
+        _, force, thermostat = self._held
+        unknown = np.empty(1, object)
+        unknown[0] = UNKNOWN
+        return Reading(
+            opening=np.array([self._opening]),
+            opening_rate=np.array([rate]),
+            height=np.zeros(1),
+            force=force[None].copy(),
+            voltage=voltage[None],
+            thermostat=thermostat[None].copy(),
+            truth={"unknown": unknown, "late": np.array([late])},
+            error=(self._trouble,),
+        )
+
+    def _take(self, samples: Samples) -> None:
+        samples.require_healthy(but=_TOLERATED)
+        self._queue.extend(zip(samples.voltage, samples.force, samples.thermostat, strict=True))
+        pressed = float(samples.force[:, :, 0].max(initial=0.0))
+        if pressed > self.config.most_force:
+            raise SensorFaultError(
+                f"a pad is pressed with {pressed:.1f} N, more than most_force, {self.config.most_force:g} N"
+            )
+        if samples.flags.size:
+            self._held = (self._held[0], samples.force[-1], samples.thermostat[-1])
+
+    def _oldest(self) -> np.ndarray:
+        """(S, F) V; the queue is kept shorter than another step's."""
+        wanted, rows = self.config.samples, []
+        while len(self._queue) > 2 * wanted:
+            self._queue.popleft()
+            self.counts.skipped += 1
+        for _ in range(wanted):
+            if self._queue:
+                self._held = (self._queue.popleft()[0], *self._held[1:])
+            else:
+                self.counts.repeated += 1
+            rows.append(self._held[0])
+        return np.array(rows)
+
+    def _late(self) -> float:
+        """s; a step that ends late is counted, and the next one has its full time."""
+        late = max(0.0, self._pace.now() - self._end)
+        self.counts.steps += 1
+        self.counts.latest = max(self.counts.latest, late)
+        if late > _LATE:
+            self.counts.overruns += 1
+            self._end += late
+        return late
+
+    def _checked(self, status: GripperStatus) -> GripperStatus:
+        if status.fault or not status.active:
+            raise DeviceError(f"gripper: {status.fault or 'not active any more; reset the environment'}")
+        return status
+
+    def _settled(self) -> bool:
+        samples = self._tips.take()
+        samples.require_healthy(but=_WARMING)
+        return len(samples) > 0 and not int(samples.flags[-1]) & int(_WARMING & ~_TOLERATED)
+
+    def _heated(self) -> bool:
+        self._tips.set_setpoint(self.config.setpoint, self.config.setpoint)
+        return True
+
+    def _await(self, ready: Callable[[], bool], seconds: float, what: str) -> None:
+        """Until it is ready, through a line that is being repaired."""
+        deadline, why = self._pace.now() + seconds, ""
+        while True:
+            try:
+                if ready():
+                    return
+                why = ""
+            except (LinkLostError, StaleSensorError, NoAnswerError) as error:
+                why = f" ({error})"
+            if self._pace.now() > deadline:
+                raise DeviceError(
+                    f"waited {seconds:g} s in vain for {what}{why}; look at it, then reset again"
+                )
+            self._pace.until(self._pace.now() + _SETTLING)
+
+    def _require_unreleased(self) -> None:
+        if self._trouble:
+            raise DeviceError(self._trouble)
+
+    def _let_go(self, why: str) -> None:
+        """Opens the gripper, as far as it hears."""
+        with self._guarding:
+            self._trouble, self._armed = why, False
+            with suppress(DeviceError):
+                self._gripper.move(self._widest, 0.0, self.config.speed)
+
+    def _watch(self) -> None:
+        """The watchdog's thread."""
+        while not self._closing.wait(self.config.watchdog / 4):
+            silent = self._pace.now() - self._fed
+            if self._armed and silent > self.config.watchdog:
+                self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
+
+
+def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
+    """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
+    as open_gripper takes it. config: SerialConfig's. Raises InvalidValueError for anything else, and DeviceError."""
+    parts = urlsplit(url)
+    options = dict(parse_qsl(parts.query))
+    gripper_url = options.pop("gripper", "")
+    if parts.netloc or not parts.path or options or not gripper_url:
+        raise InvalidValueError(
+            f"plant {url!r}: give serial://PORT?gripper=URL, such as robotiq:///dev/ttyUSB0"
+        )
+    if num_envs != 1:
+        raise InvalidValueError(f"a serial plant is one gripper, so num_envs must be 1, got {num_envs}")
+    try:
+        settings = SerialConfig(**config)
+    except TypeError as error:
+        names = ", ".join(SerialConfig.__slots__)
+        raise InvalidValueError(f"a serial plant takes {names}: {error}") from error
+    gripper = open_gripper(gripper_url)
+    try:
+        tips = Fingertips(parts.path, rate=settings.rate, setpoint=settings.setpoint)
+    except BaseException:
+        gripper.close()
+        raise
+    return SerialPlant(tips, gripper, settings)
