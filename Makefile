@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-hardware-long bench lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-hardware-long bench lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -25,6 +25,10 @@ test: build/.test
 # What needs Ray and Minari; without them `make test` skips it.
 test-ray: build/.ray
 	$(PY) -m pytest $(TEST_FLAGS) tests/ray
+
+# What needs PyTorch and JAX; without them `make test` skips it.
+test-backends: build/.backends
+	$(PY) -m pytest $(TEST_FLAGS) tests/backends
 
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test
@@ -45,9 +49,11 @@ install: build/.test
 build/.run: EXTRA :=
 build/.test: EXTRA := [test]
 build/.ray: EXTRA := [test,ray,minari]
+build/.backends: EXTRA := [test,torch,jax]
+build/.backends: PINS := torch==2.13.0
 build/.dev: EXTRA := [dev]
-build/.run build/.test build/.ray build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
-	$(INSTALL) --no-build-isolation -e '.$(EXTRA)'
+build/.run build/.test build/.ray build/.backends build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+	$(INSTALL) --no-build-isolation -e '.$(EXTRA)' $(PINS)
 	@touch $@
 
 build/.files: FORCE

@@ -39,8 +39,8 @@ def test_float32_stays_float32_and_near(kind: Kind) -> None:
             exact, batch.network, batch.state, conductance.astype(float), batch.difference
         )
         state, reading = array_step(tables, network, state, kind.of(conductance), difference)
-    assert all(values.dtype == kind.float32.dtype for values in (state, *reading))
-    np.testing.assert_allclose(np.asarray(reading.drop), expected.drop, rtol=0, atol=5e-5)  # K
+        assert all(values.dtype == kind.float32.dtype for values in (state, *reading))
+        np.testing.assert_allclose(np.asarray(reading.drop), expected.drop, rtol=0, atol=5e-5)  # K
 
 
 def test_forgetting(kind: Kind) -> None:
