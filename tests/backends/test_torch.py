@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import sysconfig
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +28,10 @@ def arguments(kind: Kind, case: Case, rows: int = 8) -> tuple[thermal.ArrayTable
     return tables, *map(kind.of, (batch.network, batch.state, conductance, batch.difference))
 
 
-@pytest.mark.skipif(not shutil.which("g++"), reason="torch.compile needs g++ on the CPU")
+@pytest.mark.skipif(
+    not (shutil.which("g++") and Path(sysconfig.get_path("include"), "Python.h").exists()),
+    reason="on the CPU torch.compile needs g++ and Python's headers",
+)
 def test_compiled(torch_kind: Kind) -> None:
     given = arguments(torch_kind, ("O", 1))
     expected, reading = thermal.array_step(*given)
