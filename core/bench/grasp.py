@@ -15,21 +15,19 @@ from typing import Any
 
 import numpy as np
 
-from thermograsp.bench.grasp_course import Grasp, duration, grasp, placements, shapes
+from thermograsp.bench.grasp_course import Grasp, duration, grasp, lift_rates, placements, shapes
 from thermograsp.bench.grasp_errors import FATES, METRICS, Errors, HeatOfGrasps, errors, worst
 from thermograsp.envs import ObjectSpec, SolverSettings
 from thermograsp.envs.solver_settings import SHIPPED
 
 SHAPES = ("box", "cylinder", "sphere", "mesh")
-_COST_NOISE, _ERROR_NOISE = (
-    1.05,
-    1.25,
-)  # of timings; of errors, since no two variants touch at the same instants
+_COST_NOISE = 1.05  # of timings
+_ERROR_NOISE = 1.5  # of errors: no two variants touch at the same instants
 
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """family: which knob is turned. label: how far, unique in its family. repeats: timings, the best counts."""
+    """family: which knob is turned. label: how far, unique in its family. repeats: how often it is timed."""
 
     family: str
     label: str
@@ -124,8 +122,9 @@ def variants(quick: bool) -> list[Variant]:
 def measure(
     quick: bool, rng: np.random.Generator, shown: Callable[[str], None], cache: bool = True
 ) -> list[Point]:
-    """Every variant's point. Timings run in random order, so that a busy moment of the machine hits no variant alone.
-    shown: told what is being done, once a run. cache: keep thermal networks on disk."""
+    """Every variant's point. Timings run in random order, so that a busy moment of the machine hits no variant alone,
+    and every control step counts with its quickest. shown: told what is being done, once a run. cache: keep thermal
+    networks on disk."""
     chosen = variants(quick)
     with tempfile.TemporaryDirectory() as folder:
         placed = {
@@ -136,16 +135,21 @@ def measure(
             shown(f"reference: {name}")
             tests[name] = _test(specs, reference(quick), cache)
         found: list[dict[str, Errors]] = [{} for _ in chosen]
-        seconds = [dict.fromkeys(SHAPES, np.inf) for _ in chosen]
+        seconds = [{name: np.full(len(lift_rates()), np.inf) for name in SHAPES} for _ in chosen]
         for i in rng.permutation(np.repeat(np.arange(len(chosen)), [v.repeats for v in chosen])):
             shown(chosen[i].name)
             for name, test in tests.items():
                 run = grasp(chosen[i].settings, placed[name])
-                seconds[i][name] = min(seconds[i][name], run.seconds / duration())
+                seconds[i][name] = np.minimum(seconds[i][name], run.seconds)
                 if name not in found[i]:
                     found[i][name] = test(run)
     points = [
-        Point(variant, by_shape, worst(list(by_shape.values())), float(np.mean(list(cost.values()))))
+        Point(
+            variant,
+            by_shape,
+            worst(list(by_shape.values())),
+            float(np.mean([each.sum() for each in cost.values()])) / duration(),
+        )
         for variant, by_shape, cost in zip(chosen, found, seconds, strict=True)
     ]
     base = points[0].seconds

@@ -41,7 +41,7 @@ class Grasp:
 
     normal (K, B, S, T) N, 0 where nothing touches. centroid (K, B, S, T, 2) m on the pads. place (K, B, T, 3) m, the
     pads' middles in the object's frame. offset (K, B, 3) m: the object from the gripper, world axes. height (K, B) m:
-    the object's centre over the table. failed (B,): MuJoCo warned. seconds: CPU time of the thread, of one grasp.
+    the object's centre over the table. failed (B,): MuJoCo warned. seconds (K,): CPU time of the thread, of one grasp.
     """
 
     normal: np.ndarray
@@ -50,7 +50,7 @@ class Grasp:
     offset: np.ndarray
     height: np.ndarray
     failed: np.ndarray
-    seconds: float
+    seconds: np.ndarray
 
 
 def duration() -> float:
@@ -112,12 +112,12 @@ def grasp(settings: SolverSettings, placed: list[ObjectSpec]) -> Grasp:
         "offset": [],
         "height": [],
     }
-    spent = 0.0
+    seconds = []
     with _silent():
         for rate in lift_rates():
             begun = time.thread_time()
             record = mechanics.step(np.zeros(count), np.full(count, FORCE), np.full(count, rate), substeps)
-            spent += time.thread_time() - begun
+            seconds.append((time.thread_time() - begun) / count)
             position = record.object_pose[:, -1, 0, :3]
             lifted = np.stack([np.zeros(count), np.zeros(count), record.height[:, -1]], axis=-1)
             kept["normal"].append(np.where(record.touching[..., 0], record.force[..., 0, 0], 0.0))
@@ -127,7 +127,7 @@ def grasp(settings: SolverSettings, placed: list[ObjectSpec]) -> Grasp:
             kept["height"].append(position[:, 2])
     arrays = {name: np.array(rows) for name, rows in kept.items()}
     failed = np.array([bool(reason) for reason in mechanics.failure])
-    return Grasp(**arrays, failed=failed, seconds=spent / count)
+    return Grasp(**arrays, failed=failed, seconds=np.array(seconds))
 
 
 @contextmanager

@@ -40,7 +40,7 @@ class Errors:
     force_reference: N, RMS of the normal force's means over control steps less the reference's, all the time.
     jitter: um, RMS scatter within control steps of the contact's centroid less the reference's, from the end of
     lifting on. drop: K, largest difference of a temperature drop from the reference's at the same time, from 0.05 s
-    after the touch on, mean over grasps and fingertips; drop_late: the same from 0.5 s on.
+    after the touch on, median over grasps and fingertips; drop_late: the same from 0.5 s on.
     """
 
     fate: str
@@ -106,8 +106,8 @@ def errors(grasp: Grasp, reference: Grasp, heat: HeatOfGrasps, reference_drops: 
         force=_rms(grasp.normal[held] - FORCE),
         force_reference=_rms(means),
         jitter=1e6 * float(np.sqrt(apart.var(axis=2).sum(axis=-1).mean())),
-        drop=float(np.where(since > FIRST, off, 0.0).max(axis=(0, 2)).mean()),
-        drop_late=float(np.where(since > LATE, off, 0.0).max(axis=(0, 2)).mean()),
+        drop=float(np.median(np.where(since > FIRST, off, 0.0).max(axis=(0, 2)))),
+        drop_late=float(np.median(np.where(since > LATE, off, 0.0).max(axis=(0, 2)))),
     )
 
 

@@ -51,7 +51,7 @@ _PANELS = (
     ("force", "Force against the command", "RMS error of the normal force (N)"),
     ("force_reference", "Force against the reference run", "RMS error of the normal force (N)"),
     ("jitter", "Jitter of the contact", "RMS scatter of its centroid in 20 ms (µm)"),
-    ("drop", "Temperature drop", "largest error from 0.05 s on (K)"),
+    ("drop", "Temperature drop", "largest error from 0.05 s on, median (K)"),
 )
 _COURSE = "An object of aluminium is closed on with 10 N, lifted, shaken at 4 Hz and held"
 _COST = "cost: CPU time over that of what is shipped"

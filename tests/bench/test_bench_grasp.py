@@ -61,7 +61,7 @@ def still(normal: float = course.FORCE, shift: float = 0.0, failed: bool = False
         offset=offset,
         height=0.02 + np.cumsum(course.lift_rates())[:, None] * course.PERIOD,
         failed=np.array([failed]),
-        seconds=0.0,
+        seconds=np.zeros(steps),
     )
 
 

@@ -32,7 +32,7 @@ def measure(
     )
     output.line("jitter: RMS scatter of the contact's centroid within 20 ms, less the reference's")
     output.line(
-        f"drop: largest error of the temperature drop from {FIRST} s after the touch on; late: from {LATE} s on"
+        f"drop: largest error of the temperature drop from {FIRST} s after the touch on, median; late: from {LATE} s on"
     )
     header = (
         "worst of four shapes",
