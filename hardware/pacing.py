@@ -36,8 +36,8 @@ class RealTime:
 
 
 class VirtualTime:
-    """Lets time go on for several virtual lines together. The first one tells what time it is; one that is ahead, as
-    after an answer that took its time, is waited for."""
+    """Lets time go on for several virtual lines together. The first one tells what time it is and is moved last, so
+    that it meets what the others have done; one that is ahead, as after an answer that took its time, is waited for."""
 
     def __init__(self, lines: Sequence[VirtualLine]) -> None:
         self._lines = tuple(lines)
@@ -48,6 +48,6 @@ class VirtualTime:
 
     def until(self, when: float) -> None:
         """See Pace."""
-        for line in self._lines:
+        for line in reversed(self._lines):
             if when > line.now:
                 line.advance(when - line.now)

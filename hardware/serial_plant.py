@@ -133,8 +133,9 @@ class SerialPlant:
         self._await(lambda: not self._gripper.status().moving, self.config.open_within, "the gripper to open")
         self._await(self._settled, self.config.settle_within, "the thermostats to reach their setpoint")
         self._opening = self._gripper.status().opening
-        self._queue.clear()
         self._take(self._tips.wait(1, self.config.open_within))
+        self._held = (self._queue[-1][0], *self._held[1:])
+        self._queue.clear()  # the episode's samples are those that follow
         self._trouble = ""
         self._end = self._pace.now()
         return self._still()
