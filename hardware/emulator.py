@@ -8,21 +8,13 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..thermal import (
-    IDEAL,
-    SignalChain,
-    Thermostat,
-    ThermostatState,
-    measure,
-    saturated,
-    settled,
-    thermostat_step,
-)
+from ..thermal import IDEAL, SignalChain, Thermostat, measure, saturated, settled
 from .decoder import Decoder
+from .emulated_plates import EmulatedPlates
 from .feel import Feel, Source, untouched
 from .frame import MICROSECONDS, SEQUENCE, Frame, encode_frame
 from .line_faults import LineFaults
@@ -54,15 +46,11 @@ from .messages import (
 )
 
 _TICK = 0.5e-6  # s, half a step of its clock: what is due so soon is due
-_CONTROL = 0.02  # s, period of the thermostats' controllers
 _REPORT = 1.0  # s between status messages while sampling
 _SELF_TEST = 0.3  # s that it takes
 _REMEMBERED = 8  # commands
 _ROOM = 1 << 16  # bytes that wait to be sent; its thread may sleep for a second where the machine is busy
-_OFF_SETPOINT = 1.0  # K
-_TOO_HOT = 70.0  # °C
 _SETPOINTS = (0.0, 60.0)  # °C
-_OFF = -1000.0  # °C, a setpoint at which no heater works
 _MOST_VOLTAGE = (2**31 - 1) / 1e9  # V in the sample's field
 _SUPPLY = 5.0  # V
 
@@ -102,8 +90,9 @@ class EmulatedFingertips:
         self.rng = rng or np.random.default_rng(0)
         self.calibration = calibration or Calibration()
         self.line = LineFaults()
-        self.broken_thermistors: set[int] = set()
-        self.broken_heaters: set[int] = set()
+        self._plates = EmulatedPlates(self.model.thermostat)
+        self.broken_thermistors = self._plates.broken_thermistors
+        self.broken_heaters = self._plates.broken_heaters
         self.saturated: set[int] = set()
         self.stall_until = 0.0
         self.executed: list[Message] = []
@@ -112,10 +101,6 @@ class EmulatedFingertips:
         self._out: deque[bytes] = deque()
         self._late: list[tuple[float, Acknowledgement]] = []
         self._planned: list[tuple[float, Callable[[], None]]] = []
-        ambient = np.array([self.model.thermostat.ambient])
-        zero = np.zeros(1)
-        self._plates = [ThermostatState(ambient, ambient, ambient, zero, zero) for _ in range(2)]
-        self._controlled = 0.0
         self.reboot()
 
     def reboot(self) -> None:
@@ -128,22 +113,18 @@ class EmulatedFingertips:
         self._samples = self._overruns = self._repeats = 0
         self._next_sample = self._next_report = self._test_done = math.inf
         self._tested = Check(0)
-        self._setpoint: Pair = (math.nan, math.nan)
-        self._hot = False
+        self._plates.setpoint, self._plates.hot = (math.nan, math.nan), False
         self._unidentified = True
         self._session: int | None = None
         self._results: dict[int, Result] = {}
-        self._chain = settled(np.array(self.source(self._now).voltage), 1.0)
+        self._rest()
         self._out.clear()
         self._late.clear()
         self._send(self._identity(self.model.protocol))
 
     def overheat(self, fingertip: int) -> None:
         """Its plate is at 80 °C from now on, cooling."""
-        hot = np.array([80.0])
-        self._plates[fingertip] = replace(
-            self._plates[fingertip], temperature=hot, measured=hot, previous=hot
-        )
+        self._plates.put(fingertip, 80.0)
 
     def plan(self, time: float, action: Callable[[], None]) -> None:
         """Has `action` done at that time, s."""
@@ -249,13 +230,13 @@ class EmulatedFingertips:
             self._rate = message.rate
             self._next_sample = self._now + 1.0 / message.rate if message.rate else math.inf
             self._next_report = self._now + _REPORT if message.rate else math.inf
-            self._chain = settled(np.array(self.source(self._now).voltage), 1.0)
+            self._rest()
         elif isinstance(message, SetSetpoint):
             low, high = _SETPOINTS
             if not all(math.isnan(value) or low <= value <= high for value in message.setpoint):
                 return Result.BAD_VALUE
-            self._control(self._now, self.source(self._now))
-            self._setpoint, self._hot = message.setpoint, False
+            self._control()
+            self._plates.setpoint, self._plates.hot = message.setpoint, False
         elif isinstance(message, SetCalibration):
             self.calibration = Calibration(**{name: getattr(message, name) for name in Calibration.__slots__})
         elif isinstance(message, RunSelfTest):
@@ -265,14 +246,14 @@ class EmulatedFingertips:
         return Result.DONE
 
     def _sample(self) -> None:
-        feel = self.source(self._now)
-        self._control(self._now, feel)
+        self._feel = feel = self.source(self._now)
+        self._control()
         volts, flags = self._convert(feel)
         if sum(map(len, self._out)) > _ROOM:
             self._overruns += 1
             return
         self._samples += 1
-        self._send(Sample(volts, self._temperatures(), feel.force), flags)
+        self._send(Sample(volts, self._plates.temperatures, feel.force), flags)
 
     def _convert(self, feel: Feel) -> tuple[Pair, Flag]:
         """What the converter says of the voltages, and which are at an end of its range."""
@@ -289,38 +270,13 @@ class EmulatedFingertips:
         flags = Flag.SATURATED_LEFT * int(full[0]) | Flag.SATURATED_RIGHT * int(full[1])
         return (float(volts[0]), float(volts[1])), Flag(flags)
 
-    def _control(self, now: float, feel: Feel) -> None:
-        """The thermostats up to now, in whole periods of their controllers."""
-        while self._controlled + _CONTROL <= now:
-            self._controlled += _CONTROL
-            for i in range(2):
-                setpoint = self._setpoint[i]
-                off = math.isnan(setpoint) or self._hot or i in self.broken_heaters | self.broken_thermistors
-                model = replace(self.model.thermostat, setpoint=_OFF if off else setpoint)
-                self._plates[i] = thermostat_step(model, self._plates[i], np.array([feel.heat[i]]), _CONTROL)
-        if feel.thermostat is not None:
-            for i, given in enumerate(feel.thermostat):
-                plate = np.array([given])
-                self._plates[i] = replace(self._plates[i], temperature=plate, measured=plate, previous=plate)
-        self._hot |= any(float(plate.measured[0]) >= _TOO_HOT for plate in self._plates)
+    def _control(self) -> None:
+        self._plates.advance(self._now, self._feel.heat, self._feel.thermostat)
 
-    def _temperatures(self) -> Pair:
-        left, right = (
-            math.nan if i in self.broken_thermistors else float(plate.measured[0])
-            for i, plate in enumerate(self._plates)
-        )
-        return left, right
-
-    def _flags(self) -> Flag:
-        flags = Flag.UNIDENTIFIED if self._unidentified else Flag(0)
-        if self._hot:
-            flags |= Flag.OVER_TEMPERATURE
-        for i, temperature in enumerate(self._temperatures()):
-            if math.isnan(temperature):
-                flags |= Flag(Flag.OPEN_LEFT << i)
-            elif abs(temperature - self._setpoint[i]) > _OFF_SETPOINT:  # never where it is off, NaN
-                flags |= Flag(Flag.OFF_SETPOINT_LEFT << i)
-        return flags
+    def _rest(self) -> None:
+        """The amplifier has seen the present voltage for long."""
+        self._feel = self.source(self._now)
+        self._chain = settled(np.array(self._feel.voltage), 1.0)
 
     def _identity(self, protocol: tuple[int, int]) -> Identity:
         model, chain = self.model, self.model.chain
@@ -337,8 +293,9 @@ class EmulatedFingertips:
         )
 
     def _thermostats(self) -> ThermostatReport:
-        left, right = (max(0.0, float(plate.power[0])) for plate in self._plates)
-        return ThermostatReport(self._setpoint, self._temperatures(), (left, right))
+        self._control()
+        plates = self._plates
+        return ThermostatReport(plates.setpoint, plates.temperatures, plates.powers)
 
     def _status(self) -> Status:
         return Status(
@@ -352,13 +309,9 @@ class EmulatedFingertips:
         )
 
     def _self_test(self) -> SelfTest:
-        failed = Check(0)
+        failed = self._plates.failed
         if self.saturated:
             failed |= Check.CONVERTER
-        for i in self.broken_thermistors:
-            failed |= Check(Check.LEFT_THERMISTOR << i)
-        for i in self.broken_heaters:
-            failed |= Check(Check.LEFT_HEATER << i)
         noise = self.model.chain.noise
         left, right = (
             0.0 if i in self.broken_heaters else self.model.thermostat.power_limit / _SUPPLY for i in range(2)
@@ -369,7 +322,10 @@ class EmulatedFingertips:
         elapsed = (self._now - self._booted) * (1 + self.model.drift)
         device_us = round(elapsed * 1e6) % MICROSECONDS
         payload = encode_message(message)
-        frame = Frame(code_of(message), flags | self._flags(), self._sequence, device_us, payload)
+        flags |= self._plates.flags
+        if self._unidentified:
+            flags |= Flag.UNIDENTIFIED
+        frame = Frame(code_of(message), flags, self._sequence, device_us, payload)
         self._sequence = (self._sequence + 1) % SEQUENCE
         wire = self.line.spoil(encode_frame(frame), self.rng)
         if wire:
