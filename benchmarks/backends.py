@@ -49,8 +49,8 @@ def inputs(rows: int, networks: int) -> tuple[thermal.HeatTables, tuple[np.ndarr
     return tables, (network, state, conductance, difference)
 
 
-def ways(arguments: argparse.Namespace) -> tuple[dict[str, Callable[[], object]], int]:
-    """One step by each way, and the bytes that it must move."""
+def ways(arguments: argparse.Namespace, packages: set[str]) -> tuple[dict[str, Callable[[], object]], int]:
+    """One step by each way of numba, NumPy and these packages, and the bytes that it must move."""
     tables, given = inputs(arguments.rows, 1 if arguments.one_network else len(MATERIALS))
     network, state, conductance, difference = given
     active = np.ones(len(state), bool)
@@ -66,7 +66,7 @@ def ways(arguments: argparse.Namespace) -> tuple[dict[str, Callable[[], object]]
 
     if arguments.device == "cpu":
         found["numpy"] = called(thermal.array_step, np.zeros(0, arguments.dtype), np.asarray)
-    if importlib.util.find_spec("torch"):
+    if "torch" in packages:
         torch = importlib.import_module("torch")
         torch.set_num_threads(1)
         on = torch.zeros(0, dtype=getattr(torch, arguments.dtype), device=arguments.device)
@@ -78,7 +78,7 @@ def ways(arguments: argparse.Namespace) -> tuple[dict[str, Callable[[], object]]
             run = called(step, on, lambda values: torch.as_tensor(values, device=on.device))
             wait = torch.cuda.synchronize if arguments.device == "cuda" else lambda: None
             found[name] = lambda run=run, wait=wait: (run(), wait())
-    if importlib.util.find_spec("jax"):
+    if "jax" in packages:
         jax = importlib.import_module("jax")
         jax.config.update("jax_enable_x64", True)
         place = jax.devices("gpu" if arguments.device == "cuda" else arguments.device)[0]
@@ -128,7 +128,7 @@ def float32_error() -> float:
 
 def measure(arguments: argparse.Namespace) -> dict[str, Any]:
     """All figures."""
-    runs, moved = ways(arguments)
+    runs, moved = ways(arguments, {name for name in ("torch", "jax") if importlib.util.find_spec(name)})
     times = shortest(
         runs, arguments.repeats, time.process_time if arguments.device == "cpu" else time.perf_counter
     )

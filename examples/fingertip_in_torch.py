@@ -4,7 +4,7 @@ The mechanics here stand in for yours: two fingers a row, pushed by a motor onto
 need of them is the normal force on each pad, a tensor (rows, 2) in N, on any device. The lines marked (*) are theirs.
 """
 
-import torch
+import torch  # pyright: ignore[reportMissingImports]
 
 from thermograsp import thermal
 
