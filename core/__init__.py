@@ -14,4 +14,10 @@ register(
     vector_entry_point="thermograsp.envs:GraspVectorEnv",
 )
 
+register(
+    id="thermograsp/Identify-v0",
+    entry_point="thermograsp.envs:IdentifyEnv",
+    vector_entry_point="thermograsp.envs:IdentifyVectorEnv",
+)
+
 del register

@@ -1,8 +1,11 @@
 """MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments."""
 
-from .grasp import BatchState, GraspBatch, action_of, action_space, command_of
-from .grasp_env import GraspEnv
-from .grasp_vector import GraspVectorEnv
+from .actions import action_of, action_space, command_of
+from .grasp import BatchState, GraspBatch
+from .grasp_env import GraspEnv, GraspVectorEnv
+from .grasp_task import GraspTask
+from .identify_env import IdentifyEnv, IdentifyVectorEnv
+from .identify_task import IdentifyTask
 from .mechanics import ContactRecord, Mechanics, MechanicsState
 from .meshes import MeshShape, load_mesh
 from .observation import observation_space
@@ -23,7 +26,6 @@ from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
 from .solver_settings import SolverSettings
-from .tasks import GraspTask
 from .things import Thing
 
 __all__ = [
@@ -37,6 +39,9 @@ __all__ = [
     "GraspEnv",
     "GraspTask",
     "GraspVectorEnv",
+    "IdentifyEnv",
+    "IdentifyTask",
+    "IdentifyVectorEnv",
     "Mass",
     "Mechanics",
     "MechanicsState",

@@ -10,63 +10,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import gymnasium
 import numpy as np
-from numba import njit
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.plant import Command, Plant, Reading, merged, plant_factory
+from thermograsp.plant import Plant, Reading, merged, plant_factory
 
-from .mechanics import MAX_FORCE, MAX_LIFT_RATE
+from .grasp_task import GraspTask
 from .observation import Observation, Observer, observation_space
-from .scene import MAX_OPENING
-from .tasks import GraspTask, Outcome, TaskState, fresh, judge, stopped
+from .tasks import Outcome, Task, stopped
 
-_ENDS = ("dropped", "crushed")
 _EVERY_STEP = (
     "material", "temperature_drop", "contact_area", "conductance", "rung", "events", "unknown", "late",
 )  # fmt: skip
-
-
-def action_space() -> gymnasium.spaces.Box:
-    """Target opening 0 .. 85 mm, force limit 0 .. 40 N, lift rate -50 .. 50 mm/s, each scaled to -1 .. 1."""
-    return gymnasium.spaces.Box(-1.0, 1.0, (3,), np.float32)
-
-
-def command_of(action: np.ndarray) -> Command:
-    """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
-    finite."""
-    array = np.ascontiguousarray(action, dtype=float)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise InvalidValueError(
-            f"an action is (3,): opening, force limit, lift rate, each -1 .. 1; got shape {np.shape(action)[1:]}"
-        )
-    command = Command(np.empty(len(array)), np.empty(len(array)), np.empty(len(array)))
-    row = _scale(array, command.opening, command.force_limit, command.lift_rate)
-    if row >= 0:
-        raise InvalidValueError(
-            f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
-        )
-    return command
-
-
-@njit(cache=True, error_model="numpy")
-def _scale(action, opening, force_limit, lift_rate):
-    """Fills the commands; returns the first row that is not finite, -1 where all are."""
-    for b in range(len(action)):
-        for i in range(3):
-            if not np.isfinite(action[b, i]):
-                return b
-        opening[b] = (min(max(action[b, 0], -1.0), 1.0) + 1) / 2 * MAX_OPENING
-        force_limit[b] = (min(max(action[b, 1], -1.0), 1.0) + 1) / 2 * MAX_FORCE
-        lift_rate[b] = min(max(action[b, 2], -1.0), 1.0) * MAX_LIFT_RATE
-    return -1
-
-
-def action_of(opening: float, force_limit: float, lift_rate: float) -> np.ndarray:
-    """The action (3,) of a command in m, N and m/s."""
-    scaled = (2 * opening / MAX_OPENING - 1, 2 * force_limit / MAX_FORCE - 1, lift_rate / MAX_LIFT_RATE)
-    return np.array(scaled, np.float32)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +31,7 @@ class BatchState:
     plant: Any
     history: np.ndarray
     last: tuple[np.ndarray, ...]
-    task: TaskState
+    task: Any
     reading: Reading | None
 
 
@@ -106,9 +61,11 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
     info: dict[str, Any] = {"success": False}
     if outcome is not None:
         info["success"] = bool(outcome.success[row])
-        for name in _ENDS:
-            if getattr(outcome, name)[row]:
+        for name, ended in outcome.reasons.items():
+            if ended[row]:
                 info[name] = True
+        for name, values in outcome.told.items():
+            info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
         if reading.error[row]:
             info["error"] = reading.error[row]
     for name in _EVERY_STEP:
@@ -121,31 +78,35 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
     return info
 
 
-def infos_of(reading: Reading, outcome: Outcome | None, rows: np.ndarray) -> dict[str, Any]:
+def infos_of(
+    reading: Reading, outcome: Outcome | None, rows: np.ndarray, judged: np.ndarray | None = None
+) -> dict[str, Any]:
     """The same of the environments where `rows` (B,) is True, as a vector environment gives it: name -> (B, ...) and
-    _name -> (B,), which rows have it."""
+    _name -> (B,), which rows have it. judged: (B,), the rows that took a step and were not reset (None: all)."""
     infos: dict[str, Any] = {}
+    judged = rows if judged is None else rows & judged
 
     def add(name: str, values: np.ndarray, have: np.ndarray) -> None:
-        infos[name], infos["_" + name] = values, have
+        if not have.all():
+            values = values.copy()
+            values[~have] = None if values.dtype == object else 0
+        infos[name], infos["_" + name] = values, have.copy()
 
-    add("success", outcome.success & rows if outcome else np.zeros(len(rows), bool), rows.copy())
+    add("success", outcome.success if outcome else np.zeros(len(rows), bool), rows)
     if outcome is not None:
-        for name in _ENDS:
-            ended = getattr(outcome, name) & rows
+        for name, reason in outcome.reasons.items():
+            ended = reason & rows
             if ended.any():
-                add(name, ended, ended.copy())
+                add(name, ended, ended)
+        if judged.any():
+            for name, values in outcome.told.items():
+                add(name, values, judged)
         broken = np.array([bool(error) for error in reading.error]) & rows
         if broken.any():
-            reasons = np.array([error or None for error in reading.error], object)
-            reasons[~rows] = None
-            add("error", reasons, broken)
+            add("error", np.array(reading.error, object), broken)
     for name in _EVERY_STEP:
         if name in reading.truth:
-            values = reading.truth[name].copy()
-            if not rows.all():
-                values[~rows] = None if values.dtype == object else 0
-            add(name, values, rows.copy())
+            add(name, reading.truth[name].copy(), rows)
     randomized = reading.truth.get("randomized")
     if randomized:
         nested: dict[str, Any] = {}
@@ -156,21 +117,20 @@ def infos_of(reading: Reading, outcome: Outcome | None, rows: np.ndarray) -> dic
 
 
 class GraspBatch:
-    """`num_envs` grasp environments over a plant. task: what is judged. plant: "simulated" or a URL. Other keywords
-    go to the plant (SimulationConfig)."""
+    """`num_envs` environments over a plant. task: what actions mean and what is judged. plant: "simulated" or a URL.
+    Other keywords go to the plant (SimulationConfig)."""
 
     def __init__(
-        self, num_envs: int = 1, *, plant: str = "simulated", task: GraspTask | None = None, **config: Any
+        self, num_envs: int = 1, *, plant: str = "simulated", task: Task | None = None, **config: Any
     ) -> None:
-        self.task = task or GraspTask()
+        self.task: Task = task or GraspTask()
         self.plant: Plant = plant_factory(plant)(plant, num_envs, **config)
         self.num_envs = num_envs
         self.observation_space = observation_space()
-        self.action_space = action_space()
+        self.action_space = self.task.action_space()
         self._observer = Observer(num_envs)
-        self._judged = fresh(num_envs)
+        self._judged = self.task.fresh(num_envs)
         self._all = np.ones(num_envs, bool)
-        self._unbreakable = np.full(num_envs, np.inf)
         self.reading: Reading | None = None
 
     @property
@@ -191,23 +151,21 @@ class GraspBatch:
         chosen = np.zeros(self.num_envs, bool)
         chosen[list(rows)] = True
         self._observer.restart(chosen)
-        for values in (self._judged.elapsed, self._judged.held, self._judged.lifted):
+        for values in self._judged:
             values[chosen] = 0
         self.reading = reading
         return self._observer.observe(reading, np.zeros(self.num_envs), chosen), reading
 
     def step(self, action: np.ndarray) -> Step:
-        """One control step of all environments. action: (B, 3). An environment whose simulation broke down is
+        """One control step of all environments. action: (B, ...). An environment whose simulation broke down is
         truncated, the reason in info["error"], with its last finite observation."""
-        command = command_of(action)
+        command = self.task.command(action)
         self.reading = reading = self.plant.step(command)
         running = self._all
         if any(reading.error):
             running = np.array([not error for error in reading.error])
         seen = self._observer.observe(reading, command.force_limit, running)
-        lift = reading.truth["lift"] if "lift" in reading.truth else reading.height
-        crushing = reading.truth["crushing_force"] if "crushing_force" in reading.truth else self._unbreakable
-        self._judged, outcome = judge(self.task, self._judged, self.dt, reading.force, lift, crushing)
+        self._judged, outcome = self.task.judge(self._judged, self.dt, action, reading)
         if running is not self._all:
             outcome = stopped(outcome, ~running)
         return Step(seen, outcome.reward, outcome.terminated, outcome.truncated, outcome, reading)

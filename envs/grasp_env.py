@@ -1,23 +1,15 @@
-"""thermograsp/Grasp-v0: one gripper, one object, two fingertips that feel heat."""
+"""thermograsp/Grasp-v0: close on the object, lift it, hold it."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import gymnasium
-import numpy as np
-
-from thermograsp.errors import InvalidValueError, unknown_name
-
-from .grasp import BatchState, GraspBatch, info_of
-from .observation import Observation
-from .tasks import GraspTask
-
-RENDER_MODES = ["human", "rgb_array"]
-FRAMES_PER_SECOND = 50
+from .grasp_task import GraspTask
+from .touch_env import TouchEnv
+from .touch_vector import TouchVectorEnv
 
 
-class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
+class GraspEnv(TouchEnv):
     """Close on the object, lift it by 5 cm and hold it there, feeling what it is made of.
 
     Action, Box(-1, 1, (3,)), clipped: target opening 0 .. 85 mm, force limit 0 .. 40 N, lift rate -50 .. 50 mm/s.
@@ -46,96 +38,21 @@ class GraspEnv(gymnasium.Env[Observation, np.ndarray]):
     material.
     """
 
-    metadata: dict[str, Any] = {"render_modes": RENDER_MODES, "render_fps": FRAMES_PER_SECOND}  # noqa: RUF012
-
     def __init__(
         self,
         render_mode: str | None = None,
         *,
         hold_seconds: float = 2.0,
         seconds: float = 10.0,
-        camera: str = "overview",
-        width: int = 480,
-        height: int = 360,
         **config: Any,
     ) -> None:
-        if render_mode is not None and render_mode not in RENDER_MODES:
-            raise unknown_name("render_mode", render_mode, RENDER_MODES)
-        self.batch = GraspBatch(1, task=GraspTask(hold_seconds, seconds), **config)
-        self.observation_space: gymnasium.spaces.Dict = self.batch.observation_space  # pyright: ignore
-        self.action_space = self.batch.action_space
-        self.render_mode = render_mode
-        self._picture = (camera, width, height)
-        self._renderer: Any = None
-        self._started = False
-
-    @property
-    def model(self) -> Any:
-        """The mujoco.MjModel. Raises InvalidValueError on hardware, which has none."""
-        model = getattr(self.batch.plant, "model", None)
-        if model is None:
-            raise InvalidValueError("this plant is not simulated: there is no MuJoCo model")
-        return model
-
-    @property
-    def dt(self) -> float:
-        """s, the control period."""
-        return self.batch.dt
-
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Observation, dict[str, Any]]:
-        """A new episode; the same seed gives the same bits."""
-        super().reset(seed=seed)
-        seen, reading = self.batch.reset([0], [self.np_random], options)
-        self._started = True
-        if self.render_mode == "human":
-            self.render()
-        return _first(seen), info_of(reading, None, 0)
-
-    def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """One control step of 20 ms."""
-        if not self._started:
-            raise InvalidValueError("call reset before step")
-        step = self.batch.step(np.asarray(action)[None])
-        if self.render_mode == "human":
-            self.render()
-        return (
-            _first(step.observation),
-            float(step.reward[0]),
-            bool(step.terminated[0]),
-            bool(step.truncated[0]),
-            step.info(0),
-        )
-
-    def render(self) -> np.ndarray | None:
-        """(height, width, 3) uint8 in "rgb_array", None in "human" (a window). Fingertips and object are coloured by
-        their temperature. Raises MissingDependencyError, naming the packages, where there is no GL library."""
-        if self.render_mode is None:
-            gymnasium.logger.warn("render() without a render_mode: give render_mode='rgb_array' or 'human'")
-            return None
-        if self._renderer is None:
-            from .picture import GraspPicture  # loads GL
-
-            self._renderer = GraspPicture(self.batch.plant, self.render_mode, *self._picture)
-        return self._renderer.draw(self.batch.reading)
-
-    def state(self) -> BatchState:
-        """Everything that decides the future, for set_state; picklable."""
-        return self.batch.state()
-
-    def set_state(self, state: BatchState) -> None:
-        """Continues from a state, bit for bit, in this or another environment of the same keywords."""
-        (self._np_random,) = self.batch.set_state(state)
-        self._started = True
-
-    def close(self) -> None:
-        """Closes the window, if any, and the plant."""
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
-        self.batch.close()
+        super().__init__(GraspTask(hold_seconds, seconds), render_mode, **config)
 
 
-def _first(observation: Observation) -> Observation:
-    return {name: value[0] for name, value in observation.items()}
+class GraspVectorEnv(TouchVectorEnv):
+    """`num_envs` grasp environments in one array step; keywords as GraspEnv's."""
+
+    def __init__(
+        self, num_envs: int = 1, *, hold_seconds: float = 2.0, seconds: float = 10.0, **config: Any
+    ) -> None:
+        super().__init__(GraspTask(hold_seconds, seconds), num_envs, **config)

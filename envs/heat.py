@@ -63,7 +63,8 @@ class HeatStep:
 
 class GraspHeat:
     """The thermal side of `num_envs` grasps. tolerance: K. air: W/(m2 K) on the objects. dt: s, spacing of heat
-    samples, `samples` of them in a control step. sensor_temperature: °C of the thermostats. cache: keep networks on
+    samples, `samples` of them in a control step. sensor_temperature: °C of the thermostats, one or
+    each fingertip's. cache: keep networks on
     disk."""
 
     def __init__(
@@ -74,7 +75,7 @@ class GraspHeat:
         air: float,
         dt: float,
         samples: int,
-        sensor_temperature: float,
+        sensor_temperature: float | tuple[float, float],
         cache: bool = True,
     ) -> None:
         self._tolerance, self._air, self._dt, self._samples = tolerance, air, dt, samples
@@ -89,11 +90,13 @@ class GraspHeat:
         self._state = np.zeros((num_envs, 0))
 
     def reset(
-        self, rows: Sequence[int], things: Sequence[Thing], sensor_temperatures: Sequence[float] | None = None
+        self, rows: Sequence[int], things: Sequence[Thing], sensor_temperatures: np.ndarray | None = None
     ) -> None:
         """The rows start with new objects, everything at its first temperature. sensor_temperatures: °C of each row's
-        thermostats where they differ from the batch's."""
-        temperatures = sensor_temperatures or [self._sensor_temperature] * len(rows)
+        thermostats, (n, F), where they differ from the batch's."""
+        temperatures = np.broadcast_to(self._sensor_temperature, (len(rows), 2))
+        if sensor_temperatures is not None:
+            temperatures = sensor_temperatures
         for row, thing, temperature in zip(rows, things, temperatures, strict=True):
             self._place(row, thing, temperature)
             self._state[row] = 0.0
@@ -131,14 +134,14 @@ class GraspHeat:
     def rest(self) -> HeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
         told = np.zeros(len(self._rows), HEAT_TOLD)
-        told["sensor_surface"] = self._rows["sensor_temperature"][:, None] + self._rows["offset"]
+        told["sensor_surface"] = self._rows["sensor_temperature"] + self._rows["offset"]
         told["object_surface"] = told["sensor_surface"] - self._rows["difference"]
         told["object_temperature"] = told["object_surface"][:, 0]
         return HeatStep(np.zeros((len(self._rows), self._samples, 2)), told)
 
     def set_thermostats(self, celsius: np.ndarray) -> None:
         """Temperatures (B, F) °C of the thermostats from now on."""
-        change = celsius - self._rows["sensor_temperature"][:, None] - self._rows["offset"]
+        change = celsius - self._rows["sensor_temperature"] - self._rows["offset"]
         self._rows["offset"] += change
         if self._tables is not None:
             tips = self._tables.fingertips
@@ -159,7 +162,7 @@ class GraspHeat:
     def set_state(self, rows: Sequence[int], state: HeatState) -> None:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
-            self._place(row, state.things[k], float(state.rows["sensor_temperature"][k]))
+            self._place(row, state.things[k], state.rows["sensor_temperature"][k])
             network = self._rows["network"][row]  # this batch's own number of it
             self._rows[row] = state.rows[k]
             self._rows["network"][row] = network
@@ -169,10 +172,10 @@ class GraspHeat:
 
     @property
     def sensor_temperatures(self) -> np.ndarray:
-        """(B,) °C of the thermostats at the start."""
+        """(B, F) °C of the thermostats at the start."""
         return self._rows["sensor_temperature"]
 
-    def _place(self, row: int, thing: Thing, sensor_temperature: float) -> None:
+    def _place(self, row: int, thing: Thing, sensor_temperature: np.ndarray) -> None:
         self._things[row] = thing
         self._laws[row] = thing.law
         mine = self._rows[row]
@@ -181,7 +184,7 @@ class GraspHeat:
         mine["capacity"] = thing.heat_capacity
         mine["element_capacity"] = thing.stack.heat_capacity
         # In steps, so that nearly equal temperatures share a network.
-        above = abs(sensor_temperature - thing.temperature) / LEAST_DIFFERENCE
+        above = np.abs(sensor_temperature - thing.temperature).max() / LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
         key = (thing.geometry, difference)
         if key not in self._networks:

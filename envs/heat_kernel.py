@@ -47,7 +47,7 @@ def advance_grasps(laws, rows, state, normal, place, drop, told, *numbers):
             forget_row(tables, row.network, x)
         for f in range(2):
             one.heat[f] = one.flow[f] = 0.0
-            one.sensor_surface[f] = row.sensor_temperature + row.offset[f]
+            one.sensor_surface[f] = row.sensor_temperature[f] + row.offset[f]
             one.object_surface[f] = one.sensor_surface[f] - row.difference[f]
             for k in range(samples):
                 drop[b, k, f] = 0.0

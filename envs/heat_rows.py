@@ -20,7 +20,7 @@ HEAT_ROW = np.dtype(
         ("stored", "f8", (2,)),
         ("anchor", "f8", (2, 3)),
         ("books", "f8", (3,)),
-        ("sensor_temperature", "f8"),
+        ("sensor_temperature", "f8", (2,)),
         ("reach", "f8"),
         ("capacity", "f8"),
         ("element_capacity", "f8"),

@@ -44,11 +44,12 @@ class SimulationConfig:
     """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed
     materials. mode: T or O. objects: the object's shape, or a list to draw from per episode (density and friction
     are the material's where a shape gives none). tolerance: K that the thermal network keeps. air: W/(m2 K).
-    Temperatures in °C. thermostat: one of finite power (its setpoint is sensor_temperature), None for an ideal one.
-    placement: m and degree; the object lies within +- these of the middle, drawn per episode. randomize: what else
-    differs from episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one).
-    solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10
-    ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
+    Temperatures in °C, that of the sensors one or each fingertip's. thermostat: one of finite power (its setpoint is
+    sensor_temperature), None for an ideal one. placement: m and degree; the object lies within +- these of the middle,
+    drawn per episode. randomize: what else differs from episode to episode, records of randomization.py. fingertips:
+    how many carry a sensor (1: the left one). solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
+    step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
+    disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -57,7 +58,7 @@ class SimulationConfig:
     sensor: str | SensorStack = "seed"
     signal: str | SignalChain = "ads1115"
     air: float = 5.0
-    sensor_temperature: float = 36.0
+    sensor_temperature: float | tuple[float, float] = 36.0
     thermostat: Thermostat | None = None
     object_temperature: float = 24.0
     placement: tuple[float, float] = (0.002, 2.0)
@@ -75,7 +76,13 @@ class SimulationConfig:
             raise InvalidValueError(f"fingertips must be 1 or 2, got {self.fingertips!r}")
         positive("tolerance (K)", self.tolerance)
         non_negative("air (W/(m2 K))", self.air)
-        finite("sensor_temperature (°C)", self.sensor_temperature)
+        for value in self.sensor_temperatures:
+            finite("sensor_temperature (°C)", value)
+        if self.thermostat is not None and len(set(self.sensor_temperatures)) > 1:
+            raise InvalidValueError(
+                f"sensor_temperature {self.sensor_temperature!r} °C: a thermostat of finite power has one setpoint; "
+                "give one temperature, or thermostat=None"
+            )
         finite("object_temperature (°C)", self.object_temperature)
         for value in self.placement:
             non_negative("placement (m, degree)", value)
@@ -97,6 +104,16 @@ class SimulationConfig:
                 f"material is an empty list: give one of {len(materials())} names, or None"
             )
         return tuple(material(name) for name in listed)
+
+    @property
+    def sensor_temperatures(self) -> tuple[float, float]:
+        """°C of the left and the right thermostat. Raises InvalidValueError for what is neither one nor two."""
+        given = np.ravel(self.sensor_temperature).tolist()
+        if len(given) not in (1, 2):
+            raise InvalidValueError(
+                f"sensor_temperature must be one °C or two, got {self.sensor_temperature!r}"
+            )
+        return given[0], given[-1]
 
     @property
     def shapes(self) -> tuple[ObjectSpec, ...]:
@@ -182,7 +199,7 @@ class SimulatedPlant:
             num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, most_delay
         )
         self._drawn = [plain] * num_envs
-        self._setpoints = np.full((num_envs, 2), config.sensor_temperature)
+        self._setpoints = np.tile(config.sensor_temperatures, (num_envs, 1))
         self._rest = np.zeros(num_envs)
         # Replaced, never written to: readings keep them.
         self._material, self._rung = np.full(num_envs, "", object), np.full(num_envs, "", object)
@@ -190,7 +207,7 @@ class SimulatedPlant:
         self._randomized: dict[str, np.ndarray] = {}
         self._thermostat = config.thermostat
         if self._thermostat is not None:
-            self._thermostat = replace(self._thermostat, setpoint=config.sensor_temperature)
+            self._thermostat = replace(self._thermostat, setpoint=config.sensor_temperatures[0])
             self._thermostats = _distinct(settled_thermostat(self._thermostat, 2 * num_envs))
 
     @property
@@ -225,7 +242,7 @@ class SimulatedPlant:
         self.heat.reset(
             rows,
             [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things],
-            [self.config.sensor_temperature + self._drawn[row]["thermostat_error"] for row in rows],
+            self._setpoints[list(rows)] + np.array([[self._drawn[row]["thermostat_error"]] for row in rows]),
         )
         chosen = list(rows)
         if self._thermostat is not None:
@@ -247,8 +264,8 @@ class SimulatedPlant:
             after = thermostat_step(self._thermostat, self._thermostats, step.told["drawn"].ravel(), self.dt)
             self._thermostats = _distinct(after)
             # The controller keeps its own sensor at the setpoint; where that errs, the plate is as much warmer.
-            warmer = self.heat.sensor_temperatures - self.config.sensor_temperature
-            self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2) + warmer[:, None])
+            warmer = self.heat.sensor_temperatures - self._setpoints
+            self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2) + warmer)
         error = tuple(self.mechanics.failure)
         return Reading(
             opening=motion.opening,

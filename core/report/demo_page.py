@@ -13,7 +13,7 @@ from matplotlib.colors import to_hex
 from PIL import Image
 
 from thermograsp.envs.colormap import colour_table, temperature_colour
-from thermograsp.envs.tasks import LIFTED
+from thermograsp.envs.grasp_task import LIFTED
 from thermograsp.report.curves import Curve, Mark, chart
 from thermograsp.report.demo_runs import COLOURS, FILMED, Grasp, ModeRun
 from thermograsp.report.demo_tables import ABOUT, Settings, details, numbers

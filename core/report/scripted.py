@@ -8,7 +8,7 @@ import numpy as np
 
 from thermograsp.envs import action_of
 from thermograsp.envs.mechanics import MAX_FORCE, MAX_LIFT_RATE
-from thermograsp.envs.tasks import LIFTED
+from thermograsp.envs.grasp_task import LIFTED
 from thermograsp.errors import InvalidValueError, positive
 
 _MARGIN = 0.002  # m that the arm rises beyond what the task asks, for an object that slips a little

@@ -1,4 +1,4 @@
-"""thermograsp/Grasp-v0, many at once: one plant, one array step."""
+"""What all vector environments share: one plant, one array step."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from thermograsp.errors import InvalidValueError
 
 from .grasp import GraspBatch, infos_of
 from .observation import Observation
-from .tasks import GraspTask, cleared
+from .tasks import Task, cleared
 
 
-class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
-    """`num_envs` grasp environments; observation, action, info and keywords as GraspEnv's.
+class TouchVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
+    """`num_envs` environments of a task; observation, action, info and keywords as the single one's.
 
     Environment i of a batch reset with seed s is the single environment reset with s + i, bit for bit. An environment
     that ended is reset by the next step, which ignores its action (autoreset NEXT_STEP).
@@ -25,20 +25,12 @@ class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
 
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": []}  # noqa: RUF012
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        *,
-        hold_seconds: float = 2.0,
-        seconds: float = 10.0,
-        render_mode: None = None,
-        **config: Any,
-    ) -> None:
+    def __init__(self, task: Task, num_envs: int = 1, *, render_mode: None = None, **config: Any) -> None:
         if render_mode is not None:
             raise InvalidValueError("the vector environment draws nothing: use the single one to render")
         if num_envs < 1:
             raise InvalidValueError(f"num_envs must be at least 1, got {num_envs}")
-        self.batch = GraspBatch(num_envs, task=GraspTask(hold_seconds, seconds), **config)
+        self.batch = GraspBatch(num_envs, task=task, **config)
         self.num_envs = num_envs
         self.single_observation_space = self.batch.observation_space
         self.single_action_space = self.batch.action_space
@@ -89,19 +81,22 @@ class GraspVectorEnv(VectorEnv[Observation, np.ndarray, np.ndarray]):
             raise InvalidValueError("call reset before step")
         actions = np.asarray(actions)
         starting = self._ended.copy()
-        if starting.any():
-            # What the step does to a row that is about to start anew does not matter; its action must only be valid.
-            actions = np.where(starting[:, None], 0.0, actions)
-        step = self.batch.step(actions)
         if not starting.any():
+            step = self.batch.step(actions)
             self._ended = step.terminated | step.truncated
             infos = infos_of(step.reading, step.outcome, ~starting)
             return step.observation, step.reward, step.terminated, step.truncated, infos
         rows = [int(row) for row in np.flatnonzero(starting)]
+        # What the step does to a row that is about to start anew does not matter; its action must only be valid, and
+        # the random numbers that it takes are given back.
+        before = [self._rngs[row].bit_generator.state for row in rows]
+        step = self.batch.step(np.where(starting[:, None], 0.0, actions))
+        for row, state in zip(rows, before, strict=True):
+            self._rngs[row].bit_generator.state = state
         seen, reading = self.batch.reset(rows, [self._rngs[row] for row in rows])
         outcome = cleared(step.outcome, starting)
         self._ended = outcome.terminated | outcome.truncated
-        infos = infos_of(reading, outcome, np.ones(self.num_envs, bool))
+        infos = infos_of(reading, outcome, np.ones(self.num_envs, bool), ~starting)
         return seen, outcome.reward, outcome.terminated, outcome.truncated, infos
 
     def close_extras(self, **kwargs: Any) -> None:
