@@ -2,7 +2,7 @@
 
 Every variant goes through the same course (grasp_course) with a box, a cylinder, a sphere and a mesh, each placed a few
 times. The reference is a run with a time step of 0.1 ms and settings that are otherwise shipped; slip needs none: the
-load never passes a third of what friction can hold, so nothing should slip.
+load never passes a sixth of what friction can hold, so nothing should slip.
 """
 
 from __future__ import annotations
