@@ -23,6 +23,8 @@ from __future__ import annotations
 from functools import reduce
 from operator import add
 
+from thermograsp.errors import InvalidValueError
+
 from .array_tables import ArrayTables
 from .batch import HeatReading
 from .namespace import Array
@@ -38,10 +40,16 @@ def array_step(
     tables: array_tables. network: (B,) integers, which of the tables' networks; or one int for all rows. state: (B, K),
     zeros where everything is at its first temperature. conductance: (B, F) W/K of each contact, constant over the
     step, >= 0; 0 where nothing touches. difference: (B, F) K, what sensor less object was when both were uniform.
-    A value that is not finite makes its own row's results not finite; nothing is raised.
+    A value that is not finite makes its own row's results not finite. JAX takes the nearest network where there is none
+    of that index. Raises InvalidValueError where conductance or difference are not those of the tables' fingertips.
     """
     decay, hear, gram, push, read, _ = (table[network] for table in tables)
-    fingertips, ports, pairs = conductance.shape[-1], gram.shape[-2], gram.shape[-1]
+    ports, pairs, fingertips = gram.shape[-2], gram.shape[-1], (read.shape[-1] - 1) // 4
+    if not conductance.shape[-1] == difference.shape[-1] == fingertips:
+        raise InvalidValueError(
+            f"conductance and difference must end in an axis of {fingertips} fingertip(s), got shapes "
+            f"{tuple(conductance.shape)} and {tuple(difference.shape)}"
+        )
     modes = ports // fingertips
     heard = (state[..., None] * hear).sum(-2)
     drive = []

@@ -43,17 +43,16 @@ class ArrayTables(NamedTuple):
 
 def array_tables(tables: HeatTables, like: Array) -> ArrayTables:
     """The tables in the namespace, dtype and device of the array `like`, which holds floating-point numbers."""
-    stacked = (np.stack(arrays) for arrays in zip(*map(_network, *_split(tables)), strict=True))
-    return ArrayTables(*(as_like(array, like) for array in stacked))
-
-
-def _split(tables: HeatTables) -> tuple[list[HeatTables], list[int]]:
-    """One network's tables each, and the modes of the largest."""
-    count, most = len(tables.states), int(tables.modes.max())
-    return [HeatTables(tables.dt, *(array[i] for array in tables[1:])) for i in range(count)], [most] * count
+    most = int(tables.modes.max())
+    networks = [
+        _network(HeatTables(tables.dt, *(array[i] for array in tables[1:])), most)
+        for i in range(len(tables.states))
+    ]
+    return ArrayTables(*(as_like(np.stack(arrays), like) for arrays in zip(*networks, strict=True)))
 
 
 def _network(own: HeatTables, most: int) -> tuple[np.ndarray, ...]:
+    """The tables of one network, in the order of ArrayTables. most: modes of the largest network."""
     fingertips, states = own.drop.shape
     modes, pairs, dt = int(own.modes), len(POLES), own.dt
     # a contact's ports begin at f P whatever the network's own number of modes

@@ -141,6 +141,15 @@ def test_forgetting_is_the_compiled_one(case: Case) -> None:
     np.testing.assert_array_equal(found, expected)
 
 
+@pytest.mark.parametrize("wrong", ["conductance", "difference"])
+def test_another_number_of_fingertips_is_refused(wrong: str) -> None:
+    shapes = {"conductance": (4, 2), "difference": (4, 2), wrong: (4, 1)}
+    tables = array_tables(tables_of(("T", 2)), FLOAT64)
+    state = np.zeros((4, tables.decay.shape[1]))
+    with pytest.raises(InvalidValueError, match=r"2 fingertip\(s\)"):
+        array_step(tables, 0, state, np.ones(shapes["conductance"]), np.ones(shapes["difference"]))
+
+
 def test_integers_are_refused() -> None:
     with pytest.raises(InvalidValueError, match="floating point, got int64"):
         array_tables(tables_of(("T", 1)), np.zeros(0, int))
