@@ -53,7 +53,7 @@ class Method:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One method on one case. seconds: of computing per simulated second. preparation: s, once for a material. error:
+    """One method on one case. seconds: of CPU per simulated second. preparation: CPU s, once for a material. error:
     K, largest from 0.05 s on. ratio: seconds over those of the case's network for RATIO_TO. pareto: nothing measured on
     this case is both cheaper and better."""
 
@@ -135,9 +135,9 @@ def measure(
     exact = reference(problem, t[late]).temperature_drop
     ready: list[tuple[str, March, float]] = []
     for method in chosen:
-        begun = time.perf_counter()
+        begun = time.process_time()
         detail, march = method.prepare(problem, t)
-        ready.append((detail, march, time.perf_counter() - begun))
+        ready.append((detail, march, time.process_time() - begun))
     best = np.full(len(chosen), np.inf)
     errors = np.zeros(len(chosen))
     tickets = np.repeat(np.arange(len(chosen)), [method.repeats for method in chosen])
@@ -145,9 +145,9 @@ def measure(
     order = [i for i, method in enumerate(chosen) if method.repeats > 1] + rng.permutation(tickets).tolist()
     for i in order:
         shown(f"{name} {mode}: {chosen[i].family}")
-        begun = time.perf_counter()
+        begun = time.process_time()
         drop = ready[i][1]()
-        best[i] = min(best[i], time.perf_counter() - begun)
+        best[i] = min(best[i], time.process_time() - begun)
         errors[i] = float(np.max(np.abs(drop[late] - exact)))
     points = [
         Point(name, mode, m.family, m.setting, detail, best[i] / SECONDS, preparation, errors[i])

@@ -158,6 +158,4 @@ def _panel(axes: Axes, name: str, points: Sequence[Point], bottom: bool) -> None
                 avoid.append((a.seconds ** (1 - w) * b.seconds**w, a.error ** (1 - w) * b.error**w))
     place_labels(axes, labels, np.array(avoid))
     if bottom:
-        axes.set_xlabel(
-            "computing time per second of contact (s); above: over the network that auto 0.03 K takes"
-        )
+        axes.set_xlabel("CPU time per second of contact (s); above: over the network that auto 0.03 K takes")

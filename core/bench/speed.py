@@ -154,9 +154,7 @@ class _Layers:
         }
         self.same, found = True, {}
         for name in [LAYERS[i] for i in rng.permutation(len(LAYERS) - 1)] + [LAYERS[-1]]:
-            self._batch.set_state(self._start)
-            if name == "mujoco.batch":
-                self._bare.copy(self._mechanics, self._start.plant.mechanics)
+            self._restore(name)
             step, arguments = runs[name]
             wall, cpu = time.perf_counter(), time.process_time()
             last = None
@@ -169,3 +167,17 @@ class _Layers:
             rows = self._bare.batch.state if name == "mujoco.batch" else self._mechanics.state().rows
             self.same &= np.array_equal(rows, self._end)
         return found
+
+    def _restore(self, name: str) -> None:
+        """Puts what that layer works on back to where the block began."""
+        plant, rows = self._start.plant, range(self._batch.num_envs)
+        if name == "mujoco.batch":
+            self._bare.copy(self._mechanics, plant.mechanics)
+        elif name == "mechanics":
+            self._mechanics.set_state(plant.mechanics)
+        elif name == "heat":
+            self._plant.heat.set_state(rows, plant.heat)
+        elif name == "plant":
+            self._plant.set_state(rows, plant)
+        else:
+            self._batch.set_state(self._start)

@@ -86,5 +86,5 @@ def _plan(num_envs: int, quick: bool) -> tuple[int, int]:
     if quick:
         return 2, 10
     return (
-        (60, 25) if num_envs <= 16 else (30, 10) if num_envs <= 64 else (16, 6) if num_envs <= 256 else (8, 4)
+        (40, 25) if num_envs <= 16 else (24, 10) if num_envs <= 64 else (16, 6) if num_envs <= 256 else (8, 4)
     )
