@@ -11,20 +11,21 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
-from thermograsp.bench.identification import SETUP, Touches, conductance_nodes, times
+from thermograsp.bench.identification import Touches, conductance_nodes, times
 
 _CONDUCTANCES = 3000
 
 
 def exact_posterior(touches: Touches, seconds: float, curves: np.ndarray) -> np.ndarray:
-    """(N, M) probabilities from the first `seconds`. curves: (M, H, n) of pressed() at conductance_nodes()."""
+    """(N, M) probabilities from the first `seconds`. curves: (M, H, n) of pressed()."""
     count = len(times(seconds))
-    seebeck = SETUP.stack.seebeck
-    mean, deviation = SETUP.difference
-    variance = (SETUP.chain.noise**2 + SETUP.chain.resolution**2 / 12) / seebeck**2
-    offset = (SETUP.chain.offset / seebeck) ** 2
+    setup = touches.setup
+    seebeck = setup.stack.seebeck
+    mean, deviation = setup.difference
+    variance = (setup.chain.noise**2 + setup.chain.resolution**2 / 12) / seebeck**2
+    offset = (setup.chain.offset / seebeck) ** 2
     samples = touches.voltage[:, :count] / seebeck  # (N, n) K
-    nodes = np.log(conductance_nodes())
+    nodes = np.log(conductance_nodes(setup))
     fine = np.linspace(nodes[0], nodes[-1], _CONDUCTANCES)
     # (a, b) = a.b/v - (a.1)(1.b)/v^2 / (1/o + n/v): the inner product once the offset is integrated out
     weight = 1 / (1 / offset + count / variance) / variance**2

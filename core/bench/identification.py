@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from thermograsp import thermal
 from thermograsp.thermal import identify_prior
@@ -23,7 +24,7 @@ WINDOWS = (0.5, 1.0, 2.0, 4.0)  # s of contact
 SETUP = thermal.TouchSetup(model_error=0.0, sensor_temperature=(36.0, 0.0))
 """Ten seed materials' task: conductance 1e3 .. 2e4, object 24 +- 3 °C, thermostat 36 °C, the model exact."""
 
-_NODES = 160  # of log conductance, between which curves are interpolated
+_NODES = 64  # of log conductance, between which curves are interpolated by splines
 _FINE = 5  # steps of thermal.press in a sample's period
 _TOLERANCE = 0.002  # K of 12 K
 
@@ -31,8 +32,9 @@ _TOLERANCE = 0.002  # K of 12 K
 @dataclass(frozen=True, slots=True)
 class Touches:
     """voltage: (N, n) V at samples 10 ms, 20 ms, ... after the touch. label: (N,), which material. effusivity: (N,)
-    W s^0.5/(m2 K). conductance: (N,) W/(m2 K). difference: (N,) K."""
+    W s^0.5/(m2 K). conductance: (N,) W/(m2 K). difference: (N,) K. setup: what was known beforehand."""
 
+    setup: thermal.TouchSetup
     voltage: np.ndarray
     label: np.ndarray
     effusivity: np.ndarray
@@ -48,14 +50,15 @@ def times(seconds: float = WINDOWS[-1]) -> np.ndarray:
     return np.arange(1, round(seconds * RATE) + 1) / RATE
 
 
-def pressed(material: str, conductances: np.ndarray, setup: thermal.TouchSetup = SETUP) -> np.ndarray:
-    """(H, n) drop per K of difference behind the low-pass, stepped by thermal.press."""
+def pressed(setup: thermal.TouchSetup, material: str) -> np.ndarray:
+    """(H, n) drop per K of difference behind the low-pass at conductance_nodes(), stepped by thermal.press."""
+    conductances = conductance_nodes(setup).tolist()
     period, seconds = 1 / RATE / _FINE, float(times()[-1])
     # One network for all, chosen where the flux is least even over the patch.
     rung = thermal.press(material, conductance=max(conductances), tolerance=_TOLERANCE, seconds=seconds).rung
     drops = [
         thermal.press(material, conductance=h, seconds=seconds, dt=period, rung=rung).temperature_drop
-        for h in conductances.tolist()
+        for h in conductances
     ]
     amplifier = thermal.SignalChain(bandwidth=setup.chain.bandwidth)
     start = thermal.settled(np.zeros(len(drops)), 1.0)
@@ -64,57 +67,65 @@ def pressed(material: str, conductances: np.ndarray, setup: thermal.TouchSetup =
     return seen[:, _FINE - 1 :: _FINE]
 
 
-def conductance_nodes(setup: thermal.TouchSetup = SETUP) -> np.ndarray:
+def conductance_nodes(setup: thermal.TouchSetup) -> np.ndarray:
     """(H,) W/(m2 K), evenly spaced in their logarithm."""
     return np.geomspace(*setup.conductance, _NODES)
 
 
-def draw(rng: np.random.Generator, count: int, materials: Sequence[str], curves: np.ndarray) -> Touches:
-    """Touches of the materials in turn. curves: (M, H, n) of pressed() at conductance_nodes()."""
-    from scipy.interpolate import CubicSpline
-
+def draw(
+    rng: np.random.Generator,
+    setup: thermal.TouchSetup,
+    count: int,
+    materials: Sequence[str],
+    curves: np.ndarray,
+) -> Touches:
+    """Touches of the materials in turn. curves: (M, H, n) of pressed()."""
     label = np.arange(count) % len(materials)
-    conductance = _conductances(rng, count)
-    between = [CubicSpline(np.log(conductance_nodes()), one) for one in curves]
-    unit = np.array([between[k](np.log(h)) for k, h in zip(label.tolist(), conductance, strict=True)])
+    conductance = _conductances(rng, setup, count)
+    nodes = np.log(conductance_nodes(setup))
+    between = [CubicSpline(nodes, one) for one in curves]
+    unit = np.array(
+        [between[k](np.log(h)) for k, h in zip(label.tolist(), conductance.tolist(), strict=True)]
+    )
     effusivity = np.array([thermal.material(materials[k]).effusivity for k in label.tolist()])
-    return _measured(rng, unit, label, effusivity, conductance)
+    return _measured(rng, setup, unit, label, effusivity, conductance)
 
 
-def draw_objects(rng: np.random.Generator, count: int) -> Touches:
+def draw_objects(rng: np.random.Generator, setup: thermal.TouchSetup, count: int) -> Touches:
     """Touches of objects from the identifier's prior of any object, each with a network of its own."""
-    family = SystemFamily(SETUP.geometry(thermal.material("glass")))
+    family = SystemFamily(setup.geometry(thermal.material("glass")))
     objects = [identify_prior.draw_object(rng) for _ in range(count)]
-    conductance = _conductances(rng, count)
+    conductance = _conductances(rng, setup, count)
     unit = np.array(
         [
-            unit_response(family.system(*one), h, times(), SETUP.chain.bandwidth)
-            for one, h in zip(objects, conductance, strict=True)
+            unit_response(family.system(*one), h, times(), setup.chain.bandwidth)
+            for one, h in zip(objects, conductance.tolist(), strict=True)
         ]
     )
     effusivity = np.sqrt(np.prod(objects, axis=1))
-    return _measured(rng, unit, np.zeros(count, int), effusivity, conductance)
+    return _measured(rng, setup, unit, np.zeros(count, int), effusivity, conductance)
 
 
-def _conductances(rng: np.random.Generator, count: int) -> np.ndarray:
-    low, high = SETUP.conductance
+def _conductances(rng: np.random.Generator, setup: thermal.TouchSetup, count: int) -> np.ndarray:
+    low, high = setup.conductance
     return np.exp(rng.uniform(np.log(low), np.log(high), count))
 
 
 def _measured(
     rng: np.random.Generator,
+    setup: thermal.TouchSetup,
     unit: np.ndarray,
     label: np.ndarray,
     effusivity: np.ndarray,
     conductance: np.ndarray,
 ) -> Touches:
-    difference = rng.normal(*SETUP.difference, len(unit))
-    offset = rng.normal(0.0, SETUP.chain.offset, (len(unit), 1))
-    volts = SETUP.stack.seebeck * difference[:, None] * unit + offset
-    chain = replace(SETUP.chain, offset=0.0, gain_error=0.0, bandwidth=np.inf)
+    difference = rng.normal(*setup.difference, len(unit))
+    offset = rng.normal(0.0, setup.chain.offset, (len(unit), 1))
+    volts = setup.stack.seebeck * difference[:, None] * unit + offset
+    chain = replace(setup.chain, offset=0.0, gain_error=0.0, bandwidth=np.inf)
     start = thermal.settled(volts[:, 0], 1.0)
     _, voltage = thermal.measure(chain, start, volts, 1.0, 1 / RATE, rng.standard_normal(volts.shape))
-    return Touches(voltage, label, effusivity, conductance, difference)
+    return Touches(setup, voltage, label, effusivity, conductance, difference)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +143,7 @@ def identify_all(touches: Touches, seconds: float, materials: Sequence[str]) -> 
     """Every touch with thermal.identify, from its first `seconds`."""
     t = times(seconds)
     found, spent = [], []
-    identifier = thermal.Identifier(SETUP, materials, touch=0.0)
+    identifier = thermal.Identifier(touches.setup, materials, touch=0.0)
     for voltage in touches.voltage[:, : len(t)]:
         identifier.reset()
         begun = time.process_time()

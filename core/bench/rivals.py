@@ -11,7 +11,7 @@ from thermograsp.bench.identification import Touches, times
 from thermograsp.errors import MissingDependencyError
 
 _COMPONENTS = 12
-_PENALTIES = (1e1, 1e2, 1e3, 1e4)
+_PENALTIES, _WIDTHS = (1e2, 1e3, 1e4), (0.03, 0.1)
 _CHUNK = 5  # samples that the net sees at once
 _HIDDEN, _BATCH, _EPOCHS = 48, 128, 60
 
@@ -30,7 +30,7 @@ def support_vectors(train: Touches, test: Touches, seconds: float) -> np.ndarray
         ) from error
     count = len(times(seconds))
     model = make_pipeline(PCA(_COMPONENTS, whiten=True, random_state=0), SVC())
-    search = GridSearchCV(model, {"svc__C": _PENALTIES, "svc__gamma": (0.01, 0.03, 0.1)}, cv=3)
+    search = GridSearchCV(model, {"svc__C": _PENALTIES, "svc__gamma": _WIDTHS}, cv=3)
     search.fit(train.voltage[:, :count], train.label)
     return search.predict(test.voltage[:, :count])
 
@@ -44,7 +44,7 @@ def recurrent_net(
         import torch
     except ImportError as error:
         raise MissingDependencyError(
-            "the recurrent net needs PyTorch: pip install 'thermograsp[learn]'"
+            "the recurrent net needs PyTorch: pip install 'thermograsp[torch]'"
         ) from error
     torch.manual_seed(seed)
     mean, spread = train.voltage.mean(), train.voltage.std()

@@ -80,6 +80,21 @@ def test_a_missing_file_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert "cannot read nowhere.csv" in capsys.readouterr().err
 
 
+def test_a_grasp_is_identified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both fingertips, a force that grows, two touches at different times, a model of tolerance 0.05 K."""
+    pytest.importorskip("mujoco")
+    file = tmp_path / "grasp.csv"
+    main(f"grasp --material marble --seconds 4 --csv {file} --json".split())
+    capsys.readouterr()
+    among = " ".join(thermal.SEED_MATERIALS)
+    assert main(f"identify {file} --among {among} --json".split()) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["best"] == "marble" and len(told["likely"]) <= 3
+    assert len(told["touch_s"]) == 2 and told["samples"] == 800
+    low, high = told["effusivity_90_Ws05_m2K"]
+    assert low < thermal.material("marble").effusivity < high
+
+
 def test_csv_files_come_back(tmp_path: Path) -> None:
     columns = {"time_s": np.arange(3.0), "voltage_V": np.array([1e-9, np.nan, -2.5])}
     write_csv(tmp_path / "a.csv", columns)

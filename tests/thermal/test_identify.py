@@ -10,7 +10,6 @@ from thermograsp.bench.bayes_limit import exact_posterior
 from thermograsp.bench.identification import (
     SETUP,
     Touches,
-    conductance_nodes,
     draw,
     draw_objects,
     pressed,
@@ -34,8 +33,8 @@ def identifier() -> thermal.Identifier:
 
 @pytest.fixture(scope="module")
 def touches() -> tuple[Touches, np.ndarray]:
-    curves = np.array([pressed(name, conductance_nodes()) for name in NAMES])
-    return draw(np.random.default_rng(7), 60, NAMES, curves), curves
+    curves = np.array([pressed(SETUP, name) for name in NAMES])
+    return draw(np.random.default_rng(7), SETUP, 60, NAMES, curves), curves
 
 
 def volts(material: str, difference: float, rng: np.random.Generator, conductance: float = 5e3) -> np.ndarray:
@@ -117,7 +116,7 @@ def test_materials_are_those_of_brute_force(
 
 
 def test_intervals_hold_nine_of_ten_fresh_objects(identifier: thermal.Identifier) -> None:
-    drawn = draw_objects(np.random.default_rng(3), 200)
+    drawn = draw_objects(np.random.default_rng(3), SETUP, 200)
     held = []
     for voltage, effusivity in zip(drawn.voltage, drawn.effusivity, strict=True):
         identifier.reset()

@@ -17,7 +17,7 @@ from thermograsp.errors import InvalidValueError
 NAME = "bench"
 HELP = "Measure what accuracy and touch cost, map where time steps fail, compare with a peer's published figures."
 
-BENCHMARKS = ("accuracy", "stability", "grasp", "speed", "episode", "peer")
+BENCHMARKS = ("accuracy", "stability", "grasp", "speed", "episode", "peer", "identify")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
