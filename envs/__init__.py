@@ -26,10 +26,12 @@ from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
 from .solver_settings import SolverSettings
+from .stakes import STAKES, force_window
 from .things import Thing
 
 __all__ = [
     "EVERYTHING",
+    "STAKES",
     "BatchState",
     "ContactRecord",
     "Delay",
@@ -64,6 +66,7 @@ __all__ = [
     "action_space",
     "build_scene",
     "command_of",
+    "force_window",
     "load_mesh",
     "observation_space",
 ]

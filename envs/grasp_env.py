@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from .grasp_task import GraspTask
 from .touch_env import TouchEnv
 from .touch_vector import TouchVectorEnv
@@ -24,16 +26,17 @@ class GraspEnv(TouchEnv):
     | thermostat | (2,) | temperature of the thermostats | °C |
 
     Reward per second: .2 while both fingertips press, .3 times the share of 5 cm reached, .5 while held there; 1 once
-    on success, -1 on dropping or crushing. Ends with success after hold_seconds at 5 cm, on dropping and crushing;
-    truncated after `seconds`.
+    on success, -1 on dropping, crushing or slipping. Ends with success after hold_seconds at 5 cm, on dropping,
+    crushing and slipping; truncated after `seconds`.
 
     info: success; in simulation also material, temperature_drop (2,) K, contact_area (2,) m2, conductance (2,) W/(m2
-    K), rung, randomized (what randomize drew, by name), events (of this step: (kind, fingertip)); dropped or crushed
-    where it ended so; error where the simulation broke down.
+    K), rung, randomized (what randomize drew, by name), events (of this step: (kind, fingertip)); dropped, crushed or
+    slipped where it ended so; error where the simulation broke down.
 
     Keywords: material (a name, a Material, a list, None = the ten seed materials; drawn per episode), mode ("T",
     "O"), plant ("simulated" or a URL), objects (an ObjectSpec, or a list to draw from), randomize (records of
-    envs.randomization, what else differs between episodes), tolerance (K), hold_seconds and seconds (s), render_mode
+    envs.randomization, what else differs between episodes), tolerance (K), hold_seconds and seconds (s), most_slip
+    (m that the object may slide along the pads; any by default), render_mode
     ("human", "rgb_array"), and the fields of SimulationConfig. reset(options={"material": name}) fixes one episode's
     material.
     """
@@ -44,15 +47,22 @@ class GraspEnv(TouchEnv):
         *,
         hold_seconds: float = 2.0,
         seconds: float = 10.0,
+        most_slip: float = np.inf,
         **config: Any,
     ) -> None:
-        super().__init__(GraspTask(hold_seconds, seconds), render_mode, **config)
+        super().__init__(GraspTask(hold_seconds, seconds, most_slip), render_mode, **config)
 
 
 class GraspVectorEnv(TouchVectorEnv):
     """`num_envs` grasp environments in one array step; keywords as GraspEnv's."""
 
     def __init__(
-        self, num_envs: int = 1, *, hold_seconds: float = 2.0, seconds: float = 10.0, **config: Any
+        self,
+        num_envs: int = 1,
+        *,
+        hold_seconds: float = 2.0,
+        seconds: float = 10.0,
+        most_slip: float = np.inf,
+        **config: Any,
     ) -> None:
-        super().__init__(GraspTask(hold_seconds, seconds), num_envs, **config)
+        super().__init__(GraspTask(hold_seconds, seconds, most_slip), num_envs, **config)
