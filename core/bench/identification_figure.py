@@ -136,7 +136,7 @@ def _confusion(axes: Axes, ten: Accuracies, window: float, first: bool) -> None:
     table = 100 * ten.confusion(window)
     names = [readable(name) for name in ten.materials]
     axes.imshow(table, cmap="Blues", vmin=0, vmax=115, aspect="equal")
-    for row, column in zip(*np.nonzero(table >= 0.5), strict=True):
+    for row, column in zip(*np.nonzero(table > 0.5), strict=True):
         value = table[row, column]
         axes.text(column, row, f"{value:.0f}", ha="center", va="center", size=7.5,
                   color="white" if value > 60 else INK)  # fmt: skip
