@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-hardware-long bench lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-hardware-long test-firmware bench lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -33,6 +33,10 @@ test-backends: build/.backends
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test
 	THERMOGRASP_LONG=1 $(PY) -m pytest $(TEST_FLAGS) tests/hardware
+
+# The firmware in a simulator, a part of `make test`; says which tools are missing where they are (docs/firmware.md).
+test-firmware: build/.test
+	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware.py
 
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)

@@ -5,37 +5,26 @@
 #include <string.h>
 
 #include "clock.h"
-#include "frame.h"
-#include "heaters.h"
+#include "link.h"
 #include "load_cells.h"
 #include "measure.h"
 #include "memory.h"
+#include "plates.h"
 #include "protocol.h"
-#include "serial.h"
-#include "thermistor.h"
-#include "thermostat.h"
 
 #ifndef SERIAL_NUMBER
 #define SERIAL_NUMBER 1
 #endif
 
-#define HEATER_OHMS 5.0f
-#define OFF_BY 1.0f // K
 enum { FIRMWARE_MAJOR = 0, FIRMWARE_MINOR = 1 };
 enum { STEP_PV = 7812500, LIMIT_NV = 256000000 };
-enum { SECOND_US = 1000000, CYCLES_A_CONTROL = 2, TESTED = 64, REMEMBERED = 8, HIGHEST_SETPOINT = 6000 };
+enum { SECOND_US = 1000000, TESTED = 64, REMEMBERED = 8 };
 enum { CHECKS = CHECK_CONVERTER | 3 * CHECK_LEFT_THERMISTOR | CHECK_LOAD_CELLS | CHECK_MEMORY };
 
-_Static_assert((float)CYCLES_A_CONTROL / CYCLE_HZ == CONTROL_STEP, "the thermostats' step");
-
 static struct measured measured = {.supply = 5.0f};
-static struct thermostat thermostats[SIDES];
-static float sums[SIDES];     // of temperatures since the last control step
-static uint8_t cycles;        // since then
-static uint8_t broken_cycles[SIDES];
-static bool broken[SIDES], hot, unidentified = true, memory_good;
+static bool unidentified = true, memory_good;
 
-static uint16_t sequence, rate, phase, session, boots;
+static uint16_t rate, phase, session, boots;
 static bool has_session;
 static uint32_t samples, uptime, second;
 static uint16_t overruns, repeats;
@@ -53,8 +42,6 @@ static struct {
   float mean[SIDES], squares[SIDES];
 } test;
 
-static struct receiver receiver;
-
 // The part of a condition that is for the left fingertip, as a mask for both.
 static uint8_t each(uint8_t left, bool is_left, bool is_right) {
   return (uint8_t)((is_left ? left : 0) | (is_right ? left << 1 : 0));
@@ -64,39 +51,16 @@ static bool saturated(uint8_t side) {
   return measured.element[side] == INT16_MAX || measured.element[side] == INT16_MIN;
 }
 
-static bool off_setpoint(uint8_t side) {
-  const struct thermostat *t = &thermostats[side];
-  return t->on && !broken[side] && fabsf(t->measured - t->setpoint) > OFF_BY;
-}
-
 static uint8_t flags(void) {
-  return (uint8_t)(each(SATURATED_LEFT, saturated(0), saturated(1)) | each(OPEN_LEFT, broken[0], broken[1]) |
-                   each(OFF_SETPOINT_LEFT, off_setpoint(0), off_setpoint(1)) | (hot ? OVER_TEMPERATURE : 0) |
-                   (unidentified ? UNIDENTIFIED : 0));
+  return (uint8_t)(each(SATURATED_LEFT, saturated(0), saturated(1)) |
+                   each(OPEN_LEFT, plate_broken(0), plate_broken(1)) |
+                   each(OFF_SETPOINT_LEFT, plate_off_setpoint(0), plate_off_setpoint(1)) |
+                   (plates_too_hot() ? OVER_TEMPERATURE : 0) | (unidentified ? UNIDENTIFIED : 0));
 }
 
-// Sends a frame whole or not at all.
 static bool send(uint8_t code, const void *payload, uint8_t length, uint32_t us) {
-  uint8_t block[FRAME_LONGEST], stuffed[FRAME_LONGEST + 1];
-  struct header header = {.code = code, .flags = flags(), .sequence = sequence, .device_us = us};
-  uint8_t size = (uint8_t)(sizeof header + length);
-  if (serial_room() < size + FRAME_CRC + 3) return false;
-  memcpy(block, &header, sizeof header);
-  memcpy(block + sizeof header, payload, length);
-  uint32_t crc = crc32(block, size);
-  memcpy(block + size, &crc, FRAME_CRC);
-  size += FRAME_CRC;
-  cobs_encode(block, size, stuffed);
-  serial_put(0);
-  for (uint8_t i = 0; i <= size; ++i) serial_put(stuffed[i]);
-  serial_put(0);
-  ++sequence;
-  return true;
+  return link_send(code, flags(), payload, length, us);
 }
-
-static int16_t hundredths(float value) { return (int16_t)lrintf(value * 100.0f); }
-
-static int16_t temperature(uint8_t side) { return broken[side] ? MISSING16 : hundredths(thermostats[side].measured); }
 
 static void send_identity(bool common) {
   struct identity identity = {
@@ -114,12 +78,7 @@ static void send_identity(bool common) {
 
 static void send_thermostats(void) {
   struct thermostat_report report;
-  for (uint8_t side = 0; side < SIDES; ++side) {
-    const struct thermostat *t = &thermostats[side];
-    report.setpoint[side] = t->on ? hundredths(t->setpoint) : MISSING16;
-    report.temperature[side] = temperature(side);
-    report.power[side] = (uint16_t)(t->power * 1000.0f + 0.5f);
-  }
+  plates_report(&report);
   send(THERMOSTAT, &report, sizeof report, clock_us());
 }
 
@@ -128,7 +87,7 @@ static void send_status(void) {
       .uptime = uptime,
       .samples = samples,
       .overruns = overruns,
-      .bad_frames = receiver.bad,
+      .bad_frames = link_bad_frames(),
       .repeats = repeats,
       .supply = (uint16_t)(measured.supply * 1000.0f + 0.5f),
       .rate = rate,
@@ -141,7 +100,7 @@ static void send_sample(void) {
   for (uint8_t side = 0; side < SIDES; ++side) {
     int32_t half_nanovolts = (int32_t)measured.element[side] * 15625;
     sample.voltage[side] = measured.element_known[side] ? half_nanovolts / 2 : MISSING32;
-    sample.thermostat[side] = temperature(side);
+    sample.thermostat[side] = plate_temperature(side);
   }
   load_cells_read(sample.force);
   if (send(SAMPLE, &sample, sizeof sample, measured.us)) {
@@ -155,7 +114,7 @@ static void send_self_test(void) {
   struct self_test result = {.checks = test.checks};
   int16_t force[SIDES][AXES];
   bool converter = measured.element_known[0] && measured.element_known[1] && !saturated(0) && !saturated(1);
-  uint16_t failed = (converter ? 0 : CHECK_CONVERTER) | each(CHECK_LEFT_THERMISTOR, broken[0], broken[1]) |
+  uint16_t failed = (converter ? 0 : CHECK_CONVERTER) | each(CHECK_LEFT_THERMISTOR, plate_broken(0), plate_broken(1)) |
                     (load_cells_read(force) ? 0 : CHECK_LOAD_CELLS) | (memory_good ? 0 : CHECK_MEMORY);
   result.failed = failed & test.checks;
   for (uint8_t side = 0; side < SIDES; ++side)
@@ -175,29 +134,6 @@ static void test_cycle(void) {
   if (--test.count == 0) send_self_test();
 }
 
-static void control_cycle(void) {
-  for (uint8_t side = 0; side < SIDES; ++side) {
-    if (thermistor_broken(measured.part[side])) {
-      ++broken_cycles[side];
-    } else {
-      sums[side] += thermistor_temperature(measured.part[side]);
-    }
-  }
-  if (++cycles < CYCLES_A_CONTROL) return;
-  float full = measured.supply * measured.supply / HEATER_OHMS; // W
-  for (uint8_t side = 0; side < SIDES; ++side) {
-    struct thermostat *t = &thermostats[side];
-    uint8_t good = (uint8_t)(cycles - broken_cycles[side]);
-    broken[side] = good == 0;
-    float power = thermostat_step(t, good ? sums[side] / good : t->measured, broken[side] || hot);
-    hot |= !broken[side] && t->measured >= TOO_HOT;
-    heater_set(side, power / full);
-    sums[side] = 0.0f;
-    broken_cycles[side] = 0;
-  }
-  cycles = 0;
-}
-
 static uint8_t set_rate(const uint8_t *payload) {
   uint16_t wanted;
   memcpy(&wanted, payload, sizeof wanted);
@@ -210,14 +146,7 @@ static uint8_t set_rate(const uint8_t *payload) {
 static uint8_t set_setpoint(const uint8_t *payload) {
   int16_t wanted[SIDES];
   memcpy(wanted, payload, sizeof wanted);
-  for (uint8_t side = 0; side < SIDES; ++side)
-    if (wanted[side] != MISSING16 && (wanted[side] < 0 || wanted[side] > HIGHEST_SETPOINT)) return BAD_VALUE;
-  for (uint8_t side = 0; side < SIDES; ++side) {
-    thermostats[side].on = wanted[side] != MISSING16;
-    thermostats[side].setpoint = wanted[side] / 100.0f;
-  }
-  hot = false;
-  return DONE;
+  return plates_set(wanted) ? DONE : BAD_VALUE;
 }
 
 static uint8_t run_self_test(const uint8_t *payload) {
@@ -304,39 +233,6 @@ static void execute(const struct header *command, const uint8_t *payload) {
   acknowledge(command, result);
 }
 
-static uint8_t payload_length(uint8_t code) { // 0: not a command
-  switch (code) {
-  case IDENTIFY:
-  case SET_SETPOINT:
-    return 4;
-  case REQUEST:
-    return 1;
-  case SET_RATE:
-  case RUN_SELF_TEST:
-    return 2;
-  case SET_CALIBRATION:
-    return CONSTANTS;
-  default:
-    return 0;
-  }
-}
-
-static void listen(void) {
-  uint8_t byte;
-  while (serial_take(&byte)) {
-    uint8_t length = receive(&receiver, byte);
-    if (length == 0) continue;
-    struct header command;
-    memcpy(&command, receiver.bytes, sizeof command);
-    uint8_t payload = payload_length(command.code);
-    if (payload && length == sizeof command + payload) {
-      execute(&command, receiver.bytes + sizeof command);
-    } else {
-      ++receiver.bad;
-    }
-  }
-}
-
 void device_begin(void) {
   uint8_t constants[CONSTANTS];
   boots = memory_begin();
@@ -346,14 +242,16 @@ void device_begin(void) {
 }
 
 void device_poll(void) {
-  listen();
+  struct header command;
+  const uint8_t *payload;
+  while ((payload = link_receive(&command))) execute(&command, payload);
   if (memory_poll()) {
     memory_good = true;
     remember(storing.sequence, DONE);
     acknowledge(&storing, DONE);
   }
   if (!measure_poll(&measured)) return;
-  control_cycle();
+  plates_cycle(&measured);
   test_cycle();
   phase += rate;
   if (phase >= CYCLE_HZ) {

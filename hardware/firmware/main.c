@@ -6,14 +6,14 @@
 
 #include "clock.h"
 #include "device.h"
-#include "heaters.h"
 #include "measure.h"
+#include "plates.h"
 #include "serial.h"
 
 int main(void) {
   MCUSR = 0; // else a reset by the watchdog keeps it running, at 16 ms
   wdt_enable(WDTO_250MS);
-  heaters_begin();
+  plates_begin();
   clock_begin();
   serial_begin();
   sei();

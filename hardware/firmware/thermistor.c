@@ -11,5 +11,5 @@ float thermistor_temperature(float part) {
   return 1.0f / (1.0f / (ZERO + 25.0f) + logf(resistance) / BETA) - ZERO;
 }
 
-// 0.02 is 182 degC; 0.8 is -4 degC, close to where the converter's range ends at a supply of 5.12 V.
+// 0.02 is 148 degC; 0.8 is -3 degC, close to where the converter's range ends at a supply of 5.12 V.
 bool thermistor_broken(float part) { return !(part > 0.02f && part < 0.8f); }

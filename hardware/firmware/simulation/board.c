@@ -98,7 +98,8 @@ static void take_byte(struct board *board, struct converter *c, uint8_t byte) {
     c->pointer = byte;
   } else if (c->pointer == 1) {
     c->configuration = (uint16_t)(c->index == 1 ? byte << 8 : (c->configuration & 0xFF00) | byte);
-    if (c->index == 2 && c->configuration & 0x8000) c->ready = board->avr->cycle + (avr_cycle_count_t)(board->signals.conversion * FREQUENCY);
+    if (c->index == 2 && c->configuration & 0x8000)
+      c->ready = board->avr->cycle + (avr_cycle_count_t)(board->signals.conversion * FREQUENCY);
   }
   ++c->index;
 }
