@@ -18,6 +18,7 @@ from thermograsp.plant import Plant, Reading, merged, plant_factory
 from .grasp_task import GraspTask
 from .observation import Observation, Observer, observation_space
 from .tasks import Outcome, Task, stopped
+from .truth import Truth
 
 _EVERY_STEP = (
     "material", "temperature_drop", "contact_area", "conductance", "rung", "events", "unknown", "late",
@@ -68,6 +69,8 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
             info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
         if reading.error[row]:
             info["error"] = reading.error[row]
+    if isinstance(reading.truth, Truth):
+        return info | reading.truth.info(row)
     for name in _EVERY_STEP:
         if name in reading.truth:
             value = reading.truth[name][row]
