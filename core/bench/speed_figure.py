@@ -35,7 +35,7 @@ def draw_speed(
     with style(), mpl.rc_context({"font.size": 10}):
         figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=120)
         grid = figure.subplots(2, 2)
-        figure.subplots_adjust(left=0.1, right=0.975, top=0.82, bottom=0.145, wspace=0.22, hspace=0.48)
+        figure.subplots_adjust(left=0.1, right=0.96, top=0.82, bottom=0.145, wspace=0.22, hspace=0.48)
         title = {"x": 0.03, "ha": "left"}
         figure.text(y=0.955, s="What touch costs beside bare MuJoCo", size=17, weight="semibold", **title)
         figure.text(
@@ -69,11 +69,13 @@ def _ratios(axes: Axes, speeds: Sequence[Speed]) -> None:
     axes.fill_between(x, low, high, color=_OURS, alpha=0.18, lw=0)
     axes.plot(x, y, marker="o", color=_OURS, ms=6)
     for a, b in zip(x, y, strict=True):
-        axes.annotate(f"{b:.2f}", (a, b), xytext=(0, 9), textcoords="offset points", ha="center", color=_OURS)
+        axes.annotate(
+            f"{b:.2f}", (a, b), xytext=(0, -17), textcoords="offset points", ha="center", color=_OURS
+        )
     axes.axhline(1.0, color=FAINT, lw=1.0, ls=(0, (4, 3)))
-    axes.text(x[-1], 1.012, "bare mujoco.batch", ha="right", va="bottom", color=FAINT, size=9)
+    axes.text(x[0], 1.012, "bare mujoco.batch", ha="left", va="bottom", color=FAINT, size=9)
     axes.set(xscale="log", xlabel="environments (band: quartiles of the blocks)", ylim=(0, 1.1))
-    axes.set_xticks(x, [str(n) for n in x])
+    axes.set_xticks(x, [f"{n:,}" for n in x])
     axes.minorticks_off()
     axes.margins(x=0.08)
 
@@ -87,7 +89,7 @@ def _parts(axes: Axes, speeds: Sequence[Speed]) -> None:
             width = max(each.parts[name], 0.0) / bare
             axes.barh(row, width, 0.62, left=begun, color=color)
             begun += width
-    axes.set_yticks(rows, [str(each.num_envs) for each in speeds])
+    axes.set_yticks(rows, [f"{each.num_envs:,}" for each in speeds])
     axes.set(xlabel="time of a control step over bare MuJoCo's", ylabel="environments")
     axes.axvline(1.0, color=INK, lw=0.8)
     for i, (name, color) in enumerate(zip(PARTS, _COLORS, strict=True)):
