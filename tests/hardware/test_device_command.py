@@ -40,10 +40,11 @@ def told(capsys: pytest.CaptureFixture[str], *argv: str, status: int = 0) -> dic
 
 def test_the_page_s_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
     blocks = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
     for block in blocks:
         exec(compile(block, "hardware.md", "exec"), {})
-    assert "mV at most" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "mV at most" in said and "29.6 mm, stopped while closing" in said
 
 
 def test_the_page_s_commands_parse(capsys: pytest.CaptureFixture[str]) -> None:
