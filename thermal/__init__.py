@@ -1,4 +1,10 @@
-"""Heat physics: arrays in, arrays out."""
+"""Heat physics: arrays in, arrays out.
+
+Identification loads when it is first asked for: environments do without it, and so start sooner.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
 from .array_fingertips import ArrayFingertips, FingertipState, array_fingertips
@@ -20,16 +26,14 @@ from .conductance import (
 )
 from .contact_law import CONTACT_LAW, cylinder_law, flat_law, sphere_law
 from .contact_network import network_for, network_of
-from .identify import Identifier, identify
-from .identify_effusivity import EffusivityPosterior
-from .identify_result import Identification, Verdict
-from .identify_setup import TouchSetup
 from .ladder import RUNGS, Rung, RungInfo
-from .layers import Layer, SensorStack, sensor, sensors
+from .layers import Layer, SensorStack, load_sensors, sensor, sensors, write_sensor
 from .materials import SEED_MATERIALS, Material, load_materials, material, materials
 from .network import ThermalNetwork
 from .press import Press, press
 from .problem import Mode, PressProblem, Shape
+from .sensor_fit import Estimate, SensorFit, fit_sensor
+from .sensor_touch import KnownTouch
 from .signal import (
     ADS1115,
     IDEAL,
@@ -51,6 +55,22 @@ from .thermostat import (
     thermostat_step,
 )
 
+if TYPE_CHECKING:
+    from .identifier import Identifier, identify
+    from .identify_effusivity import EffusivityPosterior
+    from .identify_result import Identification, Verdict
+    from .identify_setup import TouchSetup
+
+_LATER = {
+    "EffusivityPosterior": "identify_effusivity",
+    "Identification": "identify_result",
+    "Identifier": "identifier",
+    "TouchSetup": "identify_setup",
+    "Verdict": "identify_result",
+    "identify": "identifier",
+}
+"""Name -> module."""
+
 __all__ = [
     "ADS1115",
     "AIR",
@@ -69,6 +89,7 @@ __all__ = [
     "Demand",
     "FingertipState",
     "EffusivityPosterior",
+    "Estimate",
     "Gas",
     "Geometry",
     "HeatReading",
@@ -76,6 +97,7 @@ __all__ = [
     "Identification",
     "Identifier",
     "Joint",
+    "KnownTouch",
     "Layer",
     "Material",
     "Mode",
@@ -85,6 +107,7 @@ __all__ = [
     "PressProblem",
     "Rung",
     "RungInfo",
+    "SensorFit",
     "SensorStack",
     "Shape",
     "SignalChain",
@@ -103,6 +126,7 @@ __all__ = [
     "contact_conductance",
     "cylinder_contact",
     "cylinder_law",
+    "fit_sensor",
     "flat_contact",
     "flat_law",
     "forget_field",
@@ -111,6 +135,7 @@ __all__ = [
     "identify",
     "joint",
     "load_materials",
+    "load_sensors",
     "material",
     "materials",
     "measure",
@@ -128,4 +153,13 @@ __all__ = [
     "sphere_law",
     "stack_joints",
     "thermostat_step",
+    "write_sensor",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_LATER[name]}", __name__), name)
+    globals()[name] = value
+    return value
