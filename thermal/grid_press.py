@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from thermograsp.errors import InvalidValueError, non_negative
 
@@ -182,6 +181,8 @@ def march(
     if len(knots) == 1:
         drop, flow, sensor, body, *stored = np.array(values).T
     else:
+        from scipy.interpolate import CubicHermiteSpline  # slow to import, and environments do without it
+
         drop, flow, sensor, body, *stored = CubicHermiteSpline(knots, np.array(values), np.array(slopes))(t).T
     gained = np.stack(stored, axis=1)
     gained[:, SENSOR] -= grid.first[SENSOR] * grid.bodies[SENSOR].capacity.sum()
