@@ -71,8 +71,8 @@ class RobotiqGripper:
         self._lock = threading.RLock()
         name = f"gripper on {port}" if isinstance(port, str) else "gripper"
         self._line = ModbusLine(opener, slave, settings or ModbusSettings(), clock, sleep, name)
-        self._going = False  # told to follow positions; a move then leaves the action register alone
-        self._wanted = 0
+        self._going = False  # it has been told to follow positions
+        self._wanted: int | None = None  # the position it was told last
         try:
             self.state()
         except BaseException:
@@ -95,23 +95,18 @@ class RobotiqGripper:
     def activate(self) -> None:
         """Resets it and has it find its travel, where it is not ready already: the fingers close and open wholly, and
         what they hold falls. Waits up to 10 s. Raises GripperFaultError, GripperTimeoutError."""
-        with self._lock:
-            now = self.state()
-            if now.activation != Activation.DONE or now.fault >= FIRST_MAJOR:
-                self.clear_faults()
+        now = self.state()
+        if now.activation != Activation.DONE or now.fault >= FIRST_MAJOR:
+            self.clear_faults()
 
     def clear_faults(self) -> None:
         """Resets it, faults included, and activates it anew; see activate."""
-        with self._lock:
-            self._going = False
-            self._line.exchange(COMMAND, Action().registers(), STATUS, COUNT)
-            self._await(
-                lambda now: now.activation == Activation.RESET and not now.fault, _RESET_WITHIN, "its reset"
-            )
-            self._line.exchange(COMMAND, Action(activate=True).registers(), STATUS, COUNT)
-            self._await(
-                lambda now: now.activation == Activation.DONE, _ACTIVATION_WITHIN, "its activation", True
-            )
+        self._tell(COMMAND, Action().registers())
+        self._await(
+            lambda now: now.activation == Activation.RESET and not now.fault, _RESET_WITHIN, "its reset"
+        )
+        self._tell(COMMAND, Action(activate=True).registers())
+        self._await(lambda now: now.activation == Activation.DONE, _ACTIVATION_WITHIN, "its activation", True)
 
     def move(self, opening: float, force: float, speed: float) -> GripperStatus:
         """Sends the fingers to an opening, 0 .. stroke m, and returns at once. force: N; below the weakest, 20 N, it is
@@ -122,25 +117,25 @@ class RobotiqGripper:
             self.units.force_counts(force),
         )
         position, rate, limit = (int(count) for count in counts)
+        values = Action(activate=True, go=True, position=position, speed=rate, force=limit).registers()
         with self._lock:
-            self._wanted = position
-            values = Action(activate=True, go=True, position=position, speed=rate, force=limit).registers()
-            if self._going:
-                return self._status(self._moved(self._line.exchange(COMMAND + 1, values[1:], STATUS, COUNT)))
-            _require_active(self.state())
-            self._going = True
-            return self._status(self._moved(self._line.exchange(COMMAND, values, STATUS, COUNT)))
+            # While it follows positions the action register is left alone: after a loss of power, to write it would
+            # begin an activation.
+            now = self._tell(COMMAND + 1, values[1:]) if self._going else self.state()
+            _require_active(now)
+            if not (self._going and now.going):
+                now = self._tell(COMMAND, values)
+                _require_active(now)
+            self._going, self._wanted = True, position
+            return self._status(now)
 
     def stop(self) -> GripperStatus:
         """The fingers stay where they are and hold what they hold."""
         with self._lock:
-            self._going = False
             now = self.state()
-            if not now.activated:
-                return self._status(now)
-            return self._status(
-                state(self._line.exchange(COMMAND, Action(activate=True).registers()[:1], STATUS, COUNT))
-            )
+            if now.activated:
+                now = self._tell(COMMAND, Action(activate=True).registers()[:1])
+            return self._status(now)
 
     def status(self) -> GripperStatus:
         """How it is; a fault is told, not raised."""
@@ -149,23 +144,21 @@ class RobotiqGripper:
     def wait(self, seconds: float = _TRAVEL_WITHIN) -> GripperStatus:
         """Waits until the fingers have arrived or are stopped by something. Raises GripperFaultError,
         GripperTimeoutError."""
-        with self._lock:
-            return self._status(
-                self._await(lambda now: not self._moving(now), seconds, "the end of its motion", True)
-            )
+        return self._status(
+            self._await(lambda now: not self._moving(now), seconds, "the end of its motion", True)
+        )
 
     def measure_counts(self) -> RobotiqUnits:
         """Closes and opens it wholly, with nothing between the fingers, and takes where they end for its counts. The
         new units are also kept as `units`. Raises what move and wait raise."""
         slow, weak = self.units.slowest, self.units.weakest
-        with self._lock:
-            ends = []
-            for opening in (0.0, self.units.stroke):
-                self.move(opening, weak, 2 * slow)
-                self.wait()
-                ends.append(self.state().position)
-            self.units = replace(self.units, closed_count=ends[0], open_count=ends[1])
-            return self.units
+        ends = []
+        for opening in (0.0, self.units.stroke):
+            self.move(opening, weak, 2 * slow)
+            self.wait()
+            ends.append(self.state().position)
+        self.units = replace(self.units, closed_count=ends[0], open_count=ends[1])
+        return self.units
 
     def quantised(self, opening: Any, force: Any, speed: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(opening m, force N, speed m/s) that it makes of a command, elementwise."""
@@ -176,15 +169,13 @@ class RobotiqGripper:
         with self._lock:
             return state(self._line.read(STATUS, COUNT))
 
-    def _moved(self, registers: list[int]) -> State:
-        """The answer to a move. Raises GripperFaultError where the gripper does not follow."""
-        now = state(registers)
-        try:
-            _require_active(now)
-        except GripperFaultError:
-            self._going = False
-            raise
-        return now
+    def _tell(self, address: int, values: list[int]) -> State:
+        """Writes registers and reads the state in the same transaction. It is how the gripper was just before."""
+        with self._lock:
+            going, self._going, self._wanted = self._going, False, None  # unknown, where it raises
+            now = state(self._line.exchange(address, values, STATUS, COUNT))
+            self._going = going and address != COMMAND
+            return now
 
     def _await(
         self, ready: Callable[[State], bool], seconds: float, what: str, healthy: bool = False
@@ -218,7 +209,7 @@ class RobotiqGripper:
     def _moving(self, now: State) -> bool:
         """Right after a command its state is the one before: the echo tells (manual, register gPR)."""
         travels = now.going and now.seen == ObjectSeen.MOVING
-        unheard = self._going and now.requested != self._wanted
+        unheard = self._wanted is not None and now.requested != self._wanted
         return (
             travels or unheard or now.activation == Activation.RUNNING or now.fault == Fault.RELEASE_RUNNING
         )

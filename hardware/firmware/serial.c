@@ -17,9 +17,13 @@ ISR(USART_RX_vect) {
   }
 }
 
-ISR(USART_UDRE_vect) {
+ISR(USART_UDRE_vect) { // may come once more after the last byte, between the two steps of serial_put
+  if (out.tail == out.head) {
+    UCSR0B &= (uint8_t)~_BV(UDRIE0);
+    return;
+  }
   UDR0 = out.bytes[out.tail];
-  if (++out.tail == out.head) UCSR0B &= (uint8_t)~_BV(UDRIE0);
+  ++out.tail;
 }
 
 void serial_begin(void) {

@@ -103,6 +103,32 @@ def test_stop_stops_and_move_goes_on() -> None:
     assert gripper.wait().opening == 0.0
 
 
+def test_a_move_sets_it_going_again_after_somebody_stopped_it() -> None:
+    gripper, line = active()
+    gripper.move(0.06, 40.0, 0.1)
+    line.device._write(0x03E8, [0x0100])
+    line.advance(0.1)
+    gripper.move(0.02, 40.0, 0.1)
+    assert gripper.wait().opening == pytest.approx(0.02, abs=STEP)
+
+
+def test_a_move_whose_answer_was_lost_is_made_up_for() -> None:
+    """It may have arrived or not; the next one does not take it for granted."""
+    for device_heard in (True, False):
+        gripper, line = active()
+        if device_heard:
+            line.device.line = LineFaults(drop_answer=1.0)
+        else:
+            line.device.stall_until = line.clock() + 1.0
+        with pytest.raises(NoAnswerError):
+            gripper.move(0.06, 40.0, 0.1)
+        line.device.line = LineFaults()
+        line.advance(1.0)
+        gripper.wait()
+        gripper.move(0.02, 40.0, 0.1)
+        assert gripper.wait().opening == pytest.approx(0.02, abs=STEP)
+
+
 def test_a_move_every_20_ms() -> None:
     """The last of many targets is where it goes; each is read back at once."""
     gripper, line = active()

@@ -129,6 +129,17 @@ def test_ours_in_real_time(tmp_path: Path) -> None:
         assert status.opening == pytest.approx(0.0296, abs=0.0005)
 
 
+def test_a_thread_may_stop_what_another_waits_for(tmp_path: Path) -> None:
+    with serving(tmp_path, width=None) as served, RobotiqGripper(served.path) as gripper:
+        gripper.activate()
+        gripper.move(0.0, 20.0, 0.02)
+        stopping = threading.Timer(0.2, gripper.stop)
+        stopping.start()
+        assert in_time(gripper.wait) < PATIENCE
+        stopping.join()
+        assert gripper.status().opening > 0.07
+
+
 def test_port_missing(tmp_path: Path) -> None:
     with pytest.raises(PortMissingError, match="plug the device in"):
         RobotiqGripper(str(tmp_path / "nothing"))
