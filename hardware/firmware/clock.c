@@ -6,7 +6,11 @@
 
 enum { TICKS_A_US = 2, TURN_US = 125 }; // timer 0 at 16 MHz / 8; a turn also ends the processor's sleep
 
-static volatile uint32_t whole_us; // at the timer's last turn
+#ifndef CLOCK_START
+#define CLOCK_START 0
+#endif
+
+static volatile uint32_t whole_us = CLOCK_START; // at the timer's last turn
 
 ISR(TIMER0_COMPA_vect) { whole_us += TURN_US; }
 

@@ -6,7 +6,11 @@
 #include "frame.h"
 #include "serial.h"
 
-static uint16_t sequence;
+#ifndef SEQUENCE_START
+#define SEQUENCE_START 0
+#endif
+
+static uint16_t sequence = SEQUENCE_START;
 static struct receiver receiver;
 
 bool link_send(uint8_t code, uint8_t flags, const void *payload, uint8_t length, uint32_t us) {

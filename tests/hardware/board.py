@@ -46,10 +46,12 @@ def require_tools() -> None:
 
 
 @cache
-def build(folder: Path) -> tuple[Path, str]:
+def build(folder: Path, define: str = "") -> tuple[Path, str]:
     """The folder with firmware.elf and board.so, and what make said."""
     done = subprocess.run(
-        ["make", "-C", str(FIRMWARE), f"OUT={folder}", "all", "board"], capture_output=True, text=True
+        ["make", "-C", str(FIRMWARE), f"OUT={folder}", f"DEFINE={define}", "all", "board"],
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return folder, done.stdout

@@ -392,6 +392,22 @@ def test_a_conversion_that_does_not_end_heats_nothing(board: Board) -> None:
     assert board.signals.power[:] == [0.0, 0.0]
 
 
+def test_numbers_and_time_wrap(tmp_path: Path) -> None:
+    """Boots 2 s before its clock of 32 bits turns over, and 100 frames before its numbers do."""
+    require_tools()
+    folder, _ = build(tmp_path, f"-DCLOCK_START={2**32 - 2_000_000}UL -DSEQUENCE_START={2**16 - 100}U")
+    board = Board(folder)
+    tips, line = driven(board, setpoint=30.0)
+    samples = after(tips, line, 5.0)
+    statistics = tips.statistics()
+    assert samples.device_time[0] < 2**32 / 1e6 < samples.device_time[-1]
+    assert abs(np.diff(samples.device_time) - 0.01).max() < 1e-3
+    assert len(samples) >= 499 and (statistics.lost, statistics.late, statistics.duplicates) == (0, 0, 0)
+    assert abs(np.array(board.signals.plate[:]) - 30.0).max() < 1.0
+    assert tips.status().uptime == 5
+    board.close()
+
+
 def test_a_load_cell_at_its_end_fails_the_self_test(board: Board) -> None:
     tips, _ = driven(board)
     result = tips.self_test()
