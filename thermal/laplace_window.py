@@ -7,7 +7,7 @@ those of heat conduction do. A window a decade long needs 20 samples for 7 digit
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 
 import numpy as np
@@ -25,22 +25,28 @@ def invert_many(transform: Callable[[np.ndarray], np.ndarray], t: np.ndarray) ->
     off the negative real axis and real on the positive one. Error about 2e-7 of the largest |f| in the window.
     Raises InvalidValueError for times that are not finite and > 0.
     """
+    values: np.ndarray | None = None
+    for inside, s, weights in windows(t):
+        sampled = transform(s)
+        if values is None:
+            values = np.zeros((len(inside), *sampled.shape[1:]))
+        values[inside] = np.real(np.tensordot(weights, sampled, axes=1))
+    assert values is not None
+    return values
+
+
+def windows(t: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """For each window of times t (n,) s: which are in it (n,), the samples s (NODES,) 1/s of its contour, and weights
+    (times, NODES); the real part of their product with the transform at s is the inverse. Raises as invert_many."""
     t = np.asarray(t, float)
     if not (np.isfinite(t).all() and (t > 0).all()):
         raise InvalidValueError(f"times must be finite and > 0 s, got {t[~(np.isfinite(t) & (t > 0))][0]:g}")
     window = np.floor(np.log(t.max() / t) / np.log(WINDOW) * (1 - 1e-12)).astype(int)
-    values: np.ndarray | None = None
     for index in np.unique(window):
         inside = window == index
         last = t[inside].max()
         s, weight = _hyperbola(NODES)
-        sampled = transform(s / last)
-        grown = np.exp(np.outer(t[inside] / last, s)) * weight / last
-        if values is None:
-            values = np.zeros((len(t), *sampled.shape[1:]))
-        values[inside] = np.real(np.tensordot(grown, sampled, axes=1))
-    assert values is not None
-    return values
+        yield inside, s / last, np.exp(np.outer(t[inside] / last, s)) * weight / last
 
 
 @cache

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import json
+import os
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from thermograsp.errors import InvalidValueError, positive, unknown_name
+from thermograsp.files import write_text
 
 from ..assets import asset
+
+_HEADER = (
+    "Layers run from the thermostat side to the object side.",
+    "Thickness m, conductivity W/(m K), density kg/m3, specific_heat J/(kg K), width m, seebeck V/K.",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,26 +89,73 @@ class SensorStack:
 
 
 @cache
-def sensors() -> dict[str, SensorStack]:
-    """Presets of assets/sensors.toml by name."""
-    table = tomllib.loads(asset("sensors.toml").read_text(encoding="utf-8"))
-    return {
-        name: SensorStack(
-            name=name,
-            layers=tuple(Layer(**layer) for layer in entry["layers"]),
-            width=entry["width"],
-            sensed=entry["sensed"],
-            seebeck=entry["seebeck"],
-        )
-        for name, entry in table["sensors"].items()
-    }
+def sensors() -> Mapping[str, SensorStack]:
+    """Presets of assets/sensors.toml by name, read-only."""
+    return load_sensors(asset("sensors.toml"))
 
 
-def sensor(name: str | SensorStack) -> SensorStack:
-    """The preset of that name, or the stack itself. Raises UnknownNameError with near names."""
+def sensor(name: str | os.PathLike[str] | SensorStack) -> SensorStack:
+    """The preset of that name, the one sensor of a file (a path, or a name that ends in .toml), or the stack itself.
+
+    Raises UnknownNameError with near names, and InvalidValueError for a file that does not hold one sensor.
+    """
     if isinstance(name, SensorStack):
         return name
+    if isinstance(name, os.PathLike) or name.endswith(".toml"):
+        own = load_sensors(name)
+        if len(own) != 1:
+            raise InvalidValueError(
+                f"{name} holds {len(own)} sensors, {', '.join(own)}: keep one in the file"
+            )
+        return next(iter(own.values()))
     try:
         return sensors()[name]
     except KeyError:
         raise unknown_name("sensor", name, sensors()) from None
+
+
+def load_sensors(path: str | os.PathLike[str]) -> Mapping[str, SensorStack]:
+    """The sensors of a TOML file by name, read-only, in the form of assets/sensors.toml. Raises InvalidValueError,
+    which names the file, for anything that does not fit."""
+    try:
+        entries = tomllib.loads(Path(path).read_text(encoding="utf-8"))["sensors"]
+        return MappingProxyType({name: _stack(name, entry) for name, entry in entries.items()})
+    except OSError as error:
+        raise InvalidValueError(f"cannot read {path}: {error.strerror}") from error
+    except KeyError as error:
+        raise InvalidValueError(
+            f"{path}: {error} is missing; see assets/sensors.toml for the form"
+        ) from error
+    except (ValueError, TypeError, AttributeError) as error:
+        raise InvalidValueError(f"{path}: {error}; see assets/sensors.toml for the form") from error
+
+
+def write_sensor(path: str | os.PathLike[str], stack: SensorStack, notes: Sequence[str] = ()) -> None:
+    """A file of one sensor that `sensor` loads, written whole or not at all. notes: lines of a comment. Raises
+    InvalidValueError where it cannot be written."""
+    layers = [
+        "    { " + ", ".join(f"{f.name} = {_toml(getattr(layer, f.name))}" for f in fields(Layer)) + " },"
+        for layer in stack.layers
+    ]
+    lines = [
+        *(f"# {note}".rstrip() for note in (*notes, *_HEADER)),
+        f"[sensors.{_toml(stack.name)}]",
+        *(f"{name} = {_toml(getattr(stack, name))}" for name in ("width", "sensed", "seebeck")),
+        "layers = [",
+        *layers,
+        "]",
+    ]
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _stack(name: str, entry: dict[str, Any]) -> SensorStack:
+    for key in entry:
+        if key not in ("layers", "width", "sensed", "seebeck"):
+            raise InvalidValueError(f"sensor {name!r} has an unknown entry {key!r}")
+    layers = tuple(Layer(**layer) for layer in entry["layers"])
+    return SensorStack(name, layers, width=entry["width"], sensed=entry["sensed"], seebeck=entry["seebeck"])
+
+
+def _toml(value: str | float) -> str:
+    """JSON's strings and numbers are TOML's."""
+    return json.dumps(value)

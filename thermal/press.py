@@ -62,14 +62,14 @@ def press(
 ) -> Press:
     """Presses the sensor on the middle of a face of an object, both uniform at first.
 
-    material: a name of thermal.materials() or a Material. mode: "T" or "O". sensor: a preset's name or a SensorStack.
-    conductance: W/(m2 K) of the contact, a number or a function of time in s (0 = apart). area: m2 of the contact, at
-    most the sensor's face. shape: "square" or "round". object_size: (width, depth, thickness) m. air: W/(m2 K) on the
-    object's free faces. Temperatures in °C. seconds, dt: samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of
-    temperature drop from 0.05 s on, which rung="auto" (and "network") keeps. rung: a name of thermal.RUNGS, "auto",
-    "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same kind
-    on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power, at
-    sensor_temperature at first, None for an ideal one. cache: keep networks on disk.
+    material: a name of thermal.materials() or a Material. mode: "T" or "O". sensor: a preset's name, a .toml file of
+    one sensor, or a SensorStack. conductance: W/(m2 K) of the contact, a number or a function of time in s (0 = apart).
+    area: m2 of the contact, at most the sensor's face. shape: "square" or "round". object_size: (width, depth,
+    thickness) m. air: W/(m2 K) on the object's free faces. Temperatures in °C. seconds, dt: samples at 0, dt, 2 dt, ...
+    up to seconds. tolerance: K of temperature drop from 0.05 s on, which rung="auto" (and "network") keeps. rung: a
+    name of thermal.RUNGS, "auto", "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a
+    second fingertip of the same kind on the opposite face, None for none; the curves are the first one's. thermostat:
+    one of finite power, at sensor_temperature at first, None for an ideal one. cache: keep networks on disk.
 
     Raises UnknownNameError for names and InvalidValueError for values that make no sense, or that the rung cannot do.
     """
