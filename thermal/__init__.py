@@ -1,6 +1,6 @@
 """Heat physics: arrays in, arrays out.
 
-Identification loads when it is first asked for: environments do without it, and so start sooner.
+Identification and fitting load when they are first asked for: environments do without them, and so start sooner.
 """
 
 from importlib import import_module
@@ -32,7 +32,6 @@ from .materials import SEED_MATERIALS, Material, load_materials, material, mater
 from .network import ThermalNetwork
 from .press import Press, press
 from .problem import Mode, PressProblem, Shape
-from .sensor_fit import Estimate, SensorFit, fit_sensor
 from .sensor_touch import KnownTouch
 from .signal import (
     ADS1115,
@@ -60,13 +59,17 @@ if TYPE_CHECKING:
     from .identify_effusivity import EffusivityPosterior
     from .identify_result import Identification, Verdict
     from .identify_setup import TouchSetup
+    from .sensor_fit import Estimate, SensorFit, fit_sensor
 
 _LATER = {
     "EffusivityPosterior": "identify_effusivity",
+    "Estimate": "sensor_fit",
     "Identification": "identify_result",
     "Identifier": "identifier",
+    "SensorFit": "sensor_fit",
     "TouchSetup": "identify_setup",
     "Verdict": "identify_result",
+    "fit_sensor": "sensor_fit",
     "identify": "identifier",
 }
 """Name -> module."""
