@@ -164,6 +164,12 @@ class SerialPlant:
         self._opening = status.opening
         return self._reading(voltage, rate, late)
 
+    def quantised(self, command: Command) -> Command:
+        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps, no
+        lift."""
+        opening, force, _ = self._gripper.quantised(command.opening, command.force_limit, self.config.speed)
+        return Command(opening, force, np.zeros_like(opening))
+
     def close(self) -> None:
         """Ends the watchdog and releases both lines. Does nothing the second time."""
         self._closing.set()
