@@ -86,7 +86,7 @@ def press_problem(name: str, mode: str) -> PressProblem:
 
 
 def methods(quick: bool) -> list[Method]:
-    """What is compared; scikit-fem and FiPy where they are installed. quick: without the finest settings."""
+    """What is compared; scikit-fem and FiPy where they are installed. quick: without FiPy and the finest settings."""
     found = [Method(name, "", _rung(name)) for name in ("lumped", "half_space", "closed_form", "layered")]
     found += [Method("auto", f"{tolerance:g} K", _auto(tolerance, quick)) for tolerance in TOLERANCES]
     found += [Method("network", "/".join(map(str, orders)), _network(*orders)) for orders in _ORDERS]
@@ -108,9 +108,8 @@ def methods(quick: bool) -> list[Method]:
         Method("1-D FTCS", "0.1 mm", _ftcs(1e-4, lateral=False), 1),
         Method("1-D BDF", "0.1 mm", _ivp(1e-4, "BDF", lateral=False), 2),
     ]
-    if fipy_press.available():
-        for cell in (1e-3,) if quick else (1e-3, 0.5e-3):
-            found.append(Method("FiPy", f"{1e3 * cell:g} mm", _fipy(cell), 1))
+    if fipy_press.available() and not quick:
+        found += [Method("FiPy", f"{1e3 * cell:g} mm", _fipy(cell), 1) for cell in (1e-3, 0.5e-3)]
     if elements.available():
         sizes = (2,) if quick else (2, 4, 6)
         found += [Method("finite elements", f"{cells} a half side", _elements(cells), 1) for cells in sizes]
