@@ -16,8 +16,8 @@ CHAIN_NUMBERS = np.dtype([*((name, "f8") for name in _NAMES), ("delay", "i8")])
 
 
 def chain_numbers(chain: SignalChain, seebeck: float, dt: float) -> np.ndarray:
-    """What a sample needs of a chain, a Seebeck coefficient V/K and a period s, as one CHAIN_NUMBERS record (1,), without
-    delay."""
+    """What a sample needs of a chain, a Seebeck coefficient V/K and a period s, as one CHAIN_NUMBERS record (1,),
+    without delay."""
     lag = 0.0 if np.isinf(chain.bandwidth) else 1 / (2 * np.pi * chain.bandwidth)
     decay = float(np.exp(-dt / lag)) if lag else 0.0
     numbers = (
