@@ -22,6 +22,7 @@ from .feel import Feel, Source, press_source, samples_source, untouched
 from .fingers import Fingers, SpringFingers
 from .fingertips import Fingertips, LinkStatistics
 from .gripper import Contact, Gripper, GripperStatus, open_gripper
+from .known_touches import known_touch
 from .line_faults import LineFaults
 from .link import LinkSettings, Tap
 from .messages import Calibration, Flag, Identity, SelfTest, Status, ThermostatReport
@@ -96,6 +97,7 @@ __all__ = [
     "Transport",
     "VirtualLine",
     "WrongDeviceError",
+    "known_touch",
     "open_gripper",
     "ports",
     "press_source",

@@ -6,7 +6,7 @@ n: samples; 2: left and right fingertip; 3: normal and two tangential forces.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +54,10 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def __getitem__(self, rows: slice) -> Samples:
+        """Those of a slice."""
+        return Samples(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
     @property
     def faults(self) -> Flag:

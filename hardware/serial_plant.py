@@ -27,18 +27,19 @@ from .samples import Samples
 
 UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height")
 _STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
-_LATE = 1e-3  # s after which a step's end counts as overrun
+OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
 _TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
 _WARMING = Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT | _TOLERATED
+_COMPILING = 10.0  # s that an agent may take after the first step ever, in which its code is compiled
 _SETTLING = 0.2  # s between looks at a thermostat that warms up
 
 
 @dataclass(frozen=True, slots=True)
 class SerialConfig:
     """rate: Hz of the voltage. dt: s, the control period, a whole number of samples. setpoint: °C of both thermostats.
-    speed: m/s of the fingers. most_force: N on a pad, above which the gripper lets go. watchdog: s without a step
-    after which it lets go; 0 for never. settle_within, open_within: s that a reset waits for the thermostats, and for
-    the fingers to open."""
+    speed: m/s of the fingers. most_force: N on a pad, above which the gripper lets go. watchdog: s without a step after
+    which it lets go, 10 s after the first step ever, when code is compiled; 0 for never. settle_within, open_within: s
+    that a reset waits for the thermostats, and for the fingers to open."""
 
     rate: int = 100
     dt: float = 0.02
@@ -227,7 +228,7 @@ class SerialPlant:
         late = max(0.0, self._pace.now() - self._end)
         self.counts.steps += 1
         self.counts.latest = max(self.counts.latest, late)
-        if late > _LATE:
+        if late > OVERRUN:
             self.counts.overruns += 1
             self._end += late
         return late
@@ -277,7 +278,8 @@ class SerialPlant:
         """The watchdog's thread."""
         while not self._closing.wait(self.config.watchdog / 4):
             silent = self._pace.now() - self._fed
-            if self._armed and silent > self.config.watchdog:
+            patience = self.config.watchdog if self.counts.steps > 1 else _COMPILING
+            if self._armed and silent > patience:
                 self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
 
 

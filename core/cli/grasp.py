@@ -1,4 +1,4 @@
-"""`thermograsp grasp`: one scripted grasp in simulation, recorded."""
+"""`thermograsp grasp`: one scripted grasp in simulation, or on a real gripper beside it, recorded."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from thermograsp.cli.arguments import add_materials_file, chosen_material, target
+from thermograsp.cli.beside import run_beside
 from thermograsp.cli.opengl import load_mujoco
 from thermograsp.cli.output import Output
 from thermograsp.errors import InvalidValueError
@@ -15,7 +16,10 @@ if TYPE_CHECKING:
     from thermograsp.report.recording import Recording
 
 NAME = "grasp"
-HELP = "Grasp one object in simulation, lift it by 5 cm and hold it; record what the fingertips feel."
+HELP = (
+    "Grasp one object in simulation, lift it by 5 cm and hold it; record what the fingertips feel. Or grasp with a "
+    "real gripper, and set the simulation beside it."
+)
 
 _FAILED = 1
 
@@ -42,6 +46,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--scale", type=float, default=1.0, help="lengths in the mesh times this are metres (default 1)")
     add("--temperature", type=float, default=24.0, help="of the object at first, degC (default 24)")
     add("--tolerance", type=float, default=0.05, help="of the temperature drop, K (default 0.05)")
+    add(
+        "--sensor",
+        default="seed",
+        help="a sensor's name, or a file of `thermograsp device fit` (default seed)",
+    )
+    add(
+        "--plant",
+        metavar="URL",
+        help="grasp with the gripper of serial://PORT?gripper=URL, and simulate the same; it can't know the material",
+    )
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
     add("--csv", metavar="FILE", help="write one row a voltage sample (100 Hz)")
     add(
@@ -49,10 +63,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="draw the grasp: an animation (.gif, .webp) or a strip of pictures (.png)",
     )
+    add("--plot", metavar="FILE", help="with --plant: draw real beside simulated: .svg, .png or .pdf")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Grasps, writes and prints. 1 where the object was not lifted and held."""
+    """Grasps, writes and prints. 1 where the object was not lifted and held; with --plant, held."""
     output = Output(args.json)
     load_mujoco(output)
     import numpy as np
@@ -64,6 +79,10 @@ def run(args: argparse.Namespace) -> int:
     csv, picture = target(args.csv, ()), target(args.render, (".gif", ".webp", ".png"))
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
+    if args.plot is not None and args.plant is None:
+        raise InvalidValueError("--plot draws real beside simulated: give --plant, or use --render or --csv")
+    # a real object is where it was put, in the middle as well as could be
+    placement: dict[str, Any] = {} if args.plant is None else {"placement": (0.0, 0.0)}
     batch = GraspBatch(
         1,
         task=GraspTask(hold_seconds=args.hold, seconds=args.seconds),
@@ -72,8 +91,12 @@ def run(args: argparse.Namespace) -> int:
         objects=_object(args),
         tolerance=args.tolerance,
         object_temperature=args.temperature,
+        sensor=args.sensor,
         cache=not args.no_cache,
+        **placement,
     )
+    if args.plant is not None:
+        return run_beside(args, batch)
     film = None
     if picture is not None:
         from thermograsp.report.film import Film

@@ -16,6 +16,7 @@ _WIDE = 1e-4  # m from the whole stroke that still counts as wide open
 _PRESSING = 0.2  # N on each pad
 _STANDING = 2e-3  # m/s of fingers that something has stopped
 _SHORT = 1e-3  # m short of their target
+_REHEARSAL = 50  # control steps, in which the fingers reach an object
 _PAUSE = 1.0  # s without a sample, in which the simulation stands still
 
 
@@ -39,6 +40,7 @@ class SimulatedHand:
         self.opening, self.contact, self.current = model.units.stroke, Contact.NONE, 0.0
         self.episodes = 0
         self._simulation, self._seed, self._stroke = simulation, seed, model.units.stroke
+        self._rehearse()
         self._plates = simulation.config.sensor_temperatures
         self._told = (model.units.stroke, 0.0)
         self._reading: Reading | None = None
@@ -53,6 +55,7 @@ class SimulatedHand:
             self._told = (target, force)
             if not self._active:
                 self._reading = self._begun = None
+            if self._reading is None or target > self.opening - _SHORT:
                 self.contact = Contact.NONE
             if self._reading is None:
                 step = speed * seconds
@@ -61,6 +64,12 @@ class SimulatedHand:
     @property
     def _active(self) -> bool:
         return self.gripper.state.activation == Activation.DONE
+
+    def _rehearse(self) -> None:
+        """A grasp that nobody sees: what is compiled or loaded at a first touch must not keep a line waiting."""
+        self._simulation.reset([0], [np.random.default_rng(self._seed)], {})
+        for _ in range(_REHEARSAL):
+            self._simulation.step(Command(np.zeros(1), np.full(1, 20.0), np.zeros(1)))
 
     def _feel(self, now: float) -> Feel:
         with self._lock:

@@ -9,7 +9,7 @@ import argparse
 import importlib
 
 NAME = "device"
-HELP = "Fingertips and grippers on serial ports: list, monitor, record, replay, test, calibrate and emulate them."
+HELP = "Fingertips and grippers on serial ports: list, monitor, record, replay, test, calibrate, fit and emulate them."
 
 ACTIONS = (
     "list",
@@ -18,9 +18,11 @@ ACTIONS = (
     "replay",
     "selftest",
     "calibrate",
+    "fit",
     "emulate",
     "gripper",
     "emulate-gripper",
+    "emulate-hand",
 )
 
 

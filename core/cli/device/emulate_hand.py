@@ -1,0 +1,61 @@
+"""`thermograsp device emulate-hand`: fingertips and gripper in software, moved by one simulation, on two ports."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+from thermograsp.cli.arguments import add_materials_file, chosen_material
+from thermograsp.cli.opengl import load_mujoco
+from thermograsp.cli.output import Output
+from thermograsp.errors import InvalidValueError, positive
+
+_FOREVER = 2**31 - 1.0  # s
+
+HELP = "Emulate fingertips and a Robotiq 2F-85 that grasp a simulated object, on two pseudo-terminals, in real time."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the action."""
+    add = parser.add_argument
+    add(
+        "--material", default="glass", help="of the object: a name of `thermograsp materials` (default glass)"
+    )
+    add_materials_file(parser)
+    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
+    add(
+        "--sensor",
+        default="seed",
+        help="a sensor's name, or a file of `thermograsp device fit` (default seed)",
+    )
+    add("--link", metavar="PATH", help="a stable name for the fingertips' port (default none)")
+    add("--gripper-link", metavar="PATH", help="a stable name for the gripper's port (default none)")
+    add("--seed", type=int, default=0, help="of the objects' places and the noise (default 0)")
+    add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Serves until the end of the time or an interrupt."""
+    output = Output(args.json)
+    load_mujoco(output)
+    from thermograsp.envs.simulated_plant import SimulatedPlant, SimulationConfig
+    from thermograsp.hardware import PtyDevice
+    from thermograsp.twin.simulated_hand import SimulatedHand
+
+    if args.seed < 0:
+        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
+    seconds = None if args.seconds is None else positive("seconds", args.seconds)
+    material = chosen_material(args.material, args.materials)
+    simulation = SimulatedPlant(1, SimulationConfig(material=material, mode=args.mode, sensor=args.sensor))
+    hand = SimulatedHand(simulation, args.seed)
+    with PtyDevice(hand.fingertips, args.link) as tips, PtyDevice(hand.gripper, args.gripper_link) as gripper:
+        url = f"serial://{tips.path}?gripper=robotiq://{gripper.path}"
+        output.line(f"{url}  (Ctrl-C ends it)")
+        output.document({"plant": url, "material": material.name, "mode": args.mode})
+        sys.stdout.flush()
+        try:
+            time.sleep(seconds if seconds is not None else _FOREVER)
+        except KeyboardInterrupt:
+            pass
+    return 0
