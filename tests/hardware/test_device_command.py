@@ -38,13 +38,16 @@ def told(capsys: pytest.CaptureFixture[str], *argv: str, status: int = 0) -> dic
     return json.loads(capsys.readouterr().out)
 
 
-def test_the_page_s_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_page_s_code_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    assert len(blocks) == 3
+    assert len(blocks) == 4
     for block in blocks:
         exec(compile(block, "hardware.md", "exec"), {})
     said = capsys.readouterr().out
-    assert "mV at most" in said and "29.6 mm, stopped while closing" in said
+    assert "mV at most" in said and "29.6 mm, stopped while closing" in said and "1.00 mV/K" in said
 
 
 def test_the_page_s_commands_parse(capsys: pytest.CaptureFixture[str]) -> None:
