@@ -2,9 +2,9 @@
 
 Nested layers carry out the same control steps from the same state: mujoco.batch alone, Mechanics (commands in, contact
 forces of every substep out), the simulated plant (heat, noise, electronics), GraspBatch (observation, reward), and the
-vector environment. Each ends with the same bits, so contacts are the same; the difference of two layers' times is what
-the outer one adds. Heat is also run alone, on the recorded forces. Layers take turns in short blocks, in random order,
-so that a busy moment of the machine hits none alone, and the ratio is taken within each block.
+environment, a vector one but for one alone. Each ends with the same bits, so contacts are the same; the difference of
+two layers' times is what the outer one adds. Heat is also run alone, on the recorded forces. Layers take turns in short
+blocks, in random order, so that a busy moment of the machine hits none alone, and the ratio is taken within each block.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def measure(num_envs: int, blocks: int, steps: int, seed: int, shown: Callable[[
     """Times `blocks` blocks of `steps` control steps with random actions of Grasp-v0 as shipped. shown: called after
     each block."""
     rng = np.random.default_rng(seed)
-    env = gymnasium.make_vec(ID, num_envs=num_envs, vectorization_mode="vector_entry_point")
+    env = _environment(num_envs)
     env.reset(seed=seed)  # compiles, and fills caches
     begun = time.process_time()
     env.reset(seed=seed)
@@ -81,8 +81,12 @@ def measure(num_envs: int, blocks: int, steps: int, seed: int, shown: Callable[[
             same &= layers.same
             touching.append(layers.touching)
         else:  # an episode ends: the environment's own step sees to it, and to the reset after it
-            for action in (*actions[: count + 1], actions[0]):
+            for action in actions[: count + 1]:
                 env.step(action)
+            if num_envs == 1:
+                env.reset()
+            else:
+                env.step(actions[0])
         shown()
     env.close()
     cpu = np.array([[times[name][0] for name in LAYERS] for times in timed]) / (steps * num_envs)
@@ -102,12 +106,21 @@ def measure(num_envs: int, blocks: int, steps: int, seed: int, shown: Callable[[
     )
 
 
+def _environment(num_envs: int) -> Any:
+    """One is the single environment, many the native vector one: what a user has."""
+    if num_envs == 1:
+        return gymnasium.make(ID)
+    return gymnasium.make_vec(ID, num_envs=num_envs, vectorization_mode="vector_entry_point")
+
+
 def _actions(rng: np.random.Generator, steps: int, num_envs: int) -> np.ndarray:
-    return rng.uniform(-1.0, 1.0, (steps, num_envs, 3)).astype(np.float32)
+    """(steps, B, 3); (steps, 3) for the single environment."""
+    shape = (steps, 3) if num_envs == 1 else (steps, num_envs, 3)
+    return rng.uniform(-1.0, 1.0, shape).astype(np.float32)
 
 
 class _Layers:
-    """The layers of one vector environment, and a bare batch beside it."""
+    """The layers of an environment, and a bare batch beside it."""
 
     def __init__(self, env: Any) -> None:
         self._env = env
@@ -126,7 +139,7 @@ class _Layers:
         self._start, self._inputs, pressed = self._batch.state(), [], []
         count = len(actions)
         for k, action in enumerate(actions):
-            step = self._batch.step(action)
+            step = self._batch.step(np.atleast_2d(action))
             self._inputs.append(inputs_of(self._mechanics.model, self._mechanics.state()))
             self._drop = step.reading.truth["temperature_drop"].copy()
             pressed.append(np.any(step.observation["force"][:, :, 0] > 0, axis=1).mean())
@@ -140,7 +153,7 @@ class _Layers:
 
     def time(self, actions: np.ndarray, rng: np.random.Generator) -> dict[str, tuple[float, float]]:
         """(CPU, wall) s of the rehearsed steps by layer; the environment is left where they end."""
-        commands = [command_of(action) for action in actions]
+        commands = [command_of(np.atleast_2d(action)) for action in actions]
         moves = [(each.opening, each.force_limit, each.lift_rate, SUBSTEPS) for each in commands]
         self._batch.set_state(self._start)
         motions = [self._mechanics.advance(*each) for each in moves]
@@ -149,7 +162,7 @@ class _Layers:
             "mechanics": (self._mechanics.advance, moves),
             "heat": (self._plant.heat.advance, [(each.normal, each.place) for each in motions]),
             "plant": (self._plant.step, [(each,) for each in commands]),
-            "batch": (self._batch.step, [(action,) for action in actions]),
+            "batch": (self._batch.step, [(np.atleast_2d(action),) for action in actions]),
             "environment": (self._env.step, [(action,) for action in actions]),
         }
         self.same, found = True, {}
