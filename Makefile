@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-hardware-long test-firmware bench lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-rl test-hardware-long test-firmware bench lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -29,6 +29,10 @@ test-ray: build/.ray
 # What needs PyTorch and JAX; without them `make test` skips it.
 test-backends: build/.backends
 	$(PY) -m pytest $(TEST_FLAGS) tests/backends
+
+# What needs stable-baselines3; without it `make test` skips it.
+test-rl: build/.rl
+	$(PY) -m pytest $(TEST_FLAGS) tests/rl
 
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test
@@ -55,8 +59,10 @@ build/.test: EXTRA := [test]
 build/.ray: EXTRA := [test,ray,minari]
 build/.backends: EXTRA := [test,torch,jax]
 build/.backends: PINS := torch==2.13.0
+build/.rl: EXTRA := [test,rl]
+build/.rl: PINS := torch==2.13.0
 build/.dev: EXTRA := [dev]
-build/.run build/.test build/.ray build/.backends build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+build/.run build/.test build/.ray build/.backends build/.rl build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
 	$(INSTALL) --no-build-isolation -e '.$(EXTRA)' $(PINS)
 	@touch $@
 

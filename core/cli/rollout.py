@@ -23,7 +23,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--episodes", type=int, default=20, help="how many (default 20)")
     add("--num-envs", type=int, default=4, help="how many at once; it changes the speed only (default 4)")
     add("--seed", type=int, default=0, help="episode k starts from seed + k (default 0)")
-    add("--policy", default="scripted", help="scripted (default), random or zero")
+    add("--stakes", action="store_true", help="materials of which each needs its own force (envs.STAKES)")
+    add(
+        "--policy",
+        default="scripted",
+        help="scripted (default), feeling, trained, random, zero, or a trained policy's .npz file",
+    )
     add("--max-steps", type=int, help="end episodes after so many control steps")
     add(
         "--check",
@@ -36,6 +41,7 @@ def run(args: argparse.Namespace) -> int:
     """Runs the episodes. 1 where a check found something or a simulation broke down."""
     import gymnasium
 
+    from thermograsp.envs import STAKES
     from thermograsp.report.rollout import rollout
 
     for name in ("episodes", "num_envs", "max_steps"):
@@ -48,7 +54,12 @@ def run(args: argparse.Namespace) -> int:
     load_mujoco(output)
     at_once = min(args.num_envs, args.episodes)
     try:
-        env = gymnasium.make_vec(args.env_id, num_envs=at_once, vectorization_mode="vector_entry_point")
+        env = gymnasium.make_vec(
+            args.env_id,
+            num_envs=at_once,
+            vectorization_mode="vector_entry_point",
+            **(STAKES if args.stakes else {}),
+        )
         with closing(env), output.progress(args.episodes) as advance:
             result = rollout(env, args.episodes, args.seed, args.policy, args.max_steps, args.check, advance)
     except gymnasium.error.Error as error:

@@ -14,7 +14,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, unknown_name
 
-POLICIES = ("scripted", "random", "zero")
+POLICIES = ("scripted", "feeling", "random", "zero")
 
 
 class Policy(Protocol):
@@ -30,10 +30,17 @@ class Policy(Protocol):
 
 
 def policy(env: gymnasium.vector.VectorEnv, name: str) -> Policy:
-    """The policy of that name. Raises UnknownNameError, and InvalidValueError where it cannot act in `env`."""
+    """The policy of that name, or of a file of `trained`. Raises UnknownNameError, FileNotFoundError, and
+    InvalidValueError where it cannot act in `env`."""
+    if name.endswith(".npz"):
+        from thermograsp.report.trained import Trained
+
+        return Trained(env, name)
     if name not in POLICIES:
         raise unknown_name("policy", name, POLICIES)
-    return {"scripted": _Scripted, "random": _Random, "zero": _Zero}[name](env)
+    if name in ("scripted", "feeling"):
+        return _Scripted(env, name)
+    return {"random": _Random, "zero": _Zero}[name](env)
 
 
 class _Zero:
@@ -67,17 +74,17 @@ class _Random:
 
 
 class _Scripted:
-    """Closes, lifts and holds; for environments that observe and act as Grasp-v0 does."""
+    """Closes, lifts and holds, "feeling" with a force that fits what it feels; for environments that observe and act as
+    Grasp-v0 does."""
 
-    def __init__(self, env: gymnasium.vector.VectorEnv) -> None:
+    def __init__(self, env: gymnasium.vector.VectorEnv, name: str) -> None:
         space = env.single_observation_space
         if not (isinstance(space, gymnasium.spaces.Dict) and {"force", "gripper"} <= set(space.spaces)):
-            raise InvalidValueError(
-                "policy 'scripted' needs a gripper's observations: use 'random' or 'zero'"
-            )
-        from thermograsp.report.scripted import ScriptedGrasp
+            raise InvalidValueError(f"policy {name!r} needs a gripper's observations: use 'random' or 'zero'")
+        from thermograsp.report.scripted import FeelingGrasp, ScriptedGrasp
 
-        self._grasp = ScriptedGrasp(env.num_envs, env.unwrapped.dt)  # pyright: ignore[reportAttributeAccessIssue]
+        grasp = ScriptedGrasp if name == "scripted" else FeelingGrasp
+        self._grasp = grasp(env.num_envs, env.unwrapped.dt)  # pyright: ignore[reportAttributeAccessIssue]
 
     def restart(self, rows: Sequence[int] | np.ndarray, seeds: Sequence[int]) -> None:
         del seeds
