@@ -155,6 +155,16 @@ def test_a_grasp_that_cannot_be(words: str, said: str, capsys: pytest.CaptureFix
     assert said in capsys.readouterr().err
 
 
+def test_a_hand_that_cannot_be_emulated(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, said in (
+        ("--seed -1", "seed must be"),
+        ("--material glas", "'glass'"),
+        ("--sensor a.toml", "cannot read"),
+    ):
+        assert main(["device", "emulate-hand", *words.split()]) == 2
+        assert said in capsys.readouterr().err
+
+
 def test_a_delay_is_found_where_something_was_felt() -> None:
     time = np.arange(1, 301) * 0.01
     rise = 4e-3 * np.clip(time - 0.5, 0, 1)
