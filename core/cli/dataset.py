@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--episodes", type=int, help="how many; without it --export takes the folder as it is")
     add("--out", metavar="DIR", default="dataset", help="folder of the dataset (default dataset)")
     add("--id", default="thermograsp/Grasp-v0", help="environment (default thermograsp/Grasp-v0)")
-    add("--policy", default="scripted", help="scripted (default), random or zero")
+    add("--policy", default="scripted", help="scripted (default), feeling, trained, random or zero")
     add("--seed", type=int, default=0, help="episode k is that of seed + k (default 0)")
     add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
     add(

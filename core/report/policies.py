@@ -1,4 +1,4 @@
-"""Policies that need no training, for a vector environment.
+"""Policies of a vector environment, by name.
 
 B: environments at once.
 """
@@ -12,9 +12,10 @@ from typing import Any, Protocol
 import gymnasium
 import numpy as np
 
+from thermograsp.assets import asset
 from thermograsp.errors import InvalidValueError, unknown_name
 
-POLICIES = ("scripted", "feeling", "random", "zero")
+POLICIES = ("scripted", "feeling", "trained", "random", "zero")
 
 
 class Policy(Protocol):
@@ -30,12 +31,12 @@ class Policy(Protocol):
 
 
 def policy(env: gymnasium.vector.VectorEnv, name: str) -> Policy:
-    """The policy of that name, or of a file of `trained`. Raises UnknownNameError, FileNotFoundError, and
+    """The policy of that name, or of a file of trained.py. Raises UnknownNameError, FileNotFoundError, and
     InvalidValueError where it cannot act in `env`."""
-    if name.endswith(".npz"):
+    if name == "trained" or name.endswith(".npz"):
         from thermograsp.report.trained import Trained
 
-        return Trained(env, name)
+        return Trained(env, asset("policies/grasp_heat_load.npz") if name == "trained" else name)
     if name not in POLICIES:
         raise unknown_name("policy", name, POLICIES)
     if name in ("scripted", "feeling"):

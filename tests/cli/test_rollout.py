@@ -36,6 +36,12 @@ def test_the_digest_depends_on_the_seed_alone(policy: str, capsys: pytest.Captur
     assert other["digest"] != one["digest"]
 
 
+def test_stakes_are_those_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    line = f"{ENV} --stakes --episodes 16 --num-envs 16"
+    assert rollout(f"{line} --policy feeling", capsys)["successes"] == 16
+    assert rollout(f"{line} --policy scripted", capsys)["successes"] < 14  # 10 N, whatever it is
+
+
 def test_episode_k_has_seed_plus_k(capsys: pytest.CaptureFixture[str]) -> None:
     """Two runs of one episode are the run of two: their steps and returns add up."""
     both, first, second = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermograsp.envs import STAKES, GraspEnv, action_of, force_window
+from thermograsp.envs import STAKES, GraspEnv, GraspVectorEnv, action_of, force_window
 from thermograsp.errors import InvalidValueError
 
 
@@ -47,3 +47,28 @@ def test_sliding_is_free_without_a_limit():
 def test_a_limit_must_be_above_zero():
     with pytest.raises(InvalidValueError, match="most_slip"):
         GraspEnv(most_slip=0.0)
+
+
+@pytest.mark.parametrize(
+    ("deed", "mean"),
+    [("idle", 0.0), ("random", 0.0), ("squeeze hard", 0.1), ("squeeze gently", 0.6), ("lift nothing", 0.0)],
+)
+def test_no_reward_without_the_deed(deed: str, mean: float):
+    """A success is worth 1.7 or more; a touch without a lift .2 a second."""
+    env = GraspVectorEnv(32, **STAKES)
+    env.reset(seed=0)
+    rng = np.random.default_rng(0)
+    constant = {
+        "idle": action_of(0.085, 0.0, 0.0),
+        "squeeze hard": action_of(0.0, 40.0, 0.0),
+        "squeeze gently": action_of(0.0, 9.0, 0.0),
+        "lift nothing": action_of(0.085, 10.0, 0.05),
+    }
+    returns, running = np.zeros(32), np.ones(32, bool)
+    while running.any():
+        action = rng.uniform(-1, 1, (32, 3)) if deed == "random" else np.tile(constant[deed], (32, 1))
+        _, reward, terminated, truncated, info = env.step(action)
+        assert not (info["success"] & running).any()
+        returns += np.where(running, reward, 0.0)
+        running &= ~(terminated | truncated)
+    assert returns.mean() <= mean and returns.max() <= 0.6
