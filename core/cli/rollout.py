@@ -50,6 +50,8 @@ def run(args: argparse.Namespace) -> int:
             raise InvalidValueError(f"{name.replace('_', '-')} must be at least 1, got {value}")
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
+    if args.stakes and not args.env_id.endswith("thermograsp/Grasp-v0"):
+        raise InvalidValueError(f"--stakes are those of thermograsp/Grasp-v0, not of {args.env_id}")
     output = Output(args.json)
     load_mujoco(output)
     at_once = min(args.num_envs, args.episodes)

@@ -40,6 +40,8 @@ def test_stakes_are_those_of_the_package(capsys: pytest.CaptureFixture[str]) -> 
     line = f"{ENV} --stakes --episodes 16 --num-envs 16"
     assert rollout(f"{line} --policy feeling", capsys)["successes"] == 16
     assert rollout(f"{line} --policy scripted", capsys)["successes"] < 14  # 10 N, whatever it is
+    assert main(["rollout", "thermograsp/Identify-v0", "--stakes", "--policy", "random"]) != 0
+    assert "--stakes are those of thermograsp/Grasp-v0" in capsys.readouterr().err
 
 
 def test_episode_k_has_seed_plus_k(capsys: pytest.CaptureFixture[str]) -> None:
