@@ -20,4 +20,10 @@ register(
     vector_entry_point="thermograsp.envs:IdentifyVectorEnv",
 )
 
+register(
+    id="thermograsp/Sort-v0",
+    entry_point="thermograsp.envs:SortEnv",
+    vector_entry_point="thermograsp.envs:SortVectorEnv",
+)
+
 del register

@@ -18,11 +18,13 @@ from thermograsp.errors import unknown_name
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What a gripper is told for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s."""
+    """What a gripper is told for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s. lateral_rate:
+    m/s along the table, across the fingers' motion; None for a gripper that has no such axis, or is to stay."""
 
     opening: np.ndarray
     force_limit: np.ndarray
     lift_rate: np.ndarray
+    lateral_rate: np.ndarray | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +35,7 @@ class Reading:
     fingertip's load cell in the pad's frame, normal (> 0 when pressing) and two tangential. voltage (B, S, F) V after
     the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows; on
     hardware `unknown`, the names that are missing, and `late`, s by which the step's end was missed. error: (B,) why an
-    environment can't go on, "" while it can.
+    environment can't go on, "" while it can. lateral (B,) m of the arm along the table, None without such an axis.
     """
 
     opening: np.ndarray
@@ -44,6 +46,7 @@ class Reading:
     thermostat: np.ndarray
     truth: Mapping[str, Any]
     error: tuple[str, ...]
+    lateral: np.ndarray | None = None
 
 
 def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
@@ -93,6 +96,7 @@ class Plant(Protocol):
 _SCHEMES: Mapping[str, str] = MappingProxyType(
     {
         "simulated": "thermograsp.envs.simulated_plant:simulated_plant",
+        "simulated-pair": "thermograsp.envs.pair_plant:pair_plant",
         "serial": "thermograsp.hardware.serial_plant:serial_plant",
     }
 )

@@ -1,6 +1,6 @@
 """MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments."""
 
-from .actions import action_of, action_space, command_of
+from .actions import action_of, action_space, command_of, sliding_action_of
 from .grasp import BatchState, GraspBatch
 from .grasp_env import GraspEnv, GraspVectorEnv
 from .grasp_task import GraspTask
@@ -26,6 +26,8 @@ from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
 from .solver_settings import SolverSettings
+from .sort_env import SortEnv, SortVectorEnv
+from .sort_task import SortTask
 from .stakes import STAKES, force_window
 from .things import Thing
 
@@ -59,6 +61,9 @@ __all__ = [
     "SimulationConfig",
     "Size",
     "SolverSettings",
+    "SortEnv",
+    "SortTask",
+    "SortVectorEnv",
     "ThermostatError",
     "Thing",
     "Window",
@@ -69,4 +74,5 @@ __all__ = [
     "force_window",
     "load_mesh",
     "observation_space",
+    "sliding_action_of",
 ]

@@ -1,9 +1,12 @@
-"""A gripper's action: target opening, force limit and lift rate, each scaled to -1 .. 1.
+"""A gripper's action: target opening, force limit and lift rate, and on a lateral axis its rate, each scaled to
+-1 .. 1.
 
 B: environments.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import gymnasium
 import numpy as np
@@ -13,7 +16,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Command
 
 from .mechanics import MAX_FORCE, MAX_LIFT_RATE
-from .scene import MAX_OPENING
+from .scene import MAX_LATERAL_RATE, MAX_OPENING
 
 
 def action_space() -> gymnasium.spaces.Box:
@@ -49,6 +52,36 @@ def _scale(action, opening, force_limit, lift_rate):
         force_limit[b] = (min(max(action[b, 1], -1.0), 1.0) + 1) / 2 * MAX_FORCE
         lift_rate[b] = min(max(action[b, 2], -1.0), 1.0) * MAX_LIFT_RATE
     return -1
+
+
+def sliding_action_space() -> gymnasium.spaces.Box:
+    """The same, and the lateral rate -100 .. 100 mm/s."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
+
+
+def sliding_command_of(action: np.ndarray) -> Command:
+    """Commands of actions (B, 4), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
+    finite."""
+    array = np.asarray(action, dtype=float)
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise InvalidValueError(
+            "an action is (4,): opening, force limit, lift rate, lateral rate, each -1 .. 1; got shape "
+            f"{np.shape(action)[1:]}"
+        )
+    sideways = array[:, 3]
+    if not np.isfinite(sideways).all():
+        row = int(np.argmin(np.isfinite(sideways)))
+        raise InvalidValueError(
+            f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
+        )
+    return replace(command_of(array[:, :3]), lateral_rate=np.clip(sideways, -1.0, 1.0) * MAX_LATERAL_RATE)
+
+
+def sliding_action_of(
+    opening: float, force_limit: float, lift_rate: float, lateral_rate: float
+) -> np.ndarray:
+    """The action (4,) of a command in m, N and m/s."""
+    return np.append(action_of(opening, force_limit, lift_rate), np.float32(lateral_rate / MAX_LATERAL_RATE))
 
 
 def action_of(opening: float, force_limit: float, lift_rate: float) -> np.ndarray:

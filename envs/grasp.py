@@ -6,7 +6,7 @@ B: environments.
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -16,12 +16,13 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Plant, Reading, merged, plant_factory
 
 from .grasp_task import GraspTask
-from .observation import Observation, Observer, observation_space
+from .observation import Observation, Observer
 from .tasks import Outcome, Task, stopped
 from .truth import Truth
 
 _EVERY_STEP = (
     "material", "temperature_drop", "contact_area", "conductance", "rung", "events", "unknown", "late",
+    "asked", "right", "object_temperatures",
 )  # fmt: skip
 
 
@@ -75,6 +76,8 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
         if name in reading.truth:
             value = reading.truth[name][row]
             info[name] = value.copy() if isinstance(value, np.ndarray) else value
+    if "right" in info:
+        info["right"] = int(info["right"])
     randomized = reading.truth.get("randomized")
     if randomized:
         info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
@@ -121,17 +124,23 @@ def infos_of(
 
 class GraspBatch:
     """`num_envs` environments over a plant. task: what actions mean and what is judged. plant: "simulated" or a URL.
-    Other keywords go to the plant (SimulationConfig)."""
+    observer: what is seen, made for that many environments. Other keywords go to the plant (SimulationConfig)."""
 
     def __init__(
-        self, num_envs: int = 1, *, plant: str = "simulated", task: Task | None = None, **config: Any
+        self,
+        num_envs: int = 1,
+        *,
+        plant: str = "simulated",
+        task: Task | None = None,
+        observer: Callable[[int], Observer] = Observer,
+        **config: Any,
     ) -> None:
         self.task: Task = task or GraspTask()
         self.plant: Plant = plant_factory(plant)(plant, num_envs, **config)
         self.num_envs = num_envs
-        self.observation_space = observation_space()
+        self._observer = observer(num_envs)
+        self.observation_space = self._observer.space
         self.action_space = self.task.action_space()
-        self._observer = Observer(num_envs)
         self._judged = self.task.fresh(num_envs)
         self._all = np.ones(num_envs, bool)
         self.reading: Reading | None = None

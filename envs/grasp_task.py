@@ -19,7 +19,7 @@ from .actions import action_space, command_of
 from .tasks import Outcome
 
 LIFTED = 0.05  # m
-_TOUCHING = 0.2  # N on each pad that counts as holding
+TOUCHING = 0.2  # N on each pad that counts as holding
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ def _judge_rows(
     dropped, crushed, slipped)."""
     for b in range(len(lift)):
         least, most = force[b, :, 0].min(), force[b, :, 0].max()
-        pressing = least > _TOUCHING
+        pressing = least > TOUCHING
         at_height = pressing and lift[b] >= LIFTED * 0.98
         time, holding = elapsed[b] + dt, held[b] + dt if at_height else 0.0
         has_been = lifted[b] or at_height

@@ -6,7 +6,7 @@ B: environments, S: substeps, F = 2 fingertips, N: heat samples of a control ste
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,8 +19,10 @@ from ..thermal import (
     HeatTables,
     heat_tables,
     network_for,
+    network_of,
     shift_thermostats,
 )
+from ..thermal.carry import carry_matrix
 from .heat_kernel import advance_grasps
 from .heat_rows import EVENTS, HEAT_ROW, HEAT_TOLD
 from .things import Thing
@@ -64,8 +66,8 @@ class HeatStep:
 class GraspHeat:
     """The thermal side of `num_envs` grasps. tolerance: K. air: W/(m2 K) on the objects. dt: s, spacing of heat
     samples, `samples` of them in a control step. sensor_temperature: °C of the thermostats, one or
-    each fingertip's. cache: keep networks on
-    disk."""
+    each fingertip's. cache: keep networks on disk. least_sensor_states: of each fingertip (T mode), also where the
+    tolerance needs fewer."""
 
     def __init__(
         self,
@@ -77,7 +79,10 @@ class GraspHeat:
         samples: int,
         sensor_temperature: float | tuple[float, float],
         cache: bool = True,
+        least_sensor_states: int = 0,
     ) -> None:
+        self._least_sensor_states = least_sensor_states
+        self._carries: dict[tuple[int, int], np.ndarray] = {}
         self._tolerance, self._air, self._dt, self._samples = tolerance, air, dt, samples
         self._sensor_temperature, self._cache = sensor_temperature, cache
         self._networks: dict[object, int] = {}
@@ -153,6 +158,29 @@ class GraspHeat:
                 change[:, :tips],
             )
 
+    def carry(self, source: int, target: int, fingertip: int) -> None:
+        """The fingertip's field goes from one row to another, whose object it touches from now on. The source's
+        fingertip is left as warm as its thermostat. Raises InvalidValueError in O mode."""
+        old, new = self._rows[source], self._rows[target]
+        pair = int(old["network"]), int(new["network"])
+        if pair not in self._carries:
+            source_system, target_system = (self._systems[network] for network in pair)
+            same = source_system is target_system
+            self._carries[pair] = (
+                np.eye(source_system.orders.sensor) if same else carry_matrix(source_system, target_system)
+            )
+        before, after = (self._fingertip(row, fingertip) for row in (source, target))
+        # Row by row, so that rounding does not depend on what else the batch holds.
+        self._state[target, after] = (self._carries[pair] * self._state[source, before]).sum(axis=1)
+        self._state[source, before] = 0.0
+        new["stored"][fingertip], old["stored"][fingertip] = old["stored"][fingertip], 0.0
+
+    def _fingertip(self, row: int, fingertip: int) -> slice:
+        """Where the fingertip's own states are in a row's."""
+        orders = self._systems[self._rows[row]["network"]].orders
+        first = orders.even + (orders.odd or 0) + fingertip * orders.sensor
+        return slice(first, first + orders.sensor)
+
     def state(self, rows: Sequence[int]) -> HeatState:
         """A copy of what the rows remember."""
         chosen = list(rows)
@@ -189,10 +217,13 @@ class GraspHeat:
         key = (thing.geometry, difference)
         if key not in self._networks:
             demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
-            choice = network_for(thing.geometry, demand, cache=self._cache)
+            system = network_for(thing.geometry, demand, cache=self._cache).system
+            if 0 < system.orders.sensor < self._least_sensor_states:
+                orders = replace(system.orders, sensor=self._least_sensor_states)
+                system = network_of(thing.geometry, orders, cache=self._cache)
             self._networks[key] = len(self._systems)
-            self._systems.append(choice.system)
-            self.rungs.append(f"network:{choice.system.orders}")
+            self._systems.append(system)
+            self.rungs.append(f"network:{system.orders}")
             self._tables = heat_tables(self._systems, [self._air] * len(self._systems), self._dt)
             grown = np.zeros((len(self._state), self._tables.rates.shape[1]))
             grown[:, : self._state.shape[1]] = self._state

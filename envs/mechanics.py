@@ -19,8 +19,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
-from .mechanics_kernel import ADDRESSES, Motion, any_risen, set_points, summarise
-from .scene import MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
+from .mechanics_kernel import ADDRESSES, LIFT_ACCELERATION, Motion, any_risen, set_points, summarise
+from .scene import MAX_LATERAL_RATE, MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
 from .solver_settings import SHIPPED, SolverSettings
 
 SUBSTEPS = 10
@@ -86,7 +86,7 @@ class Mechanics:
     """`num_envs` grippers, each over its own objects.
 
     objects: what every environment holds at first; later ones may differ in all but name and number. Meshes that
-    come later must be in `library`. threads: 0 means all CPUs. settings: of MuJoCo.
+    come later must be in `library`. threads: 0 means all CPUs. settings: of MuJoCo. lateral: the arm slides along y.
     model: the compiled model of the first objects (MjModel).
 
     The gripper's low-level law is in the model: a servo on the opening whose set point moves at a bounded
@@ -101,17 +101,18 @@ class Mechanics:
         threads: int = 1,
         library: Sequence[ObjectSpec] = (),
         settings: SolverSettings = SHIPPED,
+        lateral: bool = False,
     ) -> None:
         if num_envs < 1 or threads < 0:
             raise InvalidValueError(f"num_envs {num_envs}, threads {threads}: give >= 1 and >= 0")
         self._library = tuple(library) + tuple(o for o in objects if o.mesh)
-        self._settings = settings
+        self._settings, self._sideways = settings, lateral
         self.num_envs = num_envs
         self.objects: list[tuple[ObjectSpec, ...]] = [tuple(objects)] * num_envs
         self.names = tuple(o.name for o in objects)
         # At the origin, so that two batches with the same objects share every model field.
         at_origin = tuple(placeless(o) for o in objects)
-        self.model = build_scene(at_origin, library=self._library, settings=settings)
+        self.model = build_scene(at_origin, library=self._library, settings=settings, lateral=lateral)
         self._batch = mujoco.batch.Batch(self.model, num_envs, threads)
         self._rows = self._batch.state  # every simulation's mjSTATE_INTEGRATION, live
         self._qpos, self._qvel, self._act, self._ctrl = (
@@ -156,8 +157,15 @@ class Mechanics:
             "poses": free[0],
             "sensor": self._contacts[2],
         }
-        self._layout = np.array([tuple(places[name] for name in ADDRESSES.names or ())], ADDRESSES)
+        self._layouts = []
+        for number, pose in enumerate(free):
+            places.update(poses=pose, object=number)
+            self._layouts.append(np.array([tuple(places[name] for name in ADDRESSES.names or ())], ADDRESSES))
+        self._layout = self._layouts[0]
         self._at: Any = self._layout.view(np.recarray)[0]
+        self._lateral = (
+            (model.joint("lateral").qposadr[0], model.actuator("lateral").id) if self._sideways else None
+        )
         self._stiffness = -float(model.actuator_biasprm[grip, 1])
 
     @property
@@ -169,6 +177,11 @@ class Mechanics:
     def height(self) -> np.ndarray:
         """(B,) m over the lowest position, now."""
         return self._qpos[:, self._at.height].copy()
+
+    @property
+    def lateral(self) -> np.ndarray:
+        """(B,) m of the arm along y, now. Raises InvalidValueError without such an axis."""
+        return self._qpos[:, self._along_y()[0]].copy()
 
     @property
     def object_pose(self) -> np.ndarray:
@@ -225,6 +238,35 @@ class Mechanics:
         """The same step, told of the first object in brief: all that heat and observations need, at a fraction of the
         cost. The arrays are the caller's own."""
         out = self._roll(opening, force_limit, lift_rate, substeps)
+        return self._motion(out, self._layout, substeps)
+
+    def slide(
+        self,
+        opening: np.ndarray,
+        force_limit: np.ndarray,
+        lift_rate: np.ndarray,
+        lateral_rate: np.ndarray,
+        substeps: int = SUBSTEPS,
+    ) -> tuple[Motion, ...]:
+        """The same step of an arm that moves along y as well, lateral_rate (B,) m/s, -0.1 .. 0.1, told of each object.
+        Raises InvalidValueError without such an axis."""
+        servo = self._along_y()[1]
+        rate = within(
+            "lateral_rate", self._batched("lateral_rate", lateral_rate), -MAX_LATERAL_RATE, MAX_LATERAL_RATE
+        )
+        change = LIFT_ACCELERATION * substeps * self._settings.timestep
+        last = self._ctrl[:, servo]
+        self._ctrl[:, servo] = np.clip(rate, last - change, last + change)
+        out = self._roll(opening, force_limit, lift_rate, substeps)
+        return tuple(self._motion(out, layout, substeps) for layout in self._layouts)
+
+    def _along_y(self) -> tuple[int, int]:
+        """Where the arm's position is in qpos and its servo in ctrl."""
+        if self._lateral is None:
+            raise InvalidValueError("this arm has no axis along y: build Mechanics with lateral=True")
+        return self._lateral
+
+    def _motion(self, out: dict[Any, np.ndarray], layout: np.ndarray, substeps: int) -> Motion:
         rows, tips = self.num_envs, len(TIPS)
         motion = Motion(
             np.empty((rows, substeps, tips)),
@@ -233,7 +275,7 @@ class Mechanics:
             *(np.empty(rows) for _ in range(4)),
         )
         summarise(
-            self._layout,
+            layout,
             out["sensordata"],
             out["site_xpos"],
             out["site_xmat"],
@@ -317,7 +359,7 @@ class Mechanics:
         if key not in self._compiled:
             if len(self._compiled) >= _KEPT_MODELS:
                 self._compiled.pop(next(iter(self._compiled)))
-            model = build_scene(key, library=self._library, settings=self._settings)
+            model = build_scene(key, library=self._library, settings=self._settings, lateral=self._sideways)
             pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)
             # bvh_aabb goes on with the meshes' boxes, which all environments share
             bodies = int(model.body_bvhnum.sum())

@@ -21,16 +21,16 @@ _STILL, _SHORT = (
 
 _NAMES = (
     *("left", "right", "left_dof", "right_dof", "height"),
-    *("grip", "lift", "grip_act", "lift_act", "poses", "sensor"),
+    *("grip", "lift", "grip_act", "lift_act", "poses", "sensor", "object"),
 )
 ADDRESSES = np.dtype([(name, "i8") for name in _NAMES])
 """Where things are in a model: the fingers' and the lift's joints in qpos, the fingers' in qvel, the actuators in ctrl,
-their set points in act, the objects' poses in qpos from `poses` on, and numbers of a contact sensor. Kernels take it as
-an array of one record, which costs less to hand over than a tuple."""
+their set points in act, an object's pose in qpos, numbers of a contact sensor, and which object it is. Kernels take it
+as an array of one record, which costs less to hand over than a tuple."""
 
 
 class Motion(NamedTuple):
-    """One control step of every gripper and its first object. normal (B, S, T) N on the pads at each substep, 0 where
+    """One control step of every gripper and one of its objects. normal (B, S, T) N on the pads at each substep, 0 where
     nothing touches. force (B, T, 3) N, the mean over the substeps of the fingertip's force on the object in the pad's
     frame. place (B, T, 3) m: the pads' middles in the object's frame at the end. opening m, opening_rate m/s, height
     m of the arm and object_height m, all (B,), at the end."""
@@ -112,7 +112,7 @@ def summarise(
     last, before = substeps - 1, max(substeps - 2, 0)  # the pads are where they were before the last substep
     for b in range(rows):
         for t in range(tips):
-            first = t * objects * at.sensor
+            first = (t * objects + at.object) * at.sensor
             mean = force[b, t]
             mean[:] = 0.0
             for s in range(substeps):

@@ -41,11 +41,12 @@ def observation_space() -> gymnasium.spaces.Dict:
 
 
 class Observer:
-    """Keeps the voltage history of `num_envs` environments and puts readings into observations.
+    """Keeps the voltage history of `num_envs` environments and puts readings into observations of its `space`.
 
     A reading beyond the space's bounds saturates there, as the instruments' own ranges would have it."""
 
     def __init__(self, num_envs: int) -> None:
+        self.space = observation_space()
         self.history = np.zeros((num_envs, 2, HISTORY))
         self.last: tuple[np.ndarray, ...] = tuple(
             np.zeros((num_envs, *shape), np.float32) for shape in _SHAPES.values()
@@ -58,7 +59,8 @@ class Observer:
     def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
         """Observations (B, ...) after a reading; arrays of their own. force_limit: (B,) N, as commanded. Rows of which
         `seen` (B,) is False keep what they last observed."""
-        fresh = [np.empty_like(values) for values in self.last]
+        last = self.last[: len(_SHAPES)]  # those that follow are a kind's own
+        fresh = [np.empty_like(values) for values in last]
         _observe_rows(
             seen,
             _flat(reading.opening),
@@ -69,7 +71,7 @@ class Observer:
             _flat(reading.voltage),
             _flat(reading.thermostat),
             self.history,
-            *self.last,
+            *last,
             *fresh,
         )
         gripper, force, voltage, thermostat = fresh

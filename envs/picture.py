@@ -44,7 +44,11 @@ def temperatures(reading: Reading | None, row: int = 0) -> dict[str, float]:
     """°C by part of the scene: the two fingertips' faces, in O mode the elements' too, and the object's mean."""
     if reading is None or "object_temperature" not in reading.truth:
         return {}
-    celsius = {"object": float(reading.truth["object_temperature"][row])}
+    means = reading.truth["object_temperature"][row]
+    if np.ndim(means):
+        celsius = {f"object_{number}": float(mean) for number, mean in enumerate(means)}
+    else:
+        celsius = {"object": float(means)}
     for tip, name in enumerate(TIPS):
         celsius[f"sensor_{name}"] = float(reading.truth["sensor_surface"][row, tip])
         if reading.truth["mode"] == "O":

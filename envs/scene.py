@@ -28,6 +28,8 @@ MAX_OPENING = 0.085  # m, between the pads
 PAD_SIDE = 0.020  # m, the square pad that takes the force
 CLEARANCE = 0.002  # m, least gap between pads (or fingers) and what they must not touch
 REACH = 0.095  # m, from the grasp centre up to the palm
+LATERAL_REACH = 0.06  # m, of the arm to either side along y
+MAX_LATERAL_RATE = 0.1  # m/s
 DEFAULT_MASS = 0.1  # kg
 DEFAULT_FRICTION = 0.8
 
@@ -209,6 +211,7 @@ def build_scene(
     *,
     library: Iterable[ObjectSpec] = (),
     settings: SolverSettings = SHIPPED,
+    lateral: bool = False,
 ) -> mujoco.MjModel:
     """Compile gripper, table and objects; the gripper is down at the first object's grasp height.
 
@@ -216,7 +219,8 @@ def build_scene(
     (names: `contact_sensor`): number of contacts, net force of the tip on the object (world frame, N), and the
     force-weighted centroid (world frame, m). Sensors are ordered by tip, then by object.
     library: mesh objects whose files are compiled in besides, so that models with other objects from it
-    have the same layout. settings: MuJoCo's solver and the softness of contacts.
+    have the same layout. settings: MuJoCo's solver and the softness of contacts. lateral: the arm also slides along y,
+    by a servo like the lift's.
     Raises InvalidValueError for no objects or a name given twice.
     """
     objects, library = tuple(objects), tuple(library)
@@ -235,6 +239,8 @@ def build_scene(
         for item in objects:
             _add_contact_sensor(spec, tip, item.name)
     spec.body("wrist").pos[2] = objects[0].grasp_height
+    if lateral:
+        _add_slide(spec)
     return spec.compile()
 
 
@@ -242,6 +248,27 @@ def build_scene(
 def _gripper() -> mujoco.MjSpec:
     """The parsed gripper; compile copies only."""
     return mujoco.MjSpec.from_file(str(asset("gripper.xml")))
+
+
+def _add_slide(spec: mujoco.MjSpec) -> None:
+    """The arm's way along y and its servo, with the lift's damping, stiffness and strength."""
+    spec.body("wrist").add_joint(
+        name="lateral",
+        type=mujoco.mjtJoint.mjJNT_SLIDE,
+        axis=(0, 1, 0),
+        range=(-LATERAL_REACH, LATERAL_REACH),
+        damping=spec.joint("lift").damping,
+    )
+    lift = spec.actuator("lift")
+    servo = spec.add_actuator(
+        name="lateral",
+        trntype=mujoco.mjtTrn.mjTRN_JOINT,
+        target="lateral",
+        ctrlrange=(-MAX_LATERAL_RATE, MAX_LATERAL_RATE),
+        actrange=(-LATERAL_REACH, LATERAL_REACH),
+        forcerange=lift.forcerange,
+    )
+    servo.set_to_intvelocity(kp=lift.gainprm[0], kv=-lift.biasprm[2])
 
 
 def _mesh_names(shape: MeshShape) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -20,12 +20,9 @@ from ..thermal import (
     SensorStack,
     SignalChain,
     Thermostat,
-    ThermostatState,
     material,
     materials,
     sensor,
-    settled_thermostat,
-    thermostat_step,
 )
 from .electronics import Electronics, ElectronicsState
 from .heat import GraspHeat, HeatState, HeatStep
@@ -33,6 +30,7 @@ from .mechanics import SUBSTEPS, Mechanics, MechanicsState
 from .randomization import CAUSES, Cause, Delay, Size, checked, draw
 from .scene import ObjectSpec, scaled
 from .solver_settings import SHIPPED, SolverSettings
+from .thermostats import Thermostats
 from .things import Thing
 from .truth import Truth
 
@@ -142,6 +140,59 @@ class SimulationConfig:
             raise InvalidValueError(f"signal must be one of {sorted(SIGNAL_CHAINS)}, got {self.signal!r}")
         return SIGNAL_CHAINS[self.signal]
 
+    @property
+    def heat(self) -> dict[str, Any]:
+        """Keywords of what computes the heat."""
+        return {
+            "tolerance": self.tolerance,
+            "air": self.air,
+            "dt": SAMPLE_PERIOD,
+            "samples": self.samples,
+            "sensor_temperature": self.sensor_temperature,
+            "cache": self.cache,
+        }
+
+    def thing(
+        self, stack: SensorStack, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]
+    ) -> Thing:
+        """The object of that material: the material's density and friction where the shape gives none."""
+        if spec.mass is None and spec.density is None:
+            spec = replace(spec, density=chosen.density)
+        if spec.friction is None and chosen.friction is not None:
+            spec = replace(spec, friction=chosen.friction)
+        spec = scaled(
+            spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
+        )
+        if self.mode == "O":
+            spec = replace(spec, elements=(stack.width, stack.thickness))
+        return Thing(
+            spec,
+            chosen,
+            self.object_temperature + drawn["object_temperature_shift"],
+            self.mode,
+            stack,
+            self.fingertips,
+            drawn["roughness_factor"],
+        )
+
+    def possible_things(self, stack: SensorStack) -> list[Thing]:
+        """Of every shape and size that may come, so that one too large is refused at once and not in some later
+        episode."""
+        plain, first = draw((), np.random.default_rng(0)), self.choices[0]
+        factors = (cause.factors for cause in checked(self.randomize) if isinstance(cause, Size))
+        sizes = [1.0, *(factor for some in factors for factor in some)]
+        return [
+            self.thing(stack, first, shape, {**plain, "size_factor": size})
+            for shape in self.shapes
+            for size in sizes
+        ]
+
+    @property
+    def most_delay(self) -> int:
+        """Samples by which voltages may be late."""
+        causes = checked(self.randomize)
+        return max((cause.most for cause in causes if isinstance(cause, Delay)), default=0)
+
 
 @dataclass(frozen=True, slots=True)
 class PlantState:
@@ -166,13 +217,7 @@ class SimulatedPlant:
         self._causes = checked(config.randomize)
         plain = draw((), np.random.default_rng(0))
         self._shapes = config.shapes
-        # Every shape and size that may come, so that one too large is refused here and not in some later episode.
-        sizes = [1.0, *(f for cause in self._causes if isinstance(cause, Size) for f in cause.factors)]
-        possible = [
-            self._thing(self._choices[0], shape, {**plain, "size_factor": size})
-            for shape in self._shapes
-            for size in sizes
-        ]
+        possible = config.possible_things(self._stack)
         first = possible[0]
         self.mechanics = Mechanics(
             (first.spec,),
@@ -183,32 +228,19 @@ class SimulatedPlant:
         )
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
-        self.heat = GraspHeat(
-            num_envs,
-            tolerance=config.tolerance,
-            air=config.air,
-            dt=SAMPLE_PERIOD,
-            samples=config.samples,
-            sensor_temperature=config.sensor_temperature,
-            cache=config.cache,
-        )
+        self.heat = GraspHeat(num_envs, **config.heat)
         self.things: list[Thing] = [first] * num_envs
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
-        most_delay = max((cause.most for cause in self._causes if isinstance(cause, Delay)), default=0)
         self._electronics = Electronics(
-            num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, most_delay
+            num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, config.most_delay
         )
         self._drawn = [plain] * num_envs
-        self._setpoints = np.tile(config.sensor_temperatures, (num_envs, 1))
+        self._thermostats = Thermostats(num_envs, config.thermostat, config.sensor_temperatures, self.dt)
         self._rest = np.zeros(num_envs)
         # Replaced, never written to: readings keep them.
         self._material, self._rung = np.full(num_envs, "", object), np.full(num_envs, "", object)
         self._crushing_force = np.full(num_envs, np.inf)
         self._randomized: dict[str, np.ndarray] = {}
-        self._thermostat = config.thermostat
-        if self._thermostat is not None:
-            self._thermostat = replace(self._thermostat, setpoint=config.sensor_temperatures[0])
-            self._thermostats = _distinct(settled_thermostat(self._thermostat, 2 * num_envs))
 
     @property
     def model(self) -> Any:
@@ -234,7 +266,7 @@ class SimulatedPlant:
             turned = shape.yaw + np.deg2rad(angle * turn)
             spec = replace(shape, position=(x * reach, y * reach), yaw=turned)
             self._drawn[row] = drawn = draw(self._causes, rng)
-            self.things[row] = self._thing(chosen, spec, drawn)
+            self.things[row] = self.config.thing(self._stack, chosen, spec, drawn)
             self._rngs[row] = rng
             self._electronics.reset(row, drawn)
         things = [self.things[row] for row in rows]
@@ -242,14 +274,11 @@ class SimulatedPlant:
         self.heat.reset(
             rows,
             [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things],
-            self._setpoints[list(rows)] + np.array([[self._drawn[row]["thermostat_error"]] for row in rows]),
+            self._thermostats.setpoints[list(rows)]
+            + np.array([[self._drawn[row]["thermostat_error"]] for row in rows]),
         )
         chosen = list(rows)
-        if self._thermostat is not None:
-            both = np.array([[2 * row, 2 * row + 1] for row in rows], int).ravel()
-            settled = settled_thermostat(self._thermostat, 2 * self.num_envs)
-            for mine, theirs in zip(_arrays(self._thermostats), _arrays(settled), strict=True):
-                mine[both] = theirs[both]
+        self._thermostats.reset(chosen)
         self._rest[chosen] = self.mechanics.object_pose[chosen, 0, 2]
         self._relabel(chosen)
         return self._still()
@@ -260,12 +289,9 @@ class SimulatedPlant:
             command.opening, command.force_limit, command.lift_rate, self.config.substeps
         )
         step = self.heat.advance(motion.normal, motion.place)
-        if self._thermostat is not None:
-            after = thermostat_step(self._thermostat, self._thermostats, step.told["drawn"].ravel(), self.dt)
-            self._thermostats = _distinct(after)
-            # The controller keeps its own sensor at the setpoint; where that errs, the plate is as much warmer.
-            warmer = self.heat.sensor_temperatures - self._setpoints
-            self.heat.set_thermostats(self._thermostats.temperature.reshape(-1, 2) + warmer)
+        if not self._thermostats.ideal:
+            first = self.heat.sensor_temperatures
+            self.heat.set_thermostats(self._thermostats.step(step.told["drawn"], first))
         error = tuple(self.mechanics.failure)
         return Reading(
             opening=motion.opening,
@@ -273,10 +299,14 @@ class SimulatedPlant:
             height=motion.height,
             force=motion.force,
             voltage=self._electronics.measure(step.drop, self._rngs),
-            thermostat=self._measured_thermostats(),
+            thermostat=self._thermostats.measured,
             truth=self._truth(motion.object_height, step, error),
             error=error,
         )
+
+    def temperatures(self, row: int) -> tuple[float, ...]:
+        """°C that the row's thermostats and object started from."""
+        return (*self.heat.sensor_temperatures[row], self.things[row].temperature)
 
     def close(self) -> None:
         """Nothing is held."""
@@ -284,12 +314,11 @@ class SimulatedPlant:
     def state(self, rows: Sequence[int]) -> PlantState:
         """A copy of the rows' state."""
         chosen = list(rows)
-        both = np.array([[2 * row, 2 * row + 1] for row in chosen], int)
         return PlantState(
             self.mechanics.state(np.array(chosen)),
             self.heat.state(chosen),
             self._electronics.state(chosen),
-            tuple(array[both] for array in self._thermostat_arrays()),
+            self._thermostats.state(chosen),
             self._rest[chosen],
             tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
             tuple(self._drawn[row] for row in chosen),
@@ -307,33 +336,10 @@ class SimulatedPlant:
             self.things[row] = replace(state.heat.things[k], spec=state.mechanics.objects[k][0])
             self._rngs[row] = rngs[k]
             self._drawn[row] = state.drawn[k]
-            for mine, theirs in zip(self._thermostat_arrays(), state.thermostats, strict=True):
-                mine[2 * row : 2 * row + 2] = theirs[k]
+        self._thermostats.set_state(chosen, state.thermostats)
         self._rest[chosen] = state.rest
         self._relabel(chosen)
         return rngs
-
-    def _thing(self, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]) -> Thing:
-        """The object of that material: the material's density and friction where the shape gives none."""
-        if spec.mass is None and spec.density is None:
-            spec = replace(spec, density=chosen.density)
-        if spec.friction is None and chosen.friction is not None:
-            spec = replace(spec, friction=chosen.friction)
-        config = self.config
-        spec = scaled(
-            spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
-        )
-        if config.mode == "O":
-            spec = replace(spec, elements=(self._stack.width, self._stack.thickness))
-        return Thing(
-            spec,
-            chosen,
-            config.object_temperature + drawn["object_temperature_shift"],
-            config.mode,
-            self._stack,
-            config.fingertips,
-            drawn["roughness_factor"],
-        )
 
     def _relabel(self, rows: Sequence[int]) -> None:
         """Names what the rows hold now, in arrays of their own."""
@@ -358,15 +364,6 @@ class SimulatedPlant:
             randomized=self._randomized,
         )
 
-    def _thermostat_arrays(self) -> list[np.ndarray]:
-        return [] if self._thermostat is None else _arrays(self._thermostats)
-
-    def _measured_thermostats(self) -> np.ndarray:
-        """(B, F) °C by the thermostats' own sensors."""
-        if self._thermostat is None:
-            return self._setpoints.copy()
-        return self._thermostats.measured.reshape(-1, 2).copy()
-
     def _still(self) -> Reading:
         """The reading before anything moves: nothing is touched, no voltage."""
         rows, error = self.num_envs, tuple(self.mechanics.failure)
@@ -376,19 +373,10 @@ class SimulatedPlant:
             height=self.mechanics.height,
             force=np.zeros((rows, 2, 3)),
             voltage=np.zeros((rows, self.config.samples, 2)),
-            thermostat=self._measured_thermostats(),
+            thermostat=self._thermostats.measured,
             truth=self._truth(self.mechanics.object_pose[:, 0, 2], self.heat.rest(), error),
             error=error,
         )
-
-
-def _arrays(state: ThermostatState) -> list[np.ndarray]:
-    return [getattr(state, field.name) for field in fields(state)]
-
-
-def _distinct(state: ThermostatState) -> ThermostatState:
-    """The same with an array of its own in every field, to be written to."""
-    return ThermostatState(*(array.copy() for array in _arrays(state)))
 
 
 def simulated_plant(url: str, num_envs: int, **config: Any) -> SimulatedPlant:

@@ -76,7 +76,7 @@ def _temperatures(plant: Any, reading: Reading, rows: np.ndarray) -> Iterator[tu
     """Nothing gets colder or warmer than what it all started from, up to the networks' tolerance."""
     margin = plant.config.tolerance
     for row in rows:
-        ends = (*plant.heat.sensor_temperatures[row], plant.things[row].temperature)
+        ends = plant.temperatures(row)
         low, high = min(ends) - margin, max(ends) + margin
         for name in _TEMPERATURES:
             values = np.atleast_1d(reading.truth[name][row])

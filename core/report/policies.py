@@ -76,12 +76,17 @@ class _Random:
 
 class _Scripted:
     """Closes, lifts and holds, "feeling" with a force that fits what it feels; for environments that observe and act as
-    Grasp-v0 does."""
+    Grasp-v0 does. In Sort-v0 it feels what it lifts under either name."""
 
     def __init__(self, env: gymnasium.vector.VectorEnv, name: str) -> None:
         space = env.single_observation_space
         if not (isinstance(space, gymnasium.spaces.Dict) and {"force", "gripper"} <= set(space.spaces)):
             raise InvalidValueError(f"policy {name!r} needs a gripper's observations: use 'random' or 'zero'")
+        if "goal" in space.spaces:
+            from thermograsp.report.scripted_sort import ScriptedSort
+
+            self._grasp = ScriptedSort(env.unwrapped.batch)  # pyright: ignore[reportAttributeAccessIssue]
+            return
         from thermograsp.report.scripted import FeelingGrasp, ScriptedGrasp
 
         grasp = ScriptedGrasp if name == "scripted" else FeelingGrasp

@@ -1,0 +1,96 @@
+"""Lift the right one of two objects: reward, success and the end of an episode, as pure functions of arrays.
+
+B: environments, O = 2 objects.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import gymnasium
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, positive
+from thermograsp.plant import Command, Reading
+
+from .actions import sliding_action_space, sliding_command_of
+from .grasp_task import LIFTED, TOUCHING
+from .tasks import Outcome
+
+WRONG = (
+    LIFTED / 2
+)  # m at which the wrong object counts as lifted; tipping one by its corner raises it by less
+
+
+class SortState(NamedTuple):
+    """elapsed (B,) s. held (B,) s of the right object at 5 cm without a break. lifted (B,): it has been there."""
+
+    elapsed: np.ndarray
+    held: np.ndarray
+    lifted: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class SortTask:
+    """Lift the right object by 5 cm and hold it for hold_seconds without dropping or crushing it. seconds: time limit.
+    Raises InvalidValueError where one of them is not above 0.
+
+    Reward per second, while both fingertips press the right object: .3 times the height reached (as a share of 5 cm),
+    and .5 while it is held there; 1 once on success, -1 on lifting the other one by 2.5 cm, dropping the right one, or
+    crushing either. Touching alone gives nothing.
+    """
+
+    hold_seconds: float = 1.0
+    seconds: float = 10.0
+
+    def __post_init__(self) -> None:
+        for name in ("hold_seconds", "seconds"):
+            positive(name, getattr(self, name))
+
+    def action_space(self) -> gymnasium.spaces.Box:
+        """See actions.py."""
+        return sliding_action_space()
+
+    def command(self, action: np.ndarray) -> Command:
+        """See actions.py."""
+        return sliding_command_of(action)
+
+    def fresh(self, num_envs: int) -> SortState:
+        """Before the first step."""
+        return SortState(np.zeros(num_envs), np.zeros(num_envs), np.zeros(num_envs, bool))
+
+    def judge(
+        self, state: SortState, dt: float, action: np.ndarray, reading: Reading
+    ) -> tuple[SortState, Outcome]:
+        """After a control step of dt s. Raises InvalidValueError for a plant that does not know which object is
+        right."""
+        del action
+        truth = reading.truth
+        if "right" not in truth:
+            raise InvalidValueError("this plant does not know two objects: sorting needs a simulated pair")
+        rows, right = np.arange(len(state.elapsed)), truth["right"]
+        lift, other = truth["lift"][rows, right], truth["lift"][rows, 1 - right]
+        normal = truth["object_force"][..., 0]  # (B, O, F)
+        pressing = normal[rows, right].min(axis=1) > TOUCHING
+        at_height = pressing & (lift >= LIFTED * 0.98)
+        elapsed, held = state.elapsed + dt, np.where(at_height, state.held + dt, 0.0)
+        lifted = state.lifted | at_height
+        wrong = other >= WRONG
+        crushed = (normal.max(axis=2) > truth["crushing_force"]).any(axis=1)
+        dropped = lifted & ~pressing & (lift < LIFTED / 2)
+        failed = wrong | crushed | dropped
+        # In float steps of dt a rounding must not cost a control step.
+        success = (held >= self.hold_seconds - dt / 2) & ~failed
+        share = np.clip(lift / LIFTED, 0.0, 1.0)
+        shaping = dt * np.where(pressing, 0.3 * share + 0.5 * at_height, 0.0)
+        ended = success | failed
+        outcome = Outcome(
+            reward=shaping + success - 1.0 * failed,
+            success=success,
+            terminated=ended,
+            truncated=~ended & (elapsed >= self.seconds - dt / 2),
+            reasons={"wrong": wrong, "dropped": dropped, "crushed": crushed},
+            told={},
+        )
+        return SortState(elapsed, held, lifted), outcome

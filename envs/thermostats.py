@@ -1,0 +1,81 @@
+"""The thermostats of a batch's fingertips: ideal ones, or of finite power with a controller.
+
+B: environments, F = 2 fingertips.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+
+import numpy as np
+
+from ..thermal import Thermostat, ThermostatState, settled_thermostat, thermostat_step
+
+
+class Thermostats:
+    """Of `num_envs` environments. model: of finite power, None for ideal ones. setpoints: °C of the left and the right
+    one; one of finite power has the left one's. dt: s, the control step."""
+
+    def __init__(
+        self, num_envs: int, model: Thermostat | None, setpoints: tuple[float, float], dt: float
+    ) -> None:
+        self.setpoints = np.tile(setpoints, (num_envs, 1))
+        self._model = None if model is None else replace(model, setpoint=setpoints[0])
+        self._dt = dt
+        if self._model is not None:
+            self._state = _distinct(settled_thermostat(self._model, 2 * num_envs))
+
+    def reset(self, rows: Sequence[int]) -> None:
+        """The rows' have been at their setpoint for long."""
+        if self._model is not None:
+            both = _fingertips(rows).ravel()
+            settled = settled_thermostat(self._model, self.setpoints.size)
+            for mine, theirs in zip(_arrays(self._state), _arrays(settled), strict=True):
+                mine[both] = theirs[both]
+
+    @property
+    def ideal(self) -> bool:
+        """Whether they stay as warm as they are, whatever is drawn from them."""
+        return self._model is None
+
+    def step(self, drawn: np.ndarray, first: np.ndarray) -> np.ndarray:
+        """Their temperatures (B, F) °C after a control step in which heat `drawn` (B, F) W left them. first: (B, F) °C,
+        what they started from."""
+        if self._model is None:
+            return first
+        self._state = _distinct(thermostat_step(self._model, self._state, drawn.ravel(), self._dt))
+        # The controller keeps its own sensor at the setpoint; where that errs, the plate is as much warmer.
+        return self._state.temperature.reshape(-1, 2) + (first - self.setpoints)
+
+    @property
+    def measured(self) -> np.ndarray:
+        """(B, F) °C by their own sensors."""
+        if self._model is None:
+            return self.setpoints.copy()
+        return self._state.measured.reshape(-1, 2).copy()
+
+    def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:
+        """A copy of what the rows remember."""
+        return tuple(array[_fingertips(rows)] for array in self._kept())
+
+    def set_state(self, rows: Sequence[int], state: tuple[np.ndarray, ...]) -> None:
+        """Puts the rows into a state taken by `state`."""
+        for mine, theirs in zip(self._kept(), state, strict=True):
+            mine[_fingertips(rows)] = theirs
+
+    def _kept(self) -> list[np.ndarray]:
+        return [] if self._model is None else _arrays(self._state)
+
+
+def _fingertips(rows: Sequence[int]) -> np.ndarray:
+    return np.array([[2 * row, 2 * row + 1] for row in rows], int)
+
+
+def _arrays(state: ThermostatState) -> list[np.ndarray]:
+    return [getattr(state, field.name) for field in fields(state)]
+
+
+def _distinct(state: ThermostatState) -> ThermostatState:
+    """The same with an array of its own in every field, to be written to."""
+    return ThermostatState(*(array.copy() for array in _arrays(state)))
