@@ -18,9 +18,9 @@ import numpy as np
 from ..thermal.carry import LEAST_STATES
 from .heat import GraspHeat, HeatState, HeatStep
 from .heat_rows import HEAT_TOLD
+from .pair_config import OBJECTS
 from .things import Thing
 
-OBJECTS = 2
 _OF_FINGERTIPS = ("conductance", "area", "sensor_surface", "object_surface", "flow", "drawn")
 _SUMMED = ("air_loss", "imbalance", "exchanged")
 

@@ -9,103 +9,28 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, unknown_name
+from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Command, Reading
 
 from ..thermal import Material, sensor
 from .electronics import Electronics, ElectronicsState
 from .mechanics import Mechanics, MechanicsState
-from .pair_heat import OBJECTS, PairHeat, PairHeatState, PairHeatStep
+from .pair_config import OBJECTS, PairConfig, pair_config
+from .pair_heat import PairHeat, PairHeatState, PairHeatStep
+from .pair_truth import PairTruth
 from .randomization import CAUSES, checked, draw
-from .scene import DEFAULT_FRICTION, DEFAULT_MASS, LATERAL_REACH, ObjectSpec
-from .simulated_plant import SAMPLE_PERIOD, SimulationConfig
+from .scene import LATERAL_REACH, ObjectSpec
+from .simulated_plant import SAMPLE_PERIOD
 from .thermostats import Thermostats
 from .things import Thing
-from .truth import Truth
 
 GAP = 0.03  # m between the two objects, wider than a pad
-GOALS = ("material", "hotter")
-HOTTER = "the hotter one"
-
-Goal = Literal["material", "hotter"]
-
-
-@dataclass(frozen=True, slots=True)
-class PairConfig:
-    """What is asked of a pair. goal: "material", the one of the asked material, the two being of two of the
-    simulation's materials; or "hotter", both of one material. temperatures: °C of the two, for "hotter" the cooler one
-    first; which lies where is drawn. simulation: the rest; its objects' mass and friction are .1 kg and .8 where not
-    given, whatever the material. Raises UnknownNameError (goal) and InvalidValueError."""
-
-    goal: Goal
-    temperatures: tuple[float, float]
-    simulation: SimulationConfig
-
-    def __post_init__(self) -> None:
-        if self.goal not in GOALS:
-            raise unknown_name("goal", self.goal, GOALS)
-        if self.simulation.mode != "T":
-            raise InvalidValueError(
-                f"mode {self.simulation.mode!r}: elements glued to the objects can't be sorted by touch; give 'T'"
-            )
-        cooler, hotter = (finite("object_temperature (°C)", value) for value in self.temperatures)
-        if not (cooler < hotter if self.goal == "hotter" else cooler == hotter):
-            raise InvalidValueError(
-                f"object_temperature {self.temperatures} °C: give one for goal 'material', and for 'hotter' two, the "
-                "cooler one first"
-            )
-        if self.goal == "material" and (
-            len(set(self.materials)) < len(self.materials) or len(self.materials) < OBJECTS
-        ):
-            raise InvalidValueError(
-                f"material {list(self.materials)}: give two at least that are to be told apart, each once"
-            )
-
-    @property
-    def materials(self) -> tuple[str, ...]:
-        """Names of those that an episode draws from."""
-        return tuple(each.name for each in self.simulation.choices)
-
-    @property
-    def goals(self) -> tuple[str, ...]:
-        """What can be asked, in the order of the goal's numbers."""
-        return self.materials if self.goal == "material" else (HOTTER,)
-
-
-@dataclass(frozen=True, slots=True)
-class PairTruth(Truth):
-    """The same of a gripper over two objects; what heat tells of fingertips is of the object that each touches or
-    touched last, heat's last column and the books are both objects'. material, rung: (B,) tuples of both. lift,
-    crushing_force: (B, O). own: object_temperature and object_temperatures (B, O) °C, object_force (B, O, F, 3) N, goal
-    (B, G), asked (B,) and right (B,), the number of the right object."""
-
-    own: Mapping[str, Any]
-
-    def __getitem__(self, name: str) -> Any:
-        return self.own[name] if name in self.own else Truth.__getitem__(self, name)
-
-    def info(self, row: int) -> dict[str, Any]:
-        """See Truth; and what is asked."""
-        return Truth.info(self, row) | {
-            "asked": self.own["asked"][row],
-            "right": int(self.own["right"][row]),
-            "object_temperatures": self.own["object_temperatures"][row].copy(),
-        }
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.own or Truth.__contains__(self, name)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(dict.fromkeys((*Truth.__iter__(self), *self.own)))
-
-    def __len__(self) -> int:
-        return len(tuple(iter(self)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,22 +304,11 @@ def _tuples(values: Sequence[tuple[str, ...]]) -> np.ndarray:
     return array
 
 
-def pair_plant(url: str, num_envs: int, *, goal: Goal = "material", **config: Any) -> PairPlant:
-    """The plant behind plant="simulated" of two objects. Keywords as in SimulationConfig, but object_temperature: °C of
-    both, or a pair, for goal "hotter" the cooler one first. Raises InvalidValueError for others."""
-    default = (20.0, 28.0) if goal == "hotter" else 24.0
-    given = np.ravel(config.pop("object_temperature", default)).tolist()
-    if len(given) not in (1, OBJECTS):
-        raise InvalidValueError(f"object_temperature must be one °C or two, got {given}")
+def pair_plant(url: str, num_envs: int, **config: Any) -> PairPlant:
+    """The plant behind plant="simulated" of two objects. Keywords as pair_config's. Raises InvalidValueError for
+    others."""
     try:
-        settings = SimulationConfig(object_temperature=given[0], **config)
+        pair = pair_config(**config)
     except TypeError as error:
         raise InvalidValueError(f"plant {url!r}: {error}") from None
-    alike = [_of_one_weight(shape) for shape in settings.shapes]
-    return PairPlant(num_envs, PairConfig(goal, (given[0], given[-1]), replace(settings, objects=alike)))
-
-
-def _of_one_weight(spec: ObjectSpec) -> ObjectSpec:
-    """Mass and friction do not follow from the material."""
-    mass = DEFAULT_MASS if spec.mass is None and spec.density is None else spec.mass
-    return replace(spec, mass=mass, friction=DEFAULT_FRICTION if spec.friction is None else spec.friction)
+    return PairPlant(num_envs, pair)

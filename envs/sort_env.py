@@ -7,7 +7,7 @@ from typing import Any
 
 from thermograsp.errors import InvalidValueError
 
-from .pair_plant import Goal
+from .pair_config import Goal
 from .simulated_plant import SimulationConfig
 from .sort_observation import SortObserver
 from .sort_task import SortTask
