@@ -92,8 +92,10 @@ def infos_of(
     infos: dict[str, Any] = {}
     judged = rows if judged is None else rows & judged
 
+    complete = bool(rows.all())
+
     def add(name: str, values: np.ndarray, have: np.ndarray) -> None:
-        if not have.all():
+        if have is not rows or not complete:
             values = values.copy()
             values[~have] = None if values.dtype == object else 0
         infos[name], infos["_" + name] = values, have.copy()
@@ -165,6 +167,11 @@ class GraspBatch:
         self._observer.restart(chosen)
         for values in self._judged:
             values[chosen] = 0
+        if self.reading is None:
+            # Once without consequence, so that nothing compiles after the first step, when a real gripper moves.
+            idle = np.zeros((self.num_envs, *self.action_space.shape))
+            self.task.command(idle)
+            self.task.judge(self._judged, self.dt, idle, reading)
         self.reading = reading
         return self._observer.observe(reading, np.zeros(self.num_envs), chosen), reading
 

@@ -63,23 +63,19 @@ class Observer:
         fresh = [np.empty_like(values) for values in last]
         _observe_rows(
             seen,
-            _flat(reading.opening),
-            _flat(reading.opening_rate),
-            _flat(reading.height),
-            _flat(force_limit),
-            _flat(reading.force),
-            _flat(reading.voltage),
-            _flat(reading.thermostat),
+            reading.opening,
+            reading.opening_rate,
+            reading.height,
+            force_limit,
+            reading.force,
+            reading.voltage,
+            reading.thermostat,
             self.history,
             *last,
             *fresh,
         )
         gripper, force, voltage, thermostat = fresh
         return {"gripper": gripper, "force": force, "voltage": voltage, "thermostat": thermostat}
-
-
-def _flat(values: np.ndarray) -> np.ndarray:
-    return np.ascontiguousarray(values, dtype=float)
 
 
 _SHAPES = {"gripper": (4,), "force": (2, 3), "voltage": (2, HISTORY), "thermostat": (2,)}

@@ -25,12 +25,11 @@ from .messages import Flag
 from .pacing import Pace, RealTime
 from .samples import Samples
 
-UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height")
+UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height", "lateral")
 _STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
 OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
 _TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
 _WARMING = Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT | _TOLERATED
-_COMPILING = 10.0  # s that an agent may take after the first step ever, in which its code is compiled
 _SETTLING = 0.2  # s between looks at a thermostat that warms up
 
 
@@ -38,8 +37,8 @@ _SETTLING = 0.2  # s between looks at a thermostat that warms up
 class SerialConfig:
     """rate: Hz of the voltage. dt: s, the control period, a whole number of samples. setpoint: °C of both thermostats.
     speed: m/s of the fingers. most_force: N on a pad, above which the gripper lets go. watchdog: s without a step after
-    which it lets go, 10 s after the first step ever, when code is compiled; 0 for never. settle_within, open_within: s
-    that a reset waits for the thermostats, and for the fingers to open."""
+    which it lets go; 0 for never. settle_within, open_within: s that a reset waits for the thermostats, and for the
+    fingers to open."""
 
     rate: int = 100
     dt: float = 0.02
@@ -85,9 +84,9 @@ class SerialPlant:
 
     A step sends the command, waits for the step's end, and reads. The voltages are the oldest samples not yet read, so
     that they are at most a step and a sample old. What goes wrong in a step opens the gripper and ends the episode: the
-    reading has the last values and says why in error. Without a lift axis the height is 0 and lift_rate does nothing.
-    truth has `unknown`, names that only a simulation knows or that need a lift axis, and `late`, s by which the step's
-    end was missed. The fingers stay as they are on close.
+    reading has the last values and says why in error. Without a lift axis the height is 0 and lift_rate does nothing;
+    lateral_rate does nothing. truth has `unknown`, names that only a simulation knows or that need such an axis, and
+    `late`, s by which the step's end was missed. The fingers stay as they are on close.
     """
 
     num_envs = 1
@@ -278,8 +277,7 @@ class SerialPlant:
         """The watchdog's thread."""
         while not self._closing.wait(self.config.watchdog / 4):
             silent = self._pace.now() - self._fed
-            patience = self.config.watchdog if self.counts.steps > 1 else _COMPILING
-            if self._armed and silent > patience:
+            if self._armed and silent > self.config.watchdog:
                 self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
 
 

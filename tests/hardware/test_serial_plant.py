@@ -193,8 +193,6 @@ def test_an_agent_that_stops_is_noticed(tmp_path: Path) -> None:
             SerialConfig(watchdog=0.2),
         )
         fresh(plant)
-        plant.step(CLOSE)
-        time.sleep(0.4)  # an agent whose code is compiled after the first step has more time
         for _ in range(40):
             assert plant.step(CLOSE).error == ("",)
         assert hand.fingers.opening < 0.05
