@@ -18,7 +18,7 @@ from .senses import SIZE, Senses
 from .touch_vector import TouchVectorEnv
 
 try:
-    from stable_baselines3.common.vec_env import VecEnv
+    from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 except ImportError as error:
     raise MissingDependencyError(
         "stable-baselines3 is not installed: pip install 'thermograsp[rl]'"

@@ -41,7 +41,7 @@ def recurrent_net(
     """(N,) labels at each contact time by one gated recurrent net of 48 units that is asked after every 50 ms. Raises
     MissingDependencyError without PyTorch."""
     try:
-        import torch
+        import torch  # pyright: ignore[reportMissingImports]
     except ImportError as error:
         raise MissingDependencyError(
             "the recurrent net needs PyTorch: pip install 'thermograsp[torch]'"

@@ -14,8 +14,8 @@ from thermograsp.errors import InvalidValueError
 
 pytest.importorskip("stable_baselines3", reason="needs stable-baselines3: make test-rl")
 
-from stable_baselines3 import PPO
-from stable_baselines3.common.env_checker import check_env
+from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
+from stable_baselines3.common.env_checker import check_env  # pyright: ignore[reportMissingImports]
 
 from thermograsp.envs.sb3 import StableBaselinesVecEnv
 from thermograsp.envs.senses import SIZE, Senses
