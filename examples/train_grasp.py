@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium
-import torch
-from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.utils import LinearSchedule
+import torch  # pyright: ignore[reportMissingImports]
+from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
+from stable_baselines3.common.callbacks import BaseCallback  # pyright: ignore[reportMissingImports]
+from stable_baselines3.common.utils import LinearSchedule  # pyright: ignore[reportMissingImports]
 
 import thermograsp  # noqa: F401  registers the environments
 from thermograsp.envs import STAKES, action_of
