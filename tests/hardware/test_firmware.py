@@ -429,7 +429,8 @@ def test_on_a_pseudo_terminal_it_is_a_device(board: Board, tmp_path: Path) -> No
     ):
         samples = tips.wait(100, 20.0)
         statistics = tips.statistics()
-    assert abs(np.diff(samples.device_time) - 0.01).max() < 1e-3
+    # The first may be of the rate before.
+    assert abs(np.diff(samples.device_time[2:]) - 0.01).max() < 1e-3
     assert (statistics.lost, statistics.reconnects, statistics.reboots) == (0, 0, 0)
 
 
