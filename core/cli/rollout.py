@@ -39,11 +39,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Runs the episodes. 1 where a check found something or a simulation broke down."""
-    import gymnasium
-
-    from thermograsp.envs import STAKES
-    from thermograsp.report.rollout import rollout
-
     for name in ("episodes", "num_envs", "max_steps"):
         value = getattr(args, name)
         if value is not None and value < 1:
@@ -54,6 +49,11 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValueError(f"--stakes are those of thermograsp/Grasp-v0, not of {args.env_id}")
     output = Output(args.json)
     load_mujoco(output)
+    import gymnasium
+
+    from thermograsp.envs import STAKES
+    from thermograsp.report.rollout import rollout
+
     at_once = min(args.num_envs, args.episodes)
     try:
         env = gymnasium.make_vec(
