@@ -1,4 +1,5 @@
-"""Draws learning curves from the files of train_grasp.py: success over control steps, with and without heat.
+"""Draws learning curves from the files of train_grasp.py, success over control steps with and without heat, and
+prints the table of the fresh episodes at the end.
 
 python examples/draw_learning.py out/learning docs/images/learning.png
 """
@@ -60,9 +61,22 @@ def draw(axes: Axes, runs: Path, gripper: str) -> None:
     label_ends(axes, axes.get_xlim()[1], ends, labels, colors)
 
 
+def table(runs: Path) -> None:
+    """Successes of each agent, a seed after the other, as Markdown."""
+    print("| gripper | agent | successes | mean |\n|---|---|---|---|")
+    for gripper, where in GRIPPERS.items():
+        for agent, (label, _) in AGENTS.items():
+            found = [json.loads(path.read_text()) for path in sorted(runs.glob(f"{agent}-{gripper}-*.json"))]
+            if found:
+                counts = ", ".join(f"{each['successes']} of {each['episodes']}" for each in found)
+                mean = np.mean([each["successes"] / each["episodes"] for each in found])
+                print(f"| {where.removeprefix('gripper ')} | {label} | {counts} | {100 * mean:.1f} % |")
+
+
 def main() -> None:
-    """The figure."""
+    """The figure, and the table."""
     runs, target = Path(sys.argv[1]), Path(sys.argv[2])
+    table(runs)
     grippers = [name for name in GRIPPERS if list(runs.glob(f"heat-{name}-*.json"))]
     with style():
         figure, panels = plt.subplots(
