@@ -52,12 +52,13 @@ def draw(axes: Axes, runs: Path, gripper: str) -> None:
             [each["control_steps"] / 1e3 for each in final], shares, "o", color=color, mfc="white", ms=5
         )
         ends.append(float(np.mean(shares)))
-        labels.append(f"{label}\n{np.mean(shares):.0f} %")
+        labels.append(f"{label}, {np.mean(shares):.0f} %")
         colors.append(color)
-    axes.set(xlim=(0, None), ylim=(0, 104), xlabel="control steps (thousands)", title=GRIPPERS[gripper])
+    axes.set(xlim=(0, None), ylim=(0, 104), xlabel="control steps (thousands)")
     for level, text in LEVELS:
         axes.axhline(100 * level, color=FAINT, lw=0.8, ls=(0, (4, 3)))
         axes.text(axes.get_xlim()[1] * 0.01, 100 * level - 1.2, text, color=FAINT, size=8, va="top")
+    axes.set_title(GRIPPERS[gripper], pad=12)
     label_ends(axes, axes.get_xlim()[1], ends, labels, colors)
 
 
@@ -80,9 +81,8 @@ def main() -> None:
     grippers = [name for name in GRIPPERS if list(runs.glob(f"heat-{name}-*.json"))]
     with style():
         figure, panels = plt.subplots(
-            1, len(grippers), figsize=(5.2 * len(grippers), 3.9), squeeze=False, sharey=True
+            1, len(grippers), figsize=(5.6 * len(grippers), 3.9), squeeze=False, layout="constrained"
         )
-        figure.subplots_adjust(left=0.08, right=0.89, bottom=0.14, top=0.88, wspace=0.38)
         for axes, gripper in zip(panels[0], grippers, strict=True):
             draw(axes, runs, gripper)
         panels[0, 0].set_ylabel("successful episodes (%)")
