@@ -35,7 +35,8 @@ class Reading:
     fingertip's load cell in the pad's frame, normal (> 0 when pressing) and two tangential. voltage (B, S, F) V after
     the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows; on
     hardware `unknown`, the names that are missing, and `late`, s by which the step's end was missed. error: (B,) why an
-    environment can't go on, "" while it can. lateral (B,) m of the arm along the table, None without such an axis.
+    environment can't go on, "" while it can. told: names of what info tells of truth at every step. lateral (B,) m of
+    the arm along the table, None without such an axis.
     """
 
     opening: np.ndarray
@@ -46,6 +47,7 @@ class Reading:
     thermostat: np.ndarray
     truth: Mapping[str, Any]
     error: tuple[str, ...]
+    told: tuple[str, ...] = ()
     lateral: np.ndarray | None = None
 
 
@@ -65,9 +67,10 @@ def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
     parts = {
         f.name: merge(getattr(old, f.name), getattr(new, f.name))
         for f in fields(Reading)
-        if f.name != "truth"
+        if f.name not in ("truth", "told")
     }
-    return Reading(**parts, truth={name: merge(value, new.truth[name]) for name, value in old.truth.items()})
+    truth = {name: merge(value, new.truth[name]) for name, value in old.truth.items()}
+    return Reading(**parts, truth=truth, told=new.told)
 
 
 class Plant(Protocol):

@@ -24,7 +24,8 @@ from .randomization import (
 )
 from .render import Renderer, Window
 from .scene import ObjectSpec, build_scene
-from .simulated_plant import PlantState, SimulatedPlant, SimulationConfig
+from .simulated_plant import PlantState, SimulatedPlant
+from .simulation_config import SimulationConfig
 from .solver_settings import SolverSettings
 from .sort_env import SortEnv, SortVectorEnv
 from .sort_task import SortTask

@@ -18,12 +18,6 @@ from thermograsp.plant import Plant, Reading, merged, plant_factory
 from .grasp_task import GraspTask
 from .observation import Observation, Observer
 from .tasks import Outcome, Task, stopped
-from .truth import Truth
-
-_EVERY_STEP = (
-    "material", "temperature_drop", "contact_area", "conductance", "rung", "events", "unknown", "late",
-    "asked", "right", "object_temperatures",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +64,11 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
             info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
         if reading.error[row]:
             info["error"] = reading.error[row]
-    if isinstance(reading.truth, Truth):
-        return info | reading.truth.info(row)
-    for name in _EVERY_STEP:
-        if name in reading.truth:
-            value = reading.truth[name][row]
-            info[name] = value.copy() if isinstance(value, np.ndarray) else value
-    if "right" in info:
-        info["right"] = int(info["right"])
+    for name in reading.told:
+        value = reading.truth[name][row]
+        if isinstance(value, np.ndarray):
+            value = value.copy()
+        info[name] = value.item() if isinstance(value, np.generic) else value
     randomized = reading.truth.get("randomized")
     if randomized:
         info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
@@ -112,9 +103,8 @@ def infos_of(
         broken = np.array([bool(error) for error in reading.error]) & rows
         if broken.any():
             add("error", np.array(reading.error, object), broken)
-    for name in _EVERY_STEP:
-        if name in reading.truth:
-            add(name, reading.truth[name].copy(), rows)
+    for name in reading.told:
+        add(name, np.array(reading.truth[name]), rows)
     randomized = reading.truth.get("randomized")
     if randomized:
         nested: dict[str, Any] = {}

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..thermal import SEED_MATERIALS, Material
 from .identify_task import IdentifyTask
-from .simulated_plant import SimulationConfig
+from .simulation_config import SimulationConfig
 from .touch_env import TouchEnv
 from .touch_vector import TouchVectorEnv
 

@@ -10,7 +10,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError, finite, unknown_name
 
 from .scene import DEFAULT_FRICTION, DEFAULT_MASS, ObjectSpec
-from .simulated_plant import SimulationConfig
+from .simulation_config import SimulationConfig
 
 OBJECTS = 2
 GOALS = ("material", "hotter")

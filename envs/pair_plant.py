@@ -23,10 +23,10 @@ from .electronics import Electronics, ElectronicsState
 from .mechanics import Mechanics, MechanicsState
 from .pair_config import OBJECTS, PairConfig, pair_config
 from .pair_heat import PairHeat, PairHeatState, PairHeatStep
-from .pair_truth import PairTruth
+from .pair_truth import PAIR_TOLD, PairTruth
 from .randomization import CAUSES, checked, draw
 from .scene import LATERAL_REACH, ObjectSpec
-from .simulated_plant import SAMPLE_PERIOD
+from .simulation_config import SAMPLE_PERIOD
 from .thermostats import Thermostats
 from .things import Thing
 
@@ -150,6 +150,7 @@ class PairPlant:
             thermostat=self._thermostats.measured,
             truth=self._truth(heights, force, step, error),
             error=error,
+            told=PAIR_TOLD,
             lateral=self.mechanics.lateral,
         )
 
@@ -285,6 +286,7 @@ class PairPlant:
             thermostat=self._thermostats.measured,
             truth=self._truth(heights, np.zeros((rows, OBJECTS, 2, 3)), self.heat.rest(), error),
             error=error,
+            told=PAIR_TOLD,
             lateral=self.mechanics.lateral,
         )
 

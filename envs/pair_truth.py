@@ -9,7 +9,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .truth import Truth
+from .truth import TOLD, Truth
+
+PAIR_TOLD = (*TOLD, "asked", "right", "object_temperatures")
+"""What info tells at every step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,14 +26,6 @@ class PairTruth(Truth):
 
     def __getitem__(self, name: str) -> Any:
         return self.own[name] if name in self.own else Truth.__getitem__(self, name)
-
-    def info(self, row: int) -> dict[str, Any]:
-        """See Truth; and what is asked."""
-        return Truth.info(self, row) | {
-            "asked": self.own["asked"][row],
-            "right": int(self.own["right"][row]),
-            "object_temperatures": self.own["object_temperatures"][row].copy(),
-        }
 
     def __contains__(self, name: object) -> bool:
         return name in self.own or Truth.__contains__(self, name)

@@ -5,193 +5,22 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, non_negative, positive
+from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Command, Reading
 
-from ..thermal import (
-    SEED_MATERIALS,
-    SIGNAL_CHAINS,
-    Material,
-    Mode,
-    SensorStack,
-    SignalChain,
-    Thermostat,
-    material,
-    materials,
-    sensor,
-)
+from ..thermal import sensor
 from .electronics import Electronics, ElectronicsState
 from .heat import GraspHeat, HeatState, HeatStep
-from .mechanics import SUBSTEPS, Mechanics, MechanicsState
-from .randomization import CAUSES, Cause, Delay, Size, checked, draw
-from .scene import ObjectSpec, scaled
-from .solver_settings import SHIPPED, SolverSettings
+from .mechanics import Mechanics, MechanicsState
+from .randomization import CAUSES, checked, draw
+from .simulation_config import SAMPLE_PERIOD, SimulationConfig
 from .thermostats import Thermostats
 from .things import Thing
-from .truth import Truth
-
-SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
-
-
-@dataclass(frozen=True, slots=True)
-class SimulationConfig:
-    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed
-    materials. mode: T or O. objects: the object's shape, or a list to draw from per episode (density and friction
-    are the material's where a shape gives none). tolerance: K that the thermal network keeps. air: W/(m2 K).
-    Temperatures in °C, that of the sensors one or each fingertip's. thermostat: one of finite power (its setpoint is
-    sensor_temperature), None for an ideal one. placement: m and degree; the object lies within +- these of the middle,
-    drawn per episode. randomize: what else differs from episode to episode, records of randomization.py. fingertips:
-    how many carry a sensor (1: the left one). solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
-    step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
-    disk."""
-
-    material: str | Material | Sequence[str | Material] | None = None
-    mode: Mode = "T"
-    objects: ObjectSpec | Sequence[ObjectSpec] | None = None
-    tolerance: float = 0.05
-    sensor: str | SensorStack = "seed"
-    signal: str | SignalChain = "ads1115"
-    air: float = 5.0
-    sensor_temperature: float | tuple[float, float] = 36.0
-    thermostat: Thermostat | None = None
-    object_temperature: float = 24.0
-    placement: tuple[float, float] = (0.002, 2.0)
-    randomize: Sequence[Cause] = ()
-    fingertips: Literal[1, 2] = 2
-    solver: SolverSettings = SHIPPED
-    substeps: int = SUBSTEPS
-    threads: int = 1
-    cache: bool = True
-
-    def __post_init__(self) -> None:
-        if self.mode not in ("T", "O"):
-            raise InvalidValueError(f"mode must be 'T' or 'O', got {self.mode!r}")
-        if self.fingertips not in (1, 2):
-            raise InvalidValueError(f"fingertips must be 1 or 2, got {self.fingertips!r}")
-        positive("tolerance (K)", self.tolerance)
-        non_negative("air (W/(m2 K))", self.air)
-        for value in self.sensor_temperatures:
-            finite("sensor_temperature (°C)", value)
-        if self.thermostat is not None and len(set(self.sensor_temperatures)) > 1:
-            raise InvalidValueError(
-                f"sensor_temperature {self.sensor_temperature!r} °C: a thermostat of finite power has one setpoint; "
-                "give one temperature, or thermostat=None"
-            )
-        finite("object_temperature (°C)", self.object_temperature)
-        for value in self.placement:
-            non_negative("placement (m, degree)", value)
-        checked(self.randomize)
-        period = self.substeps * self.solver.timestep
-        if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
-            raise InvalidValueError(
-                f"{self.substeps} substeps of {self.solver.timestep:g} s make a control step of {period:g} s: "
-                f"give a whole number of {SAMPLE_PERIOD:g} s samples"
-            )
-
-    @property
-    def choices(self) -> tuple[Material, ...]:
-        """Materials that an episode draws from. Raises UnknownNameError, and InvalidValueError for an empty list."""
-        given = SEED_MATERIALS if self.material is None else self.material
-        listed = [given] if isinstance(given, str | Material) else list(given)
-        if not listed:
-            raise InvalidValueError(
-                f"material is an empty list: give one of {len(materials())} names, or None"
-            )
-        return tuple(material(name) for name in listed)
-
-    @property
-    def sensor_temperatures(self) -> tuple[float, float]:
-        """°C of the left and the right thermostat. Raises InvalidValueError for what is neither one nor two."""
-        given = np.ravel(self.sensor_temperature).tolist()
-        if len(given) not in (1, 2):
-            raise InvalidValueError(
-                f"sensor_temperature must be one °C or two, got {self.sensor_temperature!r}"
-            )
-        return given[0], given[-1]
-
-    @property
-    def shapes(self) -> tuple[ObjectSpec, ...]:
-        """Shapes that an episode draws from. Raises InvalidValueError for an empty list, and where their names or
-        numbers of convex pieces differ, which all environments of a batch share."""
-        given = ObjectSpec() if self.objects is None else self.objects
-        listed = (given,) if isinstance(given, ObjectSpec) else tuple(given)
-        if len({(shape.name, shape.hulls) for shape in listed}) != 1:
-            raise InvalidValueError(
-                f"objects {[shape.name for shape in listed]} of {[shape.hulls for shape in listed]} convex pieces: "
-                "give at least one, all of the same name and number of pieces"
-            )
-        return listed
-
-    @property
-    def samples(self) -> int:
-        """Of voltage and heat in a control step."""
-        return round(self.substeps * self.solver.timestep / SAMPLE_PERIOD)
-
-    @property
-    def chain(self) -> SignalChain:
-        """The electronics. Raises InvalidValueError for a name that is none."""
-        if isinstance(self.signal, SignalChain):
-            return self.signal
-        if self.signal not in SIGNAL_CHAINS:
-            raise InvalidValueError(f"signal must be one of {sorted(SIGNAL_CHAINS)}, got {self.signal!r}")
-        return SIGNAL_CHAINS[self.signal]
-
-    @property
-    def heat(self) -> dict[str, Any]:
-        """Keywords of what computes the heat."""
-        return {
-            "tolerance": self.tolerance,
-            "air": self.air,
-            "dt": SAMPLE_PERIOD,
-            "samples": self.samples,
-            "sensor_temperature": self.sensor_temperature,
-            "cache": self.cache,
-        }
-
-    def thing(
-        self, stack: SensorStack, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]
-    ) -> Thing:
-        """The object of that material: the material's density and friction where the shape gives none."""
-        if spec.mass is None and spec.density is None:
-            spec = replace(spec, density=chosen.density)
-        if spec.friction is None and chosen.friction is not None:
-            spec = replace(spec, friction=chosen.friction)
-        spec = scaled(
-            spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
-        )
-        if self.mode == "O":
-            spec = replace(spec, elements=(stack.width, stack.thickness))
-        return Thing(
-            spec,
-            chosen,
-            self.object_temperature + drawn["object_temperature_shift"],
-            self.mode,
-            stack,
-            self.fingertips,
-            drawn["roughness_factor"],
-        )
-
-    def possible_things(self, stack: SensorStack) -> list[Thing]:
-        """Of every shape and size that may come, so that one too large is refused at once and not in some later
-        episode."""
-        plain, first = draw((), np.random.default_rng(0)), self.choices[0]
-        factors = (cause.factors for cause in checked(self.randomize) if isinstance(cause, Size))
-        sizes = [1.0, *(factor for some in factors for factor in some)]
-        return [
-            self.thing(stack, first, shape, {**plain, "size_factor": size})
-            for shape in self.shapes
-            for size in sizes
-        ]
-
-    @property
-    def most_delay(self) -> int:
-        """Samples by which voltages may be late."""
-        causes = checked(self.randomize)
-        return max((cause.most for cause in causes if isinstance(cause, Delay)), default=0)
+from .truth import TOLD, Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -302,6 +131,7 @@ class SimulatedPlant:
             thermostat=self._thermostats.measured,
             truth=self._truth(motion.object_height, step, error),
             error=error,
+            told=TOLD,
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
@@ -376,6 +206,7 @@ class SimulatedPlant:
             thermostat=self._thermostats.measured,
             truth=self._truth(self.mechanics.object_pose[:, 0, 2], self.heat.rest(), error),
             error=error,
+            told=TOLD,
         )
 
 

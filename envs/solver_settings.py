@@ -50,7 +50,7 @@ class SolverSettings:
     solver: Literal["PGS", "CG", "Newton"] = "Newton"
     iterations: int = 100
     noslip_iterations: int = 0
-    solref: tuple[float, float] = (0.005, 1.0)
+    solref: tuple[float, float] = (0.004, 1.0)
     solimp: tuple[float, float, float] = (0.95, 0.99, 0.001)
     refsafe: bool = True
 

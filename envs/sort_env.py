@@ -8,7 +8,7 @@ from typing import Any
 from thermograsp.errors import InvalidValueError
 
 from .pair_config import Goal
-from .simulated_plant import SimulationConfig
+from .simulation_config import SimulationConfig
 from .sort_observation import SortObserver
 from .sort_task import SortTask
 from .touch_env import TouchEnv

@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from .heat import HeatStep
-from .heat_rows import EVENTS
+
+TOLD = ("material", "temperature_drop", "contact_area", "conductance", "rung", "events")
+"""What info tells at every step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,22 +34,6 @@ class Truth(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         return _VALUES[name](self)
-
-    def info(self, row: int) -> dict[str, Any]:
-        """What info says of one environment at every step; arrays are copies."""
-        told = self.heat.told[row]
-        left, right = told["events"]
-        info = {
-            "material": self.material[row],
-            "temperature_drop": self.heat.drop[row, -1].copy(),
-            "contact_area": told["area"].copy(),
-            "conductance": told["conductance"].copy(),
-            "rung": self.rung[row],
-            "events": EVENTS[left, right],
-        }
-        if self.randomized:
-            info["randomized"] = {name: float(values[row]) for name, values in self.randomized.items()}
-        return info
 
     def __contains__(self, name: object) -> bool:
         return name in _VALUES

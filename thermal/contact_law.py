@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 from numba import njit
-from scipy.special import erfcinv
 
 from .area import Pad, flat_contact
-from .conductance import FARTHEST, NEAREST, Joint, solid_conductance
+from .conductance import Joint, solid_conductance
 from .coupling_kernel import FAST
+from .erfc_inverse import FARTHEST, HIGH, LOW, NEAREST, SERIES
 
 FLAT, CYLINDER, SPHERE = range(3)
 
@@ -43,18 +43,10 @@ CONTACT_LAW = np.dtype(
     ]
 )
 
-# Mean planes' distance over roughness, sqrt(2) erfc^-1(x), by sqrt(-log x): a Chebyshev interpolant over the range in
-# which the laws hold, good to 1e-11.
+# Mean planes' distance over roughness, sqrt(2) erfc^-1(x), in powers of where sqrt(-log x) is between LOW and HIGH; the
+# series' first terms, good to 1e-11.
 _LOG_LEAST, _LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
-_LOW, _HIGH = math.sqrt(-_LOG_MOST), math.sqrt(-_LOG_LEAST)
-_SEPARATION = (
-    np.polynomial.Chebyshev.interpolate(
-        lambda y: np.sqrt(2) * erfcinv(np.exp(-np.square(y))), 12, (_LOW, _HIGH)
-    )
-    .convert(kind=np.polynomial.Polynomial, window=(-1.0, 1.0), domain=(_LOW, _HIGH))
-    .coef
-)
-_DEGREE = len(_SEPARATION)
+_SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
 _NEWTON_STEPS = 8
 
 
@@ -133,9 +125,9 @@ def conductance(law, pressure):
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _separation(log_share):
     y = math.sqrt(-min(max(log_share, _LOG_LEAST), _LOG_MOST))
-    z = (2 * y - _LOW - _HIGH) / (_HIGH - _LOW)
+    z = (2 * y - LOW - HIGH) / (HIGH - LOW)
     total = 0.0
-    for i in range(_DEGREE - 1, -1, -1):
+    for i in range(len(_SEPARATION) - 1, -1, -1):
         total = total * z + _SEPARATION[i]
     return total
 

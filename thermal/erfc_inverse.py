@@ -12,13 +12,13 @@ from .namespace import Array, namespace_of
 
 # erfc where mean planes are 4.75 and 2 standard deviations apart, the range of the conductance correlations
 FARTHEST, NEAREST = math.erfc(4.75 / math.sqrt(2)), math.erfc(2 / math.sqrt(2))
-_LOW, _HIGH = math.sqrt(-math.log(NEAREST)), math.sqrt(-math.log(FARTHEST))
+LOW, HIGH = math.sqrt(-math.log(NEAREST)), math.sqrt(-math.log(FARTHEST))
 _DEGREE = 16  # within 2e-14; each degree less costs a factor of 4
 
-# erfc^-1(p) is nearly sqrt(-log p), so it is a smooth function of that.
-_SERIES = Chebyshev.interpolate(
-    lambda y: erfcinv(np.exp(-np.square(y))), _DEGREE, (_LOW, _HIGH)
-).coef.tolist()
+# erfc^-1(p) is nearly sqrt(-log p), so it is a smooth function of that, which runs from LOW to HIGH.
+SERIES: tuple[float, ...] = tuple(
+    Chebyshev.interpolate(lambda y: erfcinv(np.exp(-np.square(y))), _DEGREE, (LOW, HIGH)).coef.tolist()
+)
 
 
 def erfc_inverse(p: Array) -> Array:
@@ -28,8 +28,8 @@ def erfc_inverse(p: Array) -> Array:
     xp = namespace_of(p)
     if xp is np:
         return erfcinv(p)
-    t = (xp.sqrt(-xp.log(p)) - (_LOW + _HIGH) / 2) * (2 / (_HIGH - _LOW))
+    t = (xp.sqrt(-xp.log(p)) - (LOW + HIGH) / 2) * (2 / (HIGH - LOW))
     total, last = 0.0 * t, 0.0 * t
-    for coefficient in _SERIES[:0:-1]:  # Clenshaw
+    for coefficient in SERIES[:0:-1]:  # Clenshaw
         total, last = coefficient + 2 * t * total - last, total
-    return _SERIES[0] + t * total - last
+    return SERIES[0] + t * total - last

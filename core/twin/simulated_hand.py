@@ -6,7 +6,8 @@ import threading
 
 import numpy as np
 
-from thermograsp.envs.simulated_plant import SAMPLE_PERIOD, SimulatedPlant
+from thermograsp.envs.simulated_plant import SimulatedPlant
+from thermograsp.envs.simulation_config import SAMPLE_PERIOD
 from thermograsp.errors import InvalidValueError
 from thermograsp.hardware import Contact, EmulatedFingertips, EmulatedGripper, Feel, GripperModel
 from thermograsp.hardware.robotiq_registers import Activation

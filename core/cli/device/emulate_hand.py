@@ -39,7 +39,8 @@ def run(args: argparse.Namespace) -> int:
     """Serves until the end of the time or an interrupt."""
     output = Output(args.json)
     load_mujoco(output)
-    from thermograsp.envs.simulated_plant import SimulatedPlant, SimulationConfig
+    from thermograsp.envs.simulated_plant import SimulatedPlant
+    from thermograsp.envs.simulation_config import SimulationConfig
     from thermograsp.hardware import PtyDevice
     from thermograsp.twin.simulated_hand import SimulatedHand
 
