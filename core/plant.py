@@ -7,17 +7,15 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from thermograsp.errors import unknown_name
 
 
-@dataclass(frozen=True, slots=True)
-class Command:
+class Command(NamedTuple):
     """What a gripper is told for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s. lateral_rate:
     m/s along the table, across the fingers' motion; None for a gripper that has no such axis, or is to stay."""
 
@@ -27,8 +25,7 @@ class Command:
     lateral_rate: np.ndarray | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(NamedTuple):
     """What a gripper and its fingertips report after one control step.
 
     opening (B,) m, opening_rate (B,) m/s, height (B,) m of the arm over its lowest position. force (B, F, 3) N: each
@@ -64,13 +61,9 @@ def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
             return type(a)(b[i] if i in chosen else value for i, value in enumerate(a))
         return b
 
-    parts = {
-        f.name: merge(getattr(old, f.name), getattr(new, f.name))
-        for f in fields(Reading)
-        if f.name not in ("truth", "told")
-    }
+    both = Reading(*(merge(mine, theirs) for mine, theirs in zip(old, new, strict=True)))
     truth = {name: merge(value, new.truth[name]) for name, value in old.truth.items()}
-    return Reading(**parts, truth=truth, told=new.told)
+    return both._replace(truth=truth, told=new.told)
 
 
 class Plant(Protocol):

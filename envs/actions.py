@@ -6,8 +6,6 @@ B: environments.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import gymnasium
 import numpy as np
 from numba import njit
@@ -74,7 +72,7 @@ def sliding_command_of(action: np.ndarray) -> Command:
         raise InvalidValueError(
             f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
         )
-    return replace(command_of(array[:, :3]), lateral_rate=np.clip(sideways, -1.0, 1.0) * MAX_LATERAL_RATE)
+    return command_of(array[:, :3])._replace(lateral_rate=np.clip(sideways, -1.0, 1.0) * MAX_LATERAL_RATE)
 
 
 def sliding_action_of(

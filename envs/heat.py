@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..thermal import (
     ContactSystem,
     Demand,
     HeatTables,
+    free_area,
     heat_tables,
     network_for,
     network_of,
@@ -25,6 +27,7 @@ from ..thermal import (
 from ..thermal.carry import carry_matrix
 from .heat_kernel import advance_grasps
 from .heat_rows import EVENTS, HEAT_ROW, HEAT_TOLD
+from .reservoir import RESERVOIR_ROW
 from .things import Thing
 
 CONDUCTANCES = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K), over which a network must keep the tolerance
@@ -42,14 +45,14 @@ class HeatState:
     things: tuple[Thing, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class HeatStep:
+class HeatStep(NamedTuple):
     """One control step. drop (B, N, F) K at the end of each heat sample. told (B,): HEAT_TOLD records of
 
     conductance (B, F) W/(m2 K) and area (B, F) m2 of the contact: their product, the mean over the substeps, is what
     heat saw. sensor_surface, object_surface (B, F) °C, means over the contact. object_temperature (B,) °C, the object's
     mean. heat (B, 3) J gained by left element, right element and object. flow (B, F) W into the object's side and
-    air_loss (B,) W, the step's means. drawn (B, F) W from the thermostats. imbalance (B,) J that the object's side
+    air_loss (B,) W, the step's means. reservoir_temperature (B,) °C, nan where there is none, and reservoir_flow (B,) W
+    into the object, the step's mean. drawn (B, F) W from the thermostats. imbalance (B,) J that the object's side
     gained beyond what flowed in less what the air took, and exchanged (B,) J, the flow's absolute sum, since the start.
     """
 
@@ -87,11 +90,13 @@ class GraspHeat:
         self._sensor_temperature, self._cache = sensor_temperature, cache
         self._networks: dict[object, int] = {}
         self._systems: list[ContactSystem] = []
+        self._films: list[float] = []
         self._tables: HeatTables | None = None
         self.rungs: list[str] = []
         self._things: list[Thing | None] = [None] * num_envs
         self._rows = np.zeros(num_envs, HEAT_ROW)
         self._laws = np.zeros(num_envs, CONTACT_LAW)
+        self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
         self._state = np.zeros((num_envs, 0))
 
     def reset(
@@ -110,8 +115,11 @@ class GraspHeat:
             fresh["difference"] = temperature - thing.temperature
             fresh["known"] = thing.mode == "O"
             fresh["anchor"] = thing.spec.element_places
-            for name in ("begun", "offset", "stored", "touching", "books"):
+            for name in ("offset", "stored", "touching", "books"):
                 fresh[name] = 0
+            fresh["begun"] = thing.reservoir is not None or fresh["ambient"] != 0
+            if thing.reservoir is not None:
+                fresh["enthalpy"] = thing.reservoir.row(thing.temperature)[1]
 
     def rung(self, row: int) -> str:
         """The model that computes an environment's heat."""
@@ -126,6 +134,7 @@ class GraspHeat:
         told = np.empty(len(force), HEAT_TOLD)
         advance_grasps(
             self._laws,
+            self._reservoirs,
             self._rows,
             self._state,
             np.ascontiguousarray(force, dtype=float),
@@ -142,6 +151,9 @@ class GraspHeat:
         told["sensor_surface"] = self._rows["sensor_temperature"] + self._rows["offset"]
         told["object_surface"] = told["sensor_surface"] - self._rows["difference"]
         told["object_temperature"] = told["object_surface"][:, 0]
+        told["reservoir_temperature"] = np.where(
+            self._reservoirs["conductance"] > 0, self._reservoirs["temperature"], np.nan
+        )
         return HeatStep(np.zeros((len(self._rows), self._samples, 2)), told)
 
     def set_thermostats(self, celsius: np.ndarray) -> None:
@@ -211,10 +223,21 @@ class GraspHeat:
         mine["reach"] = thing.stack.width / 2
         mine["capacity"] = thing.heat_capacity
         mine["element_capacity"] = thing.stack.heat_capacity
+        mine["ambient"] = 0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
+        free = free_area(thing.geometry)
+        mine["air"] = self._air * free
+        self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
+        if thing.reservoir is not None:
+            self._reservoirs[row] = thing.reservoir.row(thing.temperature)[0]
+        # What the object gives to the air and to a reservoir, as one film of that many W/(m2 K).
+        film = self._air + float(self._reservoirs["conductance"][row]) / free
+        celsius = [thing.temperature, thing.temperature + float(mine["ambient"])]
+        if thing.reservoir is not None:
+            celsius.append(float(self._reservoirs["temperature"][row]))
         # In steps, so that nearly equal temperatures share a network.
-        above = np.abs(sensor_temperature - thing.temperature).max() / LEAST_DIFFERENCE
+        above = max(np.abs(sensor_temperature - each).max() for each in celsius) / LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
-        key = (thing.geometry, difference)
+        key = (thing.geometry, difference, film)
         if key not in self._networks:
             demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
             system = network_for(thing.geometry, demand, cache=self._cache).system
@@ -223,8 +246,9 @@ class GraspHeat:
                 system = network_of(thing.geometry, orders, cache=self._cache)
             self._networks[key] = len(self._systems)
             self._systems.append(system)
+            self._films.append(film)
             self.rungs.append(f"network:{system.orders}")
-            self._tables = heat_tables(self._systems, [self._air] * len(self._systems), self._dt)
+            self._tables = heat_tables(self._systems, self._films, self._dt)
             grown = np.zeros((len(self._state), self._tables.rates.shape[1]))
             grown[:, : self._state.shape[1]] = self._state
             self._state = grown

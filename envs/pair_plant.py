@@ -29,6 +29,7 @@ from .scene import LATERAL_REACH, ObjectSpec
 from .simulation_config import SAMPLE_PERIOD
 from .thermostats import Thermostats
 from .things import Thing
+from .truth import Episodes
 
 GAP = 0.03  # m between the two objects, wider than a pad
 
@@ -80,8 +81,9 @@ class PairPlant:
         self._rest = np.zeros((num_envs, OBJECTS))
         self._right, self._asked = np.zeros(num_envs, int), np.zeros(num_envs, int)
         # Replaced, never written to: readings keep them.
-        self._labels: dict[str, np.ndarray] = {}
-        self._randomized: dict[str, np.ndarray] = {}
+        nothing = np.full(num_envs, "", object)
+        self._episodes = Episodes(config.mode, nothing, nothing, np.full(num_envs, np.inf), {})
+        self._task: dict[str, np.ndarray] = {}
 
     @property
     def model(self) -> Any:
@@ -242,36 +244,27 @@ class PairPlant:
             )
 
     def _relabel(self) -> None:
-        """Names what the rows hold now, in arrays of their own."""
-        names = [CAUSES[type(cause)][0] for cause in self._causes]
-        self._randomized = {name: np.array([drawn[name] for drawn in self._drawn]) for name in names}
-        goals = self.pair.goals
-        self._labels = {
-            "material": _tuples([tuple(t.material.name for t in pair) for pair in self.things]),
-            "rung": _tuples([self.heat.rung(row) for row in range(self.num_envs)]),
+        """Names what the rows hold now."""
+        names, goals = [CAUSES[type(cause)][0] for cause in self._causes], self.pair.goals
+        self._episodes = Episodes(
+            self.config.mode,
+            material=_tuples([tuple(t.material.name for t in pair) for pair in self.things]),
+            rung=_tuples([self.heat.rung(row) for row in range(self.num_envs)]),
+            crushing_force=np.array([[t.crushing_force for t in pair] for pair in self.things]),
+            randomized={name: np.array([drawn[name] for drawn in self._drawn]) for name in names},
+        )
+        self._task = {
             "asked": np.array([goals[number] for number in self._asked], object),
             "right": self._right.copy(),
             "goal": np.eye(len(goals))[self._asked],
-            "crushing_force": np.array([[t.crushing_force for t in pair] for pair in self.things]),
         }
 
     def _truth(
         self, heights: np.ndarray, force: np.ndarray, step: PairHeatStep, error: tuple[str, ...]
     ) -> PairTruth:
         celsius = step.objects["object_temperature"].copy()
-        own = {name: self._labels[name] for name in ("asked", "right", "goal")}
-        own |= {"object_temperature": celsius, "object_temperatures": celsius, "object_force": force}
-        return PairTruth(
-            heat=step.fingertips,
-            mode=self.config.mode,
-            material=self._labels["material"],
-            rung=self._labels["rung"],
-            crushing_force=self._labels["crushing_force"],
-            lift=heights - self._rest,
-            error=error,
-            randomized=self._randomized,
-            own=own,
-        )
+        own = {"object_temperature": celsius, "object_temperatures": celsius, "object_force": force}
+        return PairTruth(step.fingertips, self._episodes, heights - self._rest, error, self._task | own)
 
     def _still(self) -> Reading:
         """The reading before anything moves: nothing is touched, no voltage."""

@@ -18,9 +18,9 @@ PAIR_TOLD = (*TOLD, "asked", "right", "object_temperatures")
 @dataclass(frozen=True, slots=True)
 class PairTruth(Truth):
     """The same of a gripper over two objects; what heat tells of fingertips is of the object that each touches or
-    touched last, heat's last column and the books are both objects'. material, rung: (B,) tuples of both. lift,
-    crushing_force: (B, O). own: object_temperature and object_temperatures (B, O) °C, object_force (B, O, F, 3) N, goal
-    (B, G), asked (B,) and right (B,), the number of the right object."""
+    touched last, heat's last column and the books are both objects'. episodes: material, rung (B,) tuples of both,
+    crushing_force (B, O). lift (B, O). own: object_temperature and object_temperatures (B, O) °C, object_force
+    (B, O, F, 3) N, goal (B, G), asked (B,) and right (B,), the number of the right object."""
 
     own: Mapping[str, Any]
 

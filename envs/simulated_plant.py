@@ -20,7 +20,7 @@ from .randomization import CAUSES, checked, draw
 from .simulation_config import SAMPLE_PERIOD, SimulationConfig
 from .thermostats import Thermostats
 from .things import Thing
-from .truth import TOLD, Truth
+from .truth import TOLD, Episodes, Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +66,14 @@ class SimulatedPlant:
         self._drawn = [plain] * num_envs
         self._thermostats = Thermostats(num_envs, config.thermostat, config.sensor_temperatures, self.dt)
         self._rest = np.zeros(num_envs)
-        # Replaced, never written to: readings keep them.
-        self._material, self._rung = np.full(num_envs, "", object), np.full(num_envs, "", object)
-        self._crushing_force = np.full(num_envs, np.inf)
-        self._randomized: dict[str, np.ndarray] = {}
+        # Replaced, never written to: readings keep it.
+        self._episodes = Episodes(
+            config.mode,
+            np.full(num_envs, "", object),
+            np.full(num_envs, "", object),
+            np.full(num_envs, np.inf),
+            {},
+        )
 
     @property
     def model(self) -> Any:
@@ -172,27 +176,19 @@ class SimulatedPlant:
         return rngs
 
     def _relabel(self, rows: Sequence[int]) -> None:
-        """Names what the rows hold now, in arrays of their own."""
-        self._material, self._rung = self._material.copy(), self._rung.copy()
-        self._crushing_force = self._crushing_force.copy()
-        names = [CAUSES[type(cause)][0] for cause in self._causes]
-        self._randomized = {name: np.array([drawn[name] for drawn in self._drawn]) for name in names}
+        """Names what the rows hold now."""
+        last = self._episodes
+        material, rung, crushing_force = last.material.copy(), last.rung.copy(), last.crushing_force.copy()
         for row in rows:
             thing = self.things[row]
-            self._material[row], self._rung[row] = thing.material.name, self.heat.rung(row)
-            self._crushing_force[row] = thing.crushing_force
+            material[row], rung[row] = thing.material.name, self.heat.rung(row)
+            crushing_force[row] = thing.crushing_force
+        names = [CAUSES[type(cause)][0] for cause in self._causes]
+        randomized = {name: np.array([drawn[name] for drawn in self._drawn]) for name in names}
+        self._episodes = Episodes(self.config.mode, material, rung, crushing_force, randomized)
 
     def _truth(self, object_height: np.ndarray, step: HeatStep, error: tuple[str, ...]) -> Truth:
-        return Truth(
-            heat=step,
-            mode=self.config.mode,
-            material=self._material,
-            rung=self._rung,
-            crushing_force=self._crushing_force,
-            lift=object_height - self._rest,
-            error=error,
-            randomized=self._randomized,
-        )
+        return Truth(step, self._episodes, object_height - self._rest, error)
 
     def _still(self) -> Reading:
         """The reading before anything moves: nothing is touched, no voltage."""

@@ -18,19 +18,26 @@ TOLD = ("material", "temperature_drop", "contact_area", "conductance", "rung", "
 
 
 @dataclass(frozen=True, slots=True)
-class Truth(Mapping[str, Any]):
-    """A mapping name -> (B, ...); see HeatStep for what heat tells. mode: T or O. material, rung, crushing_force N:
-    (B,), not written to later. lift (B,) m: the object above where it lay. error: (B,) why an environment broke
-    down. randomized: (B,) by name of what differs between episodes, not written to later."""
+class Episodes:
+    """What stays as it is through each environment's episode; arrays are not written to later. mode: T or O. material,
+    rung (B,) names. crushing_force (B,) N. randomized: (B,) by name of what differs between episodes."""
 
-    heat: HeatStep
     mode: str
     material: np.ndarray
     rung: np.ndarray
     crushing_force: np.ndarray
+    randomized: dict[str, np.ndarray]
+
+
+@dataclass(frozen=True, slots=True)
+class Truth(Mapping[str, Any]):
+    """A mapping name -> (B, ...); see HeatStep for what heat tells. lift (B,) m: the object above where it lay. error:
+    (B,) why an environment broke down."""
+
+    heat: HeatStep
+    episodes: Episodes
     lift: np.ndarray
     error: tuple[str, ...]
-    randomized: dict[str, np.ndarray]
 
     def __getitem__(self, name: str) -> Any:
         return _VALUES[name](self)
@@ -50,8 +57,8 @@ def _told(name: str) -> Callable[[Truth], np.ndarray]:
 
 
 _VALUES: dict[str, Callable[[Truth], Any]] = {
-    "mode": lambda truth: truth.mode,
-    "material": lambda truth: truth.material,
+    "mode": lambda truth: truth.episodes.mode,
+    "material": lambda truth: truth.episodes.material,
     "temperature_drop": lambda truth: truth.heat.drop[:, -1],
     "temperature_drops": lambda truth: truth.heat.drop,
     "contact_area": _told("area"),
@@ -65,9 +72,9 @@ _VALUES: dict[str, Callable[[Truth], Any]] = {
     "heat_imbalance": _told("imbalance"),
     "heat_exchanged": _told("exchanged"),
     "events": lambda truth: truth.heat.events,
-    "rung": lambda truth: truth.rung,
+    "rung": lambda truth: truth.episodes.rung,
     "lift": lambda truth: truth.lift,
-    "crushing_force": lambda truth: truth.crushing_force,
-    "randomized": lambda truth: truth.randomized,
+    "crushing_force": lambda truth: truth.episodes.crushing_force,
+    "randomized": lambda truth: truth.episodes.randomized,
     "failed": lambda truth: np.array([bool(reason) for reason in truth.error]),
 }

@@ -1,6 +1,5 @@
 """`thermograsp rollout`: one digest a seed, however many run at once; checks that catch what is wrong."""
 
-import dataclasses
 import json
 from types import SimpleNamespace
 from typing import Any
@@ -58,7 +57,7 @@ def spoiled(env: Any, **truth: Any) -> list[str]:
     """What the checks say of an environment whose reading has these values instead."""
     observation, _ = env.reset(seed=0)
     batch = env.unwrapped.batch
-    reading = dataclasses.replace(batch.reading, truth={**batch.reading.truth, **truth})
+    reading = batch.reading._replace(truth={**batch.reading.truth, **truth})
     base = SimpleNamespace(batch=SimpleNamespace(plant=batch.plant, reading=reading))
     stand_in: Any = SimpleNamespace(unwrapped=base, single_observation_space=env.single_observation_space)
     found = violations(stand_in, observation, np.zeros(2), {}, np.arange(2), 10, 1, True)
