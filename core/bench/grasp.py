@@ -113,7 +113,10 @@ def variants(quick: bool) -> list[Variant]:
         *(turned("Newton", f"{n} iterations", iterations=n) for n in (2, 3, 5, 10)),
         *(turned("CG", f"{n} iterations", solver="CG", iterations=n) for n in (10, 100)),
         *(turned("PGS", f"{n} iterations", 1, solver="PGS", iterations=n) for n in (20, 100)),
-        *(turned("contact time", f"{1e3 * s:g} ms", solref=(s, 1.0)) for s in (0.02, 0.01, 0.005, 0.003, 0.0025)),
+        *(
+            turned("contact time", f"{1e3 * s:g} ms", solref=(s, 1.0))
+            for s in (0.02, 0.01, 0.005, 0.003, 0.0025)
+        ),
         turned("discrete", "solref 1 ms, refsafe off", solref=(0.001, 1.0), refsafe=False),
         turned("discrete", "4 ms, solref -1e5", timestep=0.004, solref=(-1e5, -500.0)),
     ]
