@@ -223,7 +223,9 @@ class GraspHeat:
         mine["reach"] = thing.stack.width / 2
         mine["capacity"] = thing.heat_capacity
         mine["element_capacity"] = thing.stack.heat_capacity
-        mine["ambient"] = 0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
+        mine["ambient"] = (
+            0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
+        )
         free = free_area(thing.geometry)
         mine["air"] = self._air * free
         self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]

@@ -14,13 +14,14 @@ from ..thermal.batch import HeatReading, HeatTables, advance_row, forget_row
 from ..thermal.contact_law import conductance, contact
 from ..thermal.coupling_kernel import FAST, workspace
 from .heat_rows import NEW_PATCH, OFF_ELEMENT, RELEASE, TOUCH
+from .reservoir import reservoir_step, reservoir_temperature
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def advance_grasps(laws, rows, state, normal, place, drop, told, *numbers):
+def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *numbers):
     """Advances rows (B,) HEAT_ROW and state (B, K) by the samples of drop (B, N, F) K and fills drop and told (B,)
-    HEAT_TOLD. laws: (B,) CONTACT_LAW. normal: (B, S, F) N. place: (B, F, 3) m.  numbers: a
-    HeatTables' fields, which cost less to hand over one by one."""
+    HEAT_TOLD. laws: (B,) CONTACT_LAW. reservoirs: (B,) RESERVOIR_ROW. normal: (B, S, F) N. place: (B, F, 3) m.
+    numbers: a HeatTables' fields, which cost less to hand over one by one."""
     tables = HeatTables(*numbers)
     samples, tips = drop.shape[1], tables.drop.shape[1]
     room = workspace(tables.rates.shape[1], tables.ports.shape[1])
@@ -52,12 +53,19 @@ def advance_grasps(laws, rows, state, normal, place, drop, told, *numbers):
             for k in range(samples):
                 drop[b, k, f] = 0.0
         one.heat[2] = one.air_loss = 0.0
-        one.object_temperature = one.object_surface[0]
+        one.object_temperature = first = one.object_surface[0]
+        around = row.ambient
+        one.reservoir_temperature, one.reservoir_flow = math.nan, 0.0
+        film = reservoirs[b].conductance
+        if film > 0.0:
+            one.reservoir_temperature = reservoir_temperature(reservoirs[b], row.enthalpy)
+            inside = film * (one.reservoir_temperature - first)
+            around = (row.air * row.ambient + inside) / (row.air + film)
         if row.begun:
             for f in range(tips):  # a fingertip without a sensor takes no part
                 sensed = row.glued == 0 or _distance(place[b, f], row.anchor[f]) <= row.reach
                 felt[f] = one.conductance[f] * one.area[f] if sensed else 0.0
-            advance_row(tables, row.network, x, felt, row.difference, room, reading, 0)
+            advance_row(tables, row.network, x, felt, row.difference, around, room, reading, 0)
             for f in range(tips):
                 one.heat[f] = reading.element_heat[0, samples - 1, f]
                 one.sensor_surface[f] += reading.sensor_rise[0, samples - 1, f]
@@ -69,14 +77,22 @@ def advance_grasps(laws, rows, state, normal, place, drop, told, *numbers):
             one.object_temperature += one.heat[2] / row.capacity
             for k in range(samples):
                 one.air_loss += reading.air_loss[0, k] / samples
+            if row.ambient != 0.0 or film > 0.0:
+                mean = one.air_loss / (row.air + film)  # of the object over the step, above its first
+                one.air_loss = row.air * (mean - row.ambient)
+                if film > 0.0:
+                    one.reservoir_flow = film * (one.reservoir_temperature - first - mean)
+                    reservoir = reservoirs[b]
+                    row.enthalpy = reservoir_step(reservoir, row.enthalpy, one.reservoir_flow, duration)
+                    one.reservoir_temperature = reservoir_temperature(reservoir, row.enthalpy)
         for f in range(2):
             one.drawn[f] = one.flow[f]
             if row.glued == 0:
                 one.heat[f] += row.element_capacity * row.offset[f]
                 one.drawn[f] += (one.heat[f] - row.stored[f]) / duration
             row.stored[f] = one.heat[f]
-        row.books[0] += (one.flow[0] + one.flow[1]) * duration
-        row.books[1] += (abs(one.flow[0]) + abs(one.flow[1])) * duration
+        row.books[0] += (one.flow[0] + one.flow[1] + one.reservoir_flow) * duration
+        row.books[1] += (abs(one.flow[0]) + abs(one.flow[1]) + abs(one.reservoir_flow)) * duration
         row.books[2] += one.air_loss * duration
         gained = one.heat[2] + (one.heat[0] + one.heat[1] if row.glued else 0.0)
         one.imbalance = gained + row.books[2] - row.books[0]

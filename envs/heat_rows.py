@@ -11,8 +11,9 @@ import numpy as np
 # offset: K, of theirs since. stored: J, that the elements
 # gained. anchor: m, where on the object, in its frame, each patch is, if it is known. reach: m, how far from there a
 # contact may move. books: J since the start, that flowed into the object's side, its absolute sum, and lost to the air.
-# capacity, element_capacity: J/K. network: the index of the environment's network. begun: something
-# has touched. glued: the elements sit on the object (O mode).
+# capacity, element_capacity: J/K. air: W/K from the object to the air, ambient: K, the air above the object's first
+# temperature. enthalpy: J of its reservoir. network: the index of the environment's network. begun: something
+# has touched, or the object is not as warm as what is around it. glued: the elements sit on the object (O mode).
 HEAT_ROW = np.dtype(
     [
         ("difference", "f8", (2,)),
@@ -24,6 +25,9 @@ HEAT_ROW = np.dtype(
         ("reach", "f8"),
         ("capacity", "f8"),
         ("element_capacity", "f8"),
+        ("air", "f8"),
+        ("ambient", "f8"),
+        ("enthalpy", "f8"),
         ("network", "i8"),
         ("touching", "u1", (2,)),
         ("known", "u1", (2,)),
@@ -43,6 +47,8 @@ HEAT_TOLD = np.dtype(
         ("heat", "f8", (3,)),
         ("flow", "f8", (2,)),
         ("air_loss", "f8"),
+        ("reservoir_temperature", "f8"),
+        ("reservoir_flow", "f8"),
         ("drawn", "f8", (2,)),
         ("imbalance", "f8"),
         ("exchanged", "f8"),

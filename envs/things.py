@@ -29,6 +29,7 @@ from ..thermal import (
     sphere_contact,
     sphere_law,
 )
+from .reservoir import Reservoir
 from .scene import ObjectSpec
 
 PAD = Pad()
@@ -39,7 +40,7 @@ NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 class Thing:
     """An object between the fingertips. spec: its shape and place. material: what it is made of. temperature: °C at
     first. mode: T or O, where the element sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on
-    the object's surface."""
+    the object's surface. ambient: °C of the air, None for the object's. reservoir: what keeps it hot or cold."""
 
     spec: ObjectSpec
     material: Material
@@ -48,6 +49,8 @@ class Thing:
     stack: SensorStack
     fingertips: Literal[1, 2] = 2
     roughness_factor: float = 1.0
+    ambient: float | None = None
+    reservoir: Reservoir | None = None
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:

@@ -6,6 +6,7 @@ Identification and fitting load when they are first asked for: environments do w
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .air import free_area
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
 from .array_fingertips import ArrayFingertips, FingertipState, array_fingertips
 from .array_step import array_forget, array_step
@@ -133,6 +134,7 @@ __all__ = [
     "flat_contact",
     "flat_law",
     "forget_field",
+    "free_area",
     "heat_tables",
     "ideal_thermostat",
     "identify",

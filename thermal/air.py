@@ -1,4 +1,4 @@
-"""A system of contacts whose object gives heat to the air."""
+"""A system of contacts whose object gives heat to what is around it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from .bodies import Geometry
 from .system import ContactSystem
+
+
+def free_area(geometry: Geometry) -> float:
+    """m2 of the object that no element covers."""
+    width, depth, thickness = geometry.object_size
+    touched = geometry.stack.face_area if geometry.mode == "O" else geometry.area
+    return 2 * (width * depth + width * thickness + depth * thickness) - geometry.fingertips * touched
 
 
 def with_air(system: ContactSystem, air: float) -> tuple[ContactSystem, np.ndarray]:
@@ -18,8 +26,7 @@ def with_air(system: ContactSystem, air: float) -> tuple[ContactSystem, np.ndarr
     """
     geometry = system.geometry
     width, depth, thickness = geometry.object_size
-    touched = geometry.stack.face_area if geometry.mode == "O" else geometry.area
-    free = 2 * (width * depth + width * thickness + depth * thickness) - geometry.fingertips * touched
+    free = free_area(geometry)
     capacity = geometry.material.volumetric_heat_capacity * width * depth * thickness
     mean = system.object_heat / capacity
     if air == 0:

@@ -169,13 +169,14 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
     room = workspace(tables.rates.shape[1], tables.ports.shape[1])
     for b in range(len(active)):
         if active[b]:
-            advance_row(tables, network[b], state[b], conductance[b], difference[b], room, reading, b)
+            advance_row(tables, network[b], state[b], conductance[b], difference[b], 0.0, room, reading, b)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def advance_row(tables, i, x, conductance, difference, room, reading, b):
+def advance_row(tables, i, x, conductance, difference, around, room, reading, b):
     """advance_heat of one row for compiled callers: network i, state x (K,) in place, conductance and difference (F,),
-    into row b of the reading. room: a workspace of the tables' size."""
+    into row b of the reading. around: K, the surroundings above the object's first temperature; air_loss stays what
+    would be lost to surroundings at that temperature. room: a workspace of the tables' size."""
     samples, fingertips = reading.drop.shape[1:]
     n, p = tables.states[i], tables.modes[i]
     system = StepArrays(
@@ -190,6 +191,7 @@ def advance_row(tables, i, x, conductance, difference, room, reading, b):
         p,
         fingertips,
         tables.air_loss[i],
+        around,
     )
     weight, drive, flow = room.weight, room.drive, room.flow
     drive[:] = 0.0

@@ -24,7 +24,8 @@ class StepArrays(NamedTuple):
     """One system's matrices for one step length, laid out for the kernel and possibly padded behind their true sizes.
     dt: s. rates: (n,) 1/s. ports: (M, n). scale_real, scale_imag: (Q, n). gram: (Q, M, M) complex. object_states,
     sensor_states: how many, the latter of each fingertip. modes: ports of each of `contacts` contacts. watched: (n,)
-    a row on the state whose mean `advance` returns."""
+    a row on the state whose mean `advance` returns: W lost to surroundings at the first temperature. around: K, how
+    much warmer those are than that."""
 
     dt: float
     rates: np.ndarray
@@ -37,6 +38,7 @@ class StepArrays(NamedTuple):
     modes: int
     contacts: int
     watched: np.ndarray
+    around: float
 
 
 def step_arrays(
@@ -62,6 +64,7 @@ def step_arrays(
         own,
         ports // own,
         np.zeros(states) if watched is None else np.ascontiguousarray(watched),
+        0.0,
     )
 
 
@@ -114,7 +117,7 @@ def advance(
     """
     n = system.object_states + system.contacts * system.sensor_states
     m = system.contacts * system.modes
-    rates, ports, dt, watched = system.rates, system.ports, system.dt, system.watched
+    rates, ports, dt, watched, around = system.rates, system.ports, system.dt, system.watched, system.around
     scale_real, scale_imag, gram = system.scale_real, system.scale_imag, system.gram
     shared, own, modes = system.object_states, system.sensor_states, system.modes
     rate, change, real, imag = room.rate, room.change, room.real, room.imag
@@ -125,7 +128,7 @@ def advance(
         )
         lagged[j] = 0.0
     for i in range(n):
-        rate[i] = -rates[i] * state[i]
+        rate[i] = around * watched[i] - rates[i] * state[i]
         change[i] = 0.0
     watched_now, watched_lag = 0.0, 0.0
     for i in range(n):
