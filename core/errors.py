@@ -32,6 +32,10 @@ class MeshError(InvalidValueError):
     """A mesh cannot serve as an object: open, empty, inverted, or in an unusable format."""
 
 
+class GripperError(InvalidValueError):
+    """A robot's description cannot serve as a gripper: unreadable, without fingers, actuators or flat pads."""
+
+
 class SimulationError(ThermograspError, RuntimeError):
     """A computation went wrong although its input was valid, such as a state that is no longer finite."""
 
