@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from types import ModuleType
 from typing import NoReturn
 
-import thermograsp
+from thermograsp.cli.versions import ShowVersion
 from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
 
 COMMANDS = (
@@ -45,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     stderr), 130 for an interrupt."""
     given = list(sys.argv[1:] if argv is None else argv)
     try:
-        args = _parser(given).parse_args(given or ["--help"])
+        args = command_parser(given).parse_args(given or ["--help"])
         status = args.run(args)
         sys.stdout.flush()  # a reader that has gone shows here, not at exit
         return status
@@ -61,10 +61,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _BAD_INPUT
 
 
-def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
+def command_parser(given: Sequence[str]) -> argparse.ArgumentParser:
     """The parser of the command that is named, or of all of them where none is, for --help."""
     parser = _Parser(prog="thermograsp", description="Thermal touch for robot grasping.", allow_abbrev=False)
-    parser.add_argument("--version", action="version", version=f"thermograsp {thermograsp.__version__}")
+    parser.add_argument(
+        "--version",
+        action=ShowVersion,
+        as_json="--json" in given,
+        help="show the version and exit; with --json, those of everything it runs on",
+    )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     first = given[0] if given else "--help"
     if not first.startswith("-") and first not in COMMANDS:

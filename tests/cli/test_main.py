@@ -1,17 +1,27 @@
 """The frame of the command line: version, help, exit statuses, and what is loaded when."""
 
+import configparser
+import json
+import re
 import subprocess
 import sys
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
 
+import mujoco
+import numpy as np
 import pytest
 
 import thermograsp
 from thermograsp import cli
 from thermograsp.cli import main
+from thermograsp.cli.versions import versions
 from thermograsp.errors import ThermograspError
+
+OWN_WORK = {"test", "dev", "docs", "release"}
+"""Extras for work on the package itself."""
 
 
 def replace_run(monkeypatch: pytest.MonkeyPatch, raised: BaseException) -> None:
@@ -29,6 +39,34 @@ def replace_run(monkeypatch: pytest.MonkeyPatch, raised: BaseException) -> None:
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"thermograsp {thermograsp.__version__}\n"
+
+
+@pytest.mark.parametrize("argv", [["--version", "--json"], ["--json", "--version"]])
+def test_versions_of_what_it_runs_on(argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    setup = configparser.ConfigParser()
+    setup.read(Path(__file__).parents[2] / "setup.cfg", encoding="utf-8")
+
+    def names(text: str) -> set[str]:
+        return set(re.findall(r"^(?!thermograsp|#)[\w-]+", text, re.MULTILINE))
+
+    assert main(argv) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["thermograsp"] == thermograsp.__version__
+    assert told["python"] == ".".join(map(str, sys.version_info[:3]))
+    assert set(told["packages"]) == names(setup["options"]["install_requires"])
+    assert told["packages"]["numpy"] == np.__version__ and told["packages"]["mujoco"] == mujoco.__version__
+    needed = {extra: names(text) for extra, text in setup["options.extras_require"].items()}
+    assert {extra: set(found) for extra, found in told["extras"].items()} == {
+        extra: found for extra, found in needed.items() if extra not in OWN_WORK
+    }
+
+
+def test_a_package_that_is_not_installed_has_no_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(name: str) -> NoReturn:
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr("importlib.metadata.version", nothing)
+    assert set(versions()["packages"].values()) == {None}
 
 
 @pytest.mark.parametrize("argv", [[], ["--help"]])

@@ -1,0 +1,58 @@
+"""Every command with its arguments, as Markdown, from the parsers themselves."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+
+from thermograsp.cli import command_parser
+
+
+def command_reference() -> str:
+    """A section for each command, and for each action of those that have some."""
+    return "\n".join(_section(parser) for parser in _leaves(command_parser([])))
+
+
+def _leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    if not below:
+        yield parser
+    for action in below:
+        for sub in action.choices.values():
+            yield from _leaves(sub)
+
+
+def _section(parser: argparse.ArgumentParser) -> str:
+    rows = [_row(action) for action in parser._actions if not isinstance(action, argparse._HelpAction)]
+    given = "".join(f"| {names} | {text} |\n" for names, text in rows)
+    return f"## {parser.prog}\n\n{_cell(parser.description or '')}\n\n| argument | what |\n|---|---|\n{given}"
+
+
+def _row(action: argparse.Action) -> tuple[str, str]:
+    value = _value(action)
+    if action.option_strings:
+        names = ", ".join(f"`{name}{' ' + value if value else ''}`" for name in action.option_strings)
+    else:
+        names = f"`{value}`"
+    text = (action.help or "") % {**vars(action), "prog": ""}
+    known = action.default not in (None, False, argparse.SUPPRESS, [])
+    if known and "default" not in text:
+        text += f"; {action.default} by default"
+    return names.replace("|", "\\|"), _cell(text)
+
+
+def _value(action: argparse.Action) -> str:
+    """What is to be given, as the usage line has it."""
+    if action.nargs == 0:
+        return ""
+    fallback = "{" + ",".join(map(str, action.choices)) + "}" if action.choices else action.dest.upper()
+    name = action.metavar or fallback
+    one = name if isinstance(name, str) else " ".join(name)
+    return {"*": f"[{one} ...]", "+": f"{one} ...", "?": f"[{one}]"}.get(str(action.nargs), one)
+
+
+def _cell(text: str) -> str:
+    """Plain text in a table: nothing of it is Markdown."""
+    for special in "\\`*_[]<>|$":
+        text = text.replace(special, "\\" + special)
+    return " ".join(text.split())

@@ -1,0 +1,67 @@
+"""What the environments' numbers mean: words and units, which spaces and dictionaries do not carry.
+
+The tables of environment_tables.py take keys, shapes and ranges from the environments, and raise where a word is
+missing or no longer needed.
+"""
+
+from __future__ import annotations
+
+GRIPPER_ACTION = ("target opening", "force limit", "lift rate of the arm")
+
+ACTIONS: dict[str, tuple[str, ...]] = {
+    "thermograsp/Grasp-v0": GRIPPER_ACTION,
+    "thermograsp/Sort-v0": (*GRIPPER_ACTION, "sideways rate of the arm"),
+    "thermograsp/Identify-v0": (
+        "force: above 0 the fingers close with that share of the most, else they open",
+        "declare: above 0.5 the episode ends with this step's distribution",
+        "distribution over the materials, in their order: its softmax after a factor of 5",
+    ),
+}
+"""By id, a text for each component; the last one stands for all that follow."""
+
+COMMANDS = {"opening": "mm", "force_limit": "N", "lift_rate": "mm/s", "lateral_rate": "mm/s"}
+"""Fields of a Command, as what a component of an action changes is written."""
+
+OBSERVATIONS: dict[str, tuple[tuple[str, str], ...]] = {
+    "gripper": (
+        ("opening", "m"),
+        ("rate of the opening", "m/s"),
+        ("height of the arm", "m"),
+        ("force limit as commanded", "N"),
+    ),
+    "force": (("load cell of the left and the right pad: normal and two tangential, pad frame", "N"),),
+    "voltage": (("heat flux sensors, left and right, after the converter, oldest sample first", "V"),),
+    "thermostat": (("temperature of the left and the right thermostat", "°C"),),
+    "lateral": (("place of the arm, sideways", "m"),),
+    "goal": (("1 for what is asked, 0 for the others", ""),),
+}
+"""By key, (what, unit) of each component, or of all together where there is one."""
+
+INFOS: dict[str, tuple[str, str]] = {
+    "success": ("the task is done", ""),
+    "material": ("name of the object's material; of both objects' where there are two", ""),
+    "temperature_drop": ("across the sensors, without noise", "K"),
+    "contact_area": ("of the patches on the sensors", "m2"),
+    "conductance": ("of the contacts", "W/(m2 K)"),
+    "rung": ("thermal model that is used", ""),
+    "events": ("touches and releases of this step: (kind, fingertip) each", ""),
+    "randomized": ("by name, what `randomize` has drawn for this episode, each in SI units", ""),
+    "dropped": ("True where that ended the episode: the object was lifted, and fell", ""),
+    "crushed": ("True where that ended the episode: a pad pressed harder than the object bears", ""),
+    "slipped": ("True where that ended the episode: further along the pads than `most_slip`", ""),
+    "wrong": ("True where that ended the episode: the other object was lifted", ""),
+    "error": ("why the simulation or the hardware could not go on, where that ended the episode", ""),
+    "prediction": ("the declared share of each material", ""),
+    "loss": ("-log of the true material's share", ""),
+    "asked": ("number of what is asked, in the observation's goal", ""),
+    "right": ("number of the right object, 0 or 1", ""),
+    "object_temperatures": ("mean temperature of each object", "°C"),
+    "unknown": ("names of what only a simulation knows", ""),
+    "late": ("by how much the end of this step was missed", "s"),
+}
+
+SOMETIMES = ("error", "randomized")
+"""In every environment's info, where there is something to tell."""
+
+ON_HARDWARE = ("unknown", "late")
+"""What info tells, besides the task's own, on a serial plant."""
