@@ -48,6 +48,7 @@ from .signal import (
 from .states import Orders
 from .system import ContactSystem
 from .thermostat import (
+    TOO_HOT,
     Thermostat,
     ThermostatState,
     ideal_thermostat,
@@ -60,6 +61,8 @@ if TYPE_CHECKING:
     from .identify_effusivity import EffusivityPosterior
     from .identify_result import Identification, Verdict
     from .identify_setup import TouchSetup
+    from .mesh_network import body_network
+    from .mesh_solid import Solid, SolidPart, SurfacePatch, solid
     from .sensor_fit import Estimate, SensorFit, fit_sensor
 
 _LATER = {
@@ -68,10 +71,15 @@ _LATER = {
     "Identification": "identify_result",
     "Identifier": "identifier",
     "SensorFit": "sensor_fit",
+    "Solid": "mesh_solid",
+    "SolidPart": "mesh_solid",
+    "SurfacePatch": "mesh_solid",
     "TouchSetup": "identify_setup",
     "Verdict": "identify_result",
+    "body_network": "mesh_network",
     "fit_sensor": "sensor_fit",
     "identify": "identifier",
+    "solid": "mesh_solid",
 }
 """Name -> module."""
 
@@ -85,6 +93,7 @@ __all__ = [
     "SEED_MATERIALS",
     "SIGNAL_CHAINS",
     "THERMOSTAT_FACE",
+    "TOO_HOT",
     "ArrayFingertips",
     "ArrayTables",
     "Choice",
@@ -116,7 +125,10 @@ __all__ = [
     "Shape",
     "SignalChain",
     "SignalState",
+    "Solid",
+    "SolidPart",
     "Surface",
+    "SurfacePatch",
     "ThermalNetwork",
     "Thermostat",
     "ThermostatState",
@@ -127,6 +139,7 @@ __all__ = [
     "array_forget",
     "array_step",
     "array_tables",
+    "body_network",
     "contact_conductance",
     "cylinder_contact",
     "cylinder_law",
@@ -154,6 +167,7 @@ __all__ = [
     "shift_thermostats",
     "settled",
     "settled_thermostat",
+    "solid",
     "sphere_contact",
     "sphere_law",
     "stack_joints",

@@ -1,0 +1,278 @@
+"""A solid on a tensor grid fine at its touched patches: heat capacities of cells, conductances between neighbours.
+
+Finite volumes with cut cells: nodes in the middle of whole cells, volumes and open areas of faces exact. A field that
+is linear along the walls, or whose gradient is the heat flux that a wall is given, is met exactly wherever the walls
+cut the cells, so sheets thinner than a cell conduct as they should (cut-cell method: Johansen & Colella, J. Comput.
+Phys. 147, 1998, without its second-order flux correction, which would cost the symmetry).
+
+N: cells that hold material.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from thermograsp.errors import MeshError
+
+from .finite_volume import graded_cells
+from .mesh_cut import cut_mesh
+from .mesh_solid import Solid, SurfacePatch
+
+_SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
+_EMPTY = 1e-7  # of a cell, less than which is nothing
+_CRUMB = 1e-3  # of the solid's volume, less than which a piece of its own is left out
+TILES = np.array([0.0, 0.30, 0.54, 0.72, 0.84, 0.925, 0.975, 1.0])
+"""Boundaries of a patch's tiles along a half side: smaller toward the edge, where the flux is nearly singular."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeshGridding:
+    """How fine a grid is. depth: m, first cell under a patch. side: m, cells at a patch's edge outside it. growth:
+    length of a cell per distance from there. largest: m, longest cell. oblique: m, cells at a patch that is not along
+    the grid's axes."""
+
+    depth: float = 20e-6
+    side: float = 0.3e-3
+    growth: float = 0.5
+    largest: float = 4e-3
+    oblique: float = 0.4e-3
+
+
+@dataclass(frozen=True, slots=True)
+class MeshGrid:
+    """Cells and links of a solid. frame: (3, 3) rows are the grid's axes. edges: m, cell boundaries along them. index:
+    (I, J, K) number of each cell among those with material, -1 for others. capacity: (N,) J/K. neighbours: (N, 6) of
+    -x, +x, -y, +y, -z, +z, -1 for none, and links: (N, 6) W/K to them. conductivity: (N, 3) W/(m K) along the axes.
+    volume: (N,) m3."""
+
+    frame: np.ndarray
+    edges: tuple[np.ndarray, np.ndarray, np.ndarray]
+    index: np.ndarray
+    capacity: np.ndarray
+    neighbours: np.ndarray
+    links: np.ndarray
+    conductivity: np.ndarray
+    volume: np.ndarray
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """(N, 3) m in the grid's frame, middles of the whole cells."""
+        x, y, z = ((e[1:] + e[:-1]) / 2 for e in self.edges)
+        i, j, k = np.nonzero(self.index >= 0)
+        return np.stack((x[i], y[j], z[k]), axis=1)
+
+
+def grid_frame(solid: Solid, patches: Sequence[SurfacePatch]) -> np.ndarray:
+    """(3, 3) axes as rows: the last along the first patch's normal, the first along most of the surface's sides."""
+    up = patches[0].direction
+    helper = np.eye(3)[np.argmin(np.abs(up))]
+    first = np.cross(helper, up)
+    first /= np.linalg.norm(first)
+    second = np.cross(up, first)
+    areas = np.concatenate([part.area_vectors for part in solid.parts])
+    # The mean of four times the angle: sides at right angles to each other add up.
+    along = areas @ first + 1j * (areas @ second)
+    sides = np.abs(areas @ up) < 0.05 * np.linalg.norm(areas, axis=1)
+    total = np.sum(along[sides] ** 4 / np.maximum(np.abs(along[sides]), 1e-300) ** 3)
+    if np.abs(total) > 0.05 * np.abs(along).sum():
+        angle = np.angle(total) / 4
+        first, second = (
+            np.cos(angle) * first + np.sin(angle) * second,
+            np.cos(angle) * second - np.sin(angle) * first,
+        )
+    return np.stack((first, second, up))
+
+
+def grid_edges(
+    triangles: np.ndarray,
+    centres: np.ndarray,
+    normals: np.ndarray,
+    half_widths: np.ndarray,
+    frame_aligned: np.ndarray,
+    gridding: MeshGridding,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cell boundaries m along the axes of the frame that all arguments are in; triangles: (F, 3, 3) m."""
+    corners = triangles.reshape(-1, 3)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    largest = max(gridding.largest, float((high - low).max()) / 40)
+    edges = []
+    for axis in range(3):
+        fine: dict[float, float] = {}
+        breaks = [low[axis], high[axis], *_planes(triangles, axis)]
+        for centre, normal, half, aligned in zip(centres, normals, half_widths, frame_aligned, strict=True):
+            if aligned and abs(normal[axis]) > 0.5:
+                fine[float(centre[axis])] = gridding.depth
+                breaks.append(centre[axis])
+                continue
+            if aligned:
+                tiles = np.concatenate((-TILES[:0:-1], TILES)) * half + centre[axis]
+                breaks += list(tiles)
+                fine[float(tiles[0])] = fine[float(tiles[-1])] = gridding.side
+                continue
+            reach = half * np.sqrt(2) * np.sqrt(max(1 - normal[axis] ** 2, 0.0)) + gridding.oblique
+            for point in np.arange(-reach, reach + 1e-9, 2 * gridding.oblique):
+                fine[float(centre[axis] + point)] = gridding.oblique
+        start, stop = low[axis], high[axis]
+        fine = {min(max(p, start), stop): length for p, length in fine.items()}
+        inside = _apart(np.clip(breaks, start, stop))
+        edges.append(_apart(graded_cells(list(inside), fine, gridding.growth, largest)))
+    return edges[0], edges[1], edges[2]
+
+
+def mesh_grid(solid: Solid, frame: np.ndarray, edges: tuple[np.ndarray, np.ndarray, np.ndarray]) -> MeshGrid:
+    """The solid on the grid. Raises MeshError where it is in separate pieces."""
+    volumes, areas, conductivities, capacities = [], [], [], []
+    for part in solid.parts:
+        volume, area = cut_mesh(snapped(part.triangles @ frame.T, edges), edges)
+        volumes.append(volume)
+        areas.append(area)
+        conductivities.append(part.material.conductivity)
+        capacities.append(part.material.volumetric_heat_capacity)
+    cell = np.multiply.outer(np.multiply.outer(*(np.diff(e) for e in edges[:2])), np.diff(edges[2]))
+    shares = _visible(volumes, cell)
+    filled = np.sum(shares, axis=0)
+    solid_cells = filled > _EMPTY * cell
+    along = _conductivity(shares, areas, conductivities)
+    index = np.where(solid_cells, np.cumsum(solid_cells).reshape(cell.shape) - 1, -1)
+    count = int(solid_cells.sum())
+    neighbours, links = np.full((count, 6), -1, np.int32), np.zeros((count, 6))
+    for axis in range(3):
+        lower = index[_cut(axis, slice(None, -1))]
+        upper = index[_cut(axis, slice(1, None))]
+        open_area = np.minimum(np.sum([a[axis] for a in areas], axis=0), _full(edges, axis))[
+            _cut(axis, slice(1, -1))
+        ]
+        joined = (lower >= 0) & (upper >= 0) & (open_area > 0)
+        a, b = lower[joined], upper[joined]
+        half = np.diff(edges[axis]) / 2
+        halves = np.broadcast_to(np.expand_dims(half, [d for d in range(3) if d != axis]), cell.shape)[
+            solid_cells
+        ]
+        resistance = halves / along[solid_cells, axis]
+        link = open_area[joined] / (resistance[a] + resistance[b])
+        neighbours[a, 2 * axis + 1], links[a, 2 * axis + 1] = b, link
+        neighbours[b, 2 * axis], links[b, 2 * axis] = a, link
+    capacity = np.sum([c * s for c, s in zip(capacities, shares, strict=True)], axis=0)[solid_cells]
+    grid = MeshGrid(frame, edges, index, capacity, neighbours, links, along[solid_cells], filled[solid_cells])
+    return _one_piece(grid)
+
+
+def snapped(triangles: np.ndarray, edges: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """Corners moved into planes of the grid that they nearly lie in."""
+    moved = np.array(triangles)
+    for axis, edge in enumerate(edges):
+        value = moved[..., axis]
+        nearest = np.clip(np.searchsorted(edge, value), 1, len(edge) - 1)
+        nearest = np.where(value - edge[nearest - 1] < edge[nearest] - value, nearest - 1, nearest)
+        moved[..., axis] = np.where(np.abs(value - edge[nearest]) < _SNAP, edge[nearest], value)
+    return moved
+
+
+def _planes(triangles: np.ndarray, axis: int, share: float = 0.02) -> list[float]:
+    """Where the surface has flat pieces across an axis that are a share of it or more."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    areas = np.cross(b - a, c - a)
+    size = np.linalg.norm(areas, axis=1)
+    flat = np.ptp(triangles[..., axis], axis=1) < _SNAP
+    where = np.round(triangles[flat, 0, axis] / (10 * _SNAP)).astype(np.int64)
+    places, inverse = np.unique(where, return_inverse=True)
+    weight = np.bincount(inverse, size[flat], len(places))
+    first = np.zeros(len(places), int)
+    first[inverse[::-1]] = np.arange(len(inverse))[::-1]
+    return list(triangles[flat, 0, axis][first[weight > share * size.sum()]])
+
+
+def _apart(values: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Sorted values, of those closer than a few snaps only one; the ends stay."""
+    ordered = np.sort(np.asarray(values, float))
+    kept = [ordered[0]]
+    for value in ordered[1:-1]:
+        if value - kept[-1] > 4 * _SNAP and ordered[-1] - value > 4 * _SNAP:
+            kept.append(value)
+    return np.array([*kept, ordered[-1]])
+
+
+def _visible(volumes: list[np.ndarray], cell: np.ndarray) -> list[np.ndarray]:
+    """Each part's volume in the cells less what later parts take of it. Parts that overlap anywhere are taken as
+    overlapping as much as they can in a cell, parts that nowhere do as lying side by side."""
+    shares = []
+    for n, volume in enumerate(volumes):
+        left = volume.copy()
+        for later in volumes[n + 1 :]:
+            if np.any(volume + later > (1 + 1e-6) * cell):
+                left -= np.minimum(left, later)
+        shares.append(np.maximum(left, 0.0))
+    return shares
+
+
+def _conductivity(
+    shares: list[np.ndarray],
+    areas: list[tuple[np.ndarray, np.ndarray, np.ndarray]],
+    conductivities: list[float],
+) -> np.ndarray:
+    """(I, J, K, 3) W/(m K) along the axes: where materials share a cell, of a laminate across their boundary's normal
+    (harmonic mean across, arithmetic along it; diagonal of the tensor)."""
+    filled = np.maximum(sum(shares), 1e-300)
+    along = sum(k * s for k, s in zip(conductivities, shares, strict=True)) / filled
+    across = filled / np.maximum(sum(s / k for k, s in zip(conductivities, shares, strict=True)), 1e-300)
+    mean = np.where(along > 0, along, conductivities[0])
+    tensor = np.repeat(mean[..., None], 3, axis=-1)
+    if len(set(conductivities)) == 1:
+        return tensor
+    normal = np.zeros_like(tensor)
+    for share, area in zip(shares, areas, strict=True):
+        mixed = (share > _EMPTY * filled) & (share < (1 - _EMPTY) * filled)
+        for axis in range(3):  # the last part's wall in the cell decides
+            normal[..., axis] = np.where(mixed, -np.diff(area[axis], axis=axis), normal[..., axis])
+    square = np.sum(normal**2, axis=-1, keepdims=True)
+    direction = np.where(square > 0, normal**2 / np.where(square > 0, square, 1.0), 1 / 3)
+    return tensor - np.maximum(mean - across, 0.0)[..., None] * direction
+
+
+def _one_piece(grid: MeshGrid) -> MeshGrid:
+    """The grid without crumbs, which cells that a wall barely meets may leave."""
+    count = len(grid.capacity)
+    rows = np.repeat(np.arange(count), 6)
+    columns = grid.neighbours.ravel()
+    there = columns >= 0
+    pieces, piece = connected_components(
+        coo_array((np.ones(there.sum()), (rows[there], columns[there])), shape=(count, count)), directed=False
+    )
+    if pieces == 1:
+        return grid
+    sizes = np.bincount(piece, grid.volume, pieces)
+    main = int(np.argmax(sizes))
+    others = np.flatnonzero(sizes > _CRUMB * sizes.sum())
+    if len(others) > 1:
+        raise MeshError(
+            f"the object is in {len(others)} separate pieces of "
+            f"{', '.join(f'{1e6 * size:.3g}' for size in sizes[others])} cm3: let them touch, or make them "
+            "objects of their own"
+        )
+    kept = piece == main
+    number = np.append(np.where(kept, np.cumsum(kept) - 1, -1), -1).astype(np.int32)
+    return MeshGrid(
+        grid.frame,
+        grid.edges,
+        number[grid.index],
+        # what the crumbs held is shared out, so that the heat capacity stays the solid's
+        grid.capacity[kept] * (grid.capacity.sum() / grid.capacity[kept].sum()),
+        number[grid.neighbours[kept]],
+        grid.links[kept],
+        grid.conductivity[kept],
+        grid.volume[kept],
+    )
+
+
+def _cut(axis: int, part: slice) -> tuple[slice, ...]:
+    return tuple(part if a == axis else slice(None) for a in range(3))
+
+
+def _full(edges: tuple[np.ndarray, np.ndarray, np.ndarray], axis: int) -> np.ndarray:
+    """m2 of the whole faces across an axis, one long along it."""
+    return np.expand_dims(np.multiply.outer(*(np.diff(e) for a, e in enumerate(edges) if a != axis)), axis)

@@ -1,0 +1,153 @@
+"""The thermal network of an object of any shape, seen through the patches where it is touched.
+
+The object is a grid (mesh_grid). Its temperatures under heat flow into each patch, at shifts over the moments from a
+millisecond to minutes, span the states (rational Krylov: Grimme 1997; Galerkin, so an error of a field enters the
+impedance squared and any span is passive). The object's mean temperature is a state of its own of rate 0 and the only
+one that holds heat.
+
+N: cells, M: ports, P: patches, K: states.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import eigh
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.files import cached_arrays
+
+from .mesh_grid import MeshGrid, MeshGridding, grid_edges, grid_frame, mesh_grid
+from .mesh_patch import PatchOnGrid, patch_on_grid, place_patch
+from .mesh_solid import Solid, SurfacePatch, surface_patches
+from .mesh_solve import conduct, solve_shifted
+from .network import ThermalNetwork
+
+_VERSION = 1  # of the arrays' meaning and of how they are computed
+_SHIFTS = np.geomspace(4000, 1 / 400, 10)  # 1/s: moments from under a millisecond to minutes
+_SETTLED = 1e-3  # of the heat flow, left over when a field is good enough to span a state
+_RANK = 1e-10  # relative size of Gram eigenvalues that round-off has not spoiled
+
+
+def body_network(
+    body: Solid,
+    patches: Sequence[SurfacePatch],
+    *,
+    points: Sequence[Sequence[float]] = (),
+    gridding: MeshGridding | None = None,
+    cache: bool = True,
+) -> ThermalNetwork:
+    """The object's network with one port per patch, in the patches' order: heat flow W into the object, spread evenly
+    over the patch; mean temperature K of the patch above the object's first.
+
+    A patch is a square of SurfacePatch.area round its centre, projected on the surface along its normal; where the
+    surface ends within it, heat flows through what is there. Patches whose normals are along the axes of the first
+    one's frame are resolved best: the grid is aligned with the first normal and with the object's sides.
+    points: (Q, 3) m in the object's frame, where the object's own temperature is told, such as where it may be
+    touched next.
+    Outputs: "heat" (J that the object has gained, exact: only the state of rate 0 holds any), "mean" (K, its mean
+    temperature, by heat), "point:0" ... "point:Q-1" (K at the points, of the nearest cell with material). The direct
+    term is 0.
+    cache: keep it on disk, by content.
+
+    Raises MeshError where a patch does not meet the surface or the object is in pieces, InvalidValueError for values
+    that make no sense.
+    """
+    patches = surface_patches(patches)
+    where = np.asarray(points, float).reshape(-1, 3)
+    if not np.isfinite(where).all():
+        raise InvalidValueError("points must be finite, m in the object's frame")
+    gridding = gridding or MeshGridding()
+
+    def build() -> dict[str, np.ndarray]:
+        frame = grid_frame(body, patches)
+        grid, placed = _gridded(body, patches, frame, gridding)
+        rates, ports, basis = _reduced(grid, placed)
+        cells = _nearest(grid, where @ frame.T)
+        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), "points": basis[cells]}
+
+    arrays = cached_arrays(_key(body, patches, where, gridding), build, enabled=cache)
+    rates, capacity = arrays["rates"], float(arrays["capacity"])
+    still = np.eye(len(rates))[0]
+    outputs = {"heat": np.sqrt(capacity) * still, "mean": still / np.sqrt(capacity)}
+    outputs |= {f"point:{n}": row for n, row in enumerate(arrays["points"])}
+    count = arrays["ports"].shape[1]
+    return ThermalNetwork(rates, arrays["ports"], np.zeros((count, count)), outputs)
+
+
+def _gridded(
+    body: Solid, patches: tuple[SurfacePatch, ...], frame: np.ndarray, gridding: MeshGridding
+) -> tuple[MeshGrid, list[PatchOnGrid]]:
+    triangles = np.concatenate([part.triangles for part in body.parts]) @ frame.T
+    placed = [place_patch(triangles, patch, frame) for patch in patches]
+    edges = grid_edges(
+        triangles,
+        np.array([p.centre for p in placed]),
+        np.array([p.normal for p in placed]),
+        np.array([p.half_width for p in placed]),
+        np.array([p.aligned for p in placed]),
+        gridding,
+    )
+    grid = mesh_grid(body, frame, edges)
+    return grid, [patch_on_grid(grid, triangles, patch) for patch in placed]
+
+
+def _reduced(grid: MeshGrid, placed: list[PatchOnGrid]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rates (K,), ports (K, M) and the states' fields (N, K), the mean first."""
+    drive = np.stack([patch.shares for patch in placed], axis=1)
+    direct = np.diag([patch.skin for patch in placed])
+    total = grid.capacity.sum()
+    fields = np.zeros((len(grid.capacity), 0))
+    gram, pencil, scales = np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0)
+    for s in _SHIFTS:
+        guess = drive.sum(axis=0) / (s * total) * np.ones_like(drive)
+        if fields.shape[1]:
+            seen = fields.T @ drive
+            guess += fields @ np.linalg.lstsq(s * gram + pencil, seen, rcond=1e-12)[0]
+        x = solve_shifted(grid, s, drive, guess, _SETTLED)
+        x -= grid.capacity @ x / total
+        scale = 1 / np.sqrt(grid.capacity @ x**2)
+        fields = np.concatenate((fields, x * scale), axis=1)
+        gram = fields.T @ (grid.capacity[:, None] * fields)
+        pencil = fields.T @ conduct(grid, fields)
+        scales = np.concatenate((scales, scale))
+    # The wall of a patch lies off its cells' nodes by a thermal resistance without capacity: it joins every field as
+    # the flow that made it.
+    skin = np.tile(direct, (len(_SHIFTS), 1)) * scales[:, None]
+    through = (np.tile(direct, (len(_SHIFTS),) * 2) * scales[:, None]) * scales
+    values, vectors = eigh((gram + gram.T) / 2)
+    kept = values > _RANK * values[-1]
+    basis = vectors[:, kept] / np.sqrt(values[kept])
+    rates, turn = eigh(basis.T @ (pencil + pencil.T + 2 * through) @ basis / 2)
+    basis = basis @ turn
+    ports = basis.T @ (fields.T @ drive + skin)
+    mean = np.sum(drive, axis=0) / np.sqrt(total)
+    whole = np.full((len(grid.capacity), 1), 1 / np.sqrt(total))
+    return (
+        np.concatenate(([0.0], np.maximum(rates, 0.0))),
+        np.concatenate((mean[None], ports)),
+        np.concatenate((whole, fields @ basis), axis=1),
+    )
+
+
+def _nearest(grid: MeshGrid, points: np.ndarray) -> np.ndarray:
+    """(Q,) cells with material nearest to points (Q, 3) in the grid's frame."""
+    nodes = grid.nodes
+    return np.array([int(np.argmin(np.sum((nodes - p) ** 2, axis=1))) for p in points], dtype=int)
+
+
+def _key(
+    body: Solid, patches: tuple[SurfacePatch, ...], points: np.ndarray, gridding: MeshGridding
+) -> dict[str, object]:
+    """What heat conduction knows of a body: names of materials play no part."""
+    return {
+        "body network": _VERSION,
+        "parts": [
+            (p.vertices, p.faces, p.material.conductivity, p.material.volumetric_heat_capacity)
+            for p in body.parts
+        ],
+        "patches": patches,
+        "points": points,
+        "gridding": gridding,
+    }
