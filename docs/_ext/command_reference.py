@@ -45,7 +45,9 @@ def _value(action: argparse.Action) -> str:
     """What is to be given, as the usage line has it."""
     if action.nargs == 0:
         return ""
-    fallback = "{" + ",".join(map(str, action.choices)) + "}" if action.choices else action.dest.upper()
+    fallback = action.dest.upper() if action.option_strings else action.dest
+    if action.choices:
+        fallback = "{" + ",".join(map(str, action.choices)) + "}"
     name = action.metavar or fallback
     one = name if isinstance(name, str) else " ".join(name)
     return {"*": f"[{one} ...]", "+": f"{one} ...", "?": f"[{one}]"}.get(str(action.nargs), one)
