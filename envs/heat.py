@@ -52,7 +52,8 @@ class HeatStep(NamedTuple):
     heat saw. sensor_surface, object_surface (B, F) °C, means over the contact. object_temperature (B,) °C, the object's
     mean. heat (B, 3) J gained by left element, right element and object. flow (B, F) W into the object's side and
     air_loss (B,) W, the step's means. reservoir_temperature (B,) °C, nan where there is none, and reservoir_flow (B,) W
-    into the object, the step's mean. drawn (B, F) W from the thermostats. imbalance (B,) J that the object's side
+    into the object, the step's mean. drawn (B, F) W from the thermostats. over_temperature (B,):
+    one of the thermostats has been too hot, and the heaters are off. imbalance (B,) J that the object's side
     gained beyond what flowed in less what the air took, and exchanged (B,) J, the flow's absolute sum, since the start.
     """
 
@@ -117,9 +118,9 @@ class GraspHeat:
             fresh["anchor"] = thing.spec.element_places
             for name in ("offset", "stored", "touching", "books"):
                 fresh[name] = 0
-            fresh["begun"] = thing.reservoir is not None or fresh["ambient"] != 0
-            if thing.reservoir is not None:
-                fresh["enthalpy"] = thing.reservoir.row(thing.temperature)[1]
+            fresh["begun"] = thing.spec.reservoir is not None or fresh["ambient"] != 0
+            if thing.spec.reservoir is not None:
+                fresh["enthalpy"] = thing.spec.reservoir.row(thing.temperature)[1]
 
     def rung(self, row: int) -> str:
         """The model that computes an environment's heat."""
@@ -229,12 +230,12 @@ class GraspHeat:
         free = free_area(thing.geometry)
         mine["air"] = self._air * free
         self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
-        if thing.reservoir is not None:
-            self._reservoirs[row] = thing.reservoir.row(thing.temperature)[0]
+        if thing.spec.reservoir is not None:
+            self._reservoirs[row] = thing.spec.reservoir.row(thing.temperature)[0]
         # What the object gives to the air and to a reservoir, as one film of that many W/(m2 K).
         film = self._air + float(self._reservoirs["conductance"][row]) / free
         celsius = [thing.temperature, thing.temperature + float(mine["ambient"])]
-        if thing.reservoir is not None:
+        if thing.spec.reservoir is not None:
             celsius.append(float(self._reservoirs["temperature"][row]))
         # In steps, so that nearly equal temperatures share a network.
         above = max(np.abs(sensor_temperature - each).max() for each in celsius) / LEAST_DIFFERENCE

@@ -39,7 +39,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
     duration = tables.dt * samples
     for b in range(len(rows)):
         row, one, x = rows[b], told[b], state[b]
-        renewed = False
+        renewed = one.over_temperature = False
         for f in range(2):
             touching = _mean_contact(laws[b], normal[b, :, f], one, f)
             renewed |= _follow(row, one, f, touching, place[b, f])

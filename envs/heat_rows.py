@@ -53,21 +53,23 @@ HEAT_TOLD = np.dtype(
         ("imbalance", "f8"),
         ("exchanged", "f8"),
         ("events", "u1", (2,)),
+        ("over_temperature", "?"),
     ]
 )
 
-TOUCH, RELEASE, NEW_PATCH, OFF_ELEMENT = 1, 2, 4, 8
+TOUCH, RELEASE, NEW_PATCH, OFF_ELEMENT, OVER_TEMPERATURE = 1, 2, 4, 8, 16
 _KINDS = (
     (TOUCH, "touch"),
     (OFF_ELEMENT, "touch off the element"),
     (RELEASE, "release"),
     (NEW_PATCH, "new patch"),
+    (OVER_TEMPERATURE, "over temperature"),
 )
 
 
 def _all_events() -> np.ndarray:
-    events = np.empty((16, 16), object)
-    for codes in np.ndindex(16, 16):
+    events = np.empty((32, 32), object)
+    for codes in np.ndindex(events.shape):
         events[codes] = tuple(
             (kind, tip)
             for code, tip in zip(codes, ("left", "right"), strict=True)

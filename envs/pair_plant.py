@@ -76,7 +76,7 @@ class PairPlant:
         self._electronics = Electronics(
             num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, config.most_delay
         )
-        self._thermostats = Thermostats(num_envs, config.thermostat, config.sensor_temperatures, self.dt)
+        self._thermostats = Thermostats(num_envs, config.heater, config.sensor_temperatures, self.dt)
         self._drawn = [draw((), np.random.default_rng(0))] * num_envs
         self._rest = np.zeros((num_envs, OBJECTS))
         self._right, self._asked = np.zeros(num_envs, int), np.zeros(num_envs, int)
@@ -139,7 +139,9 @@ class PairPlant:
         )
         if not self._thermostats.ideal:
             first = self.heat.sensor_temperatures
-            self.heat.set_thermostats(self._thermostats.step(step.fingertips.told["drawn"], first))
+            told = step.fingertips.told
+            self.heat.set_thermostats(self._thermostats.step(told["drawn"], first))
+            self._thermostats.tell(told)
         force = np.stack([motion.force for motion in motions], axis=1)
         heights = np.stack([motion.object_height for motion in motions], axis=1)
         error = tuple(self.mechanics.failure)
@@ -157,8 +159,9 @@ class PairPlant:
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
-        """°C that the row's thermostats and objects started from."""
-        return (*self.heat.sensor_temperatures[row], *(thing.temperature for thing in self.things[row]))
+        """°C between which the row's heat stays: of its thermostats, objects, room and reservoirs."""
+        objects = (celsius for thing in self.things[row] for celsius in thing.extremes)
+        return (*self.heat.sensor_temperatures[row], *objects)
 
     def close(self) -> None:
         """Nothing is held."""

@@ -73,6 +73,13 @@ class Reservoir:
                 f"{self.heat_capacity / self.conductance:.2g} s: give {LEAST_TIME_CONSTANT:g} s at least"
             )
 
+    def extremes(self, object_temperature: float) -> tuple[float, float]:
+        """°C between which it stays by itself, in an object of that temperature at first."""
+        start = object_temperature if self.temperature is None else self.temperature
+        if self.power == 0:
+            return start, start
+        return start, np.inf if self.setpoint is None else max(start, self.setpoint)
+
     def row(self, object_temperature: float) -> tuple[np.void, float]:
         """(RESERVOIR_ROW record, J of enthalpy at first) in an object of that temperature, °C."""
         start = object_temperature if self.temperature is None else self.temperature

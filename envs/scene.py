@@ -21,6 +21,7 @@ from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 
 from ..assets import asset
 from .meshes import MeshShape, load_mesh
+from .reservoir import Reservoir
 from .solver_settings import SHIPPED, SolverSettings
 
 TIPS = ("left", "right")
@@ -51,7 +52,8 @@ class ObjectSpec:
     takes them from its file. mass: kg, or density: kg/m3 (at most one; neither means 0.1 kg). friction: sliding
     coefficient of every contact of the object (None: 0.8). position: m, (x, y) of its centre on the table, the
     gripper's is (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`. elements: (side,
-    thickness) m of square plates without mass glued on where the pads meet it, None for none. Raises
+    thickness) m of square plates without mass glued on where the pads meet it, None for none. temperature: °C at first,
+    None for the scene's. reservoir: what keeps it hot or cold, None for nothing. Raises
     InvalidValueError, UnknownNameError (shape), or MeshError (file).
     """
 
@@ -68,6 +70,8 @@ class ObjectSpec:
     scale: float = 1.0
     pieces: int = 1
     elements: tuple[float, float] | None = None
+    temperature: float | None = None
+    reservoir: Reservoir | None = None
 
     def __post_init__(self) -> None:
         if self.shape not in _SHAPES:
@@ -97,6 +101,8 @@ class ObjectSpec:
             raise InvalidValueError(
                 f"size {self.size} of a {self.shape}: extents across its axis must be equal"
             )
+        if self.temperature is not None:
+            finite("temperature (°C)", self.temperature)
         for value in self.elements or ():
             positive("elements (side, thickness)", value)
         if self.width > MAX_OPENING - CLEARANCE:
@@ -192,8 +198,8 @@ def scaled(spec: ObjectSpec, size: float = 1.0, *, mass: float = 1.0, friction: 
 
 
 def placeless(spec: ObjectSpec) -> ObjectSpec:
-    """The same object at the origin: what the compiled model depends on (the pose is state)."""
-    return replace(spec, position=(0.0, 0.0), yaw=0.0)
+    """The same object at the origin: what the compiled model depends on (the pose is state, heat is not its affair)."""
+    return replace(spec, position=(0.0, 0.0), yaw=0.0, temperature=None, reservoir=None)
 
 
 def contact_sensor(tip: str, name: str) -> str:

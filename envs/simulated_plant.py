@@ -64,7 +64,7 @@ class SimulatedPlant:
             num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, config.most_delay
         )
         self._drawn = [plain] * num_envs
-        self._thermostats = Thermostats(num_envs, config.thermostat, config.sensor_temperatures, self.dt)
+        self._thermostats = Thermostats(num_envs, config.heater, config.sensor_temperatures, self.dt)
         self._rest = np.zeros(num_envs)
         # Replaced, never written to: readings keep it.
         self._episodes = Episodes(
@@ -125,6 +125,7 @@ class SimulatedPlant:
         if not self._thermostats.ideal:
             first = self.heat.sensor_temperatures
             self.heat.set_thermostats(self._thermostats.step(step.told["drawn"], first))
+            self._thermostats.tell(step.told)
         error = tuple(self.mechanics.failure)
         return Reading(
             opening=motion.opening,
@@ -139,8 +140,8 @@ class SimulatedPlant:
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
-        """°C that the row's thermostats and object started from."""
-        return (*self.heat.sensor_temperatures[row], self.things[row].temperature)
+        """°C between which the row's heat stays: of its thermostats, object, room and reservoir."""
+        return (*self.heat.sensor_temperatures[row], *self.things[row].extremes)
 
     def close(self) -> None:
         """Nothing is held."""

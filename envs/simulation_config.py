@@ -35,8 +35,9 @@ class SimulationConfig:
     """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed
     materials. mode: T or O. objects: the object's shape, or a list to draw from per episode (density and friction
     are the material's where a shape gives none). tolerance: K that the thermal network keeps. air: W/(m2 K).
-    Temperatures in °C, that of the sensors one or each fingertip's. thermostat: one of finite power (its setpoint is
-    sensor_temperature), None for an ideal one. placement: m and degree; the object lies within +- these of the middle,
+    Temperatures in °C, that of the sensors one or each fingertip's; an object with a temperature of its own has that,
+    and the room is as warm as object_temperature unless ambient_temperature is given. thermostat: one of finite power
+    (its setpoint is sensor_temperature, its ambient the room where that is given), None for an ideal one. placement: m and degree; the object lies within +- these of the middle,
     drawn per episode. randomize: what else differs from episode to episode, records of randomization.py. fingertips:
     how many carry a sensor (1: the left one). solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
     step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
@@ -52,6 +53,7 @@ class SimulationConfig:
     sensor_temperature: float | tuple[float, float] = 36.0
     thermostat: Thermostat | None = None
     object_temperature: float = 24.0
+    ambient_temperature: float | None = None
     placement: tuple[float, float] = (0.002, 2.0)
     randomize: Sequence[Cause] = ()
     fingertips: Literal[1, 2] = 2
@@ -75,6 +77,8 @@ class SimulationConfig:
                 "give one temperature, or thermostat=None"
             )
         finite("object_temperature (°C)", self.object_temperature)
+        if self.ambient_temperature is not None:
+            finite("ambient_temperature (°C)", self.ambient_temperature)
         for value in self.placement:
             non_negative("placement (m, degree)", value)
         checked(self.randomize)
@@ -134,6 +138,13 @@ class SimulationConfig:
         return SIGNAL_CHAINS[self.signal]
 
     @property
+    def heater(self) -> Thermostat | None:
+        """The fingertips' thermostat in this room."""
+        if self.thermostat is None or self.ambient_temperature is None:
+            return self.thermostat
+        return replace(self.thermostat, ambient=self.ambient_temperature)
+
+    @property
     def heat(self) -> dict[str, Any]:
         """Keywords of what computes the heat."""
         return {
@@ -158,14 +169,17 @@ class SimulationConfig:
         )
         if self.mode == "O":
             spec = replace(spec, elements=(stack.width, stack.thickness))
+        shift, room = drawn["object_temperature_shift"], self.ambient_temperature
+        usual = self.object_temperature + shift
         return Thing(
             spec,
             chosen,
-            self.object_temperature + drawn["object_temperature_shift"],
+            usual if spec.temperature is None else spec.temperature + shift,
             self.mode,
             stack,
             self.fingertips,
             drawn["roughness_factor"],
+            usual if room is None else room,
         )
 
     def possible_things(self, stack: SensorStack) -> list[Thing]:

@@ -29,7 +29,6 @@ from ..thermal import (
     sphere_contact,
     sphere_law,
 )
-from .reservoir import Reservoir
 from .scene import ObjectSpec
 
 PAD = Pad()
@@ -40,7 +39,7 @@ NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 class Thing:
     """An object between the fingertips. spec: its shape and place. material: what it is made of. temperature: °C at
     first. mode: T or O, where the element sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on
-    the object's surface. ambient: °C of the air, None for the object's. reservoir: what keeps it hot or cold."""
+    the object's surface. ambient: °C of the air, None for the object's."""
 
     spec: ObjectSpec
     material: Material
@@ -50,7 +49,6 @@ class Thing:
     fingertips: Literal[1, 2] = 2
     roughness_factor: float = 1.0
     ambient: float | None = None
-    reservoir: Reservoir | None = None
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:
@@ -117,6 +115,16 @@ class Thing:
         """J/K of the object, without elements."""
         width, height, thickness = self.plate
         return self.material.volumetric_heat_capacity * width * height * thickness
+
+    @property
+    def extremes(self) -> tuple[float, ...]:
+        """°C between which it and what is in it stay until something touches it."""
+        inside = self.spec.reservoir
+        return (
+            self.temperature,
+            self.temperature if self.ambient is None else self.ambient,
+            *(inside.extremes(self.temperature) if inside else ()),
+        )
 
     @cached_property
     def crushing_force(self) -> float:

@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..thermal import Thermostat, ThermostatState, thermostat_step
+from ..thermal import TOO_HOT, Thermostat, ThermostatState, thermostat_step
 from .messages import Check, Flag, Pair
 
 _CONTROL = 0.02  # s, period of the controllers
 _OFF_SETPOINT = 1.0  # K
-_TOO_HOT = 70.0  # °C
 _OFF = -1000.0  # °C, a setpoint at which no heater works
 
 
@@ -41,7 +40,7 @@ class EmulatedPlates:
         if given is not None:
             for i in range(2):
                 self.put(i, given[i])
-        self.hot |= any(float(plate.measured[0]) >= _TOO_HOT for plate in self._plates)
+        self.hot |= any(float(plate.measured[0]) >= TOO_HOT for plate in self._plates)
 
     def put(self, fingertip: int, temperature: float) -> None:
         """A plate is at that temperature, °C."""

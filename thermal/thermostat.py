@@ -14,6 +14,9 @@ from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 # The seed's plate, 20 x 20 x 1.74 mm, in aluminium: 2700 kg/m3 x 897 J/(kg K); in copper it is 2.40 J/K.
 _PLATE_HEAT_CAPACITY = 0.020 * 0.020 * 1.74e-3 * 2700.0 * 897.0
 
+TOO_HOT = 70.0
+"""°C by its own sensor at which the device puts both heaters off (docs/protocol.md)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Thermostat:

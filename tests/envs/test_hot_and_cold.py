@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.envs import ObjectSpec, Thing
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, Thing, action_of
 from thermograsp.envs.heat import GraspHeat
 from thermograsp.envs.reservoir import Reservoir, ice, water
 from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import Mode
 
+from .scripted import grasp_action
+
+ENDLESS = GraspTask(hold_seconds=1e3, seconds=1e3)
 STACK = thermal.sensor("seed")
 STEP = 0.02  # s
 AIR = 10.0  # W/(m2 K)
@@ -28,11 +31,9 @@ def thing(
     ambient: float | None = None,
     reservoir: Reservoir | None = None,
 ) -> Thing:
-    spec = ObjectSpec(
-        mass=0.1, friction=0.8, elements=(STACK.width, STACK.thickness) if mode == "O" else None
-    )
-    made = Thing(spec, thermal.material(name), celsius, mode, STACK, ambient=ambient, reservoir=reservoir)
-    return made
+    glued = (STACK.width, STACK.thickness) if mode == "O" else None
+    spec = ObjectSpec(mass=0.1, friction=0.8, elements=glued, reservoir=reservoir)
+    return Thing(spec, thermal.material(name), celsius, mode, STACK, ambient=ambient)
 
 
 class Run:
@@ -172,6 +173,72 @@ def test_a_state_in_the_middle_goes_on_bit_for_bit():
         place = body.spec.element_places[None]
         a, b = (run.heat.advance(np.full((1, 10, 2), newton), place) for run in (first, other))
         assert a.told.tobytes() == b.told.tobytes() and np.array_equal(a.drop, b.drop)
+
+
+def held(batch: GraspBatch, steps: int, force: float = 20.0) -> list:
+    batch.reset(range(batch.num_envs), [np.random.default_rng(i) for i in range(batch.num_envs)])
+    return [batch.step(grasp_action(batch, force)) for _ in range(steps)]
+
+
+def test_in_an_episode_a_hot_mug_is_felt_and_a_room_cools_it():
+    mug = ObjectSpec(
+        shape="cylinder", size=(0.05, 0.05, 0.06), temperature=85.0, reservoir=water(0.1, 4.0, 85.0)
+    )
+    batch = GraspBatch(2, objects=mug, material="ceramic", ambient_temperature=21.0, task=ENDLESS)
+    steps = held(batch, 200)
+    truth = steps[-1].reading.truth
+    assert np.all(steps[-1].reading.voltage[:, -1] < -1e-3)
+    assert np.all(truth["temperature_drop"] < -1.0)
+    assert np.all((truth["object_temperature"] < 85.0) & (truth["object_temperature"] > 80.0))
+    assert np.all((truth["reservoir_temperature"] < 85.0) & (truth["reservoir_temperature"] > 84.0))
+    assert np.all(abs(truth["heat_imbalance"]) < 1e-9 * truth["heat_exchanged"])
+    assert not any(list(violations_of(batch, step)) for step in steps[::50])
+
+
+def violations_of(batch: GraspBatch, step):
+    ends = [batch.plant.temperatures(row) for row in range(batch.num_envs)]  # pyright: ignore
+    for row, each in enumerate(ends):
+        for name in ("sensor_surface", "object_surface", "object_temperature"):
+            values = np.atleast_1d(step.reading.truth[name][row])
+            if values.min() < min(each) - 0.05 or values.max() > max(each) + 0.05:
+                yield name, row, values
+
+
+def test_objects_of_one_list_may_differ_in_temperature_and_the_room_stays():
+    cold, hot = ObjectSpec(temperature=4.0), ObjectSpec(temperature=60.0)
+    batch = GraspBatch(8, objects=[cold, hot], material="glass", object_temperature=22.0, task=ENDLESS)
+    batch.reset(range(8), [np.random.default_rng(i) for i in range(8)])
+    things = batch.plant.things  # pyright: ignore[reportAttributeAccessIssue]
+    assert {thing.temperature for thing in things} == {4.0, 60.0}
+    assert {thing.ambient for thing in things} == {22.0}
+
+
+def test_too_hot_a_thermostat_puts_both_heaters_off_until_the_next_reset():
+    """A small, weak plate that a hot object warms: the flag rises at 70 °C by its own sensor and stays when it has
+    cooled; the reset's setpoint ends it, as SET_SETPOINT does on the device."""
+    plate = thermal.Thermostat(heat_capacity=0.6, loss=0.1)
+    batch = GraspBatch(
+        2, material="copper", objects=ObjectSpec(temperature=170.0), thermostat=plate, task=ENDLESS, air=0.0
+    )
+    steps = held(batch, 450)
+    flags = np.array([step.reading.truth["over_temperature"] for step in steps])
+    measured = np.array([step.reading.thermostat for step in steps])
+    assert not flags[0].any() and flags[-1].all()
+    for row in range(2):
+        first = int(np.argmax(flags[:, row]))
+        assert measured[first, row].max() >= thermal.TOO_HOT > measured[first - 1, row].max()
+        kinds = [kind for step in steps[first : first + 1] for kind, _ in step.info(row)["events"]]
+        assert kinds.count("over temperature") in (1, 2)
+        assert np.all(flags[first:, row])
+        assert abs(steps[-1].reading.voltage[row, -1]).min() > 1e-3  # still told
+    opened = np.tile(action_of(0.085, 0.0, 0.0), (2, 1))
+    for _ in range(600):
+        step = batch.step(opened)
+    assert step.reading.thermostat.max() < 65.0 and step.reading.truth["over_temperature"].all()
+    plates = batch.plant._thermostats._state  # pyright: ignore[reportAttributeAccessIssue]
+    assert not plates.power.any()
+    after = batch.reset([1], [np.random.default_rng(1)])[1]
+    assert after.truth["over_temperature"].tolist() == [True, False]
 
 
 @pytest.mark.parametrize(
