@@ -22,6 +22,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "docstrings", "generated", "m
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_ext"]
 highlight_language = "text"
+smartquotes = False  # it would make one dash of the two of --json
 
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = {"math"}

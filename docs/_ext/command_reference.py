@@ -54,7 +54,9 @@ def _value(action: argparse.Action) -> str:
 
 
 def _cell(text: str) -> str:
-    """Plain text in a table: nothing of it is Markdown."""
-    for special in "\\`*_[]<>|$":
-        text = text.replace(special, "\\" + special)
-    return " ".join(text.split())
+    """Text in a table: what stands between backticks is code, and nothing else of it is Markdown."""
+    parts = " ".join(text.split()).split("`")
+    for i in range(0, len(parts), 2):
+        for special in "\\*_[]<>|$":
+            parts[i] = parts[i].replace(special, "\\" + special)
+    return "`".join(parts)

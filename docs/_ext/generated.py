@@ -1,4 +1,5 @@
-"""Fills in what a page says with a comment `<!-- generated: NAME -->`, from the code that the site is built of."""
+"""What a page has on the site and not in its file: tables where it says `<!-- generated: NAME -->`, made from the code
+that the site is built of, and the titles of pages in place of their files' names."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ from public_names import public_names
 from sphinx.application import Sphinx
 
 MARK = re.compile(r"^<!-- generated: (\w+)(?: ([\w.]+))? -->$", re.MULTILINE)
+FILE = re.compile(r"\[[\w/-]+\.md\](?=\([\w/-]+\.md(?:#[\w-]+)?\))")
 
 GENERATORS: dict[str, Callable[..., str]] = {
     "commands": command_reference,
@@ -22,7 +24,8 @@ GENERATORS: dict[str, Callable[..., str]] = {
 
 def _fill(app: Sphinx, page: str, source: list[str]) -> None:
     del app, page
-    source[0] = MARK.sub(lambda mark: GENERATORS[mark[1]](*filter(None, [mark[2]])), source[0])
+    filled = MARK.sub(lambda mark: GENERATORS[mark[1]](*filter(None, [mark[2]])), source[0])
+    source[0] = FILE.sub("[]", filled)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
