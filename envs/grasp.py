@@ -18,6 +18,7 @@ from thermograsp.plant import Plant, Reading, merged, plant_factory
 from .grasp_task import GraspTask
 from .observation import Observation, Observer
 from .tasks import Outcome, Task, stopped
+from .truth import Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,15 +65,21 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
             info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
         if reading.error[row]:
             info["error"] = reading.error[row]
-    for name in reading.told:
-        value = reading.truth[name][row]
-        if isinstance(value, np.ndarray):
-            value = value.copy()
-        info[name] = value.item() if isinstance(value, np.generic) else value
+    if isinstance(reading.truth, Truth):
+        info |= reading.truth.told(row)
+    else:
+        info |= {name: _item(reading.truth[name][row]) for name in reading.told}
     randomized = reading.truth.get("randomized")
     if randomized:
         info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
     return info
+
+
+def _item(value: Any) -> Any:
+    """A value of its own: arrays are copied, NumPy's numbers become Python's."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def infos_of(

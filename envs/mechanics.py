@@ -34,7 +34,8 @@ _RANGES = (
     ("lift_rate", -MAX_LIFT_RATE, MAX_LIFT_RATE),
 )
 _HIGHEST = tuple(high for _, _, high in _RANGES)
-_RECORD: tuple = ("sensordata", "site_xpos", "site_xmat", "qpos", "qvel")
+_RECORD: tuple = ("sensordata", "site_xmat")
+_FULL_RECORD: tuple = (*_RECORD, "site_xpos", "qpos", "qvel")
 # The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
 _FAMILIES = ("body_", "bvh_", "cam_", "dof_", "geom_", "light_", "qpos")
 _MODEL_ARRAYS = tuple(sorted(name for name in mujoco.batch.MODEL_FIELDS if name.startswith(_FAMILIES)))
@@ -125,7 +126,15 @@ class Mechanics:
             *(self._qpos, self._qvel, self._act, self._ctrl, self._force_range),
             *(self._warning, self._warned),
         )
-        self._out: dict[int, dict[Any, np.ndarray]] = {}
+        # Outputs are those of the last substep's beginning.
+        self._moved = (
+            self._batch.bind("site_xpos"),
+            self._batch.bind("xpos"),
+            self._batch.bind("xquat"),
+            self._qpos,
+            self._qvel,
+        )
+        self._out: dict[tuple[int, tuple], dict[Any, np.ndarray]] = {}
         self._compiled: dict[tuple[ObjectSpec, ...], dict[str, np.ndarray]] = {}
         self._base = {name: getattr(self.model, name).tobytes() for name in _MODEL_ARRAYS}
         self._varying: set[str] = set()
@@ -155,11 +164,12 @@ class Mechanics:
             "grip_act": model.actuator_actadr[grip],
             "lift_act": model.actuator_actadr[lift],
             "poses": free[0],
+            "body": 0,
             "sensor": self._contacts[2],
         }
         self._layouts = []
         for number, pose in enumerate(free):
-            places.update(poses=pose, object=number)
+            places.update(poses=pose, body=model.body(self.names[number]).id, object=number)
             self._layouts.append(np.array([tuple(places[name] for name in ADDRESSES.names or ())], ADDRESSES))
         self._layout = self._layouts[0]
         self._at: Any = self._layout.view(np.recarray)[0]
@@ -230,7 +240,7 @@ class Mechanics:
         lift_rate: m/s, -0.05 .. 0.05; the lift stops by itself at 0 and 0.15 m.
         Raises InvalidValueError for a shape, a non-finite value or one outside its range, naming it.
         """
-        return self._record(self._roll(opening, force_limit, lift_rate, substeps))
+        return self._record(self._roll(opening, force_limit, lift_rate, substeps, _FULL_RECORD))
 
     def advance(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
@@ -277,10 +287,8 @@ class Mechanics:
         summarise(
             layout,
             out["sensordata"],
-            out["site_xpos"],
             out["site_xmat"],
-            out["qpos"],
-            out["qvel"],
+            *self._moved,
             *motion,
         )
         return motion
@@ -368,9 +376,14 @@ class Mechanics:
         return self._compiled[key]
 
     def _roll(
-        self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int
+        self,
+        opening: np.ndarray,
+        force_limit: np.ndarray,
+        lift_rate: np.ndarray,
+        substeps: int,
+        record: tuple = _RECORD,
     ) -> dict[Any, np.ndarray]:
-        """MuJoCo's records of the substeps; the next call with as many writes over them."""
+        """MuJoCo's records of the substeps; the next call for as many writes over them."""
         if substeps < 1:
             raise InvalidValueError(f"substeps {substeps}: give at least 1")
         command = (
@@ -382,7 +395,8 @@ class Mechanics:
         if not set_points(self._layout, *command, duration, self._stiffness, _HIGHEST, *self._live):
             for (name, low, high), values in zip(_RANGES, command, strict=True):
                 within(name, values, low, high)
-        self._out[substeps] = out = self._batch.rollout(substeps, record=_RECORD, out=self._out.get(substeps))
+        kept = self._out.get((substeps, record))
+        self._out[substeps, record] = out = self._batch.rollout(substeps, record=record, out=kept)
         if any_risen(self._warning, self._warned):
             self._note_failures(self._warning[:, :, 1] > self._warned)
         return out

@@ -21,12 +21,12 @@ _STILL, _SHORT = (
 
 _NAMES = (
     *("left", "right", "left_dof", "right_dof", "height"),
-    *("grip", "lift", "grip_act", "lift_act", "poses", "sensor", "object"),
+    *("grip", "lift", "grip_act", "lift_act", "poses", "body", "sensor", "object"),
 )
 ADDRESSES = np.dtype([(name, "i8") for name in _NAMES])
 """Where things are in a model: the fingers' and the lift's joints in qpos, the fingers' in qvel, the actuators in ctrl,
-their set points in act, an object's pose in qpos, numbers of a contact sensor, and which object it is. Kernels take it
-as an array of one record, which costs less to hand over than a tuple."""
+their set points in act, an object's pose in qpos, its body, numbers of a contact sensor, and which object it is.
+Kernels take it as an array of one record, which costs less to hand over than a tuple."""
 
 
 class Motion(NamedTuple):
@@ -102,14 +102,15 @@ def any_risen(warnings, warned):
 
 @njit(cache=True, error_model="numpy")
 def summarise(
-    layout, sensors, positions, axes, qpos, qvel, normal_force, force, place, opening, rate, height, lifted
-):
-    """Fills a Motion's arrays from what MuJoCo recorded: sensors (B, S, n), the pads' positions (B, S, T, 3) and axes
-    (B, S, T, 9), qpos and qvel (B, S, n)."""
+    layout, sensors, axes, pads, bodies, turns, qpos, qvel,
+    normal_force, force, place, opening, rate, height, lifted,
+):  # fmt: skip
+    """Fills a Motion's arrays from what MuJoCo recorded, sensors (B, S, n) and the pads' axes (B, S, T, 9), from where
+    everything was before the last substep, the pads (B, T, 3), bodies (B, n, 3) and their quaternions (B, n, 4), and
+    from qpos and qvel (B, n) at the end."""
     at = layout[0]
     rows, substeps, tips = normal_force.shape
     objects = sensors.shape[2] // (tips * at.sensor)
-    last, before = substeps - 1, max(substeps - 2, 0)  # the pads are where they were before the last substep
     for b in range(rows):
         for t in range(tips):
             first = (t * objects + at.object) * at.sensor
@@ -125,18 +126,18 @@ def summarise(
                 normal_force[b, s, t] = max(normal, 0.0) if sensors[b, s, first] > 0 else 0.0
             for i in range(3):
                 mean[i] /= substeps
-            _into_frame(positions[b, last, t], qpos[b, before], at.poses, place[b, t])
-        opening[b] = qpos[b, last, at.left] + qpos[b, last, at.right]
-        rate[b] = qvel[b, last, at.left_dof] + qvel[b, last, at.right_dof]
-        height[b] = qpos[b, last, at.height]
-        lifted[b] = qpos[b, last, at.poses + 2]
+            _into_frame(pads[b, t], bodies[b, at.body], turns[b, at.body], place[b, t])
+        opening[b] = qpos[b, at.left] + qpos[b, at.right]
+        rate[b] = qvel[b, at.left_dof] + qvel[b, at.right_dof]
+        height[b] = qpos[b, at.height]
+        lifted[b] = qpos[b, at.poses + 2]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _into_frame(point, qpos, pose, out):
-    """Writes a point of the world in the frame of the pose (position, quaternion w x y z) that begins there in qpos."""
-    x, y, z = point[0] - qpos[pose], point[1] - qpos[pose + 1], point[2] - qpos[pose + 2]
-    w, a, b, c = qpos[pose + 3], -qpos[pose + 4], -qpos[pose + 5], -qpos[pose + 6]
+def _into_frame(point, origin, turn, out):
+    """Writes a point of the world in the frame at an origin, turned by a quaternion (w, x, y, z)."""
+    x, y, z = point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]
+    w, a, b, c = turn[0], -turn[1], -turn[2], -turn[3]
     p, q, r = 2 * (b * z - c * y), 2 * (c * x - a * z), 2 * (a * y - b * x)
     out[0] = x + w * p + (b * r - c * q)
     out[1] = y + w * q + (c * p - a * r)

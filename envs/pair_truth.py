@@ -27,6 +27,14 @@ class PairTruth(Truth):
     def __getitem__(self, name: str) -> Any:
         return self.own[name] if name in self.own else Truth.__getitem__(self, name)
 
+    def told(self, row: int) -> dict[str, Any]:
+        """See Truth; and what is asked."""
+        return Truth.told(self, row) | {
+            "asked": self.own["asked"][row],
+            "right": self.own["right"][row].item(),
+            "object_temperatures": self.own["object_temperatures"][row].copy(),
+        }
+
     def __contains__(self, name: object) -> bool:
         return name in self.own or Truth.__contains__(self, name)
 
