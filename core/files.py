@@ -85,6 +85,23 @@ def cached_arrays(
     return arrays
 
 
+def cached_file(key_fields: Mapping[str, Any], suffix: str, write: Callable[[Path], None]) -> Path:
+    """A file of the cache, named by a hash of `key_fields` (see cached_arrays), that `write` makes at the path it is
+    given where it is not there yet. Raises InvalidValueError where the cache's folder cannot be written."""
+    path = cache_dir() / f"{_digest(key_fields)}{suffix}"
+    if path.is_file():
+        return path
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with atomic_write(path) as temporary:
+            write(temporary)
+    except OSError as error:
+        raise InvalidValueError(
+            f"cannot write {path} ({error}); set {CACHE_VARIABLE} to a writable folder"
+        ) from error
+    return path
+
+
 def _read(path: Path) -> dict[str, np.ndarray] | None:
     try:
         with np.load(path, allow_pickle=False) as archive:

@@ -6,6 +6,7 @@ from .grasp_env import GraspEnv, GraspVectorEnv
 from .grasp_task import GraspTask
 from .identify_env import IdentifyEnv, IdentifyVectorEnv
 from .identify_task import IdentifyTask
+from .library import ObjectPreset, library_object, objects
 from .mechanics import ContactRecord, Mechanics, MechanicsState
 from .meshes import MeshShape, load_mesh
 from .observation import observation_space
@@ -52,6 +53,7 @@ __all__ = [
     "MechanicsState",
     "MeshShape",
     "Noise",
+    "ObjectPreset",
     "ObjectSpec",
     "ObjectTemperature",
     "Offset",
@@ -73,7 +75,9 @@ __all__ = [
     "build_scene",
     "command_of",
     "force_window",
+    "library_object",
     "load_mesh",
+    "objects",
     "observation_space",
     "sliding_action_of",
 ]

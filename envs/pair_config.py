@@ -76,4 +76,5 @@ def pair_config(*, goal: Goal = "material", **simulation: Any) -> PairConfig:
 def _of_one_weight(spec: ObjectSpec) -> ObjectSpec:
     """Mass and friction do not follow from the material."""
     mass = DEFAULT_MASS if spec.mass is None and spec.density is None else spec.mass
-    return replace(spec, mass=mass, friction=DEFAULT_FRICTION if spec.friction is None else spec.friction)
+    friction = DEFAULT_FRICTION if spec.friction is None else spec.friction
+    return replace(spec, mass=mass, friction=friction, material=None)

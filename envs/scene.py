@@ -20,6 +20,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError, finite, non_negative, positive, unknown_name
 
 from ..assets import asset
+from ..thermal import Material, material
 from .meshes import MeshShape, load_mesh
 from .reservoir import Reservoir
 from .solver_settings import SHIPPED, SolverSettings
@@ -53,8 +54,9 @@ class ObjectSpec:
     coefficient of every contact of the object (None: 0.8). position: m, (x, y) of its centre on the table, the
     gripper's is (0, 0). yaw: rad about z. rgba: 0..1. mesh, scale, pieces: see `load_mesh`. elements: (side,
     thickness) m of square plates without mass glued on where the pads meet it, None for none. temperature: °C at first,
-    None for the scene's. reservoir: what keeps it hot or cold, None for nothing. Raises
-    InvalidValueError, UnknownNameError (shape), or MeshError (file).
+    None for the scene's. reservoir: what keeps it hot or cold, None for nothing. material: a name or a Material whose
+    density and friction hold where nothing else is said; environments take it where they are not told another one.
+    Raises InvalidValueError, UnknownNameError (shape, material), or MeshError (file).
     """
 
     name: str = "object"
@@ -72,6 +74,7 @@ class ObjectSpec:
     elements: tuple[float, float] | None = None
     temperature: float | None = None
     reservoir: Reservoir | None = None
+    material: str | Material | None = None
 
     def __post_init__(self) -> None:
         if self.shape not in _SHAPES:
@@ -103,6 +106,8 @@ class ObjectSpec:
             )
         if self.temperature is not None:
             finite("temperature (°C)", self.temperature)
+        if self.material is not None:
+            material(self.material)
         for value in self.elements or ():
             positive("elements (side, thickness)", value)
         if self.width > MAX_OPENING - CLEARANCE:
@@ -148,10 +153,20 @@ class ObjectSpec:
 
     @property
     def weight(self) -> float:
-        """kg, the mass given or that of the density."""
+        """kg, the mass given or that of the density, given or the material's; else 0.1."""
         if self.mass is not None:
             return self.mass
-        return DEFAULT_MASS if self.density is None else self.density * self.volume
+        if self.density is not None:
+            return self.density * self.volume
+        return DEFAULT_MASS if self.material is None else material(self.material).density * self.volume
+
+    @property
+    def sliding_friction(self) -> float:
+        """Of every contact: what is given, else the material's, else 0.8."""
+        if self.friction is not None:
+            return self.friction
+        known = None if self.material is None else material(self.material).friction
+        return DEFAULT_FRICTION if known is None else known
 
     @property
     def inertia(self) -> tuple[np.ndarray, np.ndarray]:
@@ -193,7 +208,7 @@ def scaled(spec: ObjectSpec, size: float = 1.0, *, mass: float = 1.0, friction: 
         {"scale": spec.scale * size} if spec.mesh else {"size": tuple(size * side for side in spec.size)}
     )
     heavier = {"density": spec.density * mass} if spec.density is not None else {"mass": spec.weight * mass}
-    rougher = {"friction": (DEFAULT_FRICTION if spec.friction is None else spec.friction) * friction}
+    rougher = {"friction": spec.sliding_friction * friction}
     return replace(spec, **extents, **heavier, **rougher)
 
 
@@ -317,7 +332,7 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec, settings: SolverSettings)
         "conaffinity": 7,
         "priority": 1,
         "condim": 4,
-        "friction": (DEFAULT_FRICTION if item.friction is None else item.friction, _TORSION, _ROLLING),
+        "friction": (item.sliding_friction, _TORSION, _ROLLING),
         "solref": settings.solref,
         "solimp": (*settings.solimp, _MIDPOINT, _POWER),
     }

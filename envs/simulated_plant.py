@@ -88,18 +88,20 @@ class SimulatedPlant:
         unknown = set(options) - {"material"}
         if unknown:
             raise InvalidValueError(f"unknown reset options {sorted(unknown)}: material is known")
-        choices = self._choices
+        config, choices = self.config, self._choices
         if "material" in options:
-            choices = replace(self.config, material=options["material"]).choices
+            config = replace(config, material=options["material"])
+            choices = config.choices
         reach, turn = self.config.placement
         for row, rng in zip(rows, rngs, strict=True):
             chosen = choices[int(rng.integers(len(choices)))]
             x, y, angle = rng.uniform(-1.0, 1.0, 3)
             shape = self._shapes[int(rng.integers(len(self._shapes))) if len(self._shapes) > 1 else 0]
             turned = shape.yaw + np.deg2rad(angle * turn)
-            spec = replace(shape, position=(x * reach, y * reach), yaw=turned)
+            middle = shape.position
+            spec = replace(shape, position=(middle[0] + x * reach, middle[1] + y * reach), yaw=turned)
             self._drawn[row] = drawn = draw(self._causes, rng)
-            self.things[row] = self.config.thing(self._stack, chosen, spec, drawn)
+            self.things[row] = config.thing(self._stack, chosen, spec, drawn)
             self._rngs[row] = rng
             self._electronics.reset(row, drawn)
         things = [self.things[row] for row in rows]

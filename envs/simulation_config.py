@@ -32,20 +32,20 @@ SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
 
 @dataclass(frozen=True, slots=True)
 class SimulationConfig:
-    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for the ten seed
-    materials. mode: T or O. objects: the object's shape, or a list to draw from per episode (density and friction
-    are the material's where a shape gives none). tolerance: K that the thermal network keeps. air: W/(m2 K).
-    Temperatures in °C, that of the sensors one or each fingertip's; an object with a temperature of its own has that,
-    and the room is as warm as object_temperature unless ambient_temperature is given. thermostat: one of finite power
-    (its setpoint is sensor_temperature, its ambient the room where that is given), None for an ideal one. placement: m and degree; the object lies within +- these of the middle,
-    drawn per episode. randomize: what else differs from episode to episode, records of randomization.py. fingertips:
-    how many carry a sensor (1: the left one). solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
-    step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
-    disk."""
+    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for an object's own and
+    else the ten seed materials. mode: T or O. objects: the object's shape, its name in the library, or a list to draw
+    from per episode (density and friction are the material's where a shape gives none). tolerance: K that the thermal
+    network keeps. air: W/(m2 K). Temperatures in °C, that of the sensors one or each fingertip's; an object with a
+    temperature of its own has that, and the room is as warm as object_temperature unless ambient_temperature is given.
+    thermostat: one of finite power (its setpoint is sensor_temperature, its ambient the room where that is given), None
+    for an ideal one. placement: m and degree; the object lies within +- these of its own place, drawn per episode.
+    randomize: what else differs from episode to episode, records of randomization.py. fingertips: how many carry a
+    sensor (1: the left one). solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must
+    be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
-    objects: ObjectSpec | Sequence[ObjectSpec] | None = None
+    objects: str | ObjectSpec | Sequence[str | ObjectSpec] | None = None
     tolerance: float = 0.05
     sensor: str | SensorStack = "seed"
     signal: str | SignalChain = "ads1115"
@@ -112,10 +112,11 @@ class SimulationConfig:
 
     @property
     def shapes(self) -> tuple[ObjectSpec, ...]:
-        """Shapes that an episode draws from. Raises InvalidValueError for an empty list, and where their names or
-        numbers of convex pieces differ, which all environments of a batch share."""
+        """Shapes that an episode draws from. Raises UnknownNameError; InvalidValueError for an empty list, and where
+        their names or numbers of convex pieces differ, which all environments of a batch share."""
         given = ObjectSpec() if self.objects is None else self.objects
-        listed = (given,) if isinstance(given, ObjectSpec) else tuple(given)
+        several = [given] if isinstance(given, str | ObjectSpec) else given
+        listed = tuple(_from_library(one) if isinstance(one, str) else one for one in several)
         if len({(shape.name, shape.hulls) for shape in listed}) != 1:
             raise InvalidValueError(
                 f"objects {[shape.name for shape in listed]} of {[shape.hulls for shape in listed]} convex pieces: "
@@ -159,7 +160,11 @@ class SimulationConfig:
     def thing(
         self, stack: SensorStack, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]
     ) -> Thing:
-        """The object of that material: the material's density and friction where the shape gives none."""
+        """The object, of that material or, where none was asked for, of its own: the material's density and friction
+        where the shape gives none."""
+        if spec.material is not None:
+            chosen = material(spec.material) if self.material is None else chosen
+            spec = replace(spec, material=None)
         if spec.mass is None and spec.density is None:
             spec = replace(spec, density=chosen.density)
         if spec.friction is None and chosen.friction is not None:
@@ -199,3 +204,9 @@ class SimulationConfig:
         """Samples by which voltages may be late."""
         causes = checked(self.randomize)
         return max((cause.most for cause in causes if isinstance(cause, Delay)), default=0)
+
+
+def _from_library(name: str) -> ObjectSpec:
+    from .library import library_object
+
+    return library_object(name).spec()

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 from .mechanics_kernel import LIFT_ACCELERATION
-from .scene import DEFAULT_FRICTION, ObjectSpec
+from .scene import ObjectSpec
 from .things import Thing
 
 _GRAVITY = 9.81  # m/s2
@@ -41,6 +41,6 @@ STAKES: Mapping[str, Any] = MappingProxyType(
 def force_window(thing: Thing) -> tuple[float, float]:
     """N on each pad: the least that lifts the object without a slip, m (g + a)/(2 mu) with the arm's acceleration a,
     and the force that crushes it."""
-    friction = DEFAULT_FRICTION if thing.spec.friction is None else thing.spec.friction
+    friction = thing.spec.sliding_friction
     least = thing.spec.weight * (_GRAVITY + LIFT_ACCELERATION) / (2 * friction)
     return least, thing.crushing_force
