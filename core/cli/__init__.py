@@ -23,6 +23,7 @@ COMMANDS = (
     "press",
     "identify",
     "materials",
+    "objects",
     "reproduce",
     "rollout",
     "dataset",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from thermograsp.cli.arguments import add_materials_file, chosen_material, target
@@ -22,12 +23,13 @@ HELP = (
 )
 
 _FAILED = 1
+_ROOM = 24.0  # °C
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("--material", default="glass", help="a name of `thermograsp materials` (default glass)")
+    add("--material", help="a name of `thermograsp materials` (default: the object's own, else glass)")
     add_materials_file(parser)
     add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
     add(
@@ -38,13 +40,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--hold", type=float, default=2.0, help="s at 5 cm, up to the end, that count as held (default 2)")
     add("--seed", type=int, default=0, help="of the object's place and the noise (default 0)")
-    add("--force", type=float, default=10.0, help="the gripper's limit, N (default 10)")
-    add("--shape", default="box", help="box (default), cylinder or sphere")
-    add("--width", type=float, default=0.04, help="of the object between the fingers, m (default 0.04)")
+    add("--force", type=float, help="the gripper's limit, N (default: what holds the object, else 10)")
+    add("--object", metavar="NAME", help="one of `thermograsp objects`, such as mug_of_coffee")
+    add("--shape", help="box (default), cylinder or sphere")
+    add("--width", type=float, help="of the object between the fingers, m (default 0.04)")
     add("--height", type=float, help="of the object, m (default: as its width)")
     add("--mesh", metavar="FILE", help="an object from a mesh: .stl, .obj, .ply or .glb")
-    add("--scale", type=float, default=1.0, help="lengths in the mesh times this are metres (default 1)")
-    add("--temperature", type=float, default=24.0, help="of the object at first, degC (default 24)")
+    add("--scale", type=float, help="lengths in the mesh times this are metres (default 1)")
+    add("--temperature", type=float, help="of the object at first, degC (default: its own, else 24)")
     add("--tolerance", type=float, default=0.05, help="of the temperature drop, K (default 0.05)")
     add(
         "--sensor",
@@ -81,6 +84,7 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     if args.plot is not None and args.plant is None:
         raise InvalidValueError("--plot draws real beside simulated: give --plant, or use --render or --csv")
+    spec = _object(args)
     # a real object is where it was put, in the middle as well as could be
     placement: dict[str, Any] = {} if args.plant is None else {"placement": (0.0, 0.0)}
     batch = GraspBatch(
@@ -88,9 +92,9 @@ def run(args: argparse.Namespace) -> int:
         task=GraspTask(hold_seconds=args.hold, seconds=args.seconds),
         material=chosen_material(args.material, args.materials),
         mode=args.mode,
-        objects=_object(args),
+        objects=spec,
         tolerance=args.tolerance,
-        object_temperature=args.temperature,
+        object_temperature=args.temperature if args.object is None else _ROOM,
         sensor=args.sensor,
         cache=not args.no_cache,
         **placement,
@@ -121,21 +125,39 @@ def run(args: argparse.Namespace) -> int:
     return 0 if grasp.success else _FAILED
 
 
-def _object(args: argparse.Namespace) -> ObjectSpec | None:
-    """None for the environment's usual cube, whose friction is the material's."""
-    from thermograsp.envs import ObjectSpec
+def _object(args: argparse.Namespace) -> ObjectSpec:
+    """The object; fills in the arguments that it decides where they are not given."""
+    from thermograsp.envs import ObjectSpec, library_object
 
+    given = {name: getattr(args, name) for name in ("shape", "width", "height", "mesh", "scale")}
+    told = {name: value for name, value in given.items() if value is not None}
+    if args.object is not None:
+        if told:
+            raise InvalidValueError(
+                f"--object {args.object} has its own shape: leave out --{' and --'.join(told)}"
+            )
+        preset = library_object(args.object)
+        args.material = args.material or preset.material
+        args.temperature = preset.temperature if args.temperature is None else args.temperature
+        args.force = preset.grip_force if args.force is None else args.force
+        return replace(preset.spec(), temperature=args.temperature)
+    args.material = args.material or "glass"
+    args.temperature = _ROOM if args.temperature is None else args.temperature
+    args.force = 10.0 if args.force is None else args.force
     friction = chosen_material(args.material, args.materials).friction
     surface: dict[str, Any] = {} if friction is None else {"friction": friction}
     if args.mesh is not None:
-        return ObjectSpec(shape="mesh", mesh=args.mesh, scale=args.scale, **surface)
-    height = args.width if args.height is None or args.shape == "sphere" else args.height
-    return ObjectSpec(shape=args.shape, size=(args.width, args.width, height), **surface)
+        scale = 1.0 if args.scale is None else args.scale
+        return ObjectSpec(shape="mesh", mesh=args.mesh, scale=scale, **surface)
+    shape, width = args.shape or "box", told.get("width", 0.04)
+    height = width if args.height is None or shape == "sphere" else args.height
+    return ObjectSpec(shape=shape, size=(width, width, height), **surface)
 
 
 def _print(output: Output, args: argparse.Namespace, grasp: Recording, crushing: float) -> None:
     columns = grasp.columns
     document: dict[str, Any] = {
+        "object": args.object,
         "material": grasp.material,
         "mode": args.mode,
         "seed": grasp.seed,
@@ -148,7 +170,8 @@ def _print(output: Output, args: argparse.Namespace, grasp: Recording, crushing:
     what = "lifted and held" if grasp.success else grasp.ending or f"not lifted and held for {args.hold:g} s"
     if grasp.ending == "crushed":
         what = f"crushed by more than {crushing:.1f} N"
-    output.line(f"{grasp.material}, {args.mode} mode: {what}; rung {grasp.rung}")
+    name = f"{args.object} of {grasp.material}" if args.object else grasp.material
+    output.line(f"{name}, {args.mode} mode: {what}; rung {grasp.rung}")
     if len(columns["time_s"]):
         drop = columns["temperature_drop_left_K"]
         peak = int(abs(drop).argmax())
