@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("assets", "thermal", "envs", "hardware")
 LEAVES = ("errors", "files", "plant")
-ALL = {"root", "bench", "cli", "dataset", "report", "twin", *LEAVES, *FOLDERS}
+ALL = {"root", "bench", "cli", "dataset", "report", "twin", "view", *LEAVES, *FOLDERS}
 MAY_IMPORT = {
     "root": set(),
     "errors": set(),
@@ -27,6 +27,7 @@ MAY_IMPORT = {
     "dataset": ALL,
     "report": ALL,
     "twin": ALL,
+    "view": ALL,
 }
 
 

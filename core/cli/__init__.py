@@ -29,6 +29,7 @@ COMMANDS = (
     "dataset",
     "device",
     "bench",
+    "view",
 )
 
 _BAD_INPUT = 2

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from collections.abc import Mapping
 
 import numpy as np
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.files import atomic_write
+from thermograsp.files import write_text
 
 
 def write_csv(path: str | os.PathLike[str], columns: Mapping[str, np.ndarray]) -> None:
     """Columns name -> (N,) under a header of their names, nine significant digits, one line a row."""
-    header = ",".join(columns)
+    write_text(path, csv_text(columns))
+
+
+def csv_text(columns: Mapping[str, np.ndarray]) -> str:
+    """What write_csv writes."""
+    text = io.StringIO()
     rows = np.column_stack(list(columns.values()))
-    with atomic_write(path) as temporary:
-        np.savetxt(temporary, rows, fmt="%.9g", delimiter=",", header=header, comments="", encoding="utf-8")
+    np.savetxt(text, rows, fmt="%.9g", delimiter=",", header=",".join(columns), comments="")
+    return text.getvalue()
 
 
 def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:

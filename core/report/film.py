@@ -15,6 +15,7 @@ from thermograsp.envs import GraspBatch
 from thermograsp.envs.picture import temperatures
 from thermograsp.envs.render import Renderer
 from thermograsp.files import atomic_write
+from thermograsp.plant import Reading
 
 _GAP = 6  # pixels between the pictures of a strip
 _CAMERA = "overview"
@@ -62,10 +63,7 @@ class Film:
         assert reading is not None
         celsius = temperatures(reading, self._row)
         pixels = _cropped(self._renderer.frame(self._row, camera=_CAMERA, temperatures=celsius))
-        sensor, face = (reading.truth[name][self._row] for name in ("sensor_surface", "object_surface"))
-        thermostat, mean = reading.thermostat[self._row], reading.truth["object_temperature"][self._row]
-        across = (thermostat[0], sensor[0], face[0], mean, face[1], sensor[1], thermostat[1])
-        self.stills.append(Still(time, pixels, tuple(float(value) for value in across)))
+        self.stills.append(Still(time, pixels, across(reading, self._row)))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """An animation at the grasp's own speed (.gif, .webp), or all pictures in a row (.png)."""
@@ -85,6 +83,14 @@ class Film:
     def close(self) -> None:
         """Frees OpenGL's buffers."""
         self._renderer.close()
+
+
+def across(reading: Reading, row: int) -> tuple[float, ...]:
+    """degC through both contacts of a simulated row, as in Still."""
+    sensor, face = (reading.truth[name][row] for name in ("sensor_surface", "object_surface"))
+    thermostat, mean = reading.thermostat[row], reading.truth["object_temperature"][row]
+    through = (thermostat[0], sensor[0], face[0], mean, face[1], sensor[1], thermostat[1])
+    return tuple(float(value) for value in through)
 
 
 def _cropped(pixels: np.ndarray) -> np.ndarray:

@@ -114,7 +114,7 @@ def record(
             success[row] = bool(info["success"])
         if watch:
             watch(now, batch)
-    columns = _columns(readings, batch.dt)
+    columns = columns_of(readings, batch.dt)
     last = readings[-1].truth
     return [
         Recording(
@@ -140,11 +140,12 @@ def _ending(info: Mapping[str, object]) -> str:
     return next((what for what in ("dropped", "crushed") if info.get(what)), "")
 
 
-def _columns(readings: Sequence[Reading], dt: float) -> dict[str, np.ndarray]:
-    """Columns (B, N) by name_unit."""
+def columns_of(readings: Sequence[Reading], dt: float, begun: float = 0.0) -> dict[str, np.ndarray]:
+    """Columns (B, N) by name_unit of a simulated plant's consecutive readings, the first of which ends a control step
+    of dt s that started at `begun` s."""
     rows, samples = readings[0].voltage.shape[:2]
     count = len(readings) * samples
-    time = (np.arange(count) + 1) * (dt / samples)
+    time = begun + (np.arange(count) + 1) * (dt / samples)
     columns = {"time_s": np.broadcast_to(time, (rows, count))}
     for name, unit, read in _PER_FINGERTIP:
         values = np.stack([read(reading) for reading in readings], axis=1)  # (B, steps, [S,] 2)

@@ -1,0 +1,67 @@
+"""What the fingertips' voltage tells of the object, while it comes in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from thermograsp.thermal import SEED_MATERIALS, Identification, Identifier, Material, TouchSetup
+
+PERIOD = 0.2  # s between looks; each takes some 10 ms
+_SHOWN = 6  # materials
+
+
+class Feeling:
+    """Identifies one touch among the ten seed materials and those that may lie there. Feed it samples with `add`; what
+    `look` says is of all of them. Samples beyond the setup's horizon after the touch are not used, nor kept."""
+
+    def __init__(self, setup: TouchSetup, materials: Mapping[str, Material], named: tuple[str, ...]) -> None:
+        chosen = dict.fromkeys((*SEED_MATERIALS, *named))
+        self._identifier = Identifier(setup, [materials[name] for name in chosen if name in materials])
+        self._horizon = setup.horizon
+        self.reset()
+
+    def reset(self) -> None:
+        """Another touch begins."""
+        self._identifier.reset()
+        self._pending: list[tuple[np.ndarray, np.ndarray]] = []
+        self._looked = 0.0
+        self._found: Identification | None = None
+        self._told = False
+
+    def add(self, columns: Mapping[str, np.ndarray], row: int) -> None:
+        """The columns (B, S) of a control step."""
+        voltage = np.stack([columns["voltage_left_V"][row], columns["voltage_right_V"][row]], axis=1)
+        self._pending.append((columns["time_s"][row], voltage))
+
+    def look(self) -> dict[str, Any] | None:
+        """What is to be told, where it is time to look again and something new came."""
+        if not self._pending or self._pending[-1][0][-1] < self._looked + PERIOD:
+            return None
+        t, voltage = (np.concatenate(parts) for parts in zip(*self._pending, strict=True))
+        self._pending.clear()
+        self._looked = float(t[-1])
+        if self._found is not None and self._over(self._looked):
+            return None
+        self._found = self._identifier.update(t, voltage)
+        return posterior(self._found)
+
+    def _over(self, now: float) -> bool:
+        assert self._found is not None
+        touches = self._found.touch
+        return all(np.isfinite(touches)) and now > max(touches) + self._horizon
+
+
+def posterior(found: Identification) -> dict[str, Any]:
+    """For the page: verdict and message, the likeliest materials with their probabilities, and the effusivity in
+    W s^0.5/(m2 K) with its 90 % interval."""
+    order = np.argsort(-found.probability, kind="stable")[:_SHOWN]
+    low, high = found.effusivity.interval()
+    return {
+        "verdict": str(found.verdict),
+        "message": found.message,
+        "likely": [[found.materials[k], round(float(found.probability[k]), 4)] for k in order],
+        "effusivity": [round(float(value), 1) for value in (low, found.effusivity.median, high)],
+    }

@@ -1,0 +1,158 @@
+"""The studio's server: the page's files over HTTP, a session a visitor over WebSocket, on one port."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from http import HTTPStatus
+from typing import Any
+
+from thermograsp.errors import InvalidValueError, MissingDependencyError, SimulationError
+from thermograsp.view.access import LARGEST, Access, Allowance, parsed
+from thermograsp.view.choices import Choices, Stock
+from thermograsp.view.files import HEADERS, page_files
+from thermograsp.view.worker import Worker, warm_up
+
+try:
+    from websockets.asyncio.server import Server, ServerConnection, serve
+    from websockets.datastructures import Headers
+    from websockets.exceptions import ConnectionClosed
+    from websockets.http11 import Request, Response
+except ImportError as error:
+    raise MissingDependencyError("the studio needs websockets: pip install 'thermograsp[view]'") from error
+
+FRAMES = 30.0  # a second
+SOCKET = "socket"  # its path
+_PENDING = 64  # messages of a visitor that wait for the simulation
+_OPENING = 5.0  # s for a connection's handshake
+_POLICY, _BUSY, _BROKEN = 1008, 1013, 1011  # close codes of RFC 6455 and its registry
+
+
+@dataclass(slots=True)
+class Studio:
+    """access: who may come. stock, choices: what a visitor finds. most: visitors at once. make: a visitor's worker."""
+
+    access: Access
+    stock: Stock = field(default_factory=Stock)
+    choices: Choices = field(default_factory=Choices)
+    most: int = 4
+    make: Callable[[Stock, Choices], Worker] = Worker
+    _visitors: set[ServerConnection] = field(default_factory=set)
+    _files: dict[str, tuple[str, bytes]] = field(default_factory=page_files)
+
+    async def run(self, port: int, started: Callable[[str], None]) -> None:
+        """Serves until cancelled. started: told the address that visitors open. Raises OSError where the port is
+        taken."""
+        await asyncio.to_thread(warm_up)
+        async with await self.listen(port) as server:
+            started(self.access.url(port_of(server)))
+            await server.serve_forever()
+
+    async def listen(self, port: int) -> Server:
+        """A server on that port, 0 for any that is free."""
+        quiet = logging.getLogger("thermograsp.view")
+        quiet.setLevel(logging.CRITICAL)  # who leaves in the middle of a handshake is no news
+        return await serve(
+            self._visit,
+            self.access.host,
+            port,
+            process_request=self._answer,
+            max_size=LARGEST,
+            max_queue=_PENDING,
+            open_timeout=_OPENING,
+            close_timeout=1.0,
+            compression=None,
+            server_header=None,
+            logger=quiet,
+        )
+
+    def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
+        """A file of the page, or None to go on with a WebSocket."""
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        if len(hosts) != 1 or len(origins) > 1 or not self.access.trusts(hosts[0], (origins or [None])[0]):
+            return connection.respond(
+                HTTPStatus.FORBIDDEN, "This address or page may not talk to the studio.\n"
+            )
+        resource = self.access.resource(request.path)
+        if resource is None:
+            return connection.respond(
+                HTTPStatus.FORBIDDEN, "The address lacks its token: open the one printed.\n"
+            )
+        if resource == SOCKET:
+            return None
+        if resource not in self._files:
+            return connection.respond(HTTPStatus.NOT_FOUND, "There is no such page.\n")
+        kind, content = self._files[resource]
+        headers = Headers(
+            {**HEADERS, "Content-Type": kind, "Content-Length": str(len(content)), "Connection": "close"}
+        )
+        return Response(HTTPStatus.OK, "OK", headers, content)
+
+    async def _visit(self, socket: ServerConnection) -> None:
+        if len(self._visitors) >= self.most:
+            await _end(
+                socket,
+                _BUSY,
+                f"{self.most} visitors are here already: close a tab, or allow more (--visitors)",
+            )
+            return
+        self._visitors.add(socket)
+        worker = await asyncio.to_thread(self.make, self.stock, self.choices)
+        inbox: list[dict[str, Any]] = []
+        reading = asyncio.create_task(_read(socket, inbox))
+        playing = asyncio.create_task(_play(socket, worker, inbox))
+        try:
+            done, _ = await asyncio.wait({reading, playing}, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        except ConnectionClosed:
+            pass
+        except InvalidValueError as error:
+            await _end(socket, _POLICY, str(error))
+        except SimulationError as error:
+            await _end(socket, _BROKEN, str(error))
+        finally:
+            reading.cancel()
+            playing.cancel()
+            await asyncio.to_thread(worker.stop)
+            await asyncio.gather(reading, playing, return_exceptions=True)
+            self._visitors.discard(socket)
+
+
+def port_of(server: Server) -> int:
+    """The port that a server listens on."""
+    return next(iter(server.sockets)).getsockname()[1]
+
+
+async def _read(socket: ServerConnection, inbox: list[dict[str, Any]]) -> None:
+    """Puts a client's messages into the inbox until it leaves. Raises InvalidValueError for one too many, or a bad
+    one."""
+    allowance = Allowance(asyncio.get_running_loop().time)
+    async for text in socket:
+        if not allowance.take() or len(inbox) >= _PENDING:
+            raise InvalidValueError("too many messages")
+        inbox.append(parsed(text))
+
+
+async def _play(socket: ServerConnection, worker: Worker, inbox: list[dict[str, Any]]) -> None:
+    """Sends frames, as many as the client takes, FRAMES a second at most."""
+    loop = asyncio.get_running_loop()
+    due = loop.time()
+    while True:
+        messages, inbox[:] = list(inbox), []
+        for text in await asyncio.to_thread(worker.exchange, messages):
+            await socket.send(text)
+        due = max(due + 1 / FRAMES, loop.time() - 1 / FRAMES)
+        await asyncio.sleep(due - loop.time())
+
+
+async def _end(socket: ServerConnection, code: int, why: str) -> None:
+    """Tells the page why it ends, and closes."""
+    try:
+        await socket.send(json.dumps({"kind": "ended", "text": why}))
+        await socket.close(code, why[:120])
+    except ConnectionClosed:
+        pass

@@ -1,0 +1,264 @@
+"""One visitor's session: a grasp, its clock and its controls. It knows nothing of the web; time is handed to it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_hex
+
+from thermograsp.envs.colormap import colour_table
+from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
+from thermograsp.report.columns import csv_text
+from thermograsp.thermal import SEED_MATERIALS
+from thermograsp.view.choices import DRIVERS, RANGES, SPEEDS, Choices, Controls, Stock
+from thermograsp.view.feeling import Feeling
+from thermograsp.view.log import LONGEST, Log
+from thermograsp.view.simulated import SimulatedGrasp
+
+MOST_STEPS = 25  # in one advance: a machine that is too slow falls behind instead of no longer answering
+_CURVES = ("voltage_left_V", "voltage_right_V", "temperature_drop_left_K", "temperature_drop_right_K",
+           "force_left_N", "force_right_N")  # fmt: skip
+_TABLE = 64  # colours
+_MARGIN = 1.0  # K around the temperatures that occur, of the colours' range
+
+Message = dict[str, Any]
+
+
+class Session:
+    """`handle` takes the visitor's messages, `advance` lets time pass, `messages` is what the page is to hear since the
+    last call. make: builds the grasp. A choice takes effect in the second `advance` after it, so that the page can be
+    told in between that this takes a moment."""
+
+    def __init__(
+        self,
+        stock: Stock | None = None,
+        choices: Choices | None = None,
+        make: Callable[[Choices, Stock], Any] = SimulatedGrasp,
+    ) -> None:
+        self._stock = stock or Stock()
+        self._make = make
+        self.choices = choices or Choices()
+        self.controls = Controls()
+        self._grasp: Any = None
+        self._wanted: Choices | None = self.choices
+        self._announced = False
+        self._owed = 0.0  # s of the grasp's time
+        self._single = False
+        self._feelings: list[Feeling] = []
+        self._log = Log(1)
+        self._sent = 0
+        self._told: list[Message] = [self._hello()]
+        self._seen = 0
+
+    def handle(self, message: Mapping[str, Any]) -> None:
+        """One message: {"do": what, ...}. What cannot be done is told to the page; nothing is raised for it."""
+        content = dict(message)
+        do, number = content.pop("do", None), content.pop("id", None)
+        if isinstance(number, int):
+            self._seen = number
+        try:
+            if not isinstance(do, str) or do not in _ACTIONS:
+                raise unknown_name("action", do, _ACTIONS)
+            _ACTIONS[do](self, content)
+        except ThermograspError as error:
+            self._problem(error)
+
+    def advance(self, seconds: float) -> None:
+        """Lets `seconds` of the wall's time pass."""
+        if self._wanted is not None:
+            if self._announced:
+                self._set_up(self._wanted)
+            self._announced = not self._announced
+            return
+        grasp, controls = self._grasp, self.controls
+        if grasp is None:
+            return
+        self._owed += seconds * controls.speed if controls.playing else 0.0
+        steps = min(math.floor(self._owed / grasp.dt + 1e-9), MOST_STEPS)
+        if self._single:
+            steps, self._single = 1, False
+        try:
+            for _ in range(steps):
+                if not grasp.running:
+                    break
+                self._step()
+        except ThermograspError as error:
+            self.controls = controls.changed({"playing": False})
+            self._problem(error)
+        self._owed = min(max(self._owed - steps * grasp.dt, 0.0), grasp.dt)
+
+    def messages(self) -> list[Message]:
+        """What happened since the last call, a frame last."""
+        for row, feeling in enumerate(self._feelings):
+            found = feeling.look()
+            if found is not None:
+                self._told.append({"kind": "posterior", "row": row, **found})
+        told, self._told = self._told, []
+        return [*told, self._frame()]
+
+    def close(self) -> None:
+        """Releases the grasp."""
+        if self._grasp is not None:
+            self._grasp.close()
+            self._grasp = None
+
+    @property
+    def paced(self) -> bool:
+        """Whether steps take as long as they last, so that they are to be taken whether or not somebody asks."""
+        return self._grasp is not None and self._grasp.paced
+
+    @property
+    def time(self) -> float:
+        """s of the grasp."""
+        return 0.0 if self._grasp is None else self._grasp.steps * self._grasp.dt
+
+    def _step(self) -> None:
+        columns = self._grasp.step(self.controls)
+        self._log.add(columns)
+        for row, feeling in enumerate(self._feelings):
+            feeling.add(columns, row)
+
+    def _set_up(self, wanted: Choices) -> None:
+        self._wanted = None
+        try:
+            grasp = self._make(wanted, self._stock)
+            setups = [grasp.touch_setup(row) for row in range(grasp.rows)]
+            feelings = [
+                Feeling(setup, self._stock.materials, wanted.materials)
+                for setup in setups
+                if setup is not None
+            ]
+        except ThermograspError as error:
+            self._problem(error)
+            self._told.append({"kind": "chosen", "choices": self.choices.told()})
+            return
+        self.close()
+        self._grasp, self._feelings, self.choices = grasp, feelings, wanted
+        self._begin()
+        self._told.append(self._scene())
+
+    def _begin(self) -> None:
+        self._log = Log(round(LONGEST / self._grasp.dt))
+        self._sent, self._owed = 0, 0.0
+        for feeling in self._feelings:
+            feeling.reset()
+        self._told.append({"kind": "begin"})
+
+    def _choose(self, content: Mapping[str, Any]) -> None:
+        self._wanted = (self._wanted or self.choices).changed(content, self._stock)
+
+    def _control(self, content: Mapping[str, Any]) -> None:
+        self.controls = self.controls.changed(content)
+
+    def _again(self, content: Mapping[str, Any]) -> None:
+        _nothing(content)
+        if self._grasp is not None:
+            self._grasp.reset(self.choices.seed)
+            self._begin()
+
+    def _one_step(self, content: Mapping[str, Any]) -> None:
+        _nothing(content)
+        self.controls = self.controls.changed({"playing": False})
+        self._single = True
+
+    def _csv(self, content: Mapping[str, Any]) -> None:
+        _nothing(content)
+        kept = self._log.since(0)
+        if not kept:
+            raise InvalidValueError("there is nothing to download yet: let the grasp run first")
+        for row, name in enumerate(self._names):
+            text = csv_text({column: values[row] for column, values in kept.items()})
+            self._told.append({"kind": "csv", "name": f"{name}_{self.choices.mode}.csv", "text": text})
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self.choices.materials[: self._grasp.rows]
+
+    def _problem(self, error: Exception) -> None:
+        self._told.append({"kind": "problem", "text": " ".join(str(error).split())})
+
+    def _hello(self) -> Message:
+        return {
+            "kind": "hello",
+            "materials": sorted(self._stock.materials),
+            "seed": [name for name in SEED_MATERIALS if name in self._stock.materials],
+            "shapes": self._stock.shapes,
+            "drivers": DRIVERS,
+            "speeds": SPEEDS,
+            "ranges": {name: asdict(one) for name, one in RANGES.items()},
+            "choices": self.choices.told(),
+            "fixed": [],
+            "table": [to_hex(colour) for colour in colour_table(_TABLE)],
+        }
+
+    def _scene(self) -> Message:
+        around = (self.choices.object_temperature, self.choices.thermostat)
+        return {
+            "kind": "scene",
+            "shapes": self._grasp.shapes(),
+            "rows": list(self._names),
+            "choices": self.choices.told(),
+            "colours": [min(around) - _MARGIN, max(around) + _MARGIN],
+        }
+
+    def _frame(self) -> Message:
+        frame: Message = {
+            "kind": "frame",
+            "seen": self._seen,
+            "busy": self._wanted is not None,
+            "controls": self.controls.told(),
+        }
+        grasp = self._grasp
+        if grasp is None:
+            return frame
+        new = self._log.since(self._sent)
+        self._sent = self._log.steps
+        curves = {}
+        if new:
+            curves = {
+                "time": _short(new["time_s"][0]),
+                "rows": [
+                    [_short(new[name][row]) for name in _CURVES if name in new] for row in range(grasp.rows)
+                ],
+            }
+        reading = grasp.reading
+        return frame | {
+            "time": round(self.time, 6),
+            "curves": curves,
+            "rows": [
+                {
+                    "poses": grasp.poses(row),
+                    "celsius": grasp.celsius(row),
+                    "across": grasp.across(row),
+                    "state": grasp.state(row),
+                    "ending": grasp.endings[row],
+                    "opening": round(float(reading.opening[row]), 6),
+                    "height": round(float(reading.height[row]), 6),
+                    "cost": asdict(grasp.cost(row)),
+                }
+                for row in range(grasp.rows)
+            ],
+        }
+
+
+def _nothing(content: Mapping[str, Any]) -> None:
+    if content:
+        raise unknown_name("field", next(iter(content)), ())
+
+
+def _short(values: np.ndarray) -> list[float]:
+    """Seven digits, more than a screen shows."""
+    return [float(f"{value:.7g}") for value in values.tolist()]
+
+
+_ACTIONS: Mapping[str, Callable[[Session, Mapping[str, Any]], None]] = {
+    "choose": Session._choose,
+    "control": Session._control,
+    "again": Session._again,
+    "step": Session._one_step,
+    "csv": Session._csv,
+}

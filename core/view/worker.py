@@ -1,0 +1,94 @@
+"""A session in a process of its own: one visitor's load, memory and mishaps are not another's."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import signal
+import time
+from collections.abc import Sequence
+from multiprocessing.connection import Connection
+from typing import Any
+
+from thermograsp.errors import SimulationError
+from thermograsp.view.choices import Choices, Stock
+
+_PATIENCE = 0.005  # s between steps of a paced grasp while nobody asks
+_LEAVING = 2.0  # s that a process is given to end by itself
+_PRELOADED = ["thermograsp.view.session"]
+
+
+class Worker:
+    """A running process with a session. `exchange` blocks; call it from one thread at a time."""
+
+    def __init__(self, stock: Stock, choices: Choices) -> None:
+        context = _context()
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_serve, args=(theirs, stock, choices), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    @property
+    def pid(self) -> int | None:
+        """Of the process."""
+        return self._process.pid
+
+    def exchange(self, messages: Sequence[dict[str, Any]]) -> list[str]:
+        """Hands over the visitor's messages, lets the time since the last call pass, and returns what the page is to
+        hear, as JSON. Raises SimulationError where the process has ended."""
+        try:
+            self._pipe.send(list(messages))
+            return self._pipe.recv()
+        except (EOFError, OSError) as error:
+            self._process.join(_LEAVING)
+            code = self._process.exitcode
+            raise SimulationError(f"the simulation has ended unexpectedly (exit code {code})") from error
+
+    def stop(self) -> None:
+        """Ends the process; may be called while another thread waits in `exchange`."""
+        self._process.terminate()
+        self._process.join(_LEAVING)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        self._pipe.close()
+
+
+def warm_up() -> None:
+    """Loads what a session needs, once for all that follow, where the system can hand it on."""
+    context = _context()
+    process = context.Process(target=int, daemon=True)
+    process.start()
+    process.join()
+
+
+def _context() -> Any:
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(_PRELOADED)
+    return context
+
+
+def _serve(pipe: Connection, stock: Stock, choices: Choices) -> None:
+    """Answers until the other end is gone."""
+    from thermograsp.view.session import Session
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the server, which then closes the pipe
+    session = Session(stock, choices)
+    last = time.monotonic()
+    try:
+        while True:
+            asked = pipe.poll(_PATIENCE if session.paced else None)
+            messages = pipe.recv() if asked else ()
+            for message in messages:
+                session.handle(message)
+            now = time.monotonic()
+            session.advance(now - last)
+            last = now
+            if asked:
+                pipe.send([json.dumps(told, separators=(",", ":")) for told in session.messages()])
+    except (EOFError, OSError):
+        pass
+    finally:
+        session.close()
