@@ -1,9 +1,11 @@
 """MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments."""
 
 from .actions import action_of, action_space, command_of, sliding_action_of
+from .fit_fingertip import FingertipReport, fit_fingertip
 from .grasp import BatchState, GraspBatch
 from .grasp_env import GraspEnv, GraspVectorEnv
 from .grasp_task import GraspTask
+from .gripper import Gripper, load_gripper
 from .identify_env import IdentifyEnv, IdentifyVectorEnv
 from .identify_task import IdentifyTask
 from .library import ObjectPreset, library_object, objects
@@ -39,12 +41,14 @@ __all__ = [
     "BatchState",
     "ContactRecord",
     "Delay",
+    "FingertipReport",
     "Friction",
     "Gain",
     "GraspBatch",
     "GraspEnv",
     "GraspTask",
     "GraspVectorEnv",
+    "Gripper",
     "IdentifyEnv",
     "IdentifyTask",
     "IdentifyVectorEnv",
@@ -74,8 +78,10 @@ __all__ = [
     "action_space",
     "build_scene",
     "command_of",
+    "fit_fingertip",
     "force_window",
     "library_object",
+    "load_gripper",
     "load_mesh",
     "objects",
     "observation_space",

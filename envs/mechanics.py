@@ -19,6 +19,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .mechanics_kernel import ADDRESSES, LIFT_ACCELERATION, Motion, any_risen, set_points, summarise
 from .scene import MAX_LATERAL_RATE, MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
 from .solver_settings import SHIPPED, SolverSettings
@@ -88,6 +89,7 @@ class Mechanics:
 
     objects: what every environment holds at first; later ones may differ in all but name and number. Meshes that
     come later must be in `library`. threads: 0 means all CPUs. settings: of MuJoCo. lateral: the arm slides along y.
+    gripper: in place of the shipped one; it opens as wide and closes as hard as it can, whatever more is commanded.
     model: the compiled model of the first objects (MjModel).
 
     The gripper's low-level law is in the model: a servo on the opening whose set point moves at a bounded
@@ -103,17 +105,20 @@ class Mechanics:
         library: Sequence[ObjectSpec] = (),
         settings: SolverSettings = SHIPPED,
         lateral: bool = False,
+        gripper: GripperModel = SHIPPED_GRIPPER,
     ) -> None:
         if num_envs < 1 or threads < 0:
             raise InvalidValueError(f"num_envs {num_envs}, threads {threads}: give >= 1 and >= 0")
         self._library = tuple(library) + tuple(o for o in objects if o.mesh)
-        self._settings, self._sideways = settings, lateral
+        self._settings, self._sideways, self.gripper = settings, lateral, gripper
+        # Another gripper may do less than a command can say.
+        self._weaker = gripper.widest < MAX_OPENING or gripper.strongest < MAX_FORCE
         self.num_envs = num_envs
         self.objects: list[tuple[ObjectSpec, ...]] = [tuple(objects)] * num_envs
         self.names = tuple(o.name for o in objects)
         # At the origin, so that two batches with the same objects share every model field.
         at_origin = tuple(placeless(o) for o in objects)
-        self.model = build_scene(at_origin, library=self._library, settings=settings, lateral=lateral)
+        self.model = self._build(at_origin)
         self._batch = mujoco.batch.Batch(self.model, num_envs, threads)
         self._rows = self._batch.state  # every simulation's mjSTATE_INTEGRATION, live
         self._qpos, self._qvel, self._act, self._ctrl = (
@@ -142,8 +147,17 @@ class Mechanics:
         self.failure = [""] * num_envs
         self.reset()
 
+    def _build(self, objects: tuple[ObjectSpec, ...]) -> mujoco.MjModel:
+        return build_scene(
+            objects,
+            library=self._library,
+            settings=self._settings,
+            lateral=self._sideways,
+            gripper=self.gripper,
+        )
+
     def _index(self, model: mujoco.MjModel) -> None:
-        left, right = (model.joint(f"finger_{tip}") for tip in TIPS)
+        left, right = (model.joint(name) for name in self.gripper.joints)
         grip, lift = model.actuator("grip").id, model.actuator("lift").id
         # build_scene lays out free joints, pads and contact sensors in order, so that slices find them.
         free = [int(model.joint(f"{name}_free").qposadr[0]) for name in self.names]
@@ -223,8 +237,10 @@ class Mechanics:
         within("opening", np.array([opening]), 0.0, MAX_OPENING)
         within("height", np.array([height]), 0.0, MAX_HEIGHT)
         self._batch.reset(rows, stage=mujoco.mjtStage.mjSTAGE_NONE)
+        opening = min(opening, self.gripper.widest)
+        fingers, positions = self.gripper.rest(self.model, opening)
         for i in rows:
-            self._qpos[i, [self._at.left, self._at.right]] = opening / 2
+            self._qpos[i, fingers] = positions
             self._qpos[i, self._at.height] = height
             self._qpos[i, self._poses] = np.concatenate([item.pose for item in self.objects[i]])
             self._act[i, self._at.grip_act] = opening
@@ -367,7 +383,7 @@ class Mechanics:
         if key not in self._compiled:
             if len(self._compiled) >= _KEPT_MODELS:
                 self._compiled.pop(next(iter(self._compiled)))
-            model = build_scene(key, library=self._library, settings=self._settings, lateral=self._sideways)
+            model = self._build(key)
             pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)
             # bvh_aabb goes on with the meshes' boxes, which all environments share
             bodies = int(model.body_bvhnum.sum())
@@ -391,6 +407,11 @@ class Mechanics:
             self._batched("force_limit", force_limit),
             self._batched("lift_rate", lift_rate),
         )
+        if self._weaker:
+            for (name, low, high), values in zip(_RANGES, command, strict=True):
+                within(name, values, low, high)
+            widest, strongest = self.gripper.widest, self.gripper.strongest
+            command = np.minimum(command[0], widest), np.minimum(command[1], strongest), command[2]
         duration = substeps * self._settings.timestep
         if not set_points(self._layout, *command, duration, self._stiffness, _HIGHEST, *self._live):
             for (name, low, high), values in zip(_RANGES, command, strict=True):

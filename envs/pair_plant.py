@@ -66,6 +66,7 @@ class PairPlant:
             threads=config.threads,
             library=[thing.spec for thing in possible if thing.spec.mesh],
             settings=config.solver,
+            gripper=config.gripper_for(possible),
             lateral=True,
         )
         self.dt = config.substeps * config.solver.timestep

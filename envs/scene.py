@@ -1,6 +1,7 @@
 """The mechanical scene: a parallel gripper over a table and the objects it may touch.
 
-World frame: z up, the table's top at z = 0, the fingers move along x. The gripper itself is assets/gripper.xml.
+World frame: z up, the table's top at z = 0, the fingers move along x. The gripper itself is assets/gripper.xml
+or somebody's (gripper.py).
 """
 
 # mujoco ships no type stubs for its compiled names
@@ -11,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Literal
 
 import mujoco
@@ -19,8 +19,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, finite, non_negative, positive, unknown_name
 
-from ..assets import asset
 from ..thermal import Material, material
+from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .meshes import MeshShape, load_mesh
 from .reservoir import Reservoir
 from .solver_settings import SHIPPED, SolverSettings
@@ -233,6 +233,7 @@ def build_scene(
     library: Iterable[ObjectSpec] = (),
     settings: SolverSettings = SHIPPED,
     lateral: bool = False,
+    gripper: GripperModel = SHIPPED_GRIPPER,
 ) -> mujoco.MjModel:
     """Compile gripper, table and objects; the gripper is down at the first object's grasp height.
 
@@ -241,14 +242,14 @@ def build_scene(
     force-weighted centroid (world frame, m). Sensors are ordered by tip, then by object.
     library: mesh objects whose files are compiled in besides, so that models with other objects from it
     have the same layout. settings: MuJoCo's solver and the softness of contacts. lateral: the arm also slides along y,
-    by a servo like the lift's.
-    Raises InvalidValueError for no objects or a name given twice.
+    by a servo like the lift's. gripper: another one than the shipped one (`load_gripper`).
+    Raises InvalidValueError for no objects or a name given twice, or where the gripper cannot take the first one.
     """
     objects, library = tuple(objects), tuple(library)
     names = [o.name for o in objects]
     if not objects or len(set(names)) < len(names):
         raise InvalidValueError(f"objects {names}: give at least one and every name once")
-    spec = _gripper().copy()
+    spec = gripper.scene()
     settings.apply(spec.option)
     for shape in dict.fromkeys(o.geometry for o in (*library, *objects) if o.mesh):
         for name, (vertices, faces) in zip(_mesh_names(shape), shape.hulls, strict=True):
@@ -259,16 +260,10 @@ def build_scene(
     for tip in TIPS:
         for item in objects:
             _add_contact_sensor(spec, tip, item.name)
-    spec.body("wrist").pos[2] = objects[0].grasp_height
+    spec.body("wrist").pos[:] = gripper.wrist_at(objects[0])
     if lateral:
         _add_slide(spec)
     return spec.compile()
-
-
-@cache
-def _gripper() -> mujoco.MjSpec:
-    """The parsed gripper; compile copies only."""
-    return mujoco.MjSpec.from_file(str(asset("gripper.xml")))
 
 
 def _add_slide(spec: mujoco.MjSpec) -> None:

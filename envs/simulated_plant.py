@@ -54,6 +54,7 @@ class SimulatedPlant:
             threads=config.threads,
             library=[thing.spec for thing in possible if thing.spec.mesh],
             settings=config.solver,
+            gripper=config.gripper_for(possible),
         )
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD

@@ -21,6 +21,7 @@ from ..thermal import (
     material,
     materials,
 )
+from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .mechanics import SUBSTEPS
 from .randomization import Cause, Delay, Size, checked, draw
 from .scene import ObjectSpec, scaled
@@ -40,8 +41,9 @@ class SimulationConfig:
     thermostat: one of finite power (its setpoint is sensor_temperature, its ambient the room where that is given), None
     for an ideal one. placement: m and degree; the object lies within +- these of its own place, drawn per episode.
     randomize: what else differs from episode to episode, records of randomization.py. fingertips: how many carry a
-    sensor (1: the left one). solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must
-    be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
+    sensor (1: the left one). gripper: an MJCF file, an MjSpec or what load_gripper makes of them, None for the shipped
+    one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of
+    10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -57,6 +59,7 @@ class SimulationConfig:
     placement: tuple[float, float] = (0.002, 2.0)
     randomize: Sequence[Cause] = ()
     fingertips: Literal[1, 2] = 2
+    gripper: Any = None
     solver: SolverSettings = SHIPPED
     substeps: int = SUBSTEPS
     threads: int = 1
@@ -198,6 +201,18 @@ class SimulationConfig:
             for shape in self.shapes
             for size in sizes
         ]
+
+    def gripper_for(self, things: Sequence[Thing]) -> GripperModel:
+        """The gripper, read. Raises GripperError for what is none, and InvalidValueError for a thing that it cannot
+        take."""
+        if self.gripper is None:
+            return SHIPPED_GRIPPER
+        from .gripper import load_gripper  # nothing that another gripper needs is loaded without one
+
+        gripper = load_gripper(self.gripper)
+        for thing in things:
+            gripper.wrist_at(thing.spec)
+        return gripper
 
     @property
     def most_delay(self) -> int:

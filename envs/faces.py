@@ -1,0 +1,129 @@
+"""Flat faces of rigid bodies: triangles of meshes, sides of boxes, ends of cylinders."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+_FACING = math.cos(math.radians(40))  # of a face's normal and the direction that it is to face
+_FLATNESS = (
+    (math.radians(2), 1e-4),
+    (math.radians(10), 6e-4),
+)  # rad and m off its face's plane: flat, and nearly
+_ENOUGH = 1e-4  # m2 of a face, for which no less flat one is looked for
+_SEEDS = 24  # planes tried per geom, those of the most area
+_RIM = 32  # corners that stand for a circle
+_NEAR = 0.5  # share of the best score from which a face that lies further out is preferred
+
+_BOX = np.array(  # corners of its six sides, outwards by the right hand
+    [
+        [[1, -1, -1], [1, 1, -1], [1, 1, 1], [1, -1, 1]],
+        [[-1, 1, -1], [-1, -1, -1], [-1, -1, 1], [-1, 1, 1]],
+        [[1, 1, -1], [-1, 1, -1], [-1, 1, 1], [1, 1, 1]],
+        [[-1, -1, -1], [1, -1, -1], [1, -1, 1], [-1, -1, 1]],
+        [[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
+        [[-1, 1, -1], [1, 1, -1], [1, -1, -1], [-1, -1, -1]],
+    ],
+    float,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A flat face. centre (3,) m and normal (3,), outwards, in its body's frame. area: m2. corners (n, 3) m: of its
+    triangles. geom: the name of its geom, or its number where it has none."""
+
+    centre: np.ndarray
+    normal: np.ndarray
+    area: float
+    corners: np.ndarray
+    geom: str
+
+    def extent(self, direction: np.ndarray) -> float:
+        """m from the centre to the furthest corner that way (a unit vector)."""
+        return float(((self.corners - self.centre) @ direction).max())
+
+
+def triangles(model: mujoco.MjModel, geom: int) -> np.ndarray:
+    """(n, 3, 3) m: a geom's triangles in its body's frame, none for what is round everywhere."""
+    kind, size = model.geom_type[geom], model.geom_size[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_MESH:
+        mesh = model.geom_dataid[geom]
+        first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+        vertices = model.mesh_vert[first : first + count].astype(float)
+        first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+        found = vertices[model.mesh_face[first : first + count]]
+    elif kind == mujoco.mjtGeom.mjGEOM_BOX:
+        sides = _BOX * size
+        found = np.concatenate([sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]])
+    elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        angles = np.linspace(0.0, 2 * np.pi, _RIM, endpoint=False)
+        rim = np.stack([size[0] * np.cos(angles), size[0] * np.sin(angles), np.full(_RIM, size[1])], axis=1)
+        top = np.stack([np.tile([0.0, 0.0, size[1]], (_RIM, 1)), rim, np.roll(rim, -1, axis=0)], axis=1)
+        found = np.concatenate([top, top[:, [0, 2, 1]] * (1, 1, -1)])
+    else:
+        return np.zeros((0, 3, 3))
+    return found @ rotation(model.geom_quat[geom]).T + model.geom_pos[geom]
+
+
+def rotation(quat: np.ndarray) -> np.ndarray:
+    """(3, 3) of a quaternion (w, x, y, z)."""
+    matrix = np.zeros(9)
+    mujoco.mju_quat2Mat(matrix, np.asarray(quat, float))
+    return matrix.reshape(3, 3)
+
+
+def largest_face(parts: Iterable[tuple[str, np.ndarray]], direction: np.ndarray) -> Face | None:
+    """The largest flat face that looks along `direction` (unit vector), among parts (geom's name, triangles (n, 3, 3)
+    m); where others of at least half its size lie further out, the outermost. None where there is none."""
+    parts, found = list(parts), []
+    for angle, uneven in _FLATNESS:
+        faces = (_face_of(name, shape, direction, math.cos(angle), uneven) for name, shape in parts)
+        found = [face for face in faces if face is not None]
+        if max((face.area for face in found), default=0.0) >= _ENOUGH:
+            break
+    if not found:
+        return None
+    scores = [face.area * float(face.normal @ direction) for face in found]
+    fit = [face for face, score in zip(found, scores, strict=True) if score >= _NEAR * max(scores)]
+    return max(fit, key=lambda face: (round(float(face.centre @ direction), 5), face.area))
+
+
+def _face_of(name: str, shape: np.ndarray, direction: np.ndarray, flat: float, uneven: float) -> Face | None:
+    """One geom's largest flat face that way. flat: the least cosine of its normals. uneven: m."""
+    cross = np.cross(shape[:, 1] - shape[:, 0], shape[:, 2] - shape[:, 0])
+    twice = np.linalg.norm(cross, axis=1)
+    facing = (cross @ direction > _FACING * twice) & (twice > 0)
+    if not facing.any():
+        return None
+    shape, twice = shape[facing], twice[facing]
+    normals, areas, middles = cross[facing] / twice[:, None], twice / 2, shape.mean(axis=1)
+    offsets = np.einsum("ij,ij->i", normals, middles)
+    bins = np.concatenate([np.round(normals * 8), np.round(offsets / 1e-3)[:, None]], axis=1)
+    _, which = np.unique(bins, axis=0, return_inverse=True)
+    which = which.ravel()
+    totals = np.bincount(which, weights=areas)
+    best, most = None, 0.0
+    for seed in np.argsort(-totals)[:_SEEDS]:
+        own = which == seed
+        normal = (areas[own, None] * normals[own]).sum(axis=0)
+        normal /= np.linalg.norm(normal)
+        offset = np.average(middles[own] @ normal, weights=areas[own])
+        own = (normals @ normal > flat) & (np.abs(middles @ normal - offset) < uneven)
+        score = areas[own].sum() * (normal @ direction)
+        if score > most:
+            best, most = own, score
+    if best is None:
+        return None
+    weights, corners = areas[best], shape[best].reshape(-1, 3)
+    normal = (weights[:, None] * normals[best]).sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    centre = np.average(middles[best], axis=0, weights=weights)
+    return Face(centre, normal, float(weights.sum()), corners, name)

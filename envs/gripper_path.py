@@ -1,0 +1,309 @@
+"""How two fingers close: the postures from wide open to shut, with the fingertips' faces opposed where that can be.
+
+u: the closing axis, from the left fingertip to the right one. A posture is found by bounded least squares over the
+actuators that move the two fingers; where they have one freedom only, there is nothing to choose and the fingertips are
+mounted so that they are parallel at one opening.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from thermograsp.errors import GripperError
+
+from .fit_fingertip import THICKNESS
+from .gripper_fingers import Finger, Hand, moved_pad
+from .scene import MAX_OPENING, PAD_SIDE
+
+PARALLEL_AT = 0.04  # m, the opening at which the fingertips are parallel
+MOST_WEDGE = np.deg2rad(50)  # between a fingertip and the face that it is mounted on
+_GRID = 0.0025  # m, between postures
+_REACHED = 3e-4  # m, of an opening that counts as reached
+_EXACT, _CLOSE, _ALIGNED = 1e-4, 5e-3, 0.1  # m, m, rad: by which the terms of a posture are weighed, and
+_EVEN, _STEADY = 5e-3, 2e-2  # m, how far the middle goes along u, and otherwise
+_LOOSE = 0.05  # weight of staying near the last posture, per range
+_STARTS = (0.5, 0.25, 0.75)  # of the ranges, where a search begins
+_LEAST_TRAVEL = 0.01  # m
+_FAR = 0.04  # m of approach, beyond which more is no better
+
+
+@dataclass(frozen=True, slots=True)
+class Tip:
+    """A fingertip's place on a body: origin (3,) m on the finger's face and axes (3, 3), columns x out of the pad, y,
+    z towards the wrist, in the body's frame."""
+
+    body: int
+    origin: np.ndarray
+    axes: np.ndarray
+
+    @property
+    def front(self) -> np.ndarray:
+        """(3,) m, the middle of the pad's face."""
+        return self.origin + THICKNESS * self.axes[:, 0]
+
+
+@dataclass(frozen=True, slots=True)
+class Closing:
+    """Postures by opening. tips: left and right. axes (3, 3): columns u, across, up, in the world of the gripper's own
+    file; centre (3,) m: between the fingertips at opening `parallel`, m. openings (n,) m, rising. qpos (n, nq).
+    controls (n, k): the coordinates. centres (n, 3) m: between the fingertips, from `centre` along `axes`. tilt (n,)
+    rad: the larger of the two fingertips' from facing along u. wedges: rad, of the fingertips on their faces."""
+
+    fingers: tuple[Finger, Finger]
+    tips: tuple[Tip, Tip]
+    axes: np.ndarray
+    centre: np.ndarray
+    parallel: float
+    openings: np.ndarray
+    qpos: np.ndarray = field(repr=False)
+    controls: np.ndarray = field(repr=False)
+    centres: np.ndarray = field(repr=False)
+    tilt: np.ndarray = field(repr=False)
+    wedges: tuple[float, float]
+    offset: float
+
+
+@dataclass(frozen=True, slots=True)
+class Opposition:
+    """Two fingers in the posture in which they oppose each other best near an opening. cost: less is better. offset: m
+    by which they miss each other."""
+
+    fingers: tuple[Finger, Finger]
+    values: np.ndarray
+    axes: np.ndarray
+    centre: np.ndarray
+    opening: float
+    wedges: tuple[float, float]
+    offset: float
+    cost: float
+
+
+def oppose(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Opposition:
+    """The best posture of two fingers about `opening` (m), their pads at the ends of their faces."""
+    fingers = tuple(_at_the_end(finger) for finger in fingers)  # pyright: ignore[reportAssignmentType]
+    found = _opposed(hand, fingers, opening)
+    for _ in range(2):  # let the pads meet, as far as their faces go
+        fingers = _facing(hand, found)
+        found = _opposed(hand, fingers, opening)
+    return found
+
+
+def _at_the_end(finger: Finger) -> Finger:
+    over = finger.face.extent(finger.along) - PAD_SIDE / 2
+    return moved_pad(finger, over * finger.along) if over > 0 else finger
+
+
+def _opposed(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Opposition:
+    mechanism, chosen = hand.mechanism, _moved_by(fingers)
+    low, high = mechanism.low[chosen], mechanism.high[chosen]
+
+    def places(part: np.ndarray) -> tuple[np.ndarray, ...]:
+        values = mechanism.middle.copy()
+        values[chosen] = part
+        mechanism.pose(values)
+        found = []
+        for finger in fingers:
+            origin, axes = mechanism.place(finger.body)
+            normal = axes @ finger.face.normal
+            found += [origin + axes @ finger.face.centre + THICKNESS * normal, normal]
+        return tuple(found)
+
+    def residuals(part: np.ndarray) -> np.ndarray:
+        a, n, b, m = places(part)
+        way = b - a
+        return np.concatenate(
+            [
+                ((way @ n - opening) / 3e-3, (-(way @ m) - opening) / 3e-3),
+                (way - (way @ n) * n) / 1e-2,
+                (way - (way @ m) * m) / 1e-2,
+                (n + m) / 0.2,
+                0.1 * ((part - low) / (high - low) - 0.5),
+            ]
+        )
+
+    tried = [_least(residuals, low + share * (high - low), low, high) for share in _STARTS]
+    part = min(tried, key=lambda one: one[1])[0]
+    values = mechanism.middle.copy()
+    values[chosen] = part
+    a, n, b, m = places(part)
+    u = n - m
+    u /= max(float(np.linalg.norm(u)), 1e-9)
+    up = _up(hand, fingers, u, (a + b) / 2)
+    axes = np.stack([u, np.cross(up, u), up], axis=1)
+    way = b - a
+    wedges = tuple(float(np.arccos(np.clip(c, -1, 1))) for c in (n @ u, -(m @ u)))
+    offset = float(np.linalg.norm(way - (way @ u) * u))
+    small = sum(4e-4 / min(f.face.area, 4e-4) - 1 for f in fingers)
+    approach = sum(min(f.approach, _FAR) for f in fingers)
+    missed = abs(float(way @ u) - opening)
+    cost = sum(wedges) / 0.5 + offset / 0.01 + missed / 0.01 + 0.1 * small - approach / 0.03
+    return Opposition(fingers, values, axes, (a + b) / 2, float(way @ u), wedges, offset, cost)  # pyright: ignore
+
+
+def _up(hand: Hand, fingers: tuple[Finger, Finger], u: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """From the fingertips to the palm, across u, in the posture that is shown."""
+    mechanism = hand.mechanism
+    up = -sum(mechanism.place(finger.body)[1] @ finger.along for finger in fingers)
+    up = up - (up @ u) * u
+    if np.linalg.norm(up) < 0.3:
+        origin, axes = mechanism.place(hand.palm)
+        up = origin + axes @ hand.middle(hand.palm) - centre
+        up = up - (up @ u) * u
+    return up / max(float(np.linalg.norm(up)), 1e-9)
+
+
+def _facing(hand: Hand, found: Opposition) -> tuple[Finger, Finger]:
+    """The fingers with pads moved on their faces towards each other's."""
+    mechanism, fingers = hand.mechanism, list(found.fingers)
+    mechanism.pose(found.values)
+    for number, share in ((0, 0.5), (1, 1.0), (0, 1.0)):
+        spots = []
+        for finger in fingers:
+            origin, axes = mechanism.place(finger.body)
+            spots.append(origin + axes @ finger.face.centre)
+        way = spots[1 - number] - spots[number]
+        u = found.axes[:, 0]
+        shift = share * (way - (way @ u) * u)
+        _, axes = mechanism.place(fingers[number].body)
+        fingers[number] = moved_pad(fingers[number], axes.T @ shift)
+    return fingers[0], fingers[1]
+
+
+def close(hand: Hand, start: Opposition) -> Closing:
+    """The way of two fingers from as wide as they open, 85 mm at most, to as narrow. Raises GripperError for fingers
+    that do not oppose or hardly move."""
+    mechanism = hand.mechanism
+    names = " and ".join(repr(finger.name) for finger in start.fingers)
+    if max(start.wedges) > MOST_WEDGE:
+        raise GripperError(
+            f"the faces of {names} do not oppose each other: they are {np.degrees(max(start.wedges)):.0f} degrees off "
+            "at best; name other fingertips, or their pads"
+        )
+    mechanism.pose(start.values)
+    tips = []
+    for finger, sign in zip(start.fingers, (1, -1), strict=True):
+        _, body = mechanism.place(finger.body)
+        x, z = sign * start.axes[:, 0], start.axes[:, 2]
+        tips.append(Tip(finger.body, finger.face.centre, body.T @ np.stack([x, np.cross(z, x), z], axis=1)))
+    walk = _Walk(hand, (tips[0], tips[1]), start.axes, _moved_by(start.fingers))
+    first = walk.measure(start.values)
+    wider = walk.go(
+        start.values, first, np.arange(first + _GRID, MAX_OPENING + _GRID, _GRID).clip(max=MAX_OPENING)
+    )
+    narrower = walk.go(start.values, first, np.arange(first - _GRID, -_GRID, -_GRID).clip(min=0.0))
+    postures = [*reversed(narrower), start.values, *wider]
+    openings = np.array([walk.measure(values) for values in postures])
+    keep = np.concatenate([[True], np.diff(openings) > 1e-5])
+    postures, openings = [p for p, k in zip(postures, keep, strict=True) if k], openings[keep]
+    if len(openings) < 3 or openings[-1] - openings[0] < _LEAST_TRAVEL:
+        raise GripperError(
+            f"{names} move by {1e3 * np.ptp(openings):.1f} mm between {1e3 * openings[0]:.1f} and "
+            f"{1e3 * openings[-1]:.1f} mm: name the closing actuators or other fingertips"
+        )
+    told = [walk.tell(values) for values in postures]
+    base = walk.tell(start.values)[0]
+    return Closing(
+        start.fingers,
+        (tips[0], tips[1]),
+        start.axes,
+        base,
+        first,
+        openings,
+        np.array([mechanism.pose(values) for values in postures]),
+        np.array(postures),
+        np.array([(centre - base) @ start.axes for centre, _ in told]),
+        np.array([tilt for _, tilt in told]),
+        start.wedges,
+        start.offset,
+    )
+
+
+class _Walk:
+    """Two fingertips along their way. chosen: the coordinates that move them."""
+
+    def __init__(self, hand: Hand, tips: tuple[Tip, Tip], axes: np.ndarray, chosen: list[int]) -> None:
+        self.mechanism, self.tips, self.axes, self.chosen = hand.mechanism, tips, axes, chosen
+
+    def spots(self) -> tuple[np.ndarray, ...]:
+        found = []
+        for tip in self.tips:
+            origin, axes = self.mechanism.place(tip.body)
+            found += [origin + axes @ tip.front, axes @ tip.axes[:, 0]]
+        return tuple(found)
+
+    def measure(self, values: np.ndarray) -> float:
+        """m, the opening of a posture."""
+        self.mechanism.pose(values)
+        a, _, b, _ = self.spots()
+        return float((b - a) @ self.axes[:, 0])
+
+    def tell(self, values: np.ndarray) -> tuple[np.ndarray, float]:
+        """The middle between the fingertips (3,) m, and the larger tilt in rad."""
+        self.mechanism.pose(values)
+        a, n, b, m = self.spots()
+        u = self.axes[:, 0]
+        return (a + b) / 2, float(np.arccos(np.clip(min(n @ u, -(m @ u)), -1, 1)))
+
+    def go(self, start: np.ndarray, first: float, openings: np.ndarray) -> list[np.ndarray]:
+        """Postures of these openings, one after the other, as far as they are reached, and the last one short of it."""
+        middle, found, last, at = self.tell(start)[0], [], start, first
+        for opening in openings:
+            values = self._posture(opening, last, middle)
+            reached = self.measure(values)
+            if abs(reached - at) < _REACHED / 3:
+                break
+            found.append(values)
+            last, at = values, reached
+            if abs(reached - opening) > _REACHED:
+                break
+        return found
+
+    def _posture(self, opening: float, last: np.ndarray, middle: np.ndarray) -> np.ndarray:
+        mechanism, chosen = self.mechanism, self.chosen
+        low, high = mechanism.low[chosen], mechanism.high[chosen]
+        u = self.axes[:, 0]
+
+        def residuals(part: np.ndarray) -> np.ndarray:
+            values = last.copy()
+            values[chosen] = part
+            mechanism.pose(values)
+            a, n, b, m = self.spots()
+            way = b - a
+            return np.concatenate(
+                [
+                    ((way @ u - opening) / _EXACT, ((a + b) / 2 - middle) @ u / _EVEN),
+                    ((a + b) / 2 - middle) @ self.axes[:, 1:] / _STEADY,
+                    way @ self.axes[:, 1:] / _CLOSE,
+                    (n - u) / _ALIGNED,
+                    (m + u) / _ALIGNED,
+                    _LOOSE * (part - last[chosen]) / (high - low),
+                ]
+            )
+
+        values = last.copy()
+        values[chosen] = _least(residuals, last[chosen], low, high)[0]
+        return values
+
+
+def _moved_by(fingers: tuple[Finger, Finger]) -> list[int]:
+    return sorted({number for finger in fingers for number in finger.moves})
+
+
+def _least(
+    residuals: Callable[[np.ndarray], np.ndarray], start: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Bounded least squares in units of the ranges; the place, and half the squares there."""
+    from scipy.optimize import least_squares  # only another gripper than the shipped one needs it
+
+    span = high - low
+    inside = np.clip((start - low) / span, 1e-6, 1 - 1e-6)
+    found = least_squares(
+        lambda x: residuals(low + x * span), inside, bounds=(0.0, 1.0), xtol=1e-10, max_nfev=60
+    )
+    return low + found.x * span, float(found.cost)
