@@ -40,7 +40,7 @@ test-hardware-long: build/.test
 
 # The firmware in a simulator, a part of `make test`; says which tools are missing where they are (docs/firmware.md).
 test-firmware: build/.test
-	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware.py
+	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
 
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)
