@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-rl test-hardware-long test-firmware bench lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-rl test-hardware-long test-firmware test-release bench docs lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -42,8 +42,17 @@ test-hardware-long: build/.test
 test-firmware: build/.test
 	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
 
+# What is published: a wheel and an sdist, installed where nothing else is, and the first page of docs/ done literally.
+test-release: build/.release
+	THERMOGRASP_RELEASE=1 $(PY) -m pytest $(TEST_FLAGS) tests/release
+
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)
+
+# The site in build/site; a warning is an error.
+docs: build/.dev
+	$(PY) -m sphinx -E -W --keep-going -q -b html docs build/site
+	THERMOGRASP_SITE=build/site $(PY) -m pytest $(TEST_FLAGS) tests/docs/test_site.py
 
 lint: build/.dev
 	$(PY) -m ruff check .
@@ -61,8 +70,9 @@ build/.backends: EXTRA := [test,torch,jax]
 build/.backends: PINS := torch==2.13.0
 build/.rl: EXTRA := [test,rl]
 build/.rl: PINS := torch==2.13.0
+build/.release: EXTRA := [release,test]
 build/.dev: EXTRA := [dev]
-build/.run build/.test build/.ray build/.backends build/.rl build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+build/.run build/.test build/.ray build/.backends build/.rl build/.release build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
 	$(INSTALL) --no-build-isolation -e '.$(EXTRA)' $(PINS)
 	@touch $@
 

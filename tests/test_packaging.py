@@ -1,6 +1,7 @@
 """setup.cfg lists packages and data files by hand: nothing is forgotten."""
 
 import configparser
+import re
 from pathlib import Path
 
 import pytest
@@ -58,5 +59,28 @@ def test_the_package_is_marked_as_typed() -> None:
     assert (Path(thermograsp.__file__).parent / "py.typed").is_file()
 
 
-def test_the_changelog_names_this_version() -> None:
-    assert f"## {thermograsp.__version__}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+def test_the_version_is_semantic_and_the_changelog_s_topmost() -> None:
+    assert re.fullmatch(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)", thermograsp.__version__)
+    titles = re.findall(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert titles[0] == thermograsp.__version__
+    numbers = [tuple(map(int, title.split("."))) for title in titles]
+    assert numbers == sorted(set(numbers), reverse=True)
+
+
+def test_the_citation_is_complete_and_of_this_version(setup: configparser.ConfigParser) -> None:
+    """What the Citation File Format 1.2.0 asks for, and what is said elsewhere too."""
+    yaml = pytest.importorskip("yaml", reason="needs PyYAML: the extra test")
+    about = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert {"cff-version", "message", "title", "authors"} <= set(about)
+    known = {"abstract", "type", "version", "license", "keywords", "references"}
+    assert set(about) - known == {"cff-version", "message", "title", "authors"}
+    assert about["cff-version"] == "1.2.0" and about["type"] == "software"
+    assert about["version"] == thermograsp.__version__
+    assert about["license"] == setup["metadata"]["license_expression"]
+    assert len(set(about["keywords"])) == len(about["keywords"])
+    for one in [about, *about["references"]]:
+        assert one["title"] and one["authors"]
+        for author in one["authors"]:
+            assert set(author) in ({"name"}, {"family-names", "given-names"})
+    for reference in about["references"]:
+        assert {"type", "title", "authors"} <= set(reference)

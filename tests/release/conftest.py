@@ -1,0 +1,43 @@
+"""What is published, built once for all tests of this folder: a wheel, an sdist, and the sdist's own wheel."""
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from .tree import clean_environment, clone, run
+
+
+@dataclass(frozen=True, slots=True)
+class Release:
+    """wheel, sdist: of the tree. rebuilt: the wheel of the sdist."""
+
+    wheel: Path
+    sdist: Path
+    rebuilt: Path
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    if not os.environ.get("THERMOGRASP_RELEASE"):
+        here = Path(__file__).parent
+        for item in items:
+            if here in item.path.parents:
+                item.add_marker(pytest.mark.skip(reason="builds and installs for minutes: make test-release"))
+
+
+@pytest.fixture(scope="session")
+def release(tmp_path_factory: pytest.TempPathFactory) -> Release:
+    tree = clone(tmp_path_factory.mktemp("tree"))
+    published, direct = tmp_path_factory.mktemp("published"), tmp_path_factory.mktemp("direct")
+    build = [sys.executable, "-m", "build", "--no-isolation"]
+    environment = clean_environment(tmp_path_factory.mktemp("home"))
+    run([*build, "--outdir", published], tree, environment)  # an sdist, and a wheel of that
+    run([*build, "--wheel", "--outdir", direct], tree, environment)
+    ((wheel,), (rebuilt,), (sdist,)) = (
+        direct.glob("*.whl"),
+        published.glob("*.whl"),
+        published.glob("*.tar.gz"),
+    )
+    return Release(wheel, sdist, rebuilt)
