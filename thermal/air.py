@@ -12,9 +12,8 @@ from .system import ContactSystem
 
 def free_area(geometry: Geometry) -> float:
     """m2 of the object that no element covers."""
-    width, depth, thickness = geometry.object_size
     touched = geometry.stack.face_area if geometry.mode == "O" else geometry.area
-    return 2 * (width * depth + width * thickness + depth * thickness) - geometry.fingertips * touched
+    return geometry.surface - geometry.fingertips * touched
 
 
 def with_air(system: ContactSystem, air: float) -> tuple[ContactSystem, np.ndarray]:
@@ -25,9 +24,7 @@ def with_air(system: ContactSystem, air: float) -> tuple[ContactSystem, np.ndarr
     passive stays so; in T mode the mean is a state of its own and only its rate grows.
     """
     geometry = system.geometry
-    width, depth, thickness = geometry.object_size
-    free = free_area(geometry)
-    capacity = geometry.material.volumetric_heat_capacity * width * depth * thickness
+    free, capacity = free_area(geometry), geometry.whole_capacity
     mean = system.object_heat / capacity
     if air == 0:
         return system, np.zeros_like(mean)

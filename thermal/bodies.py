@@ -56,6 +56,18 @@ class Geometry:
         return width * depth * self.plate.thickness * self.plate.heat_capacity
 
     @property
+    def whole_capacity(self) -> float:
+        """J/K of the whole object."""
+        width, depth, thickness = self.object_size
+        return self.material.volumetric_heat_capacity * width * depth * thickness
+
+    @property
+    def surface(self) -> float:
+        """m2 of the whole object's surface."""
+        width, depth, thickness = self.object_size
+        return 2 * (width * depth + width * thickness + depth * thickness)
+
+    @property
     def patch(self) -> Patch:
         """The contact's."""
         return self._centred(self.area)

@@ -13,13 +13,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import block_diag, eigh
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.files import cached_arrays
 
-from .mesh_grid import MeshGrid, MeshGridding, grid_edges, grid_frame, mesh_grid
+from .mesh_grid import MeshGrid, MeshGridding, grid_axes, grid_frame, mesh_grid
 from .mesh_patch import PatchOnGrid, patch_on_grid, place_patch
+from .mesh_patterns import PatchPatterns, uniform_pattern
 from .mesh_solid import Solid, SurfacePatch, surface_patches
 from .mesh_solve import conduct, solve_shifted
 from .network import ThermalNetwork
@@ -34,12 +35,14 @@ def body_network(
     body: Solid,
     patches: Sequence[SurfacePatch],
     *,
+    patterns: PatchPatterns | None = None,
     points: Sequence[Sequence[float]] = (),
     gridding: MeshGridding | None = None,
     cache: bool = True,
 ) -> ThermalNetwork:
     """The object's network with one port per patch, in the patches' order: heat flow W into the object, spread evenly
-    over the patch; mean temperature K of the patch above the object's first.
+    over the patch; mean temperature K of the patch above the object's first. With patterns each patch has one port a
+    pattern, the uniform one first.
 
     A patch is a square of SurfacePatch.area round its centre, projected on the surface along its normal; where the
     surface ends within it, heat flows through what is there. Patches whose normals are along the axes of the first
@@ -59,15 +62,16 @@ def body_network(
     if not np.isfinite(where).all():
         raise InvalidValueError("points must be finite, m in the object's frame")
     gridding = gridding or MeshGridding()
+    patterns = patterns or uniform_pattern()
 
     def build() -> dict[str, np.ndarray]:
         frame = grid_frame(body, patches)
-        grid, placed = _gridded(body, patches, frame, gridding)
+        grid, placed = _gridded(body, patches, frame, gridding, patterns)
         rates, ports, basis = _reduced(grid, placed)
         cells = _nearest(grid, where @ frame.T)
         return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), "points": basis[cells]}
 
-    arrays = cached_arrays(_key(body, patches, where, gridding), build, enabled=cache)
+    arrays = cached_arrays(_key(body, patches, patterns, where, gridding), build, enabled=cache)
     rates, capacity = arrays["rates"], float(arrays["capacity"])
     still = np.eye(len(rates))[0]
     outputs = {"heat": np.sqrt(capacity) * still, "mean": still / np.sqrt(capacity)}
@@ -77,11 +81,15 @@ def body_network(
 
 
 def _gridded(
-    body: Solid, patches: tuple[SurfacePatch, ...], frame: np.ndarray, gridding: MeshGridding
+    body: Solid,
+    patches: tuple[SurfacePatch, ...],
+    frame: np.ndarray,
+    gridding: MeshGridding,
+    patterns: PatchPatterns,
 ) -> tuple[MeshGrid, list[PatchOnGrid]]:
     triangles = np.concatenate([part.triangles for part in body.parts]) @ frame.T
     placed = [place_patch(triangles, patch, frame) for patch in patches]
-    edges = grid_edges(
+    axes = grid_axes(
         triangles,
         np.array([p.centre for p in placed]),
         np.array([p.normal for p in placed]),
@@ -89,14 +97,14 @@ def _gridded(
         np.array([p.aligned for p in placed]),
         gridding,
     )
-    grid = mesh_grid(body, frame, edges)
-    return grid, [patch_on_grid(grid, triangles, patch) for patch in placed]
+    grid = mesh_grid(body, frame, axes)
+    return grid, [patch_on_grid(grid, triangles, patch, patterns) for patch in placed]
 
 
 def _reduced(grid: MeshGrid, placed: list[PatchOnGrid]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Rates (K,), ports (K, M) and the states' fields (N, K), the mean first."""
-    drive = np.stack([patch.shares for patch in placed], axis=1)
-    direct = np.diag([patch.skin for patch in placed])
+    drive = np.concatenate([patch.shares for patch in placed], axis=1)
+    direct = np.asarray(block_diag(*(patch.skin for patch in placed)))
     total = grid.capacity.sum()
     fields = np.zeros((len(grid.capacity), 0))
     gram, pencil, scales = np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0)
@@ -138,7 +146,11 @@ def _nearest(grid: MeshGrid, points: np.ndarray) -> np.ndarray:
 
 
 def _key(
-    body: Solid, patches: tuple[SurfacePatch, ...], points: np.ndarray, gridding: MeshGridding
+    body: Solid,
+    patches: tuple[SurfacePatch, ...],
+    patterns: PatchPatterns,
+    points: np.ndarray,
+    gridding: MeshGridding,
 ) -> dict[str, object]:
     """What heat conduction knows of a body: names of materials play no part."""
     return {
@@ -148,6 +160,7 @@ def _key(
             for p in body.parts
         ],
         "patches": patches,
+        "patterns": (patterns.edges, patterns.sums),
         "points": points,
         "gridding": gridding,
     }

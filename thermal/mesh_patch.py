@@ -11,12 +11,12 @@ from thermograsp.errors import MeshError
 
 from .mesh_cut import cell_range, clip, slab
 from .mesh_grid import MeshGrid, snapped
+from .mesh_patterns import PatchPatterns
 from .mesh_solid import SurfacePatch
 
 _FACING = 0.2  # cosine of the angle to the patch's normal, below which a face is not touched
 _ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
-_REACH = 1.0  # half widths above and below the centre within which the surface is touched
-_CORNERS = 16
+_CORNERS = 24  # of a triangle clipped by twelve planes: 15
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +33,12 @@ class PlacedPatch:
 
 @dataclass(frozen=True, slots=True)
 class PatchOnGrid:
-    """shares: (N,) of the patch's heat flow that enters each cell, in all 1; also how each cell's temperature counts in
-    its mean. skin: K/W from the cells' nodes to the surface. area: m2 of surface touched, seen along the normal."""
+    """shares: (N, M) how each pattern's heat flow is spread over the cells, the uniform one's in all 1; also how the
+    cells' temperatures count in the pattern's. skin: (M, M) K/W from the cells' nodes to the surface. area: m2 of
+    surface touched, seen along the normal."""
 
     shares: np.ndarray
-    skin: float
+    skin: np.ndarray
     area: float
 
 
@@ -51,54 +52,67 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
     aligned = bool(np.abs(normal[axis]) > _ALONG)
     if aligned:
         normal = np.sign(normal[axis]) * np.eye(3)[axis]
-    sides = np.cross(normal, np.eye(3)[(axis + 1) % 3])
-    sides /= np.linalg.norm(sides)
-    sides = np.stack((sides, np.cross(normal, sides)))
-    for middle in (np.zeros(2), *(0.5 * half * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]]))):
+    first = np.cross(normal, np.eye(3)[(axis + 1) % 3])
+    first /= np.linalg.norm(first)
+    sides = np.stack((first, np.cross(normal, first)))
+    # where the very middle is a hole, the surface beside it
+    for middle in half * np.array([[0, 0], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]]):
         depth = _crossings(triangles, centre + middle @ sides, normal)
         if len(depth):
             nearest = depth[np.argmin(np.abs(depth))]
             return PlacedPatch(centre + nearest * normal, normal, half, sides, aligned)
-    at = " ".join(f"{1e3 * x:.4g}" for x in patch.centre)
+    at = ", ".join(f"{1e3 * x:.4g}" for x in patch.centre)
     raise MeshError(
-        f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.direction)} does not meet the "
+        f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.normal)} does not meet the "
         "surface: give a point on it and the outward normal there"
     )
 
 
-def patch_on_grid(grid: MeshGrid, triangles: np.ndarray, patch: PlacedPatch) -> PatchOnGrid:
-    """The patch's cells. triangles: (F, 3, 3) m in the grid's frame."""
+def patch_on_grid(
+    grid: MeshGrid, triangles: np.ndarray, patch: PlacedPatch, patterns: PatchPatterns
+) -> PatchOnGrid:
+    """The patch's cells. triangles: (F, 3, 3) m in the grid's frame. Surface within half a side above and below the
+    centre is touched, where it faces the patch's way."""
+    axes = np.stack((*patch.sides, patch.normal))
+    half = patch.half_width
     areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     facing = areas @ patch.normal > _FACING * np.linalg.norm(areas, axis=1)
-    axes = np.stack((*patch.sides, patch.normal))
     local = (triangles[facing] - patch.centre) @ axes.T
-    reach = np.array([1.0, 1.0, _REACH]) * patch.half_width
-    near = np.all((local.min(axis=1) <= reach) & (local.max(axis=1) >= -reach), axis=1)
-    pieces = _within(np.ascontiguousarray(local[near]), reach)
-    back = [snapped(piece @ axes + patch.centre, grid.edges) for piece in pieces]
-    counts = np.array([len(piece) for piece in back], dtype=np.int64)
-    corners = np.concatenate(back) if back else np.zeros((0, 3))
-    size = grid.index.shape
-    area, depth = np.zeros(size), np.zeros(size)
-    _spread(corners, counts, patch.normal, *grid.edges, area, depth)
-    solid = grid.index >= 0
-    cells = grid.index[solid]
-    held, offset = np.zeros(len(cells)), np.zeros(len(cells))
-    held[cells], offset[cells] = area[solid], depth[solid]
-    total = held.sum()
+    near = np.all((local.min(axis=1) <= half) & (local.max(axis=1) >= -half), axis=1)
+    corners, counts = _within(np.ascontiguousarray(local[near]), half)
+    corners = np.ascontiguousarray(snapped(corners @ axes + patch.centre, grid.edges))
+    room = 4096
+    while True:
+        cells, seen, middles, spans = _pieces(corners, counts, axes, *grid.edges, room)
+        if len(cells) < room:
+            break
+        room *= 4
+    cells = grid.index.ravel()[cells]
+    there = cells >= 0
+    cells, seen, middles, spans = cells[there], seen[there], middles[there], spans[there]
+    total = float(seen.sum())
     if not total > 0:
         raise MeshError(
-            f"the patch of {2e3 * patch.half_width:.3g} mm meets no surface at its place: it may lie on an edge"
+            f"the patch {2e3 * half:.3g} mm wide meets no surface at its place: it may lie beyond an edge"
         )
-    # mean over the touched area of the distance from node to wall over conductivity, for evenly spread heat
-    conductivity = grid.conductivity @ patch.normal**2
-    shares = held / total
-    above = offset - held * (grid.nodes @ patch.normal)
-    return PatchOnGrid(shares, max(float(np.sum(above / conductivity)) / total**2, 0.0), float(total))
+    weights = seen / total
+    spans = (spans - (patch.sides @ patch.centre)[:, None]) / half
+    values = patterns.means(spans[:, :, 0], spans[:, :, 1])
+    # Only the uniform pattern lets heat in, also where the surface ends within the patch.
+    values[:, 1:] -= weights @ values[:, 1:]
+    shares = np.zeros((len(grid.capacity), patterns.count))
+    np.add.at(shares, cells, weights[:, None] * values)
+    # from a cell's node to its wall, along the normal
+    across = grid.conductivity[cells] @ patch.normal**2
+    distance = (middles - grid.nodes[cells]) @ patch.normal
+    skin = values.T @ ((weights * distance / across / total)[:, None] * values)
+    levels, turn = np.linalg.eigh(skin)
+    return PatchOnGrid(shares, (turn * np.maximum(levels, 0.0)) @ turn.T, total)
 
 
 def _crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
-    """Distances m along a line at which it leaves through faces that look its way (Moller & Trumbore 1997)."""
+    """Distances m along a line at which it leaves through faces that look its way (Moller & Trumbore, J. Graph. Tools
+    2, 1997)."""
     a = triangles[:, 0]
     first, second = triangles[:, 1] - a, triangles[:, 2] - a
     normal = np.cross(first, second)
@@ -114,63 +128,100 @@ def _crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray)
     return np.einsum("fi,fi->f", second, q)[inside] / scale[inside]
 
 
-def _within(local: np.ndarray, reach: np.ndarray) -> list[np.ndarray]:
-    """The triangles' parts within the box of half sides `reach`, as polygons."""
-    polygons = []
+@njit(cache=True)
+def _within(local, half):
+    """Corners (n, 3) and their counts of the triangles' parts within the cube of that half side."""
+    corners, counts = np.zeros((_CORNERS * len(local), 3)), np.zeros(len(local), np.int64)
     first, second = np.zeros((_CORNERS, 3)), np.zeros((_CORNERS, 3))
-    for triangle in local:
-        first[:3] = triangle
+    end = 0
+    for f in range(len(local)):
+        first[:3] = local[f]
         count = 3
         for axis in range(3):
-            count = clip(first, count, axis, -reach[axis], True, second)
-            count = clip(second, count, axis, reach[axis], False, first)
-        if count > 2:
-            polygons.append(first[:count].copy())
-    return polygons
+            count = clip(first, count, axis, -half, True, second)
+            count = clip(second, count, axis, half, False, first)
+        counts[f] = count
+        corners[end : end + count] = first[:count]
+        end += count
+    return corners[:end], counts
 
 
 @njit(cache=True)
-def _spread(corners, counts, normal, x, y, z, area, depth):
-    """Adds the polygons' areas seen along the normal, and their moments along it, to the cells that they lie in."""
-    in_x, in_y, in_z, room = (np.zeros((24, 3)), np.zeros((24, 3)), np.zeros((24, 3)), np.zeros((24, 3)))
-    start = 0
+def _pieces(corners, counts, axes, x, y, z, room):
+    """The polygons' pieces in the cells, at most `room`: cells (n,) in the order of memory, areas (n,) seen along the
+    last of the axes, middles (n, 3), and spans (n, 2, 2) from where to where along the first two."""
+    normal = axes[2]
+    in_x, in_y, in_z, spare = (
+        np.zeros((_CORNERS, 3)),
+        np.zeros((_CORNERS, 3)),
+        np.zeros((_CORNERS, 3)),
+        np.zeros((_CORNERS, 3)),
+    )
+    cells, seen = np.zeros(room, np.int64), np.zeros(room)
+    middles, spans = np.zeros((room, 3)), np.zeros((room, 2, 2))
+    found, start = 0, 0
     for polygon in range(len(counts)):
         count = counts[polygon]
         shape = corners[start : start + count]
         start += count
+        if count < 3:
+            continue
         i0, i1 = cell_range(shape, count, 0, x, normal[0])
         for i in range(i0, i1 + 1):
-            n = slab(shape, count, 0, x, i, i0, i1, room, in_x)
+            n = slab(shape, count, 0, x, i, i0, i1, spare, in_x)
             if n < 3:
                 continue
             j0, j1 = cell_range(in_x, n, 1, y, normal[1])
             for j in range(j0, j1 + 1):
-                m = slab(in_x, n, 1, y, j, j0, j1, room, in_y)
+                m = slab(in_x, n, 1, y, j, j0, j1, spare, in_y)
                 if m < 3:
                     continue
                 k0, k1 = cell_range(in_y, m, 2, z, normal[2])
                 for k in range(k0, k1 + 1):
-                    c = slab(in_y, m, 2, z, k, k0, k1, room, in_z)
-                    for t in range(1, c - 1):
-                        seen = _seen(in_z, t, normal)
-                        area[i, j, k] += seen
-                        for d in range(3):
-                            middle = (in_z[0, d] + in_z[t, d] + in_z[t + 1, d]) / 3
-                            depth[i, j, k] += seen * middle * normal[d]
+                    c = slab(in_y, m, 2, z, k, k0, k1, spare, in_z)
+                    area = _seen(in_z, c, normal, middles[found])
+                    if area > 1e-20 and found < room - 1:
+                        cells[found] = (i * (len(y) - 1) + j) * (len(z) - 1) + k
+                        seen[found] = area
+                        _span(in_z, c, axes, spans[found])
+                        found += 1
+    if found == room - 1:
+        found = room
+    return cells[:found], seen[:found], middles[:found], spans[:found]
 
 
 @njit(cache=True)
-def _seen(polygon, t, normal):
-    """Area m2 along the normal of the triangle between corners 0, t and t + 1."""
+def _span(polygon, count, axes, span):
+    """From where to where (2, 2) a polygon reaches along the first two axes."""
+    for side in range(2):
+        span[side, 0], span[side, 1] = np.inf, -np.inf
+        for i in range(count):
+            at = 0.0
+            for c in range(3):
+                at += polygon[i, c] * axes[side, c]
+            span[side, 0], span[side, 1] = min(span[side, 0], at), max(span[side, 1], at)
+
+
+@njit(cache=True)
+def _seen(polygon, count, normal, middle):
+    """Area m2 of a polygon seen along a normal; its middle is filled in."""
     total = 0.0
-    for c in range(3):
-        d, e = (c + 1) % 3, (c + 2) % 3
-        total += (
-            0.5
-            * normal[c]
-            * (
-                (polygon[t, d] - polygon[0, d]) * (polygon[t + 1, e] - polygon[0, e])
-                - (polygon[t, e] - polygon[0, e]) * (polygon[t + 1, d] - polygon[0, d])
+    middle[:] = 0.0
+    for t in range(1, count - 1):
+        part = 0.0
+        for c in range(3):
+            d, e = (c + 1) % 3, (c + 2) % 3
+            part += (
+                0.5
+                * normal[c]
+                * (
+                    (polygon[t, d] - polygon[0, d]) * (polygon[t + 1, e] - polygon[0, e])
+                    - (polygon[t, e] - polygon[0, e]) * (polygon[t + 1, d] - polygon[0, d])
+                )
             )
-        )
+        total += part
+        for c in range(3):
+            middle[c] += part * (polygon[0, c] + polygon[t, c] + polygon[t + 1, c]) / 3
+    if total > 0:
+        middle /= total
     return total

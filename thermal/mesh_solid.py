@@ -84,6 +84,11 @@ class Solid:
             raise InvalidValueError("an object needs at least one part")
 
     @property
+    def surface(self) -> float:
+        """m2 of all the parts' surfaces, walls of cavities included; where parts meet, both count."""
+        return float(sum(np.linalg.norm(part.area_vectors, axis=1).sum() for part in self.parts))
+
+    @property
     def bounds(self) -> np.ndarray:
         """(2, 3) m, the lowest and the highest corner."""
         used = np.concatenate([part.triangles.reshape(-1, 3) for part in self.parts])

@@ -22,8 +22,8 @@ from thermograsp.errors import InvalidValueError
 from .coupling import POLES
 from .network import ThermalNetwork
 
-_MOMENTS = np.geomspace(1 / 150, 150, 25)  # 1/s
-_CONDUCTANCES = (1e2, 1e3, 1e4, 1e5, 1e7)  # W/(m2 K)
+MOMENTS = np.geomspace(1 / 150, 150, 25)  # 1/s
+CONDUCTANCES = (1e2, 1e3, 1e4, 1e5, 1e7)  # W/(m2 K)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,12 +78,12 @@ class StateBasis:
 
 def state_bases(networks: dict[str, ThermalNetwork], area: float) -> dict[str, StateBasis]:
     """A basis per body of a contact (names as in bodies.py). area: m2 of the contact."""
-    z = {name: network.impedance(_MOMENTS) for name, network in networks.items()}
+    z = {name: network.impedance(MOMENTS) for name, network in networks.items()}
     modes = z["even"].shape[1]
     uniform = np.eye(modes)[0]
     sensor = z.get("sensor", 0.0)
     flows: dict[str, list[np.ndarray]] = {name: [] for name in networks}
-    for conductance in _CONDUCTANCES:
+    for conductance in CONDUCTANCES:
         resistance = np.eye(modes) / (conductance * area)
         all_touch = np.linalg.solve(sensor + z["even"] + resistance, uniform)
         flows["even"].append(all_touch)
@@ -94,7 +94,7 @@ def state_bases(networks: dict[str, ThermalNetwork], area: float) -> dict[str, S
             flows["odd"].append(alone)
         if "sensor" in z:
             flows["sensor"] += [all_touch, alone]
-    bases = {name: _basis(network, np.array(flows[name])) for name, network in networks.items()}
+    bases = {name: excited_states(network, np.array(flows[name])) for name, network in networks.items()}
     return bases
 
 
@@ -115,11 +115,11 @@ def reduce(
     return reduced
 
 
-def _basis(network: ThermalNetwork, flows: np.ndarray) -> StateBasis:
+def excited_states(network: ThermalNetwork, flows: np.ndarray) -> StateBasis:
     """flows: (cases, S, P)."""
     still = network.rates <= 1e-12 * network.rates.max()
     moving = ~still
-    answer = np.sqrt(_MOMENTS[:, None]) / (_MOMENTS[:, None] + network.rates[moving])  # (S, K)
+    answer = np.sqrt(MOMENTS[:, None]) / (MOMENTS[:, None] + network.rates[moving])  # (S, K)
     excited = answer[None] * np.einsum("kp,csp->csk", network.ports[moving], flows)
     snapshots = [excited.reshape(-1, excited.shape[-1]) / np.sqrt(len(flows))]
     if "drop" in network.outputs:

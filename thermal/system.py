@@ -121,8 +121,22 @@ def assemble(geometry: Geometry, networks: dict[str, ThermalNetwork]) -> Contact
             mean=mean,
         )
 
-    sensor = networks["sensor"]
-    k = sensor.order
+    return with_sensors(
+        geometry, networks["sensor"], rates, touched, heat, (even.order, None if odd is None else odd.order)
+    )
+
+
+def with_sensors(
+    geometry: Geometry,
+    sensor: ThermalNetwork,
+    rates: np.ndarray,
+    touched: np.ndarray,
+    heat: np.ndarray,
+    orders: tuple[int, int | None],
+) -> ContactSystem:
+    """An object between fingertips of mode T. sensor: the network of one fingertip. rates: (K,) 1/s of the object and
+    touched: (F, K, P) its ports at each fingertip. heat: (K,) J. orders: of its even and odd part (None: one body)."""
+    (fingertips, count, modes), k = touched.shape, sensor.order
     total = count + fingertips * k
     own = [slice(count + f * k, count + (f + 1) * k) for f in range(fingertips)]
     ports = np.zeros((total, fingertips * modes))
@@ -141,7 +155,7 @@ def assemble(geometry: Geometry, networks: dict[str, ThermalNetwork]) -> Contact
 
     return ContactSystem(
         geometry,
-        Orders(modes, k, even.order, None if odd is None else odd.order),
+        Orders(modes, k, *orders),
         np.concatenate((rates, np.tile(sensor.rates, fingertips))),
         ports,
         drop=on_sensors(sensor.outputs["drop"]),
@@ -149,7 +163,7 @@ def assemble(geometry: Geometry, networks: dict[str, ThermalNetwork]) -> Contact
         object_heat=on_object(heat),
         sensor_surface=on_sensors(sensor.ports[:, 0]),
         object_surface=on_object(touched[:, :, 0]),
-        mean=mean,
+        mean=int(np.argmin(rates)),
     )
 
 
