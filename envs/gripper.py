@@ -20,12 +20,13 @@ from .gripper_file import Source, compiled
 from .gripper_fingers import Hand, Pad, named_pair, pairs
 from .gripper_mechanism import Mechanism
 from .gripper_mount import DRIVE, joint_name, mounted, palm_height
-from .gripper_path import PARALLEL_AT, Closing, close, oppose
+from .gripper_path import PARALLEL_AT, Closing, close, oppose, promising
 from .scene import CLEARANCE, ObjectSpec
 
 _DEGREE = 4  # of a joint's motion as a polynomial of the opening, the most that MuJoCo couples joints by
 _FOLLOWED = 5e-4  # m, by which the opening may be off for that
 _TRIED = 3  # pairs of fingers, the most promising ones
+_WORTH = 0.02  # m of travel that weigh as much as a unit of cost
 _SLACK = 0.004  # m beside the object on either side, at which a lone jaw's gripper is centred
 _FLAT = 0.2  # rad, by which a pad gives way (fit_fingertip)
 _MOST_FORCE = 40.0  # N
@@ -206,22 +207,24 @@ def load_gripper(
     mechanism = Mechanism(model, actuators)
     hand = Hand(mechanism)
     chosen = [named_pair(hand, fingertips, pads)] if fingertips is not None else pairs(hand, pads)
-    options = sorted((oppose(hand, pair, parallel_at) for pair in chosen), key=lambda one: one.cost)
-    for number, option in enumerate(options[:_TRIED]):
+    best = promising(hand, chosen, parallel_at)[:_TRIED]
+    options = sorted((oppose(hand, pair, parallel_at) for pair in best), key=lambda one: one.cost)
+    ways, refused = [], []
+    for option in options:
         try:
-            way = close(hand, option)
-            break
-        except GripperError:
-            if number + 1 == min(len(options), _TRIED):
-                raise
-    way, polynomials = _smooth(mechanism, way)  # pyright: ignore[reportPossiblyUnboundVariable]
+            way, polynomials = _smooth(hand, close(hand, option))
+            ways.append((option.cost - float(np.ptp(way.openings)) / _WORTH, way, polynomials))
+        except GripperError as error:
+            refused.append(error)
+    if not ways:
+        raise refused[0]
+    _, way, polynomials = min(ways, key=lambda one: one[0])
     return _told(name, hand, way, polynomials)
 
 
-def _smooth(mechanism: Mechanism, way: Closing) -> tuple[Closing, dict[int, np.ndarray]]:
+def _smooth(hand: Hand, way: Closing) -> tuple[Closing, dict[int, np.ndarray]]:
     """Each driven joint as a polynomial of half the opening, over as much of the way as these are exact for."""
-    model = mechanism.model
-    joints = sorted({int(model.dof_jntid[dof]) for dof in np.flatnonzero(mechanism.moved)})
+    mechanism, model, joints = hand.mechanism, hand.model, hand.joints()
     first, last = 0, len(way.openings)
     while last - first >= _DEGREE + 1:
         half, postures = way.openings[first:last] / 2, way.qpos[first:last]

@@ -64,6 +64,11 @@ class Hand:
             and not any(other != link and self.below(link, other) for other in self.moving)
         ]
 
+        # A wrist stays where it is.
+        wrist = list(mechanism.moves(self.palm))
+        mechanism.middle[wrist] = mechanism.first[wrist]
+        self._wrist = frozenset(wrist)
+
     def below(self, ancestor: int, body: int) -> bool:
         """Whether the body is the ancestor or hangs on it."""
         while body != ancestor and body:
@@ -105,6 +110,13 @@ class Hand:
             return at
         return int(self.model.body_parentid[self._weld[at]])
 
+    def joints(self) -> list[int]:
+        """The driven joints of the fingers."""
+        model, driven = self.model, np.flatnonzero(self.mechanism.moved)
+        found = {int(model.dof_jntid[dof]) for dof in driven}
+        on_palm = (j for j in found if model.jnt_bodyid[j] != self.palm)
+        return sorted(j for j in on_palm if self.below(self.palm, int(model.jnt_bodyid[j])))
+
     def parts(self, first: int) -> list[tuple[str, np.ndarray]]:
         """Geoms of a link with their triangles (n, 3, 3) m in its first body's frame."""
         if first not in self._parts:
@@ -112,9 +124,9 @@ class Hand:
         return self._parts[first]
 
     def moves(self, body: int) -> tuple[int, ...]:
-        """Which coordinates move the body."""
+        """Which coordinates move the body on the palm."""
         if body not in self._moves:
-            self._moves[body] = tuple(self.mechanism.moves(body))
+            self._moves[body] = tuple(n for n in self.mechanism.moves(body) if n not in self._wrist)
         return self._moves[body]
 
     def middle(self, first: int) -> np.ndarray:

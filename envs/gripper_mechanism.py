@@ -58,7 +58,7 @@ class Mechanism:
         self.middle = np.array([(c.low + c.high) / 2 for c in self.coordinates])
         self.low = np.array([c.low for c in self.coordinates])
         self.high = np.array([c.high for c in self.coordinates])
-        self._first = np.array([self.data.actuator_length[c.number] for c in self.coordinates])
+        self.first = np.array([self.data.actuator_length[c.number] for c in self.coordinates])
         driven = np.zeros(model.nv, bool)
         for coordinate in self.coordinates:
             driven |= coordinate.slope != 0
@@ -150,7 +150,7 @@ class Mechanism:
         qpos = self.reference.copy()
         step = sum(
             (value - first) * c.slope
-            for value, first, c in zip(values, self._first, self.coordinates, strict=True)
+            for value, first, c in zip(values, self.first, self.coordinates, strict=True)
         )
         qpos[self._dof_qpos[self.moved]] += np.asarray(step)[self.moved]
         self.data.qpos[:] = qpos

@@ -10,7 +10,7 @@ mounted so that they are parallel at one opening.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,13 +23,14 @@ from .scene import MAX_OPENING, PAD_SIDE
 
 PARALLEL_AT = 0.04  # m, the opening at which the fingertips are parallel
 MOST_WEDGE = np.deg2rad(50)  # between a fingertip and the face that it is mounted on
-_GRID = 0.0025  # m, between postures
+_GRID = 0.004  # m, between postures
 _REACHED = 3e-4  # m, of an opening that counts as reached
 _EXACT, _CLOSE, _ALIGNED = 1e-4, 5e-3, 0.1  # m, m, rad: by which the terms of a posture are weighed, and
 _EVEN, _STEADY = 5e-3, 2e-2  # m, how far the middle goes along u, and otherwise
-_LOOSE = 0.05  # weight of staying near the last posture, per range
+_LOOSE = 0.2  # weight of staying near the last posture, per range
 _STARTS = (0.5, 0.25, 0.75)  # of the ranges, where a search begins
 _LEAST_TRAVEL = 0.01  # m
+_SMALL_TURN = 0.05  # rad, as ranges meant in radians look when they are read as degrees
 _FAR = 0.04  # m of approach, beyond which more is no better
 
 
@@ -84,14 +85,31 @@ class Opposition:
     cost: float
 
 
+def promising(
+    hand: Hand, pairs: Sequence[tuple[Finger, Finger]], opening: float
+) -> list[tuple[Finger, Finger]]:
+    """The pairs that oppose each other best at a first look, the best first."""
+    if len(pairs) == 1:
+        return list(pairs)
+    return sorted(pairs, key=lambda pair: _opposed(hand, pair, opening, _shares(hand, pair)[:1]).cost)
+
+
 def oppose(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Opposition:
     """The best posture of two fingers about `opening` (m), their pads at the ends of their faces."""
-    fingers = tuple(_at_the_end(finger) for finger in fingers)  # pyright: ignore[reportAssignmentType]
-    found = _opposed(hand, fingers, opening)
+    left, right = fingers
+    fingers = _at_the_end(left), _at_the_end(right)
+    found = _opposed(hand, fingers, opening, _shares(hand, fingers))
     for _ in range(2):  # let the pads meet, as far as their faces go
         fingers = _facing(hand, found)
-        found = _opposed(hand, fingers, opening)
+        found = _opposed(hand, fingers, opening, [found.values[_moved_by(fingers)]])
     return found
+
+
+def _shares(hand: Hand, fingers: tuple[Finger, Finger]) -> list[np.ndarray]:
+    """Postures where a search begins."""
+    chosen = _moved_by(fingers)
+    low, high = hand.mechanism.low[chosen], hand.mechanism.high[chosen]
+    return [low + share * (high - low) for share in _STARTS]
 
 
 def _at_the_end(finger: Finger) -> Finger:
@@ -99,7 +117,9 @@ def _at_the_end(finger: Finger) -> Finger:
     return moved_pad(finger, over * finger.along) if over > 0 else finger
 
 
-def _opposed(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Opposition:
+def _opposed(
+    hand: Hand, fingers: tuple[Finger, Finger], opening: float, starts: Sequence[np.ndarray]
+) -> Opposition:
     mechanism, chosen = hand.mechanism, _moved_by(fingers)
     low, high = mechanism.low[chosen], mechanism.high[chosen]
 
@@ -127,7 +147,7 @@ def _opposed(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Oppo
             ]
         )
 
-    tried = [_least(residuals, low + share * (high - low), low, high) for share in _STARTS]
+    tried = [_least(residuals, start, low, high) for start in starts]
     part = min(tried, key=lambda one: one[1])[0]
     values = mechanism.middle.copy()
     values[chosen] = part
@@ -142,7 +162,7 @@ def _opposed(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Oppo
     small = sum(4e-4 / min(f.face.area, 4e-4) - 1 for f in fingers)
     approach = sum(min(f.approach, _FAR) for f in fingers)
     missed = abs(float(way @ u) - opening)
-    cost = sum(wedges) / 0.5 + offset / 0.01 + missed / 0.01 + 0.1 * small - approach / 0.03
+    cost = sum(wedges) / 0.5 + offset / 0.01 + missed / 0.01 + 0.05 * small - approach / 0.03
     return Opposition(fingers, values, axes, (a + b) / 2, float(way @ u), wedges, offset, cost)  # pyright: ignore
 
 
@@ -204,8 +224,9 @@ def close(hand: Hand, start: Opposition) -> Closing:
     if len(openings) < 3 or openings[-1] - openings[0] < _LEAST_TRAVEL:
         raise GripperError(
             f"{names} move by {1e3 * np.ptp(openings):.1f} mm between {1e3 * openings[0]:.1f} and "
-            f"{1e3 * openings[-1]:.1f} mm: name the closing actuators or other fingertips"
+            f"{1e3 * openings[-1]:.1f} mm: name the closing actuators or other fingertips{_hint(hand)}"
         )
+    postures = _along(hand, start.fingers, postures)
     told = [walk.tell(values) for values in postures]
     base = walk.tell(start.values)[0]
     return Closing(
@@ -222,6 +243,58 @@ def close(hand: Hand, start: Opposition) -> Closing:
         start.wedges,
         start.offset,
     )
+
+
+def _hint(hand: Hand) -> str:
+    """What else may be wrong where fingers hardly move."""
+    turns = [c.high - c.low for c in hand.mechanism.coordinates if c.unit == "rad"]
+    if turns and max(turns) < _SMALL_TURN:
+        return (
+            f"; its joints turn by {max(turns):.3g} rad at most: is its file in radians, without saying so?"
+        )
+    return ""
+
+
+def _along(hand: Hand, fingers: tuple[Finger, Finger], postures: list[np.ndarray]) -> list[np.ndarray]:
+    """The postures with the other digits doing what the nearer of the two fingers does, each actuator the same share of
+    its range, counted from the tips."""
+    mechanism = hand.mechanism
+    mechanism.show(mechanism.reference)
+    roots = {tip: mechanism.data.xpos[hand.digit(tip)].copy() for tip in hand.tips}
+    taken = {number for finger in fingers for number in finger.moves}
+    table = np.array(postures)
+    span = mechanism.high - mechanism.low
+    for tip in hand.tips:
+        own = [number for number in hand.moves(tip) if number not in taken]
+        if hand.digit(tip) in [finger.digit for finger in fingers] or not own:
+            continue
+        leader = min(
+            (finger for finger in fingers if finger.body in roots),
+            key=lambda finger: float(np.linalg.norm(roots[finger.body] - roots[tip])),
+        )
+        for mine, theirs in zip(_from_the_tip(hand, own), _from_the_tip(hand, leader.moves), strict=False):
+            share = (table[:, theirs] - mechanism.low[theirs]) / span[theirs]
+            if _mirrored(mechanism.low[mine], mechanism.high[mine]) != _mirrored(
+                mechanism.low[theirs], mechanism.high[theirs]
+            ):
+                share = 1 - share
+            table[:, mine] = mechanism.low[mine] + share * span[mine]
+    return list(table)
+
+
+def _from_the_tip(hand: Hand, numbers: Sequence[int]) -> list[int]:
+    """Coordinates by the depth of the joints that they move, the furthest first."""
+
+    def depth(number: int) -> int:
+        moved = np.flatnonzero(hand.mechanism.coordinates[number].slope)
+        return max(int(hand.model.dof_bodyid[dof]) for dof in moved)
+
+    return sorted(numbers, key=depth, reverse=True)
+
+
+def _mirrored(low: float, high: float) -> bool:
+    """Whether a range goes the negative way."""
+    return abs(low) > abs(high)
 
 
 class _Walk:
@@ -304,6 +377,6 @@ def _least(
     span = high - low
     inside = np.clip((start - low) / span, 1e-6, 1 - 1e-6)
     found = least_squares(
-        lambda x: residuals(low + x * span), inside, bounds=(0.0, 1.0), xtol=1e-10, max_nfev=60
+        lambda x: residuals(low + x * span), inside, bounds=(0.0, 1.0), xtol=1e-9, max_nfev=40
     )
     return low + found.x * span, float(found.cost)

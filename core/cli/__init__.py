@@ -28,6 +28,7 @@ COMMANDS = (
     "rollout",
     "dataset",
     "device",
+    "gripper",
     "bench",
     "view",
 )
