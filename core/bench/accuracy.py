@@ -91,16 +91,16 @@ def methods(quick: bool) -> list[Method]:
     found += [Method("auto", f"{tolerance:g} K", _auto(tolerance, quick)) for tolerance in TOLERANCES]
     found += [Method("network", "/".join(map(str, orders)), _network(*orders)) for orders in _ORDERS]
     for resolution in (1,) if quick else (1, 2, 4):
-        found.append(Method("axisymmetric", f"x{resolution}", _graded(grid_axisymmetric, resolution), 2))
+        found.append(Method("axisymmetric", f"x{resolution}", _graded(grid_axisymmetric, resolution), 1))
     for resolution in () if quick else (1, 2):
         found.append(Method("grid_3d", f"x{resolution}", _graded(grid_3d, resolution), 1))
     for cell in (1e-3, 0.5e-3) if quick else (1e-3, 0.5e-3, 0.25e-3, 0.125e-3):
-        plain = f"{1e3 * cell:g} mm"
+        plain, coarse = f"{1e3 * cell:g} mm", cell > 0.2e-3
         found += [
-            Method("backward Euler", plain, _theta(cell, 1.0), 3),
-            Method("Crank-Nicolson", plain, _theta(cell, 0.5), 3),
+            Method("backward Euler", plain, _theta(cell, 1.0), 3 if coarse else 1),
+            Method("Crank-Nicolson", plain, _theta(cell, 0.5), 3 if coarse else 1),
         ]
-        if cell > 0.2e-3:
+        if coarse:
             found.append(Method("FTCS", plain, _ftcs(cell), 3))
             found += [Method(name, plain, _ivp(cell, name), 2) for name in ("BDF", "Radau", "LSODA")]
     found += [

@@ -32,7 +32,7 @@ class Variant:
     family: str
     label: str
     settings: SolverSettings
-    repeats: int = 3
+    repeats: int = 2
 
     @property
     def name(self) -> str:
@@ -71,7 +71,7 @@ def placement_count(quick: bool) -> int:
 def variants(quick: bool) -> list[Variant]:
     """What is compared: what is shipped, one knob turned at a time, MuJoCo's defaults, and settings known to fail."""
 
-    def turned(family: str, label: str, repeats: int = 3, **knobs: Any) -> Variant:
+    def turned(family: str, label: str, repeats: int = 2, **knobs: Any) -> Variant:
         return Variant(family, label, replace(SHIPPED, **knobs), repeats)
 
     def implicitfast(label: str, **knobs: Any) -> Variant:

@@ -38,7 +38,7 @@ def measure(
         ten, missing = run.compare(rng, SETUP, materials, WINDOWS, tests, examples, doing)
         setups = {"unknown": SETUP, "steady": run.STEADY}
         elevens = {
-            name: run.compare(rng, one, others, run.ELEVEN_WINDOWS, tests, examples, doing, net=False)[0]
+            name: run.compare(rng, one, others, run.ELEVEN_WINDOWS, tests // 2, examples, doing, net=False)[0]
             for name, one in setups.items()
         }
         coverage = run.cover(rng, objects, doing)
