@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from .identify_result import Identification, Verdict
     from .identify_setup import TouchSetup
     from .mesh_network import body_network
+    from .mesh_press import press_body
     from .mesh_solid import Solid, SolidPart, SurfacePatch, solid
     from .sensor_fit import Estimate, SensorFit, fit_sensor
 
@@ -79,6 +80,7 @@ _LATER = {
     "body_network": "mesh_network",
     "fit_sensor": "sensor_fit",
     "identify": "identifier",
+    "press_body": "mesh_press",
     "solid": "mesh_solid",
 }
 """Name -> module."""
@@ -161,6 +163,7 @@ __all__ = [
     "network_for",
     "network_of",
     "press",
+    "press_body",
     "saturated",
     "sensor",
     "sensors",

@@ -13,7 +13,7 @@ from .layers import SensorStack
 from .layers import sensor as sensor_preset
 from .materials import Material
 from .materials import material as named_material
-from .problem import Conductance, Mode, PressProblem, Shape
+from .problem import Conductance, Mode, PressCurves, PressProblem, Shape
 from .thermostat import Thermostat
 
 _MOST_SAMPLES = 10_000_000
@@ -87,14 +87,24 @@ def press(
         opposite=opposite,
         thermostat=thermostat,
     )
+    positive("tolerance (K)", tolerance)
+    t = sample_times(seconds, dt)
+    used, curves = solve_rung(str(rung), problem, t, tolerance, cache)
+    return as_felt(problem, t, curves, used)
+
+
+def sample_times(seconds: float, dt: float) -> np.ndarray:
+    """0, dt, 2 dt, ... up to seconds. Raises InvalidValueError for values that make no sense."""
     positive("dt (s)", dt)
     positive("seconds", seconds)
-    positive("tolerance (K)", tolerance)
     count = int(np.floor(seconds / dt * (1 + 1e-12))) + 1
     if count > _MOST_SAMPLES:
         raise InvalidValueError(f"{seconds:g} s at dt {dt:g} s are {count} samples: give a larger dt")
-    t = np.arange(count) * dt
-    used, curves = solve_rung(str(rung), problem, t, tolerance, cache)
+    return np.arange(count) * dt
+
+
+def as_felt(problem: PressProblem, t: np.ndarray, curves: PressCurves, rung: Rung) -> Press:
+    """A rung's curves with the sensor's voltage."""
     return Press(
         t=t,
         temperature_drop=curves.temperature_drop,
@@ -103,5 +113,5 @@ def press(
         sensor_surface=curves.sensor_surface,
         object_surface=curves.object_surface,
         stored_heat=curves.stored_heat,
-        rung=used,
+        rung=rung,
     )
