@@ -143,7 +143,7 @@ def _hulls(mesh, pieces: int) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
             ]
         except ImportError as error:
             raise MissingDependencyError(
-                "convex pieces need vhacdx: pip install vhacdx, or use pieces=1"
+                "convex pieces need vhacdx: pip install 'thermograsp[mesh]', or use pieces=1"
             ) from error
     return tuple((np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int32)) for p in parts)
 

@@ -36,7 +36,7 @@ def element_press(problem: PressProblem, cells: int) -> SemiDiscrete:
         from skfem import Basis, ElementHex2, MeshHex
     except ImportError as error:
         raise MissingDependencyError(
-            "finite elements need scikit-fem: pip install thermograsp[bench]"
+            "finite elements need scikit-fem: pip install 'thermograsp[bench]'"
         ) from error
     assert not callable(problem.conductance) and problem.air == 0
     half, size = problem.stack.width / 2, problem.object_size

@@ -26,7 +26,7 @@ def produce(
     A task whose worker or node dies is run again elsewhere. address: of a cluster, None for a Ray of our own on this
     machine, which ends with us. Raises MissingDependencyError, InvalidValueError where no cluster answers, and
     SimulationError for a shard whose workers died again and again."""
-    ray = _ray()
+    ray = ray_package()
     with _connected(ray, workers, address):
         task = ray.remote(num_cpus=1)(shard_bytes)
         waiting = iter(shards)
@@ -47,7 +47,8 @@ def produce(
             yield shard, content
 
 
-def _ray() -> Any:
+def ray_package() -> Any:
+    """The ray module. Raises MissingDependencyError."""
     try:
         import ray  # pyright: ignore[reportMissingImports]
     except ImportError as error:

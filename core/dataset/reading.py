@@ -180,7 +180,9 @@ def _tensors(library: Library) -> Any:
     try:
         import torch  # pyright: ignore[reportMissingImports]
     except ImportError as error:
-        raise MissingDependencyError("torch tensors need PyTorch: pip install torch") from error
+        raise MissingDependencyError(
+            "torch tensors need PyTorch: pip install 'thermograsp[torch]'"
+        ) from error
     return lambda values: values if values.dtype.kind == "U" else torch.from_numpy(values)
 
 

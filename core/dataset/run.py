@@ -10,6 +10,7 @@ from pathlib import Path
 
 from thermograsp.dataset import on_ray
 from thermograsp.dataset.plan import Plan, Shard
+from thermograsp.dataset.schema import arrow
 from thermograsp.dataset.shards import missing, shard_bytes, start, store
 from thermograsp.errors import InvalidValueError
 
@@ -49,6 +50,9 @@ def make(
         raise InvalidValueError(f"workers must be 0 or above, got {workers}")
     if address is not None and workers == 0:
         raise InvalidValueError("a Ray address needs workers: say how many tasks are to run at a time")
+    arrow()  # what is not installed is told before anything is written
+    if workers:
+        on_ray.ray_package()
     folder = Path(folder)
     start(folder, plan)
     todo = missing(folder, plan)
