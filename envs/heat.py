@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ..thermal import (
     CONTACT_LAW,
     ContactSystem,
     Demand,
+    Geometry,
     HeatTables,
     free_area,
     heat_tables,
@@ -30,6 +31,10 @@ from .heat_rows import EVENTS, HEAT_ROW, HEAT_TOLD
 from .reservoir import RESERVOIR_ROW
 from .things import Thing
 
+if TYPE_CHECKING:
+    from ..thermal import SurfacePatch
+    from .touches import Touches
+
 CONDUCTANCES = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K), over which a network must keep the tolerance
 HORIZON = 20.0  # s of contact over which it must
 LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
@@ -38,11 +43,12 @@ LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
 @dataclass(frozen=True, slots=True)
 class HeatState:
     """Everything that the heat of some environments remembers; picklable. rows: their HEAT_ROW records. state (n, K).
-    things: each environment's object."""
+    things: each environment's object. places: the patches of one that is touched anywhere, and each fingertip's."""
 
     rows: np.ndarray
     state: np.ndarray
     things: tuple[Thing, ...]
+    places: tuple[tuple[tuple[SurfacePatch, ...], tuple[int, ...]] | None, ...]
 
 
 class HeatStep(NamedTuple):
@@ -91,10 +97,12 @@ class GraspHeat:
         self._sensor_temperature, self._cache = sensor_temperature, cache
         self._networks: dict[object, int] = {}
         self._systems: list[ContactSystem] = []
-        self._films: list[float] = []
+        self._films = [0.0] * num_envs
+        self._table_films: list[float] = []
         self._tables: HeatTables | None = None
         self.rungs: list[str] = []
         self._things: list[Thing | None] = [None] * num_envs
+        self._touches: dict[int, Touches] = {}
         self._rows = np.zeros(num_envs, HEAT_ROW)
         self._laws = np.zeros(num_envs, CONTACT_LAW)
         self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
@@ -131,6 +139,8 @@ class GraspHeat:
         sensor faces' middles in the object's frame at the end of the step."""
         if self._tables is None:
             raise InvalidValueError("the heat knows no objects yet: call reset first")
+        if self._touches:
+            self._follow(force, place)
         drop = np.empty((len(force), self._samples, 2))
         told = np.empty(len(force), HEAT_TOLD)
         advance_grasps(
@@ -175,16 +185,10 @@ class GraspHeat:
         """The fingertip's field goes from one row to another, whose object it touches from now on. The source's
         fingertip is left as warm as its thermostat. Raises InvalidValueError in O mode."""
         old, new = self._rows[source], self._rows[target]
-        pair = int(old["network"]), int(new["network"])
-        if pair not in self._carries:
-            source_system, target_system = (self._systems[network] for network in pair)
-            same = source_system is target_system
-            self._carries[pair] = (
-                np.eye(source_system.orders.sensor) if same else carry_matrix(source_system, target_system)
-            )
+        matrix = self._carried(int(old["network"]), int(new["network"]))
         before, after = (self._fingertip(row, fingertip) for row in (source, target))
         # Row by row, so that rounding does not depend on what else the batch holds.
-        self._state[target, after] = (self._carries[pair] * self._state[source, before]).sum(axis=1)
+        self._state[target, after] = (matrix * self._state[source, before]).sum(axis=1)
         self._state[source, before] = 0.0
         new["stored"][fingertip], old["stored"][fingertip] = old["stored"][fingertip], 0.0
 
@@ -198,12 +202,19 @@ class GraspHeat:
         """A copy of what the rows remember."""
         chosen = list(rows)
         things = tuple(thing for thing in (self._things[row] for row in chosen) if thing is not None)
-        return HeatState(self._rows[chosen], self._state[chosen], things)
+        touches = [self._touches.get(row) for row in chosen]
+        places = tuple((each.body.patches, each.contacts) if each else None for each in touches)
+        return HeatState(self._rows[chosen], self._state[chosen], things, places)
 
     def set_state(self, rows: Sequence[int], state: HeatState) -> None:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
             self._place(row, state.things[k], state.rows["sensor_temperature"][k])
+            if row in self._touches:
+                places, held = state.places[k], self._touches[row]
+                assert places is not None and state.things[k].solid is not None
+                self._touches[row] = held.at(state.things[k], *places, self._cache)
+                self._rows["network"][row] = self._network_touched(row)
             network = self._rows["network"][row]  # this batch's own number of it
             self._rows[row] = state.rows[k]
             self._rows["network"][row] = network
@@ -219,40 +230,116 @@ class GraspHeat:
     def _place(self, row: int, thing: Thing, sensor_temperature: np.ndarray) -> None:
         self._things[row] = thing
         self._laws[row] = thing.law
+        self._touches.pop(row, None)
+        inside = thing.spec.reservoir
+        self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
+        if inside is not None:
+            self._reservoirs[row] = inside.row(thing.temperature)[0]
+        celsius = {thing.temperature}
+        if self._air and thing.ambient is not None:
+            celsius.add(thing.ambient)
+        if inside is not None:
+            celsius.add(float(self._reservoirs["temperature"][row]))
+        # In steps, so that nearly equal temperatures share a network.
+        above = max(np.abs(sensor_temperature - each).max() for each in celsius) / LEAST_DIFFERENCE
+        difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
+        demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
+        geometry, capacity = thing.geometry, thing.heat_capacity
+        touches = None
+        if thing.solid is not None:
+            from .touches import first_touches
+
+            touches = first_touches(thing, demand, self._cache)
+        if touches is not None:
+            self._touches[row] = touches
+            geometry = touches.body.geometry
+            capacity = geometry.whole_capacity
+        free = free_area(geometry)
         mine = self._rows[row]
-        mine["glued"] = thing.mode == "O"
+        mine["glued"], mine["lasting"] = thing.mode == "O", touches is not None
         mine["reach"] = thing.stack.width / 2
-        mine["capacity"] = thing.heat_capacity
+        mine["capacity"] = capacity
         mine["element_capacity"] = thing.stack.heat_capacity
         mine["ambient"] = (
             0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
         )
-        free = free_area(thing.geometry)
         mine["air"] = self._air * free
-        self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
-        if thing.spec.reservoir is not None:
-            self._reservoirs[row] = thing.spec.reservoir.row(thing.temperature)[0]
         # What the object gives to the air and to a reservoir, as one film of that many W/(m2 K).
-        film = self._air + float(self._reservoirs["conductance"][row]) / free
-        celsius = [thing.temperature, thing.temperature + float(mine["ambient"])]
-        if thing.spec.reservoir is not None:
-            celsius.append(float(self._reservoirs["temperature"][row]))
-        # In steps, so that nearly equal temperatures share a network.
-        above = max(np.abs(sensor_temperature - each).max() for each in celsius) / LEAST_DIFFERENCE
-        difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
-        key = (thing.geometry, difference, film)
+        self._films[row] = self._air + float(self._reservoirs["conductance"][row]) / free
+        mine["network"] = (
+            self._network_touched(row) if touches else self._network_of(row, thing.geometry, demand)
+        )
+
+    def _network_of(self, row: int, geometry: Geometry, demand: Demand) -> int:
+        """Number of the plate's network."""
+        key = (geometry, demand.difference, self._films[row])
         if key not in self._networks:
-            demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
-            system = network_for(thing.geometry, demand, cache=self._cache).system
+            system = network_for(geometry, demand, cache=self._cache).system
             if 0 < system.orders.sensor < self._least_sensor_states:
                 orders = replace(system.orders, sensor=self._least_sensor_states)
-                system = network_of(thing.geometry, orders, cache=self._cache)
-            self._networks[key] = len(self._systems)
-            self._systems.append(system)
-            self._films.append(film)
-            self.rungs.append(f"network:{system.orders}")
-            self._tables = heat_tables(self._systems, self._films, self._dt)
-            grown = np.zeros((len(self._state), self._tables.rates.shape[1]))
-            grown[:, : self._state.shape[1]] = self._state
-            self._state = grown
-        mine["network"] = self._networks[key]
+                system = network_of(geometry, orders, cache=self._cache)
+            self._add(key, system, row, f"network:{system.orders}")
+        return self._networks[key]
+
+    def _network_touched(self, row: int) -> int:
+        """Number of the network of an object that is touched anywhere."""
+        touches = self._touches[row]
+        key = (touches.body, touches.contacts, self._films[row])
+        if key not in self._networks:
+            system = touches.body.system(touches.contacts)
+            self._add(key, system, row, f"body:{system.orders}")
+        return self._networks[key]
+
+    def _add(self, key: object, system: ContactSystem, row: int, rung: str) -> None:
+        self._networks[key] = len(self._systems)
+        self._systems.append(system)
+        self._table_films.append(self._films[row])
+        self.rungs.append(rung)
+        self._tables = heat_tables(self._systems, self._table_films, self._dt)
+        grown = np.zeros((len(self._state), self._tables.rates.shape[1]))
+        grown[:, : self._state.shape[1]] = self._state
+        self._state = grown
+
+    def _follow(self, force: np.ndarray, place: np.ndarray) -> None:
+        """Finds the patches of fingertips that touch where they have not been since they were there last."""
+        from .touches import touched_at
+
+        rows = np.array(list(self._touches))
+        mine = self._rows[rows]
+        away = np.sqrt(((place[rows] - mine["anchor"]) ** 2).sum(axis=2))
+        elsewhere = (away > mine["reach"][:, None]) | (mine["known"] == 0)
+        asked = elsewhere & (force[rows] > 0).any(axis=1)
+        for k, tip in np.argwhere(asked[:, : self._tables.fingertips]).tolist():
+            row = int(rows[k])
+            thing = self._things[row]
+            self._touch(row, touched_at(thing, self._touches[row], tip, place[row, tip], self._cache))
+
+    def _touch(self, row: int, touches: Touches) -> None:
+        """The row's object is touched there from now on, and keeps its field."""
+        from .touches import carried
+
+        last, self._touches[row] = self._touches[row], touches
+        if last.contacts == touches.contacts and last.body is touches.body:
+            return
+        old = int(self._rows["network"][row])
+        self._rows["network"][row] = new = self._network_touched(row)
+        if last.body is touches.body:
+            return
+        before, tips = self._state[row].copy(), self._tables.fingertips
+        first, then = (self._systems[number].orders for number in (old, new))
+        self._state[row] = 0.0
+        # Row by row, so that rounding does not depend on what else the batch holds.
+        self._state[row, : then.even] = (carried(last.body, touches.body) * before[: first.even]).sum(axis=1)
+        fingertip = self._carried(old, new)
+        for tip in range(tips):
+            its, own = (each.even + tip * each.sensor for each in (first, then))
+            field = (fingertip * before[its : its + first.sensor]).sum(axis=1)
+            self._state[row, own : own + then.sensor] = field
+
+    def _carried(self, old: int, new: int) -> np.ndarray:
+        """Matrix that takes a fingertip's field from one network to another."""
+        if (old, new) not in self._carries:
+            source, target = self._systems[old], self._systems[new]
+            same = source is target
+            self._carries[old, new] = np.eye(source.orders.sensor) if same else carry_matrix(source, target)
+        return self._carries[old, new]

@@ -44,7 +44,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
             touching = _mean_contact(laws[b], normal[b, :, f], one, f)
             renewed |= _follow(row, one, f, touching, place[b, f])
             row.begun |= touching
-        if renewed:
+        if renewed and row.lasting == 0:
             forget_row(tables, row.network, x)
         for f in range(2):
             one.heat[f] = one.flow[f] = 0.0

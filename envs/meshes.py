@@ -23,7 +23,8 @@ class MeshShape:
 
     extents: m, (x, y, z); x is the thickness between the fingers at yaw 0. volume: m3. centre_of_mass: m.
     unit_inertia: m2, (3, 3) about the centre of mass, for a mass of 1 kg of uniform density.
-    hulls: (vertices (n, 3) m, triangles (m, 3)) of the convex pieces that collide.
+    hulls: (vertices (n, 3) m, triangles (m, 3)) of the convex pieces that collide. surface: the same of the solid
+    itself, outward, its cavities included.
     Two shapes are equal when file, scale and pieces are.
     """
 
@@ -35,6 +36,7 @@ class MeshShape:
     centre_of_mass: tuple[float, float, float] = field(compare=False)
     unit_inertia: tuple[tuple[float, float, float], ...] = field(compare=False)
     hulls: tuple[tuple[np.ndarray, np.ndarray], ...] = field(compare=False, repr=False)
+    surface: tuple[np.ndarray, np.ndarray] = field(compare=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -87,6 +89,7 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
         centre_of_mass=_triple(mesh.center_mass),
         unit_inertia=tuple(_triple(row) for row in mesh.moment_inertia / mesh.mass),
         hulls=_hulls(mesh, int(pieces)),
+        surface=(np.array(mesh.vertices, float), np.array(mesh.faces, np.int64)),
     )
 
 

@@ -17,6 +17,7 @@ from .electronics import Electronics, ElectronicsState
 from .heat import GraspHeat, HeatState, HeatStep
 from .mechanics import Mechanics, MechanicsState
 from .randomization import CAUSES, checked, draw
+from .scene import ObjectSpec
 from .simulation_config import SAMPLE_PERIOD, SimulationConfig
 from .thermostats import Thermostats
 from .things import Thing
@@ -55,7 +56,9 @@ class SimulatedPlant:
             library=[thing.spec for thing in possible if thing.spec.mesh],
             settings=config.solver,
             gripper=config.gripper_for(possible),
+            contacts=config.taxels is not None,
         )
+        self._taxels = config.tactile
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.heat = GraspHeat(num_envs, **config.heat)
@@ -94,10 +97,12 @@ class SimulatedPlant:
             config = replace(config, material=options["material"])
             choices = config.choices
         reach, turn = self.config.placement
+        own: list[ObjectSpec] = []
         for row, rng in zip(rows, rngs, strict=True):
             chosen = choices[int(rng.integers(len(choices)))]
             x, y, angle = rng.uniform(-1.0, 1.0, 3)
             shape = self._shapes[int(rng.integers(len(self._shapes))) if len(self._shapes) > 1 else 0]
+            own.append(shape)
             turned = shape.yaw + np.deg2rad(angle * turn)
             middle = shape.position
             spec = replace(shape, position=(middle[0] + x * reach, middle[1] + y * reach), yaw=turned)
@@ -109,7 +114,10 @@ class SimulatedPlant:
         self.mechanics.reset(rows, [(thing.spec,) for thing in things])
         self.heat.reset(
             rows,
-            [replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=0.0)) for t in things],
+            [
+                replace(thing, spec=replace(thing.spec, position=shape.position, yaw=shape.yaw))
+                for thing, shape in zip(things, own, strict=True)
+            ],
             self._thermostats.setpoints[list(rows)]
             + np.array([[self._drawn[row]["thermostat_error"]] for row in rows]),
         )
@@ -140,6 +148,7 @@ class SimulatedPlant:
             truth=self._truth(motion.object_height, step, error),
             error=error,
             told=TOLD,
+            pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
@@ -207,6 +216,7 @@ class SimulatedPlant:
             truth=self._truth(self.mechanics.object_pose[:, 0, 2], self.heat.rest(), error),
             error=error,
             told=TOLD,
+            pressure=None if self._taxels is None else self._taxels.nothing(rows),
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from .scene import ObjectSpec, scaled
 from .solver_settings import SHIPPED, SolverSettings
 from .things import Thing
 
+if TYPE_CHECKING:
+    from .taxels import Taxels
+
 SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
 
 
@@ -41,9 +44,11 @@ class SimulationConfig:
     thermostat: one of finite power (its setpoint is sensor_temperature, its ambient the room where that is given), None
     for an ideal one. placement: m and degree; the object lies within +- these of its own place, drawn per episode.
     randomize: what else differs from episode to episode, records of randomization.py. fingertips: how many carry a
-    sensor (1: the left one). gripper: an MJCF file, an MjSpec or what load_gripper makes of them, None for the shipped
-    one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of
-    10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk."""
+    sensor (1: the left one). anywhere: heat knows where it enters boxes, cylinders and spheres, as it always does of
+    meshes in mode T; without, each patch is the middle of a face. gripper: an MJCF file, an MjSpec or what load_gripper
+    makes of them, None for the shipped one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
+    step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
+    disk."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -59,11 +64,13 @@ class SimulationConfig:
     placement: tuple[float, float] = (0.002, 2.0)
     randomize: Sequence[Cause] = ()
     fingertips: Literal[1, 2] = 2
+    anywhere: bool = False
     gripper: Any = None
     solver: SolverSettings = SHIPPED
     substeps: int = SUBSTEPS
     threads: int = 1
     cache: bool = True
+    taxels: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -85,6 +92,7 @@ class SimulationConfig:
         for value in self.placement:
             non_negative("placement (m, degree)", value)
         checked(self.randomize)
+        _ = self.tactile  # checks it
         period = self.substeps * self.solver.timestep
         if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
             raise InvalidValueError(
@@ -126,6 +134,15 @@ class SimulationConfig:
                 "give at least one, all of the same name and number of pieces"
             )
         return listed
+
+    @property
+    def tactile(self) -> Taxels | None:
+        """What maps the pressure over the pads. Raises InvalidValueError for taxels that are none."""
+        if self.taxels is None:
+            return None
+        from .taxels import Taxels  # nothing that taxels need is loaded without them
+
+        return Taxels(self.taxels)
 
     @property
     def samples(self) -> int:
@@ -188,6 +205,7 @@ class SimulationConfig:
             self.fingertips,
             drawn["roughness_factor"],
             usual if room is None else room,
+            self.anywhere,
         )
 
     def possible_things(self, stack: SensorStack) -> list[Thing]:

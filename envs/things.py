@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -31,6 +31,9 @@ from ..thermal import (
 )
 from .scene import ObjectSpec
 
+if TYPE_CHECKING:
+    from ..thermal import Solid
+
 PAD = Pad()
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 
@@ -39,7 +42,8 @@ NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 class Thing:
     """An object between the fingertips. spec: its shape and place. material: what it is made of. temperature: °C at
     first. mode: T or O, where the element sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on
-    the object's surface. ambient: °C of the air, None for the object's."""
+    the object's surface. ambient: °C of the air, None for the object's. anywhere: its heat knows where it is touched,
+    as a mesh's always does in T mode."""
 
     spec: ObjectSpec
     material: Material
@@ -49,6 +53,7 @@ class Thing:
     fingertips: Literal[1, 2] = 2
     roughness_factor: float = 1.0
     ambient: float | None = None
+    anywhere: bool = False
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:
@@ -115,6 +120,19 @@ class Thing:
         """J/K of the object, without elements."""
         width, height, thickness = self.plate
         return self.material.volumetric_heat_capacity * width * height * thickness
+
+    @cached_property
+    def solid(self) -> Solid | None:
+        """What its heat flows in, where that is no plate."""
+        if self.mode == "O" or not (self.anywhere or self.spec.mesh):
+            return None
+        from .object_solids import object_solid
+
+        spec = self.spec
+        shape = ObjectSpec(
+            shape=spec.shape, size=spec.size, mesh=spec.mesh, scale=spec.scale, pieces=spec.pieces
+        )
+        return object_solid(shape, self.material)
 
     @property
     def extremes(self) -> tuple[float, ...]:

@@ -1,0 +1,132 @@
+"""Where on an object's surface fingertips touch it: patches found by position, as they come.
+
+F: fingertips. Places are in m, in the object's frame.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+
+from thermograsp.errors import MeshError
+
+from ..thermal import Demand, SensorStack, Solid, SurfacePatch
+from ..thermal.body_system import TouchedBody, field_carried, surface_normal, touched_body
+from .things import Thing
+
+LATTICE = 0.003  # m, on which later patches are placed, so that touches nearly alike share a network
+MOST_PATCHES = 5
+_UPRIGHT = math.cos(math.radians(10.0))  # a surface this near to an axis is taken as across it
+_KEPT = 256
+
+
+@dataclass(frozen=True, slots=True)
+class Touches:
+    """body: the object's network and its patches. contacts: (F,) the patch that each fingertip is on or was on last.
+    demand: what the network was made for."""
+
+    body: TouchedBody
+    contacts: tuple[int, ...]
+    demand: Demand
+
+    def at(
+        self, thing: Thing, patches: tuple[SurfacePatch, ...], contacts: tuple[int, ...], cache: bool
+    ) -> Touches:
+        """The same object with these patches and contacts."""
+        body = self.body
+        if patches != body.patches:
+            body = _body(_solid(thing), patches, thing.stack, self.demand, thing.fingertips, cache)
+        return replace(self, body=body, contacts=contacts)
+
+
+def first_touches(thing: Thing, demand: Demand, cache: bool) -> Touches | None:
+    """With a patch where each fingertip is to meet the object; None where a line through the grasp's middle meets no
+    surface (a ring's hole), so that a plate stands for the object."""
+    contacts = tuple(range(thing.fingertips))
+    patches = tuple(_grasped(thing, side) for side in (-1, 1)[: thing.fingertips])
+    try:
+        body = _body(_solid(thing), patches, thing.stack, demand, thing.fingertips, cache)
+    except MeshError:
+        return None
+    return Touches(body, contacts, demand)
+
+
+def touched_at(thing: Thing, touches: Touches, fingertip: int, place: np.ndarray, cache: bool) -> Touches:
+    """The fingertip's patch is the one at the place: one of those known within half a face, or else a new one. Where a
+    new one meets no surface it stays where it was. The longest unused patch goes where there would be too many."""
+    body = touches.body
+    away = np.sqrt(((body.centres - place) ** 2).sum(axis=1))
+    contacts = list(touches.contacts)
+    nearest = int(np.argmin(away))
+    if away[nearest] <= thing.stack.width / 2:
+        contacts[fingertip] = nearest
+        return replace(touches, contacts=tuple(contacts))
+    patches = list(body.patches)
+    if len(patches) >= MOST_PATCHES:
+        others = {contact for tip, contact in enumerate(contacts) if tip != fingertip}
+        gone = next(number for number in range(len(patches)) if number not in others)
+        del patches[gone]
+        contacts = [contact - (contact > gone) for contact in contacts]
+    contacts[fingertip] = len(patches)
+    patches.append(_touched(_solid(thing), place, body.patches[0].area))
+    try:
+        return touches.at(thing, tuple(patches), tuple(contacts), cache)
+    except MeshError:
+        return touches
+
+
+@lru_cache(maxsize=_KEPT)
+def carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:
+    """See field_carried."""
+    return field_carried(source, target)
+
+
+@lru_cache(maxsize=_KEPT)
+def _body(
+    body: Solid,
+    patches: tuple[SurfacePatch, ...],
+    stack: SensorStack,
+    demand: Demand,
+    fingertips: Literal[1, 2],
+    cache: bool,
+) -> TouchedBody:
+    return touched_body(body, patches, stack, demand, fingertips=fingertips, cache=cache)
+
+
+def _solid(thing: Thing) -> Solid:
+    assert thing.solid is not None
+    return thing.solid
+
+
+def _grasped(thing: Thing, side: int) -> SurfacePatch:
+    """Where the left (-1) or the right (1) fingertip of a gripper over the origin meets the object: the outermost
+    surface along the line on which the fingers close."""
+    spec = thing.spec
+    cos, sin = math.cos(spec.yaw), math.sin(spec.yaw)
+    x, y = spec.position
+    beyond = sum(spec.size)
+    along = _clean(side * cos), _clean(-side * sin), 0.0
+    middle = -x * cos - y * sin, x * sin - y * cos
+    height = spec.grasp_height - spec.size[2] / 2
+    return SurfacePatch(
+        (middle[0] + beyond * along[0], middle[1] + beyond * along[1], height), along, thing.geometry.area
+    )
+
+
+def _touched(body: Solid, place: np.ndarray, area: float) -> SurfacePatch:
+    """The patch on the surface nearest to a place, on the lattice."""
+    normal = surface_normal(body, place)
+    axis = int(np.argmax(np.abs(normal)))
+    if abs(normal[axis]) > _UPRIGHT:
+        normal = np.sign(normal[axis]) * np.eye(3)[axis]
+    x, y, z = (LATTICE * round(float(value) / LATTICE) for value in place)
+    return SurfacePatch((x, y, z), tuple(float(value) for value in normal), area)
+
+
+def _clean(value: float) -> float:
+    """0 where rounding left nearly 0."""
+    return 0.0 if abs(value) < 1e-12 else value

@@ -1,0 +1,232 @@
+"""An object of any shape and where fingertips touch it: one network of all its patches, a contact system of any two.
+
+A fingertip that goes from one patch to another sees other ports of the same states, so that nothing is forgotten. A
+patch that is added changes the states; field_carried takes the object's field along.
+
+P: patches, M: heat-flow patterns of each, F: fingertips, K: states of the object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.files import cached_arrays
+
+from .bodies import Geometry
+from .choice import Demand, responses
+from .layers import SensorStack
+from .materials import Material
+from .mesh_network import body_network
+from .mesh_patch import place_patch
+from .mesh_patterns import learned_patterns
+from .mesh_solid import Solid, SurfacePatch
+from .mesh_system import BodyGeometry
+from .network import ThermalNetwork
+from .states import CONDUCTANCES, MOMENTS, excited_states, state_bases
+from .system import ContactSystem, sample_geometry, with_sensors
+
+_PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
+_PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
+_VERSION = 1  # of the arrays' meaning and of how they are computed
+_COARSE = (
+    0.08  # K of tolerance per 12 K of difference from which on two patterns of flux serve in place of three
+)
+_CUTS = np.geomspace(0.1, 1e-7, 25)  # weight below which states are left out
+_LEAST_WEIGHT = 1e-7  # singular values below that share of the largest are left out
+_TIMES = np.concatenate(([0.0], np.geomspace(1e-3, 300.0, 40)))  # s, over which a field is followed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TouchedBody:
+    """geometry: what it remembers of fingertips and object. sensor: a fingertip's network. object: the object's, M
+    ports a patch, its state 0 the mean. patches, and centres (P, 3) m: where on the surface they are."""
+
+    geometry: BodyGeometry
+    sensor: ThermalNetwork
+    object: ThermalNetwork
+    patches: tuple[SurfacePatch, ...]
+    centres: np.ndarray
+
+    @property
+    def modes(self) -> int:
+        """M."""
+        return self.sensor.ports.shape[1]
+
+    def system(self, contacts: Sequence[int]) -> ContactSystem:
+        """The system of a fingertip on each of these patches. Raises InvalidValueError where they are not F of them."""
+        count, patches = self.geometry.fingertips, len(self.patches)
+        if len(contacts) != count or not all(0 <= c < patches for c in contacts):
+            raise InvalidValueError(f"contacts {tuple(contacts)}: give {count} of 0 .. {patches - 1}")
+        ports = self.object.ports.reshape(self.object.order, patches, self.modes)
+        touched = np.ascontiguousarray(ports[:, list(contacts)].transpose(1, 0, 2))
+        orders = (self.object.order, None if count == 1 else 0)
+        heat = self.object.outputs["heat"]
+        return with_sensors(self.geometry, self.sensor, self.object.rates, touched, heat, orders)
+
+
+def touched_body(
+    body: Solid,
+    patches: Sequence[SurfacePatch],
+    stack: SensorStack,
+    demand: Demand,
+    *,
+    fingertips: Literal[1, 2] = 2,
+    cache: bool = True,
+) -> TouchedBody:
+    """An object and its patches, of one area, with as few states as keep half the demand's tolerance where the
+    fingertips are on the last of the patches; the other half is the grid's and the patterns'.
+
+    Raises InvalidValueError for other patches and where no network keeps the tolerance, MeshError as body_network
+    does."""
+    patches = tuple(patches)
+    area = patches[0].area
+    modes = 2 if demand.tolerance >= _COARSE * demand.difference / 12 else 3
+    plate = Geometry(stack, _PLATE_MATERIAL, "T", area, "square", _PLATE)
+    key = {
+        "touched body": _VERSION,
+        "body": [
+            (p.vertices, p.faces, p.material.conductivity, p.material.volumetric_heat_capacity)
+            for p in body.parts
+        ],
+        "patches": patches,
+        "stack": stack,
+        "demand": demand,
+        "fingertips": fingertips,
+    }
+
+    def build() -> dict[str, np.ndarray]:
+        whole = body_network(body, patches, patterns=learned_patterns(plate, modes), cache=False)
+        learned = sample_geometry(plate).networks(modes)
+        basis = state_bases(learned, area)["sensor"]
+        geometry = _geometry(plate, whole, body, fingertips)
+        triangles = np.concatenate([part.triangles for part in body.parts])
+        centres = np.array([place_patch(triangles, patch, np.eye(3)).centre for patch in patches])
+        full = TouchedBody(geometry, learned["sensor"], whole, patches, centres)
+        reduced = _smallest(full, basis.vectors, basis.weights, demand)
+        return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), "centres": centres}
+
+    arrays = cached_arrays(key, build, enabled=cache)
+    sensor, whole = _unpack("sensor", arrays), _unpack("object", arrays)
+    geometry = _geometry(plate, whole, body, fingertips)
+    return TouchedBody(geometry, sensor, whole, patches, arrays["centres"])
+
+
+def surface_normal(body: Solid, place: np.ndarray) -> np.ndarray:
+    """(3,) outward normal of the face nearest to a place (3,) m."""
+    triangles = np.concatenate([part.triangles for part in body.parts])
+    a = triangles[:, 0]
+    normals = np.cross(triangles[:, 1] - a, triangles[:, 2] - a)
+    areas = np.linalg.norm(normals, axis=1)
+    faces = areas > 0
+    normals = normals[faces] / areas[faces, None]
+    above = np.einsum("fc,fc->f", place - a[faces], normals)
+    # beside a face its nearest point is on an edge
+    foot = place - above[:, None] * normals
+    inside = np.ones(len(foot), bool)
+    nearest = np.full(len(foot), np.inf)
+    for i in range(3):
+        start, end = triangles[faces, i], triangles[faces, (i + 1) % 3]
+        edge = end - start
+        inside &= np.einsum("fc,fc->f", np.cross(edge, foot - start), normals) >= 0
+        share = np.einsum("fc,fc->f", place - start, edge) / np.einsum("fc,fc->f", edge, edge)
+        away = place - start - np.clip(share, 0.0, 1.0)[:, None] * edge
+        nearest = np.minimum(nearest, np.linalg.norm(away, axis=1))
+    return normals[np.argmin(np.where(inside, np.abs(above), nearest))]
+
+
+def field_carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:
+    """(K of target, K of source): the object's field on the states of a network of patches that both have, and others.
+
+    What heat has done that came in through common patches is known on either side: the fields that pulses of heat leave
+    at _TIMES after them are mapped on each other by least squares, and any field that was made through these patches is
+    a sum of such. The object's heat stays the same to round-off, since its mean is a state of its own."""
+    common = [patch for patch in source.patches if patch in target.patches]
+    before, after = (_pulses(each, common) for each in (source, target))
+    left, weights, right = np.linalg.svd(before, full_matrices=False)
+    kept = weights > _LEAST_WEIGHT * weights.max(initial=0.0)
+    carried = np.zeros((target.object.order, source.object.order))
+    carried[1:, 1:] = (after @ right[kept].T / weights[kept]) @ left[:, kept].T
+    carried[0, 0] = 1.0
+    return carried
+
+
+def _pulses(body: TouchedBody, common: list[SurfacePatch]) -> np.ndarray:
+    """(K - 1, pulses): fields after a joule let in through each pattern of the common patches, each of them weighted by
+    the time that it stays."""
+    ports = body.object.ports.reshape(body.object.order, len(body.patches), body.modes)
+    chosen = ports[1:, [body.patches.index(patch) for patch in common]].reshape(body.object.order - 1, -1)
+    faded = np.exp(-np.outer(body.object.rates[1:], _TIMES)) * np.sqrt(np.maximum(_TIMES, _TIMES[1]))
+    return (chosen[:, :, None] * faded[:, None, :]).reshape(len(chosen), -1)
+
+
+def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: Literal[1, 2]) -> BodyGeometry:
+    capacity = float(whole.outputs["heat"][0] ** 2)
+    return BodyGeometry(
+        plate.stack,
+        plate.material,
+        "T",
+        plate.area,
+        "square",
+        plate.object_size,
+        fingertips,
+        capacity,
+        body.surface,
+    )
+
+
+def _smallest(full: TouchedBody, sensor: np.ndarray, weights: np.ndarray, demand: Demand) -> TouchedBody:
+    """The first that keeps the tolerance. sensor: (states, R) basis of its field, and weights (R,)."""
+    basis = excited_states(full.object, _flows(full))
+    last = range(len(full.patches) - full.geometry.fingertips, len(full.patches))
+    reference = responses(full.system(last), demand)
+    error = np.inf
+    for cut in _CUTS:
+        smaller = TouchedBody(
+            full.geometry,
+            full.sensor.projected(sensor[:, weights > cut / 8]),
+            full.object.projected(basis.vectors[:, basis.weights > cut]),
+            full.patches,
+            full.centres,
+        )
+        error = float(np.max(np.abs(responses(smaller.system(last), demand) - reference)))
+        if error <= demand.tolerance / 2:
+            return smaller
+    raise InvalidValueError(
+        f"no network keeps {demand.tolerance / 2:g} K for this contact; the best misses {error:.2g} K: "
+        "ask for a larger tolerance"
+    )
+
+
+def _flows(full: TouchedBody) -> np.ndarray:
+    """(cases, moments, P M) W: heat flows of one and of two fingertips on any of the patches."""
+    modes, area = full.modes, full.geometry.area
+    z_object, z_sensor = full.object.impedance(MOMENTS), full.sensor.impedance(MOMENTS)
+    flows = []
+    for conductance in CONDUCTANCES:
+        for count in range(1, full.geometry.fingertips + 1):
+            for touching in combinations(range(len(full.patches)), count):
+                at = np.concatenate([np.arange(modes) + f * modes for f in touching])
+                z = z_object[:, at[:, None], at] + np.kron(np.eye(count), z_sensor)
+                drive = np.tile(np.eye(modes)[0], count)
+                flow = np.zeros((len(MOMENTS), z_object.shape[1]))
+                flow[:, at] = np.linalg.solve(z + np.eye(len(at)) / (conductance * area), drive)
+                flows.append(flow)
+    return np.array(flows)
+
+
+def _pack(name: str, network: ThermalNetwork) -> dict[str, np.ndarray]:
+    rows = {f"{name} output {key}": row for key, row in network.outputs.items()}
+    return {f"{name} rates": network.rates, f"{name} ports": network.ports, **rows}
+
+
+def _unpack(name: str, arrays: dict[str, np.ndarray]) -> ThermalNetwork:
+    rates, ports = arrays[f"{name} rates"], arrays[f"{name} ports"]
+    start = f"{name} output "
+    rows = {key.removeprefix(start): row for key, row in arrays.items() if key.startswith(start)}
+    return ThermalNetwork(rates, ports, np.zeros((ports.shape[1],) * 2), rows)
