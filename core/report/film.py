@@ -68,21 +68,25 @@ class Film:
     def write(self, path: str | os.PathLike[str]) -> None:
         """An animation at the grasp's own speed (.gif, .webp), or all pictures in a row (.png)."""
         pictures = [Image.fromarray(still.pixels) for still in self.stills]
-        with atomic_write(path) as temporary:
-            if Path(path).suffix.lower() == ".png":
-                strip(pictures).save(temporary)
-            else:
-                ends = [still.time for still in self.stills[1:]] + [self.stills[-1].time + 1.0]
-                lasting = [
-                    round(1000 * (end - still.time)) for end, still in zip(ends, self.stills, strict=True)
-                ]
-                pictures[0].save(
-                    temporary, save_all=True, append_images=pictures[1:], duration=lasting, loop=0
-                )
+        write_pictures(path, pictures, [still.time for still in self.stills])
 
     def close(self) -> None:
         """Frees OpenGL's buffers."""
         self._renderer.close()
+
+
+def write_pictures(
+    path: str | os.PathLike[str], pictures: Sequence[Image.Image], times: Sequence[float]
+) -> None:
+    """Pictures of one size taken at rising times, s: an animation (.gif, .webp) that shows the last one for a second,
+    or all in a row (.png)."""
+    with atomic_write(path) as temporary:
+        if Path(path).suffix.lower() == ".png":
+            strip(pictures).save(temporary)
+        else:
+            ends = [*times[1:], times[-1] + 1.0]
+            lasting = [round(1000 * (end - time)) for end, time in zip(ends, times, strict=True)]
+            pictures[0].save(temporary, save_all=True, append_images=pictures[1:], duration=lasting, loop=0)
 
 
 def across(reading: Reading, row: int) -> tuple[float, ...]:

@@ -5,7 +5,7 @@ N: samples of the whole grasp.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,9 +83,9 @@ def grasp_beside(
         for middle in np.arange(0.5 * real.dt, ends[-1] if len(ends) else 0.0, real.dt)
     ]
     samples = plant.config.samples
-    columns = {"time_s": _times(ends, real.dt, samples), **_columns(measured, samples)}
+    columns = {"time_s": _times(ends, real.dt, samples), **measured_columns(measured, samples)}
     even = _times(real.dt * np.arange(1, len(expected) + 1), real.dt, samples)
-    for name, values in _columns(expected, samples).items() if measured else ():
+    for name, values in measured_columns(expected, samples).items() if measured else ():
         columns[f"simulated_{name}"] = np.interp(columns["time_s"], even, values)
     columns["late_s"] = np.repeat(late, samples)
     delay, difference = best_delay(columns) if measured else (float("nan"), float("nan"))
@@ -121,7 +121,8 @@ def _times(ends: np.ndarray, dt: float, samples: int) -> np.ndarray:
     return (ends[:, None] - dt / samples * np.arange(samples)[::-1]).ravel()
 
 
-def _columns(readings: list[Reading], samples: int) -> dict[str, np.ndarray]:
+def measured_columns(readings: Sequence[Reading], samples: int) -> dict[str, np.ndarray]:
+    """Columns (N,) by name_unit of what a real gripper tells, of readings with that many samples each."""
     volts = np.concatenate([reading.voltage[0] for reading in readings]) if readings else np.zeros((0, 2))
     columns: dict[str, np.ndarray] = {}
     for side, label in enumerate(SIDES):

@@ -45,17 +45,28 @@ RANGES: Mapping[str, Range] = {
     "opening": Range(0.0, MAX_OPENING, 0.001, "mm", 1e3),
     "height": Range(0.0, MAX_HEIGHT, 0.005, "mm", 1e3),
 }
+_OF_SIMULATION = ("material", "other", "shape", "width", "roughness", "tolerance")
 _MOST_SEED = 2**31 - 1
 
 
 @dataclass(frozen=True, slots=True)
 class Stock:
     """What visitors may choose from besides the package's own. materials: by name. mesh: an object of a file, or None.
-    network: a trained policy's file, or None for the package's. Picklable."""
+    network: a trained policy's file, or None for the package's. recording: a CSV file
+    to play instead of simulating. plant: URL of a real gripper to drive instead. Picklable."""
 
     materials: Mapping[str, Material] = field(default_factory=lambda: dict(materials()))
     mesh: ObjectSpec | None = None
     network: str | None = None
+    recording: str | None = None
+    plant: str | None = None
+
+    @property
+    def fixed(self) -> tuple[str, ...]:
+        """Controls of the page that do nothing here."""
+        if self.recording is not None:
+            return (*_OF_SIMULATION, "driver", "force", "opening", "height")
+        return (*_OF_SIMULATION, "height", "play", "step", "speed") if self.plant is not None else ()
 
     @property
     def shapes(self) -> tuple[str, ...]:
@@ -96,6 +107,12 @@ class Choices:
         if self.shape == "heavy box":
             return STAKES["objects"]
         return ObjectSpec(shape=self.shape, size=(self.width,) * 3)  # pyright: ignore[reportArgumentType]
+
+    @property
+    def colours(self) -> tuple[float, float]:
+        """°C, the range of the colours: a kelvin more than what occurs."""
+        around = (self.object_temperature, self.thermostat)
+        return min(around) - 1.0, max(around) + 1.0
 
     def told(self) -> dict[str, Any]:
         """For the page."""

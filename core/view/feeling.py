@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from thermograsp.thermal import SEED_MATERIALS, Identification, Identifier, Material, TouchSetup
+from thermograsp.view.choices import Choices
 
+SPREAD = 3.0  # K, standard deviation that identification is told of the object's temperature
 PERIOD = 0.2  # s between looks; each takes some 10 ms
 _SHOWN = 6  # materials
+_VOLTAGES = ("voltage_left_V", "voltage_right_V")
 
 
 class Feeling:
@@ -20,7 +23,7 @@ class Feeling:
     def __init__(self, setup: TouchSetup, materials: Mapping[str, Material], named: tuple[str, ...]) -> None:
         chosen = dict.fromkeys((*SEED_MATERIALS, *named))
         self._identifier = Identifier(setup, [materials[name] for name in chosen if name in materials])
-        self._horizon = setup.horizon
+        self._horizon, self._fingertips = setup.horizon, setup.fingertips
         self.reset()
 
     def reset(self) -> None:
@@ -32,9 +35,11 @@ class Feeling:
         self._told = False
 
     def add(self, columns: Mapping[str, np.ndarray], row: int) -> None:
-        """The columns (B, S) of a control step."""
-        voltage = np.stack([columns["voltage_left_V"][row], columns["voltage_right_V"][row]], axis=1)
-        self._pending.append((columns["time_s"][row], voltage))
+        """The columns (B, S) of a control step. Samples without a voltage, of lost frames, are left out."""
+        voltage = np.stack([columns[name][row] for name in _VOLTAGES[: self._fingertips]], axis=1)
+        known = np.isfinite(voltage).all(axis=1)
+        if known.any():
+            self._pending.append((columns["time_s"][row][known], voltage[known]))
 
     def look(self) -> dict[str, Any] | None:
         """What is to be told, where it is time to look again and something new came."""
@@ -52,6 +57,19 @@ class Feeling:
         assert self._found is not None
         touches = self._found.touch
         return all(np.isfinite(touches)) and now > max(touches) + self._horizon
+
+
+def known_touch(choices: Choices, fingertips: Literal[1, 2]) -> TouchSetup:
+    """What may be known of the touch of a real object: the mode and about the temperatures; its size is taken as 40 mm
+    between two fingertips, 10 mm behind one."""
+    size = (0.04, 0.04, 0.04 if fingertips == 2 else 0.01)
+    return TouchSetup(
+        mode=choices.mode,
+        fingertips=fingertips,
+        object_size=size,
+        object_temperature=(choices.object_temperature, SPREAD),
+        sensor_temperature=(choices.thermostat, 0.1),
+    )
 
 
 def posterior(found: Identification) -> dict[str, Any]:

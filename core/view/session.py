@@ -17,13 +17,12 @@ from thermograsp.thermal import SEED_MATERIALS
 from thermograsp.view.choices import DRIVERS, RANGES, SPEEDS, Choices, Controls, Stock
 from thermograsp.view.feeling import Feeling
 from thermograsp.view.log import LONGEST, Log
-from thermograsp.view.simulated import SimulatedGrasp
+from thermograsp.view.sources import grasp_of
 
 MOST_STEPS = 25  # in one advance: a machine that is too slow falls behind instead of no longer answering
 _CURVES = ("voltage_left_V", "voltage_right_V", "temperature_drop_left_K", "temperature_drop_right_K",
            "force_left_N", "force_right_N")  # fmt: skip
 _TABLE = 64  # colours
-_MARGIN = 1.0  # K around the temperatures that occur, of the colours' range
 
 Message = dict[str, Any]
 
@@ -37,7 +36,7 @@ class Session:
         self,
         stock: Stock | None = None,
         choices: Choices | None = None,
-        make: Callable[[Choices, Stock], Any] = SimulatedGrasp,
+        make: Callable[[Choices, Stock], Any] = grasp_of,
     ) -> None:
         self._stock = stock or Stock()
         self._make = make
@@ -152,7 +151,10 @@ class Session:
         self._wanted = (self._wanted or self.choices).changed(content, self._stock)
 
     def _control(self, content: Mapping[str, Any]) -> None:
-        self.controls = self.controls.changed(content)
+        controls = self.controls.changed(content)
+        if self.paced and not (controls.playing and controls.speed == 1.0):
+            raise InvalidValueError("time on a real gripper cannot be stopped or slowed down")
+        self.controls = controls
 
     def _again(self, content: Mapping[str, Any]) -> None:
         _nothing(content)
@@ -162,7 +164,7 @@ class Session:
 
     def _one_step(self, content: Mapping[str, Any]) -> None:
         _nothing(content)
-        self.controls = self.controls.changed({"playing": False})
+        self._control({"playing": False})
         self._single = True
 
     def _csv(self, content: Mapping[str, Any]) -> None:
@@ -170,13 +172,9 @@ class Session:
         kept = self._log.since(0)
         if not kept:
             raise InvalidValueError("there is nothing to download yet: let the grasp run first")
-        for row, name in enumerate(self._names):
+        for row, name in enumerate(self._grasp.names):
             text = csv_text({column: values[row] for column, values in kept.items()})
             self._told.append({"kind": "csv", "name": f"{name}_{self.choices.mode}.csv", "text": text})
-
-    @property
-    def _names(self) -> tuple[str, ...]:
-        return self.choices.materials[: self._grasp.rows]
 
     def _problem(self, error: Exception) -> None:
         self._told.append({"kind": "problem", "text": " ".join(str(error).split())})
@@ -191,18 +189,17 @@ class Session:
             "speeds": SPEEDS,
             "ranges": {name: asdict(one) for name, one in RANGES.items()},
             "choices": self.choices.told(),
-            "fixed": [],
+            "fixed": self._stock.fixed,
             "table": [to_hex(colour) for colour in colour_table(_TABLE)],
         }
 
     def _scene(self) -> Message:
-        around = (self.choices.object_temperature, self.choices.thermostat)
         return {
             "kind": "scene",
             "shapes": self._grasp.shapes(),
-            "rows": list(self._names),
+            "rows": list(self._grasp.names),
             "choices": self.choices.told(),
-            "colours": [min(around) - _MARGIN, max(around) + _MARGIN],
+            "colours": self.choices.colours,
         }
 
     def _frame(self) -> Message:
@@ -222,26 +219,14 @@ class Session:
             curves = {
                 "time": _short(new["time_s"][0]),
                 "rows": [
-                    [_short(new[name][row]) for name in _CURVES if name in new] for row in range(grasp.rows)
+                    [_short(new[name][row]) if name in new else None for name in _CURVES]
+                    for row in range(grasp.rows)
                 ],
             }
-        reading = grasp.reading
         return frame | {
             "time": round(self.time, 6),
             "curves": curves,
-            "rows": [
-                {
-                    "poses": grasp.poses(row),
-                    "celsius": grasp.celsius(row),
-                    "across": grasp.across(row),
-                    "state": grasp.state(row),
-                    "ending": grasp.endings[row],
-                    "opening": round(float(reading.opening[row]), 6),
-                    "height": round(float(reading.height[row]), 6),
-                    "cost": asdict(grasp.cost(row)),
-                }
-                for row in range(grasp.rows)
-            ],
+            "rows": [grasp.told(row) for row in range(grasp.rows)],
         }
 
 
@@ -250,9 +235,9 @@ def _nothing(content: Mapping[str, Any]) -> None:
         raise unknown_name("field", next(iter(content)), ())
 
 
-def _short(values: np.ndarray) -> list[float]:
-    """Seven digits, more than a screen shows."""
-    return [float(f"{value:.7g}") for value in values.tolist()]
+def _short(values: np.ndarray) -> list[float | None]:
+    """Seven digits, more than a screen shows; None for what is not finite."""
+    return [float(f"{value:.7g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
 _ACTIONS: Mapping[str, Callable[[Session, Mapping[str, Any]], None]] = {

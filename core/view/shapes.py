@@ -18,12 +18,14 @@ _KINDS = {
 }
 _DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)  # of a geom that takes its material's, MuJoCo's rule
 _GLOSS = 0.3
+_SEEN_THROUGH = 0.3  # alpha of the pads, which hide the sensors behind them
+_LEFT_OUT = ("pedestal",)
 
 
 def shapes_of(model: mujoco.MjModel, objects: tuple[str, ...]) -> list[dict[str, Any]]:
     """The visible geoms but the floor: kind, body (its index), place (3,) m and turn (w, x, y, z) in the body's frame,
-    size (3,) m as MuJoCo has it, colour (3,) sRGB in 0..1, gloss 0..1, part (the name by which a temperature colours
-    it; an object's geoms have the object's), and for a mesh its triangles' corners, vertices (3 n) m."""
+    size (3,) m as MuJoCo has it, colour (3,) sRGB in 0..1, gloss and alpha 0..1, part (the name by which a temperature
+    colours it; an object's geoms have the object's), and for a mesh its triangles' corners, vertices (3 n) m."""
     shapes = []
     for at in range(model.ngeom):
         geom = model.geom(at)
@@ -33,7 +35,7 @@ def shapes_of(model: mujoco.MjModel, objects: tuple[str, ...]) -> list[dict[str,
             gloss = float(model.mat_specular[geom.matid[0]])
             if np.allclose(rgba, _DEFAULT_RGBA):
                 rgba = model.mat_rgba[geom.matid[0]]
-        if kind is None or rgba[3] == 0:
+        if kind is None or rgba[3] == 0 or geom.name in _LEFT_OUT:
             continue
         body = model.body(geom.bodyid[0]).name
         shape: dict[str, Any] = {
@@ -44,6 +46,7 @@ def shapes_of(model: mujoco.MjModel, objects: tuple[str, ...]) -> list[dict[str,
             "size": _short(geom.size),
             "colour": _short(rgba[:3]),
             "gloss": gloss,
+            "alpha": _SEEN_THROUGH if geom.name.startswith("pad_") else 1.0,
             "part": body if body in objects and "_element_" not in geom.name else geom.name,
         }
         if kind == "mesh":

@@ -5,30 +5,27 @@ B: rows, S: samples of a control step.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from gymnasium.utils.seeding import np_random
 
-from thermograsp.envs import GraspVectorEnv, Roughness, action_of
+from thermograsp.envs import GraspVectorEnv, Roughness
 from thermograsp.envs.grasp_task import TOUCHING
-from thermograsp.envs.mechanics import MAX_LIFT_RATE
 from thermograsp.envs.picture import temperatures
 from thermograsp.envs.scene import TIPS
-from thermograsp.plant import Reading
 from thermograsp.report.film import across
-from thermograsp.report.policies import Policy, policy
 from thermograsp.report.recording import columns_of
-from thermograsp.report.scripted import ScriptedGrasp
 from thermograsp.report.stopwatch import Stopwatch
 from thermograsp.thermal import TouchSetup
 from thermograsp.thermal.states import Orders
 from thermograsp.view.choices import Choices, Controls, Stock
+from thermograsp.view.driving import Driving
+from thermograsp.view.feeling import SPREAD
 from thermograsp.view.shapes import poses_of, shapes_of
 
 _FOREVER = 1e6  # s: an episode lasts as long as its visitor looks
-_APPROACH = 0.1  # s, time constant of the sliders' arm
 _UP = 1e-3  # m
 _NETWORK = "network:"
 
@@ -46,15 +43,17 @@ class Cost:
 
 
 class SimulatedGrasp:
-    """`choices` set up and reset. dt: s. rows: B. paced: whether a step takes as long as it lasts, as on hardware.
-    Raises InvalidValueError, such as for a tolerance that no network keeps."""
+    """`choices` set up and reset. dt: s. rows: B, called `names`. paced: whether a step takes as long as it lasts, as
+    on hardware. running: whether there is more to come. steps: so far. batch, plant: what is simulated. Raises
+    InvalidValueError, such as for a tolerance that no network keeps."""
 
     paced = False
-    running = True  # until its end, for what has one
+    running = True
 
     def __init__(self, choices: Choices, stock: Stock) -> None:
         self._choices, self._stock = choices, stock
-        self.rows = len(choices.materials)
+        self.names = choices.materials
+        self.rows = len(self.names)
         roughness = () if choices.roughness == 1.0 else (Roughness(choices.roughness, choices.roughness),)
         self._env = GraspVectorEnv(
             num_envs=self.rows,
@@ -67,64 +66,66 @@ class SimulatedGrasp:
             sensor_temperature=choices.thermostat,
             randomize=roughness,
         )
-        self._batch = self._env.batch
-        self._plant: Any = self._batch.plant
-        self.dt = self._batch.dt
+        self.batch = self._env.batch
+        self.plant: Any = self.batch.plant
+        self.dt = self.batch.dt
         self._watch = Stopwatch()
-        self._watch.put_on(self._batch, "step", "all")
-        self._watch.put_on(self._plant.heat, "advance", "heat")
-        self._model, self._data = (self._plant.mechanics.env_model(0), self._plant.mechanics.env_data(0))
-        self._drivers: dict[tuple[str, float], Policy | ScriptedGrasp] = {}
-        self.endings = [""] * self.rows
-        self.steps = 0
+        self._watch.put_on(self.batch, "step", "all")
+        self._watch.put_on(self.plant.heat, "advance", "heat")
+        self._model, self._data = (self.plant.mechanics.env_model(0), self.plant.mechanics.env_data(0))
+        self._driving = Driving(self._env, stock.network)
         self.reset(choices.seed)
 
     def reset(self, seed: int) -> None:
         """Begins anew; both rows with the same place and noise."""
         for row, name in enumerate(self._choices.materials):
             chosen = {"material": self._stock.materials[name]}
-            self._seen, self._reading = self._batch.reset([row], [np_random(seed)[0]], chosen)
-        self._drivers.clear()
-        self.endings, self.steps, self._seed = [""] * self.rows, 0, seed
+            self._seen, self._reading = self.batch.reset([row], [np_random(seed)[0]], chosen)
+        self._driving.restart(seed)
+        self._endings, self.steps = [""] * self.rows, 0
         for label in self._watch.seconds:
             self._watch.seconds[label] = 0.0
 
     def step(self, controls: Controls) -> dict[str, np.ndarray]:
         """One control step; the columns (B, S) of `thermograsp grasp --csv`."""
-        step = self._batch.step(self._action(controls))
+        step = self.batch.step(self._driving.action(controls, self._seen, self._reading))
         self._seen, self._reading = step.observation, step.reading
         for row, error in enumerate(step.reading.error):
             reasons = [name for name, ended in step.outcome.reasons.items() if ended[row]]
-            self.endings[row] = self.endings[row] or error or "".join(reasons[:1])
+            self._endings[row] = self._endings[row] or error or "".join(reasons[:1])
         self.steps += 1
         return columns_of([step.reading], self.dt, (self.steps - 1) * self.dt)
 
-    @property
-    def reading(self) -> Reading:
-        """The last one."""
-        return self._reading
-
     def shapes(self) -> list[dict[str, Any]]:
         """See shapes.py; all rows have the same."""
-        return shapes_of(self._model, self._plant.mechanics.names)
+        return shapes_of(self._model, self.plant.mechanics.names)
 
     def poses(self, row: int) -> list[list[float]]:
         """Of the row's bodies, now."""
-        self._plant.mechanics.env_data(row, self._data)
+        self.plant.mechanics.env_data(row, self._data)
         return poses_of(self._model, self._data)
 
-    def celsius(self, row: int) -> dict[str, float]:
-        """°C by part."""
-        parts = temperatures(self._reading, row)
-        parts |= {f"thermostat_{tip}": float(self._reading.thermostat[row, k]) for k, tip in enumerate(TIPS)}
-        return {name: round(value, 3) for name, value in parts.items()}
+    def told(self, row: int) -> dict[str, Any]:
+        """What the page is to show of a row: its bodies' poses; celsius, °C by part; across, °C from thermostat to
+        thermostat, see report.film.Still; how it ended, or its state; m of opening and height; the heat model's
+        cost."""
+        reading = self._reading
+        self.plant.mechanics.env_data(row, self._data)
+        celsius = temperatures(reading, row)
+        celsius |= {f"thermostat_{tip}": float(reading.thermostat[row, k]) for k, tip in enumerate(TIPS)}
+        return {
+            "poses": poses_of(self._model, self._data),
+            "celsius": {name: round(value, 3) for name, value in celsius.items()},
+            "across": [round(value, 2) for value in across(reading, row)],
+            "ending": self._endings[row],
+            "state": self._state(row),
+            "opening": round(float(reading.opening[row]), 6),
+            "height": round(float(reading.height[row]), 6),
+            "cost": asdict(self.cost(row)),
+        }
 
-    def across(self, row: int) -> list[float]:
-        """°C from thermostat to thermostat: see report.film.Still."""
-        return [round(value, 2) for value in across(self._reading, row)]
-
-    def state(self, row: int) -> str:
-        """What the row does, in a word or two."""
+    def _state(self, row: int) -> str:
+        """In a word or two."""
         pressing = self._reading.force[row, :, 0].min() > TOUCHING
         lift = float(self._reading.truth["lift"][row])
         if not pressing:
@@ -144,42 +145,20 @@ class SimulatedGrasp:
             spent["all"] / steps,
         )
 
-    def touch_setup(self, row: int) -> TouchSetup | None:
+    def touch_setup(self, row: int) -> TouchSetup:
         """What an identifier may know of the row's touch."""
-        thing = self._plant.things[row]
+        thing = self.plant.things[row]
         return TouchSetup(
             stack=thing.stack,
             mode=thing.mode,
             area=thing.geometry.area,
             object_size=thing.plate,
             fingertips=2,
-            chain=self._plant.config.chain,
-            object_temperature=(self._choices.object_temperature, 3.0),
+            chain=self.plant.config.chain,
+            object_temperature=(self._choices.object_temperature, SPREAD),
             sensor_temperature=(self._choices.thermostat, 0.1),
         )
 
     def close(self) -> None:
         """Releases the plant."""
-        self._batch.close()
-
-    def _action(self, controls: Controls) -> np.ndarray:
-        if controls.driver == "sliders":
-            rate = np.clip(
-                (controls.height - self._reading.height) / _APPROACH, -MAX_LIFT_RATE, MAX_LIFT_RATE
-            )
-            opening, force = np.full(self.rows, controls.opening), np.full(self.rows, controls.force)
-            return action_of(opening, force, rate).T.copy()  # pyright: ignore[reportArgumentType]
-        return self._driver(controls).action(self._seen)
-
-    def _driver(self, controls: Controls) -> Policy | ScriptedGrasp:
-        key = (controls.driver, controls.force if controls.driver == "scripted" else 0.0)
-        if key not in self._drivers:
-            self._drivers.clear()
-            if controls.driver == "scripted":
-                self._drivers[key] = ScriptedGrasp(self.rows, self.dt, controls.force)
-            else:
-                own = controls.driver == "trained" and self._stock.network
-                chosen = policy(self._env, own or controls.driver)
-                chosen.restart(range(self.rows), [self._seed] * self.rows)
-                self._drivers[key] = chosen
-        return self._drivers[key]
+        self.batch.close()

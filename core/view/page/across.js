@@ -1,29 +1,33 @@
 // Temperatures from thermostat to thermostat through both contacts, as a band of colours with its figures.
 
-import { css, inkOn, rowColour, temperatureColour } from "./colours.js";
+import { css, inkOn, temperatureColour } from "./colours.js";
 
-const NAMES = ["thermostat", "sensor", "face", "object", "face", "sensor", "thermostat"];
+const NAMES = {
+  T: ["thermostat", "sensor’s face", "object’s face", "object"],
+  O: ["thermostat", "its face", "element’s face", "object"],
+};
 
-export function showAcross(holder, rows) {
+export function showAcross(holder, rows, mode) {
+  const names = [...NAMES[mode], ...NAMES[mode].slice(0, 3).reverse()];
   if (holder.children.length !== rows.length + 1) {
-    holder.replaceChildren(...rows.map(() => band("across", "i", NAMES.map(() => ""))), band("across-key", "span", NAMES));
+    holder.replaceChildren(...rows.map(() => band("across", "i")), band("across-key", "span"));
   }
   rows.forEach(({ across }, row) => {
-    const cells = holder.children[row].children;
-    holder.children[row].style.setProperty("--row", rowColour(row));
     holder.children[row].hidden = !across;
+    const { children } = holder.children[row];
     across?.forEach((celsius, at) => {
       const colour = temperatureColour(celsius);
-      cells[at].textContent = celsius.toFixed(1);
-      cells[at].style.background = css(colour);
-      cells[at].style.color = inkOn(colour);
+      children[at].textContent = celsius.toFixed(1);
+      children[at].style.background = css(colour);
+      children[at].style.color = inkOn(colour);
     });
   });
+  names.forEach((name, at) => { holder.lastChild.children[at].textContent = name; });
   holder.lastChild.hidden = !rows[0]?.across;
 }
 
-function band(name, kind, texts) {
+function band(name, kind) {
   const holder = Object.assign(document.createElement("div"), { className: name });
-  holder.append(...texts.map((textContent) => Object.assign(document.createElement(kind), { textContent })));
+  for (let k = 0; k < 7; k++) holder.append(document.createElement(kind));
   return holder;
 }

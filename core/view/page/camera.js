@@ -1,6 +1,6 @@
 // A camera that circles a point: drag, pinch, wheel, or the arrow keys. Matrices are column-major, as WebGL has them.
 
-const START = { azimuth: -0.95, elevation: 0.34, distance: 0.42, target: [0, 0, 0.062] };
+const START = { azimuth: -1.17, elevation: 0.3, distance: 0.37, target: [0, 0, 0.066] };
 const LIMITS = { elevation: [-0.1, 1.45], distance: [0.16, 1.2] };
 
 export class Camera {
@@ -59,7 +59,7 @@ export class Camera {
 
   // In a narrow picture the gripper's width must fit, in a wide one its height.
   matrix(aspect) {
-    const half = Math.tan(0.36) * Math.max(1, 1.05 / aspect);
+    const half = Math.tan(0.36) * Math.max(1, 0.78 / aspect);
     return multiplied(perspective(half, aspect, 0.02, 4), lookAt(this.eye, this.target));
   }
 }

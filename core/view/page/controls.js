@@ -34,7 +34,7 @@ export class Controls {
   offer(hello) {
     this.#choices = hello.choices;
     fill(element("material"), groups(hello));
-    fill(element("other"), [["", [["", "nothing"]]], ...groups(hello)]);
+    fill(element("other"), [["", [["", "with nothing"]]], ...groups(hello)]);
     fill(element("shape"), [["", hello.shapes.map((name) => [name, name])]]);
     fill(element("speed"), [["", hello.speeds.map((speed) => [speed, `${speed} ×`])]]);
     element("driver").replaceChildren(...hello.drivers.map((name) => radio("driver", name, ...DRIVERS[name])));

@@ -98,20 +98,22 @@ function show({ rows }) {
   })));
   CURVES.forEach((name, at) => {
     plots[name].draw(memory.time, memory.rows.flatMap((row, number) => row.slice(2 * at, 2 * at + 2).map((values, side) => (
-      { values, colour: rowColour(number), dashed: side === 1 }))));
+      { values, colour: rowColour(number), dashed: side === 1 }))).filter(({ values }) => values.length));
   });
-  showAcross(element("across"), rows);
+  showAcross(element("across"), rows, controls.choices.mode);
   showBelief(element("belief"), posteriors, materials);
   rows.forEach(({ ending, state }, row) => {
     const note = element("names").children[row]?.lastChild;
     if (note) note.textContent = ending || state;
   });
-  element("cost").textContent = rows.map(({ cost }) => cost).filter(Boolean).map(described).join(" · ");
+  element("cost").textContent = described(rows.map(({ cost }) => cost).filter(Boolean));
 }
 
-function described({ rung, states, multiply_adds: adds, heat, all }) {
-  const share = all ? `, ${Math.round(1e6 * heat)} of ${Math.round(1e6 * all)} µs a step` : "";
-  return `${rung}: ${states} states, ${adds} multiply-adds a sample${share}`;
+function described(costs) {
+  if (!costs.length) return "";
+  const rungs = costs.map(({ rung, states, multiply_adds: adds }) => `${rung}: ${states} states, ${adds} multiply-adds a sample`);
+  const { heat, all } = costs[0];
+  return `${[...new Set(rungs)].join("\n")}\nHeat takes ${Math.round(1e6 * heat)} of a step’s ${Math.round(1e6 * all)} µs`;
 }
 
 function remember({ time, rows }) {
@@ -119,7 +121,7 @@ function remember({ time, rows }) {
   memory.time.push(...time);
   rows.forEach((curves, row) => {
     memory.rows[row] ??= curves.map(() => []);
-    curves.forEach((values, at) => memory.rows[row][at].push(...values));
+    curves.forEach((values, at) => memory.rows[row][at].push(...(values ?? [])));
   });
   const extra = memory.time.length - KEPT;
   if (extra > KEPT) {
@@ -137,7 +139,7 @@ function showPace({ time, controls: { playing, speed } }) {
     return;
   }
   const rate = (1000 * (time - pace.time)) / (now - pace.wall);
-  element("pace").textContent = Math.abs(rate - speed) < 0.05 * speed ? `at ${speed} ×` : `at ${rate.toFixed(2)} × (this machine can no more)`;
+  element("pace").textContent = rate > 0.93 * speed ? `at ${speed} ×` : `at ${rate.toFixed(2)} ×, slower than asked`;
   Object.assign(pace, { wall: now, time });
 }
 

@@ -63,7 +63,11 @@ export class Plot {
       c.setLineDash(curve.dashed ? [5, 4] : []);
       c.beginPath();
       const stride = Math.max(1, Math.floor((time.length - first) / (2 * width)));
-      for (let k = first; k < time.length; k += stride) c.lineTo(x(time[k]), y(curve.values[k] * this.scale));
+      for (let k = first, gap = true; k < time.length; k += stride) {
+        const value = curve.values[k];
+        if (value !== null) c[gap ? "moveTo" : "lineTo"](x(time[k]), y(value * this.scale));
+        gap = value === null;
+      }
       c.stroke();
     }
     c.restore();

@@ -42,6 +42,8 @@ export class Scene {
     this.dark = shadowMap(gl);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.CULL_FACE);
+    gl.enable(gl.BLEND);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
   show(shapes) {
@@ -50,7 +52,8 @@ export class Scene {
       gl.deleteBuffer(buffer);
       gl.deleteVertexArray(array);
     }
-    this.#shapes = shapes.map((shape) => ({ shape, ...upload(gl, triangles(shape)) }));
+    const ordered = [...shapes].sort((a, b) => b.alpha - a.alpha); // what can be seen through comes last
+    this.#shapes = ordered.map((shape) => ({ shape, ...upload(gl, triangles(shape)) }));
     this.redraw();
   }
 
@@ -96,15 +99,17 @@ export class Scene {
       gl.uniformMatrix4fv(uniform.lamp, false, LAMP);
       gl.uniform3fv(uniform.eye, this.camera.eye);
       gl.uniform3fv(uniform.light, LIGHT);
-      gl.uniform1f(uniform.shadows, 1);
       gl.bindTexture(gl.TEXTURE_2D, this.dark.texture);
       for (const one of this.#shapes) {
         const celsius = row.colours[one.shape.part];
         gl.uniform3fv(uniform.colour, celsius ?? one.shape.colour);
         gl.uniform1f(uniform.gloss, celsius ? 0.15 : one.shape.gloss);
         gl.uniform1f(uniform.flatness, celsius ? 0.7 : 0);
+        gl.uniform1f(uniform.alpha, one.shape.alpha);
+        gl.depthMask(one.shape.alpha === 1);
         this.#place(this.surface, one, row);
       }
+      gl.depthMask(true);
     });
   }
 

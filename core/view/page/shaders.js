@@ -23,11 +23,10 @@ precision highp sampler2DShadow;
 in vec3 at, facing;
 in vec4 inLamp;
 uniform vec3 colour, eye, light;
-uniform float gloss, flatness, shadows;
+uniform float gloss, flatness, alpha;
 uniform sampler2DShadow dark;
 out vec4 result;
 float lit() {
-  if (shadows < 0.5) return 1.0;
   vec3 p = inLamp.xyz / inLamp.w * 0.5 + 0.5;
   if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
   float sum = 0.0;
@@ -45,7 +44,7 @@ void main() {
   float fill = 0.16 * max(dot(n, normalize(vec3(-0.7, 0.5, 0.2))), 0.0);
   vec3 shaded = base * (sky + fill + 0.85 * shade) + gloss * 0.35 * shade * pow(max(dot(n, half_), 0.0), 42.0);
   vec3 plain = base * (0.72 + 0.28 * shade);
-  result = vec4(pow(mix(shaded, plain, flatness), vec3(1.0 / 2.2)), 1.0);
+  result = vec4(pow(mix(shaded, plain, flatness), vec3(1.0 / 2.2)), alpha);
 }`;
 
 export const SHADOW = `#version 300 es

@@ -1,0 +1,96 @@
+"""A real gripper with fingertips on serial ports, driven from the studio."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from gymnasium.utils.seeding import np_random
+
+from thermograsp.envs import GraspVectorEnv
+from thermograsp.envs.grasp_task import TOUCHING
+from thermograsp.envs.scene import TIPS
+from thermograsp.errors import InvalidValueError
+from thermograsp.thermal import TouchSetup
+from thermograsp.twin.beside import measured_columns
+from thermograsp.view.choices import Choices, Controls, Stock
+from thermograsp.view.driving import Driving
+from thermograsp.view.feeling import known_touch
+from thermograsp.view.puppet import Puppet
+
+_FOREVER = 1e6  # s
+_DRIVERS = ("scripted", "sliders")  # the others need an arm that lifts
+
+
+class MeasuredGrasp:
+    """See SimulatedGrasp; a reset opens the fingers and waits for the thermostats. Of the choices the mode and the
+    temperatures count, as what identification may know. Raises DeviceError where the devices do not answer."""
+
+    paced = True
+    rows = 1
+    names = ("real object",)
+
+    def __init__(self, choices: Choices, stock: Stock) -> None:
+        assert stock.plant is not None
+        self._choices = choices
+        self._env = GraspVectorEnv(num_envs=1, plant=stock.plant, seconds=_FOREVER)
+        self._batch = self._env.batch
+        self._plant: Any = self._batch.plant
+        self.dt = self._batch.dt
+        self._driving = Driving(self._env, stock.network)
+        self._puppet = Puppet(None)
+        self.reset(choices.seed)
+
+    def reset(self, seed: int) -> None:
+        """Opens, and begins anew."""
+        self._seen, self.reading = self._batch.reset([0], [np_random(seed)[0]])
+        self._driving.restart(seed)
+        self.steps = 0
+
+    @property
+    def running(self) -> bool:
+        """Until something goes wrong."""
+        return not self.reading.error[0]
+
+    def step(self, controls: Controls) -> dict[str, np.ndarray]:
+        """One control step, which takes as long as it lasts; the columns (1, S)."""
+        if controls.driver not in _DRIVERS:
+            raise InvalidValueError(
+                f"driver {controls.driver!r} needs an arm that lifts: use {' or '.join(_DRIVERS)}"
+            )
+        step = self._batch.step(self._driving.action(controls, self._seen, self.reading))
+        self._seen, self.reading = step.observation, step.reading
+        samples = self._plant.config.samples
+        time = (self.steps + (np.arange(samples) + 1) / samples) * self.dt
+        self.steps += 1
+        columns = {"time_s": time, **measured_columns([step.reading], samples)}
+        return {name: np.asarray(values)[None] for name, values in columns.items()}
+
+    def shapes(self) -> list[dict[str, Any]]:
+        """See shapes.py."""
+        return self._puppet.shapes()
+
+    def told(self, row: int) -> dict[str, Any]:
+        """See SimulatedGrasp."""
+        reading = self.reading
+        opening, height = float(reading.opening[row]), float(reading.height[row])
+        celsius = {
+            f"thermostat_{tip}": round(float(reading.thermostat[row, k]), 3) for k, tip in enumerate(TIPS)
+        }
+        return {
+            "poses": self._puppet.poses(opening, height, 0.0),
+            "celsius": celsius,
+            "ending": reading.error[row],
+            "state": "gripped" if reading.force[row, :, 0].min() > TOUCHING else "apart",
+            "opening": opening,
+            "height": height,
+        }
+
+    def touch_setup(self, row: int) -> TouchSetup:
+        """See SimulatedGrasp."""
+        del row
+        return known_touch(self._choices, 2)
+
+    def close(self) -> None:
+        """Releases the ports; the fingers stay as they are."""
+        self._batch.close()
