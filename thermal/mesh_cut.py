@@ -15,19 +15,18 @@ from numba import njit
 _MOST_CORNERS = 12  # of a triangle clipped by six planes: 9
 
 
-def cut_mesh(
-    triangles: np.ndarray, edges: tuple[np.ndarray, np.ndarray, np.ndarray]
-) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+Edges = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Cell boundaries m along the three axes."""
+
+
+def cut_mesh(triangles: np.ndarray, edges: Edges) -> tuple[np.ndarray, Edges]:
     """Volumes (I, J, K) m3 inside a closed mesh, and open areas m2 of the faces across the axes: (I + 1, J, K),
     (I, J + 1, K), (I, J, K + 1).
 
-    triangles: (F, 3, 3) m, outward counter-clockwise. edges: cell boundaries m along the axes, around the whole mesh.
-    Where surfaces overlap, what is inside both counts once in a cell that is wholly inside.
+    triangles: (F, 3, 3) m, outward counter-clockwise. edges: around the whole mesh. What overlapping surfaces enclose
+    twice counts once in a cell that is wholly inside.
     """
-    x, y, z = edges
-    shape = (len(x) - 1, len(y) - 1, len(z) - 1)
-    walls, moments = np.zeros((*shape, 3)), np.zeros(shape)
-    _accumulate(np.ascontiguousarray(triangles, float), x, y, z, walls, moments)
+    volumes, walls = enclosed(triangles, edges)
     open_areas = []
     for axis in range(3):
         padding = [(0, 0)] * 3
@@ -36,11 +35,21 @@ def cut_mesh(
         across = [np.diff(e) for a, e in enumerate(edges) if a != axis]
         full = np.expand_dims(np.multiply.outer(*across), axis)
         open_areas.append(np.clip(passed, 0.0, full))
-    width = np.diff(x)[:, None, None]
-    right = -np.cumsum(walls[..., 0], axis=0)
-    volumes = moments - x[:-1, None, None] * walls[..., 0] + width * right
-    full = width * np.diff(y)[:, None] * np.diff(z)
+    x, y, z = (np.diff(e) for e in edges)
+    full = x[:, None, None] * y[:, None] * z
     return np.clip(volumes, 0.0, full), (open_areas[0], open_areas[1], open_areas[2])
+
+
+def enclosed(triangles: np.ndarray, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
+    """Volumes (I, J, K) m3, each counted as often as it is enclosed and negative where inside out, and the area
+    vectors (I, J, K, 3) m2 of the mesh within each cell."""
+    x, y, z = edges
+    shape = (len(x) - 1, len(y) - 1, len(z) - 1)
+    walls, moments = np.zeros((*shape, 3)), np.zeros(shape)
+    _accumulate(np.ascontiguousarray(triangles, float), x, y, z, walls, moments)
+    right = -np.cumsum(walls[..., 0], axis=0)
+    volumes = moments - x[:-1, None, None] * walls[..., 0] + np.diff(x)[:, None, None] * right
+    return volumes, walls
 
 
 @njit(cache=True)

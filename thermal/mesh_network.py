@@ -21,7 +21,7 @@ from thermograsp.files import cached_arrays
 from .mesh_grid import MeshGrid, MeshGridding, grid_axes, grid_frame, mesh_grid
 from .mesh_patch import PatchOnGrid, patch_on_grid, place_patch
 from .mesh_patterns import PatchPatterns, uniform_pattern
-from .mesh_solid import Solid, SurfacePatch, surface_patches
+from .mesh_solid import Solid, SurfacePatch, checked, surface_patches
 from .mesh_solve import conduct, solve_shifted
 from .network import ThermalNetwork
 
@@ -54,8 +54,8 @@ def body_network(
     term is 0.
     cache: keep it on disk, by content.
 
-    Raises MeshError where a patch does not meet the surface or the object is in pieces, InvalidValueError for values
-    that make no sense.
+    Raises MeshError where a patch does not meet the surface, or the object is in pieces, crosses itself or is metres
+    long, and InvalidValueError for values that make no sense.
     """
     patches = surface_patches(patches)
     where = np.asarray(points, float).reshape(-1, 3)
@@ -65,7 +65,7 @@ def body_network(
     patterns = patterns or uniform_pattern()
 
     def build() -> dict[str, np.ndarray]:
-        frame = grid_frame(body, patches)
+        frame = grid_frame(checked(body), patches)
         grid, placed = _gridded(body, patches, frame, gridding, patterns)
         rates, ports, basis = _reduced(grid, placed)
         cells = _nearest(grid, where @ frame.T)

@@ -10,8 +10,11 @@ import numpy as np
 from thermograsp.errors import InvalidValueError, MeshError, positive
 
 from .materials import Material
+from .mesh_check import open_edges, wrongly_enclosed
 
-_CLOSED = 1e-6  # of the surface: the sum of its area vectors, 0 for a closed one
+LARGEST = 5.0  # m, the longest side of an object that a hand may touch
+SMALLEST = 0.5e-3
+_TWICE = 1e-3  # of the volume that may be enclosed twice or inside out
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,10 +47,12 @@ class SolidPart:
             raise MeshError("the part has vertices that are not finite: export it again")
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
-        areas = self.area_vectors
-        total = np.linalg.norm(areas, axis=1).sum()
-        if not np.linalg.norm(areas.sum(axis=0)) <= _CLOSED * total:
-            raise MeshError("the part's surface is not closed, so it has no inside: close its holes")
+        loose = open_edges(faces, len(vertices))
+        if loose:
+            raise MeshError(
+                f"the part is not closed, {loose} of its edges have no face on their other side, or one "
+                "that is turned the wrong way: merge its vertices, close its holes and turn its faces outward"
+            )
         if not self.volume > 0:
             raise MeshError(
                 f"the part encloses {self.volume:.3g} m3: turn its faces outward, or give a solid, not a sheet"
@@ -123,6 +128,24 @@ class SurfacePatch:
     def half_width(self) -> float:
         """m, half the square's side."""
         return float(np.sqrt(self.area)) / 2
+
+
+def checked(body: Solid) -> Solid:
+    """The object. Raises MeshError where it is far larger or smaller than what a fingertip touches, or where a part
+    encloses volume twice or inside out, with how much."""
+    longest = float(np.ptp(body.bounds, axis=0).max())
+    if not SMALLEST <= longest <= LARGEST:
+        advice = "lengths are metres: multiply them by 0.001 if yours are millimetres"
+        raise MeshError(f"the object is {longest:.4g} m long, not {SMALLEST:g} .. {LARGEST:g} m; {advice}")
+    for number, part in enumerate(body.parts):
+        twice, inside_out = wrongly_enclosed(part.triangles)
+        for volume, how in ((twice, "twice"), (inside_out, "inside out")):
+            if volume > _TWICE * part.volume:
+                raise MeshError(
+                    f"part {number} encloses {1e6 * volume:.3g} of its {1e6 * part.volume:.3g} cm3 {how}, since its "
+                    "surfaces cross: unite them (Blender: Boolean, union; trimesh: trimesh.boolean.union)"
+                )
+    return body
 
 
 def solid(vertices: np.ndarray, faces: np.ndarray, material: Material) -> Solid:
