@@ -33,7 +33,8 @@ class Reading(NamedTuple):
     the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows; on
     hardware `unknown`, the names that are missing, and `late`, s by which the step's end was missed. error: (B,) why an
     environment can't go on, "" while it can. told: names of what info tells of truth at every step. lateral (B,) m of
-    the arm along the table, None without such an axis.
+    the arm along the table, None without such an axis. pressure (B, F, n, m) Pa over each pad, rows from the
+    fingertip's end up, columns along its horizontal axis; None without taxels.
     """
 
     opening: np.ndarray
@@ -46,6 +47,7 @@ class Reading(NamedTuple):
     error: tuple[str, ...]
     told: tuple[str, ...] = ()
     lateral: np.ndarray | None = None
+    pressure: np.ndarray | None = None
 
 
 def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:

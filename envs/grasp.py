@@ -138,6 +138,10 @@ class GraspBatch:
         self.plant: Plant = plant_factory(plant)(plant, num_envs, **config)
         self.num_envs = num_envs
         self._observer = observer(num_envs)
+        if config.get("taxels") is not None:
+            from .taxel_observation import TaxelObserver  # nothing that taxels need is loaded without them
+
+            self._observer = TaxelObserver(self._observer, config["taxels"])
         self.observation_space = self._observer.space
         self.action_space = self.task.action_space()
         self._judged = self.task.fresh(num_envs)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import mujoco.batch
@@ -23,6 +23,9 @@ from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .mechanics_kernel import ADDRESSES, LIFT_ACCELERATION, Motion, any_risen, set_points, summarise
 from .scene import MAX_LATERAL_RATE, MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
 from .solver_settings import SHIPPED, SolverSettings
+
+if TYPE_CHECKING:
+    from .pad_contacts import PadContacts
 
 SUBSTEPS = 10
 MAX_FORCE = 40.0  # N
@@ -90,7 +93,7 @@ class Mechanics:
     objects: what every environment holds at first; later ones may differ in all but name and number. Meshes that
     come later must be in `library`. threads: 0 means all CPUs. settings: of MuJoCo. lateral: the arm slides along y.
     gripper: in place of the shipped one; it opens as wide and closes as hard as it can, whatever more is commanded.
-    model: the compiled model of the first objects (MjModel).
+    contacts: `pad_contacts` can be asked. model: the compiled model of the first objects (MjModel).
 
     The gripper's low-level law is in the model: a servo on the opening whose set point moves at a bounded
     rate and whose closing force saturates at the force limit, in every substep.
@@ -106,6 +109,7 @@ class Mechanics:
         settings: SolverSettings = SHIPPED,
         lateral: bool = False,
         gripper: GripperModel = SHIPPED_GRIPPER,
+        contacts: bool = False,
     ) -> None:
         if num_envs < 1 or threads < 0:
             raise InvalidValueError(f"num_envs {num_envs}, threads {threads}: give >= 1 and >= 0")
@@ -113,6 +117,8 @@ class Mechanics:
         self._settings, self._sideways, self.gripper = settings, lateral, gripper
         # Another gripper may do less than a command can say.
         self._weaker = gripper.widest < MAX_OPENING or gripper.strongest < MAX_FORCE
+        self._recorded = (*_RECORD, "site_xpos") if contacts else _RECORD
+        self._latest: dict[Any, np.ndarray] = {}
         self.num_envs = num_envs
         self.objects: list[tuple[ObjectSpec, ...]] = [tuple(objects)] * num_envs
         self.names = tuple(o.name for o in objects)
@@ -263,8 +269,8 @@ class Mechanics:
     ) -> Motion:
         """The same step, told of the first object in brief: all that heat and observations need, at a fraction of the
         cost. The arrays are the caller's own."""
-        out = self._roll(opening, force_limit, lift_rate, substeps)
-        return self._motion(out, self._layout, substeps)
+        self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
+        return self._motion(self._latest, self._layout, substeps)
 
     def slide(
         self,
@@ -283,8 +289,27 @@ class Mechanics:
         change = LIFT_ACCELERATION * substeps * self._settings.timestep
         last = self._ctrl[:, servo]
         self._ctrl[:, servo] = np.clip(rate, last - change, last + change)
-        out = self._roll(opening, force_limit, lift_rate, substeps)
-        return tuple(self._motion(out, layout, substeps) for layout in self._layouts)
+        self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
+        return tuple(self._motion(self._latest, layout, substeps) for layout in self._layouts)
+
+    def pad_contacts(self) -> tuple[PadContacts, ...]:
+        """Where on the pads each object pressed in the last `advance` or `slide`. Needs contacts=True, and is to be
+        asked before the next step."""
+        from .pad_contacts import PadContacts, pad_contacts
+
+        out, tips = self._latest, len(TIPS)
+        told = []
+        for layout in self._layouts:
+            contacts = PadContacts(
+                np.empty((self.num_envs, tips)),
+                np.empty((self.num_envs, tips, 2)),
+                np.empty((self.num_envs, tips, 4, 3)),
+            )
+            pad_contacts(
+                layout, out["sensordata"], out["site_xpos"], out["site_xmat"], *self._moved[1:3], *contacts
+            )
+            told.append(contacts)
+        return tuple(told)
 
     def _along_y(self) -> tuple[int, int]:
         """Where the arm's position is in qpos and its servo in ctrl."""

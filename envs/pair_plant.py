@@ -68,7 +68,9 @@ class PairPlant:
             settings=config.solver,
             gripper=config.gripper_for(possible),
             lateral=True,
+            contacts=config.taxels is not None,
         )
+        self._taxels = config.tactile
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.heat = PairHeat(num_envs, **config.heat)
@@ -157,6 +159,7 @@ class PairPlant:
             error=error,
             told=PAIR_TOLD,
             lateral=self.mechanics.lateral,
+            pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
@@ -285,6 +288,7 @@ class PairPlant:
             error=error,
             told=PAIR_TOLD,
             lateral=self.mechanics.lateral,
+            pressure=None if self._taxels is None else self._taxels.nothing(rows),
         )
 
 

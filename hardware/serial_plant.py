@@ -294,6 +294,10 @@ def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
         )
     if num_envs != 1:
         raise InvalidValueError(f"a serial plant is one gripper, so num_envs must be 1, got {num_envs}")
+    if config.pop("taxels", None) is not None:
+        raise InvalidValueError(
+            "taxels are simulated: a real fingertip has one load cell and no map of pressure; leave taxels out"
+        )
     try:
         settings = SerialConfig(**config)
     except TypeError as error:
