@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -80,19 +80,24 @@ def rotation(quat: np.ndarray) -> np.ndarray:
     return matrix.reshape(3, 3)
 
 
-def largest_face(parts: Iterable[tuple[str, np.ndarray]], direction: np.ndarray) -> Face | None:
-    """The largest flat face that looks along `direction` (unit vector), among parts (geom's name, triangles (n, 3, 3)
-    m); where others of at least half its size lie further out, the outermost. None where there is none."""
+def flat_faces(parts: Iterable[tuple[str, np.ndarray]], direction: np.ndarray) -> list[Face]:
+    """Each part's largest flat face that looks along `direction` (unit vector). parts: geom's name, triangles (n, 3, 3)
+    m. Nearly flat ones where none is flat."""
     parts, found = list(parts), []
     for angle, uneven in _FLATNESS:
         faces = (_face_of(name, shape, direction, math.cos(angle), uneven) for name, shape in parts)
         found = [face for face in faces if face is not None]
         if max((face.area for face in found), default=0.0) >= _ENOUGH:
             break
-    if not found:
+    return found
+
+
+def largest_face(faces: Sequence[Face], direction: np.ndarray) -> Face | None:
+    """The largest of them; where others of at least half its size lie further out, the outermost. None for none."""
+    if not faces:
         return None
-    scores = [face.area * float(face.normal @ direction) for face in found]
-    fit = [face for face, score in zip(found, scores, strict=True) if score >= _NEAR * max(scores)]
+    scores = [face.area * float(face.normal @ direction) for face in faces]
+    fit = [face for face, score in zip(faces, scores, strict=True) if score >= _NEAR * max(scores)]
     return max(fit, key=lambda face: (round(float(face.centre @ direction), 5), face.area))
 
 

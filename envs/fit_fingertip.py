@@ -75,7 +75,7 @@ def fit_fingertip(
     force N and its centre m, world frame, of the pad on whatever it touches.
 
     Raises UnknownNameError (body, geom, towards) and GripperError for a spec that does not compile or has no actuators
-    where they are needed, and for a body without a flat face that way.
+    where they are needed, for a body without a flat face that way, and for a name that is taken.
     """
     model = compiled(spec)[1]
     bodies = {model.body(b).name: b for b in range(model.nbody)}
@@ -83,6 +83,11 @@ def fit_fingertip(
         raise unknown_name("body", body, [known for known in bodies if known])
     face = _face(model, bodies, body, pad, towards)
     tip = name or body
+    taken = [one for one in _names(tip) if _has(spec, one)]
+    if taken:
+        raise GripperError(
+            f"name={tip!r}: the spec has {', '.join(map(repr, taken))} already; give another name"
+        )
     axes = frame(face.normal, -face.centre if up is None else np.asarray(up, float))
     added = add_fingertip(spec.body(body), tip, face.centre, axes, compliant=compliant)
     _add_touch(spec, tip)
@@ -119,6 +124,17 @@ def _face(
             "the pad is (pad=(position, normal) in its frame, m)"
         )
     return face
+
+
+def _names(tip: str) -> tuple[str, ...]:
+    """Of what a fingertip of that name adds."""
+    kinds = ("tip_{}", "tip_{}_pitch", "tip_{}_yaw", "pad_{}", "thermostat_{}", "sensor_{}", "contact_{}")
+    return tuple(kind.format(tip) for kind in kinds)
+
+
+def _has(spec: mujoco.MjSpec, name: str) -> bool:
+    lists = (spec.bodies, spec.joints, spec.geoms, spec.sites, spec.sensors)
+    return any(one.name == name for kind in lists for one in kind)
 
 
 def frame(normal: np.ndarray, up: np.ndarray) -> np.ndarray:

@@ -16,10 +16,10 @@ Source = str | os.PathLike[str] | mujoco.MjSpec
 
 
 def compiled(source: Source) -> tuple[str, mujoco.MjModel]:
-    """Its name and model; a spec is copied, not changed. Raises GripperError for what is missing, is no MJCF, or does
+    """Its name and model. Raises GripperError for what is missing, is no MJCF, or does
     not compile, with MuJoCo's reason."""
     if isinstance(source, mujoco.MjSpec):
-        name, spec = source.modelname or "MjSpec", source.copy()
+        name, spec = source.modelname or "MjSpec", source  # a copy would lose what refers to nothing
     else:
         path = Path(source)
         name, spec = path.name, _parsed(path)

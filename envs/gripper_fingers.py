@@ -18,10 +18,11 @@ import numpy as np
 
 from thermograsp.errors import GripperError, InvalidValueError, unknown_name
 
-from .faces import Face, largest_face, triangles
+from .faces import Face, flat_faces, largest_face, triangles
 from .gripper_mechanism import Mechanism
 
 SMALLEST_FACE = 20e-6  # m2
+_ASIDE = 0.02  # m off a finger's way at which a face counts half
 _STEP = 1e-3  # of a coordinate's range, for derivatives
 
 Pad = str | tuple[Sequence[float], Sequence[float]]
@@ -197,26 +198,55 @@ class Hand:
         length = float(np.linalg.norm(moved))
         return moved * approach / length if approach > 1e-6 else np.zeros(3)
 
-    def finger(self, body: int, other: int, pad: Pad | None = None) -> Finger | None:
+    def finger(
+        self, body: int, other: int, pad: Pad | None = None, facing: Finger | None = None
+    ) -> Finger | None:
         """The body as a finger that closes on the other one; None where no flat face looks that way. pad: where it is,
-        if not to be found. Raises UnknownNameError or GripperError for a pad that is none."""
+        if not to be found. facing: the other one, for a body that does not move and has faces of all kinds. Raises
+        UnknownNameError or GripperError for a pad that is none."""
         model, mechanism = self.model, self.mechanism
         way = self.closing(body, other)
         approach = float(np.linalg.norm(way))
-        if not way.any():
+        if not approach:
             way = -self.closing(other, body)
         if not way.any():
             return None
+        way = way / np.linalg.norm(way)
         mechanism.pose(mechanism.middle)
         _, axes = mechanism.place(body)
-        local = axes.T @ way / np.linalg.norm(way)
-        face = chosen_face(self.parts(body), pad, local, model.body(body).name)
+        parts = self.parts(body)
+        if facing is not None and pad is None and not approach:
+            face = self._opposite(parts, body, facing, way)
+        else:
+            face = chosen_face(parts, pad, axes.T @ way, model.body(body).name)
         if face is None or face.area < SMALLEST_FACE:
             return None
         along = self._along(body, face)
-        digit = self.digit(body)
         name = model.body(body).name or f"#{body}"
-        return Finger(body, name, digit, self.moves(body), face, along, approach)
+        return Finger(body, name, self.digit(body), self.moves(body), face, along, approach)
+
+    def _opposite(
+        self, parts: list[tuple[str, np.ndarray]], body: int, facing: Finger, way: np.ndarray
+    ) -> Face | None:
+        """Of a body that stands still, the largest face that a moving finger comes to meet; way: world, out of it."""
+        mechanism = self.mechanism
+        origin, axes = mechanism.place(body)
+        spots = []
+        for end in (mechanism.low, mechanism.high):
+            values = mechanism.middle.copy()
+            values[list(facing.moves)] = end[list(facing.moves)]
+            mechanism.pose(values)
+            there, turned = mechanism.place(facing.body)
+            spots.append(axes.T @ (there + turned @ facing.face.centre - origin))
+        way = axes.T @ way
+        start = max(spots, key=lambda spot: float(spot @ way))
+        met = []
+        for face in flat_faces(parts, way):
+            ahead = start - face.centre
+            aside = float(np.linalg.norm(ahead - (ahead @ way) * way))
+            if ahead @ way > 0:
+                met.append((face.area / (1 + (aside / _ASIDE) ** 2), face))
+        return max(met, key=lambda one: one[0])[1] if met else None
 
     def _along(self, body: int, face: Face) -> np.ndarray:
         """From the first joint of the digit to the face, in the body's frame and across the face's normal."""
@@ -253,12 +283,12 @@ def chosen_face(
 ) -> Face | None:
     """The face that is named, placed or found."""
     if pad is None:
-        return largest_face(parts, direction)
+        return largest_face(flat_faces(parts, direction), direction)
     if isinstance(pad, str):
         own = [(name, shape) for name, shape in parts if name == pad]
         if not own:
             raise unknown_name(f"geom with faces on {body!r}", pad, [name for name, _ in parts])
-        face = largest_face(own, direction)
+        face = largest_face(flat_faces(own, direction), direction)
         if face is None:
             raise GripperError(f"geom {pad!r} of {body!r} has no flat face towards the closing direction")
         return face
@@ -280,7 +310,8 @@ def pairs(hand: Hand, pads: Sequence[Pad | None] = (None, None)) -> list[tuple[F
         two = [(tips[-1], hand.palm)]
     found = []
     for a, b in two:
-        first, second = hand.finger(a, b, pads[0]), hand.finger(b, a, pads[1])
+        first = hand.finger(a, b, pads[0])
+        second = hand.finger(b, a, pads[1], first)
         if first is not None and second is not None:
             found.append((first, second))
     if not found:
@@ -297,9 +328,12 @@ def named_pair(hand: Hand, names: Sequence[str], pads: Sequence[Pad | None]) -> 
     if len(names) != 2 or len(set(names)) < 2:
         raise InvalidValueError(f"fingertips {tuple(names)}: name two that close on each other")
     a, b = (hand.tip_of(name) for name in names)
-    fingers = []
-    for body, other, pad in ((a, b, pads[0]), (b, a, pads[1])):
-        finger = hand.finger(body, other, pad)
+    fingers: list[Finger] = []
+    still_last = [(a, b, pads[0]), (b, a, pads[1])]
+    if not hand.moves(a):
+        still_last.reverse()
+    for body, other, pad in still_last:
+        finger = hand.finger(body, other, pad, fingers[0] if fingers else None)
         if finger is None:
             raise GripperError(
                 f"{hand.model.body(body).name!r} has no flat face of {1e6 * SMALLEST_FACE:g} mm2 towards "
@@ -307,7 +341,7 @@ def named_pair(hand: Hand, names: Sequence[str], pads: Sequence[Pad | None]) -> 
             )
         fingers.append(finger)
     first, second = fingers
-    return (first, second) if first.body < second.body else (second, first)
+    return (first, second) if second.body == hand.palm or first.body < second.body else (second, first)
 
 
 def moved_pad(finger: Finger, shift: np.ndarray) -> Finger:
