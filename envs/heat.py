@@ -6,27 +6,14 @@ B: environments, S: substeps, F = 2 fingertips, N: heat samples of a control ste
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError
-
-from ..thermal import (
-    CONTACT_LAW,
-    ContactSystem,
-    Demand,
-    Geometry,
-    HeatTables,
-    free_area,
-    heat_tables,
-    network_for,
-    network_of,
-    shift_thermostats,
-)
-from ..thermal.carry import carry_matrix
+from ..thermal import CONTACT_LAW, Demand, free_area, shift_thermostats
 from .heat_kernel import advance_grasps
+from .heat_networks import HeatNetworks
 from .heat_rows import EVENTS, HEAT_ROW, HEAT_TOLD
 from .reservoir import RESERVOIR_ROW
 from .things import Thing
@@ -91,17 +78,13 @@ class GraspHeat:
         cache: bool = True,
         least_sensor_states: int = 0,
     ) -> None:
-        self._least_sensor_states = least_sensor_states
-        self._carries: dict[tuple[int, int], np.ndarray] = {}
-        self._tolerance, self._air, self._dt, self._samples = tolerance, air, dt, samples
+        self._tolerance, self._air, self._samples = tolerance, air, samples
         self._sensor_temperature, self._cache = sensor_temperature, cache
-        self._networks: dict[object, int] = {}
-        self._systems: list[ContactSystem] = []
-        self._films = [0.0] * num_envs
-        self._table_films: list[float] = []
-        self._tables: HeatTables | None = None
-        self.rungs: list[str] = []
-        self._things: list[Thing | None] = [None] * num_envs
+        self._networks = HeatNetworks(dt, cache, least_sensor_states)
+        # By row, once it has been reset.
+        self._things: dict[int, Thing] = {}
+        self._demands: dict[int, Demand] = {}
+        self._films: dict[int, float] = {}
         self._touches: dict[int, Touches] = {}
         self._rows = np.zeros(num_envs, HEAT_ROW)
         self._laws = np.zeros(num_envs, CONTACT_LAW)
@@ -132,13 +115,11 @@ class GraspHeat:
 
     def rung(self, row: int) -> str:
         """The model that computes an environment's heat."""
-        return self.rungs[self._rows["network"][row]]
+        return self._networks.rungs[self._rows["network"][row]]
 
     def advance(self, force: np.ndarray, place: np.ndarray) -> HeatStep:
         """One control step. force: (B, S, F) N, normal, of each substep, 0 where apart. place: (B, F, 3) m, the
         sensor faces' middles in the object's frame at the end of the step."""
-        if self._tables is None:
-            raise InvalidValueError("the heat knows no objects yet: call reset first")
         if self._touches:
             self._follow(force, place)
         drop = np.empty((len(force), self._samples, 2))
@@ -152,7 +133,7 @@ class GraspHeat:
             np.ascontiguousarray(place, dtype=float),
             drop,
             told,
-            *self._tables,
+            *self._networks.tables,
         )
         return HeatStep(drop, told)
 
@@ -171,37 +152,28 @@ class GraspHeat:
         """Temperatures (B, F) °C of the thermostats from now on."""
         change = celsius - self._rows["sensor_temperature"] - self._rows["offset"]
         self._rows["offset"] += change
-        if self._tables is not None:
-            tips = self._tables.fingertips
-            self._state, self._rows["difference"][:, :tips] = shift_thermostats(
-                self._tables,
-                self._rows["network"],
-                self._state,
-                self._rows["difference"][:, :tips],
-                change[:, :tips],
-            )
+        tables = self._networks.tables
+        tips = tables.fingertips
+        self._state, self._rows["difference"][:, :tips] = shift_thermostats(
+            tables, self._rows["network"], self._state, self._rows["difference"][:, :tips], change[:, :tips]
+        )
 
     def carry(self, source: int, target: int, fingertip: int) -> None:
         """The fingertip's field goes from one row to another, whose object it touches from now on. The source's
         fingertip is left as warm as its thermostat. Raises InvalidValueError in O mode."""
         old, new = self._rows[source], self._rows[target]
-        matrix = self._carried(int(old["network"]), int(new["network"]))
-        before, after = (self._fingertip(row, fingertip) for row in (source, target))
+        numbers = int(old["network"]), int(new["network"])
+        matrix = self._networks.carried(*numbers)
+        before, after = (self._networks.fingertip(number, fingertip) for number in numbers)
         # Row by row, so that rounding does not depend on what else the batch holds.
         self._state[target, after] = (matrix * self._state[source, before]).sum(axis=1)
         self._state[source, before] = 0.0
         new["stored"][fingertip], old["stored"][fingertip] = old["stored"][fingertip], 0.0
 
-    def _fingertip(self, row: int, fingertip: int) -> slice:
-        """Where the fingertip's own states are in a row's."""
-        orders = self._systems[self._rows[row]["network"]].orders
-        first = orders.even + (orders.odd or 0) + fingertip * orders.sensor
-        return slice(first, first + orders.sensor)
-
     def state(self, rows: Sequence[int]) -> HeatState:
         """A copy of what the rows remember."""
         chosen = list(rows)
-        things = tuple(thing for thing in (self._things[row] for row in chosen) if thing is not None)
+        things = tuple(self._things[row] for row in chosen)
         touches = [self._touches.get(row) for row in chosen]
         places = tuple((each.body.patches, each.contacts) if each else None for each in touches)
         return HeatState(self._rows[chosen], self._state[chosen], things, places)
@@ -210,11 +182,10 @@ class GraspHeat:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
             self._place(row, state.things[k], state.rows["sensor_temperature"][k])
-            if row in self._touches:
-                places, held = state.places[k], self._touches[row]
-                assert places is not None and state.things[k].solid is not None
-                self._touches[row] = held.at(state.things[k], *places, self._cache)
-                self._rows["network"][row] = self._network_touched(row)
+            places = state.places[k]
+            if places is not None:
+                self._touches[row] = self._touches[row].at(*places)
+                self._rows["network"][row] = self._number(row)
             network = self._rows["network"][row]  # this batch's own number of it
             self._rows[row] = state.rows[k]
             self._rows["network"][row] = network
@@ -243,11 +214,11 @@ class GraspHeat:
         # In steps, so that nearly equal temperatures share a network.
         above = max(np.abs(sensor_temperature - each).max() for each in celsius) / LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
-        demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
+        self._demands[row] = demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
         geometry, capacity = thing.geometry, thing.heat_capacity
         touches = None
         if thing.solid is not None:
-            from .touches import first_touches
+            from .touches import first_touches  # with what makes networks of meshes
 
             touches = first_touches(thing, demand, self._cache)
         if touches is not None:
@@ -266,80 +237,45 @@ class GraspHeat:
         mine["air"] = self._air * free
         # What the object gives to the air and to a reservoir, as one film of that many W/(m2 K).
         self._films[row] = self._air + float(self._reservoirs["conductance"][row]) / free
-        mine["network"] = (
-            self._network_touched(row) if touches else self._network_of(row, thing.geometry, demand)
-        )
+        mine["network"] = self._number(row)
 
-    def _network_of(self, row: int, geometry: Geometry, demand: Demand) -> int:
-        """Number of the plate's network."""
-        key = (geometry, demand.difference, self._films[row])
-        if key not in self._networks:
-            system = network_for(geometry, demand, cache=self._cache).system
-            if 0 < system.orders.sensor < self._least_sensor_states:
-                orders = replace(system.orders, sensor=self._least_sensor_states)
-                system = network_of(geometry, orders, cache=self._cache)
-            self._add(key, system, row, f"network:{system.orders}")
-        return self._networks[key]
-
-    def _network_touched(self, row: int) -> int:
-        """Number of the network of an object that is touched anywhere."""
-        touches = self._touches[row]
-        key = (touches.body, touches.contacts, self._films[row])
-        if key not in self._networks:
-            system = touches.body.system(touches.contacts)
-            self._add(key, system, row, f"body:{system.orders}")
-        return self._networks[key]
-
-    def _add(self, key: object, system: ContactSystem, row: int, rung: str) -> None:
-        self._networks[key] = len(self._systems)
-        self._systems.append(system)
-        self._table_films.append(self._films[row])
-        self.rungs.append(rung)
-        self._tables = heat_tables(self._systems, self._table_films, self._dt)
-        grown = np.zeros((len(self._state), self._tables.rates.shape[1]))
-        grown[:, : self._state.shape[1]] = self._state
-        self._state = grown
+    def _number(self, row: int) -> int:
+        """Number of the row's network."""
+        film, touches = self._films[row], self._touches.get(row)
+        if touches is None:
+            number = self._networks.of_plate(self._things[row].geometry, self._demands[row], film)
+        else:
+            number = self._networks.of_touches(touches, film)
+        if self._networks.states > self._state.shape[1]:
+            grown = np.zeros((len(self._state), self._networks.states))
+            grown[:, : self._state.shape[1]] = self._state
+            self._state = grown
+        return number
 
     def _follow(self, force: np.ndarray, place: np.ndarray) -> None:
         """Finds the patches of fingertips that touch where they have not been since they were there last."""
-        from .touches import touched_at
-
         rows = np.array(list(self._touches))
         mine = self._rows[rows]
         away = np.sqrt(((place[rows] - mine["anchor"]) ** 2).sum(axis=2))
         elsewhere = (away > mine["reach"][:, None]) | (mine["known"] == 0)
         asked = elsewhere & (force[rows] > 0).any(axis=1)
-        for k, tip in np.argwhere(asked[:, : self._tables.fingertips]).tolist():
+        for k, tip in np.argwhere(asked[:, : self._networks.tables.fingertips]).tolist():
             row = int(rows[k])
-            thing = self._things[row]
-            self._touch(row, touched_at(thing, self._touches[row], tip, place[row, tip], self._cache))
+            self._touch(row, self._touches[row].moved(tip, place[row, tip]))
 
     def _touch(self, row: int, touches: Touches) -> None:
         """The row's object is touched there from now on, and keeps its field."""
-        from .touches import carried
-
         last, self._touches[row] = self._touches[row], touches
-        if last.contacts == touches.contacts and last.body is touches.body:
-            return
         old = int(self._rows["network"][row])
-        self._rows["network"][row] = new = self._network_touched(row)
+        self._rows["network"][row] = new = self._number(row)
         if last.body is touches.body:
             return
-        before, tips = self._state[row].copy(), self._tables.fingertips
-        first, then = (self._systems[number].orders for number in (old, new))
+        before = self._state[row].copy()
         self._state[row] = 0.0
         # Row by row, so that rounding does not depend on what else the batch holds.
-        self._state[row, : then.even] = (carried(last.body, touches.body) * before[: first.even]).sum(axis=1)
-        fingertip = self._carried(old, new)
-        for tip in range(tips):
-            its, own = (each.even + tip * each.sensor for each in (first, then))
-            field = (fingertip * before[its : its + first.sensor]).sum(axis=1)
-            self._state[row, own : own + then.sensor] = field
-
-    def _carried(self, old: int, new: int) -> np.ndarray:
-        """Matrix that takes a fingertip's field from one network to another."""
-        if (old, new) not in self._carries:
-            source, target = self._systems[old], self._systems[new]
-            same = source is target
-            self._carries[old, new] = np.eye(source.orders.sensor) if same else carry_matrix(source, target)
-        return self._carries[old, new]
+        field = touches.field_from(last)
+        self._state[row, : len(field)] = (field * before[: field.shape[1]]).sum(axis=1)
+        matrix = self._networks.carried(old, new)
+        for tip in range(len(touches.contacts)):
+            source, target = (self._networks.fingertip(number, tip) for number in (old, new))
+            self._state[row, target] = (matrix * before[source]).sum(axis=1)

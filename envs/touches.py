@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 
@@ -26,21 +25,50 @@ _KEPT = 256
 
 @dataclass(frozen=True, slots=True)
 class Touches:
-    """body: the object's network and its patches. contacts: (F,) the patch that each fingertip is on or was on last.
-    demand: what the network was made for."""
+    """thing: the object. body: its network and its patches. contacts: (F,) the patch that each fingertip is on or was
+    on last. demand: what the network was made for. cache: keep networks on disk."""
 
+    thing: Thing
     body: TouchedBody
     contacts: tuple[int, ...]
     demand: Demand
+    cache: bool
 
-    def at(
-        self, thing: Thing, patches: tuple[SurfacePatch, ...], contacts: tuple[int, ...], cache: bool
-    ) -> Touches:
-        """The same object with these patches and contacts."""
+    def at(self, patches: tuple[SurfacePatch, ...], contacts: tuple[int, ...]) -> Touches:
+        """The same object with these patches and contacts. Raises MeshError where a patch meets no surface."""
         body = self.body
         if patches != body.patches:
-            body = _body(_solid(thing), patches, thing.stack, self.demand, thing.fingertips, cache)
+            body = _body(
+                _solid(self.thing), patches, self.thing.stack, self.demand, len(contacts), self.cache
+            )
         return replace(self, body=body, contacts=contacts)
+
+    def moved(self, fingertip: int, place: np.ndarray) -> Touches:
+        """The fingertip touches at the place: on a patch known within half a face of there, or else on a new one. Where
+        a new one meets no surface it stays on its last. The longest known patch that no other fingertip is on goes
+        where there would be too many."""
+        away = np.sqrt(((self.body.centres - place) ** 2).sum(axis=1))
+        contacts = list(self.contacts)
+        nearest = int(np.argmin(away))
+        if away[nearest] <= self.thing.stack.width / 2:
+            contacts[fingertip] = nearest
+            return replace(self, contacts=tuple(contacts))
+        patches = list(self.body.patches)
+        if len(patches) >= MOST_PATCHES:
+            others = {contact for tip, contact in enumerate(contacts) if tip != fingertip}
+            gone = next(number for number in range(len(patches)) if number not in others)
+            del patches[gone]
+            contacts = [contact - (contact > gone) for contact in contacts]
+        contacts[fingertip] = len(patches)
+        patches.append(_touched(_solid(self.thing), place, patches[0].area))
+        try:
+            return self.at(tuple(patches), tuple(contacts))
+        except MeshError:
+            return self
+
+    def field_from(self, last: Touches) -> np.ndarray:
+        """Matrix that takes the object's field from the network of earlier touches to this one; see field_carried."""
+        return _carried(last.body, self.body)
 
 
 def first_touches(thing: Thing, demand: Demand, cache: bool) -> Touches | None:
@@ -52,36 +80,11 @@ def first_touches(thing: Thing, demand: Demand, cache: bool) -> Touches | None:
         body = _body(_solid(thing), patches, thing.stack, demand, thing.fingertips, cache)
     except MeshError:
         return None
-    return Touches(body, contacts, demand)
-
-
-def touched_at(thing: Thing, touches: Touches, fingertip: int, place: np.ndarray, cache: bool) -> Touches:
-    """The fingertip's patch is the one at the place: one of those known within half a face, or else a new one. Where a
-    new one meets no surface it stays where it was. The longest unused patch goes where there would be too many."""
-    body = touches.body
-    away = np.sqrt(((body.centres - place) ** 2).sum(axis=1))
-    contacts = list(touches.contacts)
-    nearest = int(np.argmin(away))
-    if away[nearest] <= thing.stack.width / 2:
-        contacts[fingertip] = nearest
-        return replace(touches, contacts=tuple(contacts))
-    patches = list(body.patches)
-    if len(patches) >= MOST_PATCHES:
-        others = {contact for tip, contact in enumerate(contacts) if tip != fingertip}
-        gone = next(number for number in range(len(patches)) if number not in others)
-        del patches[gone]
-        contacts = [contact - (contact > gone) for contact in contacts]
-    contacts[fingertip] = len(patches)
-    patches.append(_touched(_solid(thing), place, body.patches[0].area))
-    try:
-        return touches.at(thing, tuple(patches), tuple(contacts), cache)
-    except MeshError:
-        return touches
+    return Touches(thing, body, contacts, demand, cache)
 
 
 @lru_cache(maxsize=_KEPT)
-def carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:
-    """See field_carried."""
+def _carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:
     return field_carried(source, target)
 
 
@@ -91,7 +94,7 @@ def _body(
     patches: tuple[SurfacePatch, ...],
     stack: SensorStack,
     demand: Demand,
-    fingertips: Literal[1, 2],
+    fingertips: int,
     cache: bool,
 ) -> TouchedBody:
     return touched_body(body, patches, stack, demand, fingertips=fingertips, cache=cache)
@@ -119,12 +122,13 @@ def _grasped(thing: Thing, side: int) -> SurfacePatch:
 
 def _touched(body: Solid, place: np.ndarray, area: float) -> SurfacePatch:
     """The patch on the surface nearest to a place, on the lattice."""
-    normal = surface_normal(body, place)
-    axis = int(np.argmax(np.abs(normal)))
-    if abs(normal[axis]) > _UPRIGHT:
-        normal = np.sign(normal[axis]) * np.eye(3)[axis]
-    x, y, z = (LATTICE * round(float(value) / LATTICE) for value in place)
-    return SurfacePatch((x, y, z), tuple(float(value) for value in normal), area)
+    outward = surface_normal(body, place)
+    axis = int(np.argmax(np.abs(outward)))
+    if abs(outward[axis]) > _UPRIGHT:
+        outward = np.sign(outward[axis]) * np.eye(3)[axis]
+    x, y, z = (LATTICE * round(value / LATTICE) for value in place.tolist())
+    along_x, along_y, along_z = outward.tolist()
+    return SurfacePatch((x, y, z), (along_x, along_y, along_z), area)
 
 
 def _clean(value: float) -> float:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Literal
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.files import cached_arrays
 
 from .bodies import Geometry
+from .body_geometry import BodyGeometry
 from .choice import Demand, responses
 from .layers import SensorStack
 from .materials import Material
@@ -26,13 +26,12 @@ from .mesh_network import body_network
 from .mesh_patch import place_patch
 from .mesh_patterns import learned_patterns
 from .mesh_solid import Solid, SurfacePatch
-from .mesh_system import BodyGeometry
 from .network import ThermalNetwork
 from .states import CONDUCTANCES, MOMENTS, excited_states, state_bases
 from .system import ContactSystem, sample_geometry, with_sensors
 
-_PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
-_PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
+PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
+PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
 _VERSION = 1  # of the arrays' meaning and of how they are computed
 _COARSE = (
     0.08  # K of tolerance per 12 K of difference from which on two patterns of flux serve in place of three
@@ -76,7 +75,7 @@ def touched_body(
     stack: SensorStack,
     demand: Demand,
     *,
-    fingertips: Literal[1, 2] = 2,
+    fingertips: int = 2,
     cache: bool = True,
 ) -> TouchedBody:
     """An object and its patches, of one area, with as few states as keep half the demand's tolerance where the
@@ -87,7 +86,7 @@ def touched_body(
     patches = tuple(patches)
     area = patches[0].area
     modes = 2 if demand.tolerance >= _COARSE * demand.difference / 12 else 3
-    plate = Geometry(stack, _PLATE_MATERIAL, "T", area, "square", _PLATE)
+    plate = Geometry(stack, PLATE_MATERIAL, "T", area, "square", PLATE)
     key = {
         "touched body": _VERSION,
         "body": [
@@ -165,7 +164,7 @@ def _pulses(body: TouchedBody, common: list[SurfacePatch]) -> np.ndarray:
     return (chosen[:, :, None] * faded[:, None, :]).reshape(len(chosen), -1)
 
 
-def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: Literal[1, 2]) -> BodyGeometry:
+def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: int) -> BodyGeometry:
     capacity = float(whole.outputs["heat"][0] ** 2)
     return BodyGeometry(
         plate.stack,
@@ -174,7 +173,7 @@ def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: L
         plate.area,
         "square",
         plate.object_size,
-        fingertips,
+        2 if fingertips == 2 else 1,
         capacity,
         body.surface,
     )

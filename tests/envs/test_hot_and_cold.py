@@ -54,6 +54,10 @@ class Run:
         assert abs(told["heat"].sum() + self.air - self.drawn - self.supplied) < 1e-9 * scale
         return told
 
+    def steps(self, count: int, newton: float = 0.0):
+        """What the last of them told."""
+        return [self.step(newton) for _ in range(count)][-1]
+
 
 def film(thing: Thing, air: float = AIR) -> float:
     """W/K to the air."""
@@ -66,8 +70,7 @@ def test_before_the_touch_an_object_cools_towards_the_room_as_a_lumped_body(mode
     body = thing(celsius=celsius, mode=mode, ambient=20.0)
     capacity = body.heat_capacity + (2 * STACK.heat_capacity if mode == "O" else 0.0)
     run = Run(body)
-    for _ in range(1000):
-        told = run.step()
+    told = run.steps(1000)
     expected = 20.0 + (celsius - 20.0) * math.exp(-1000 * STEP * film(body) / capacity)
     assert told["object_temperature"] == pytest.approx(expected, abs=1e-5 if mode == "T" else 5e-3)
     assert not told["flow"].any()
@@ -98,8 +101,7 @@ def test_a_held_reservoir_warms_an_object_as_a_lumped_body(mode: Mode):
     body = thing(mode=mode, reservoir=inside)
     capacity = body.heat_capacity + (2 * STACK.heat_capacity if mode == "O" else 0.0)
     run, total = Run(body), film(body) + 2.0
-    for _ in range(1500):
-        told = run.step()
+    told = run.steps(1500)
     final = (2.0 * 90.0 + film(body) * 24.0) / total
     expected = final + (24.0 - final) * math.exp(-1500 * STEP * total / capacity)
     assert told["object_temperature"] == pytest.approx(expected, abs=1e-4 if mode == "T" else 0.05)
@@ -109,8 +111,7 @@ def test_a_held_reservoir_warms_an_object_as_a_lumped_body(mode: Mode):
 def test_water_and_wall_come_to_the_temperature_of_their_mixture():
     inside = water(0.05, 20.0, 90.0)
     run = Run(thing(reservoir=inside), air=0.0)
-    for _ in range(4000):
-        told = run.step()
+    told = run.steps(4000)
     wall = run.thing.heat_capacity
     mixed = (wall * 24.0 + inside.heat_capacity * 90.0) / (wall + inside.heat_capacity)
     assert told["object_temperature"] == pytest.approx(mixed, abs=1e-3)
@@ -123,6 +124,7 @@ def test_ice_stays_at_its_melting_point_until_its_latent_heat_is_used():
     inside = ice(0.0002, 2.0)
     run = Run(thing(celsius=0.0, ambient=24.0, reservoir=inside))
     melted = None
+    told = run.step(10.0)
     for k in range(3000):
         told = run.step(10.0)
         taken = -run.supplied
@@ -138,8 +140,7 @@ def test_ice_stays_at_its_melting_point_until_its_latent_heat_is_used():
 
 def test_a_heater_of_given_power_gives_it_and_one_with_a_setpoint_holds_it():
     powered = Run(thing(reservoir=Reservoir(20.0, 5.0, power=8.0)), air=0.0)
-    for _ in range(500):
-        told = powered.step()
+    told = powered.steps(500)
     stored = 20.0 * (told["reservoir_temperature"] - 24.0)
     assert stored + told["heat"][2] == pytest.approx(8.0 * 500 * STEP, rel=1e-9)
 
@@ -154,6 +155,7 @@ def test_hot_objects_are_felt_as_such_and_water_keeps_them_hot(inside):
     """The drop turns its sign, and a wall with water behind it gives more heat than the wall alone."""
     body = thing("glass", 70.0, ambient=22.0, reservoir=inside)
     alone, heat = Run(thing("glass", 70.0, ambient=22.0)), Run(body)
+    bare, told = alone.step(), heat.step()
     for newton in [0.0] * 50 + [10.0] * 250:
         bare, told = alone.step(newton), heat.step(newton)
         for name in ("sensor_surface", "object_surface", "object_temperature"):
@@ -232,8 +234,7 @@ def test_too_hot_a_thermostat_puts_both_heaters_off_until_the_next_reset():
         assert np.all(flags[first:, row])
         assert abs(steps[-1].reading.voltage[row, -1]).min() > 1e-3  # still told
     opened = np.tile(action_of(0.085, 0.0, 0.0), (2, 1))
-    for _ in range(600):
-        step = batch.step(opened)
+    step = [batch.step(opened) for _ in range(600)][-1]
     assert step.reading.thermostat.max() < 65.0 and step.reading.truth["over_temperature"].all()
     plates = batch.plant._thermostats._state  # pyright: ignore[reportAttributeAccessIssue]
     assert not plates.power.any()
