@@ -12,6 +12,7 @@ from thermograsp.envs.library import ObjectPreset, library_object, load_objects,
 from thermograsp.envs.mechanics import Mechanics
 from thermograsp.envs.recipes import RECIPES, make
 from thermograsp.envs.scene import MAX_OPENING
+from thermograsp.envs.surface_height import MAP_PITCH, map_heights, mesh_map
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.files import cache_dir
 from thermograsp.thermal import material
@@ -128,6 +129,26 @@ def test_a_handle_has_one_hole_and_does_not_change_the_cup() -> None:
     assert surface("mug").volume - plain.surface.volume == pytest.approx(bow, rel=0.3)
     # the fingers close on the cup, not on the middle of cup and handle
     assert mug.spec().position[1] == pytest.approx((surface("mug").bounds[:, 1].sum()) / 2, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_what_collides_is_the_surface_where_the_pads_meet_it(name: str) -> None:
+    """The convex hull sticks out nowhere beyond the mesh under either pad."""
+    spec = objects()[name].spec()
+    (hull,) = spec.geometry.hulls
+    middle = np.array([*spec.position, spec.size[2] / 2 - spec.grasp_height])  # the object's from the grasp's
+    for side in (-1.0, 1.0):
+        pad = np.array([[0.1 * side, 0.0, 0.0], [-side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, 1.0]])
+        pad[0] -= middle
+        nearest = []
+        for shape in (spec.geometry, replace(spec.geometry, path=f"hull of {name}", surface=hull)):
+            seen = mesh_map(shape, pad[1])
+            y, z = np.meshgrid(*2 * [np.linspace(-0.0095, 0.0095, 39)])
+            places = np.stack([y.ravel(), z.ravel()], axis=1)
+            height, cover = np.zeros(len(places)), np.zeros(len(places))
+            map_heights(*seen, MAP_PITCH, pad, places, height, cover)
+            nearest.append(height[cover > 0].min())
+        assert nearest[0] == pytest.approx(nearest[1], abs=1e-4)
 
 
 @pytest.mark.parametrize("name", NAMES)
