@@ -18,12 +18,13 @@ from thermograsp.report.curves import Curve, Mark, chart
 from thermograsp.report.demo_runs import COLOURS, FILMED, Grasp, ModeRun
 from thermograsp.report.demo_tables import ABOUT, Settings, details, numbers
 from thermograsp.report.page_style import style_sheet
+from thermograsp.report.pressure_maps import Press, pressure_section
 from thermograsp.report.style import readable
 
 _STILL_WIDTH = 380  # pixels
 
 
-def demo_page(runs: Sequence[ModeRun], settings: Settings) -> str:
+def demo_page(runs: Sequence[ModeRun], pressed: Sequence[Press], settings: Settings) -> str:
     """The page's HTML."""
     order = np.argsort([grasp.effusivity for grasp in runs[0].grasps], kind="stable").tolist()
     stills = next((run.stills for run in runs if run.stills), ())
@@ -37,6 +38,7 @@ def demo_page(runs: Sequence[ModeRun], settings: Settings) -> str:
         f'<p class="lede">{_lede(runs, order)}</p></header>',
         _charts(runs, order, settings),
         _film(stills, next((run.no_picture for run in runs), "")),
+        pressure_section(pressed),
         numbers(runs, order),
         details(runs, settings),
         "</main></body></html>",

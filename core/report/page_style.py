@@ -11,9 +11,9 @@ from thermograsp.report.style import ordered_colors
 
 _SHEET = """
 :root { color-scheme: light dark; --paper:#fcfbf9; --ink:#1d2025; --soft:#666c75; --faint:#a3a8af;
-  --line:#e5e3de; %LIGHT% }
+  --line:#e5e3de; --press:#3d1d9c; %LIGHT% }
 @media (prefers-color-scheme: dark) {
-  :root { --paper:#14161a; --ink:#eceae5; --soft:#a0a5ae; --faint:#6c727b; --line:#2b2f36; %DARK% }
+  :root { --paper:#14161a; --ink:#eceae5; --soft:#a0a5ae; --faint:#6c727b; --line:#2b2f36; --press:#b3a1ff; %DARK% }
 }
 * { box-sizing: border-box; }
 body { margin:0; background:var(--paper); color:var(--ink); line-height:1.55; font-size:16px;
@@ -47,6 +47,11 @@ svg:has(.curve:hover) .curve:not(:hover) { opacity:.18; }
 .across i.wide { flex:3; }
 .reads { font-size:12px; color:var(--soft); margin-top:4px; font-variant-numeric:tabular-nums; display:flex;
   justify-content:space-between; }
+.maps { display:grid; grid-template-columns:repeat(auto-fit, minmax(150px,1fr)); gap:18px 22px; margin-top:16px; }
+.maps figcaption { margin:6px 0 0; }
+.press { fill:var(--press); shape-rendering:crispEdges; }
+.pad { fill:none; stroke:var(--faint); stroke-width:.12; }
+.face { fill:none; stroke:var(--soft); stroke-width:.1; stroke-dasharray:.4 .3; }
 .key { display:flex; gap:12px; align-items:center; margin-top:18px; font-size:13px; color:var(--soft); flex-wrap:wrap; }
 .key .bar { width:240px; height:10px; border-radius:5px; }
 .scroll { overflow-x:auto; margin-top:14px; }

@@ -66,7 +66,8 @@ def test_the_quick_demo_without_opengl(
     links = Links()
     links.feed(page)
     assert links.loaded == [] and links.open == [] and "url(" not in page
-    assert page.count("<svg") == 2 and page.count('class="curve') == 20
+    assert page.count("<svg") == 2 + page.count('class="press"') and page.count('class="curve') == 20
+    assert page.count('class="press"') >= 4
     assert "No pictures" in page and "apt-get install libegl1" in page
     assert len(list(out.iterdir())) == 21
 
