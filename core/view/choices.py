@@ -62,6 +62,11 @@ class Stock:
     plant: str | None = None
 
     @property
+    def drivers(self) -> tuple[str, ...]:
+        """Of DRIVERS those that can act here: a real gripper has no arm that lifts."""
+        return DRIVERS if self.plant is None else DRIVERS[:2]
+
+    @property
     def fixed(self) -> tuple[str, ...]:
         """Controls of the page that do nothing here."""
         if self.recording is not None:

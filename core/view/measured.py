@@ -10,7 +10,7 @@ from gymnasium.utils.seeding import np_random
 from thermograsp.envs import GraspVectorEnv
 from thermograsp.envs.grasp_task import TOUCHING
 from thermograsp.envs.scene import TIPS
-from thermograsp.errors import InvalidValueError
+from thermograsp.hardware.serial_plant import OVERRUN
 from thermograsp.thermal import TouchSetup
 from thermograsp.twin.beside import measured_columns
 from thermograsp.view.choices import Choices, Controls, Stock
@@ -19,7 +19,6 @@ from thermograsp.view.feeling import known_touch
 from thermograsp.view.puppet import Puppet
 
 _FOREVER = 1e6  # s
-_DRIVERS = ("scripted", "sliders")  # the others need an arm that lifts
 
 
 class MeasuredGrasp:
@@ -45,7 +44,7 @@ class MeasuredGrasp:
         """Opens, and begins anew."""
         self._seen, self.reading = self._batch.reset([0], [np_random(seed)[0]])
         self._driving.restart(seed)
-        self.steps = 0
+        self.time = 0.0
 
     @property
     def running(self) -> bool:
@@ -54,15 +53,12 @@ class MeasuredGrasp:
 
     def step(self, controls: Controls) -> dict[str, np.ndarray]:
         """One control step, which takes as long as it lasts; the columns (1, S)."""
-        if controls.driver not in _DRIVERS:
-            raise InvalidValueError(
-                f"driver {controls.driver!r} needs an arm that lifts: use {' or '.join(_DRIVERS)}"
-            )
         step = self._batch.step(self._driving.action(controls, self._seen, self.reading))
         self._seen, self.reading = step.observation, step.reading
         samples = self._plant.config.samples
-        time = (self.steps + (np.arange(samples) + 1) / samples) * self.dt
-        self.steps += 1
+        late = float(step.reading.truth["late"][0])
+        self.time += self.dt + (late if late > OVERRUN else 0.0)
+        time = self.time - self.dt / samples * np.arange(samples)[::-1]
         columns = {"time_s": time, **measured_columns([step.reading], samples)}
         return {name: np.asarray(values)[None] for name, values in columns.items()}
 

@@ -52,7 +52,12 @@ class PlayedGrasp:
     def reset(self, seed: int) -> None:
         """From its beginning."""
         del seed
-        self.steps = self._at = 0
+        self._steps = self._at = 0
+
+    @property
+    def time(self) -> float:
+        """s of the recording."""
+        return self._steps * self.dt
 
     @property
     def running(self) -> bool:
@@ -62,8 +67,8 @@ class PlayedGrasp:
     def step(self, controls: Controls) -> dict[str, np.ndarray]:
         """The columns (1, S) of the next 20 ms."""
         del controls
-        self.steps += 1
-        first, self._at = self._at, int(np.searchsorted(self._time, self.steps * self.dt + 1e-9))
+        self._steps += 1
+        first, self._at = self._at, int(np.searchsorted(self._time, self.time + 1e-9))
         return {name: values[None, first : self._at] for name, values in self._columns.items()}
 
     def shapes(self) -> list[dict[str, Any]]:

@@ -39,7 +39,7 @@ def record_studio(
     try:
         for _ in range(round(seconds / grasp.dt) + 1):
             for film in films:
-                film.watch(grasp.steps * grasp.dt, grasp.batch)
+                film.watch(grasp.time, grasp.batch)
             columns = grasp.step(controls)
             blocks.append(np.stack((columns["time_s"][0], *1e3 * columns["voltage_left_V"])))
             advance(grasp.dt)

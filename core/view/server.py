@@ -6,6 +6,7 @@ import asyncio
 import json
 import logging
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Any
@@ -53,6 +54,8 @@ class Studio:
 
     async def listen(self, port: int) -> Server:
         """A server on that port, 0 for any that is free."""
+        # a thread for each visitor's simulation, and for one that comes or goes
+        asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(self.most + 2, "studio"))
         quiet = logging.getLogger("thermograsp.view")
         quiet.setLevel(logging.CRITICAL)  # who leaves in the middle of a handshake is no news
         return await serve(

@@ -14,7 +14,7 @@ from thermograsp.envs.colormap import colour_table
 from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
 from thermograsp.report.columns import csv_text
 from thermograsp.thermal import SEED_MATERIALS
-from thermograsp.view.choices import DRIVERS, RANGES, SPEEDS, Choices, Controls, Stock
+from thermograsp.view.choices import RANGES, SPEEDS, Choices, Controls, Stock, one_of
 from thermograsp.view.feeling import Feeling
 from thermograsp.view.log import LONGEST, Log
 from thermograsp.view.sources import grasp_of
@@ -80,6 +80,8 @@ class Session:
         steps = min(math.floor(self._owed / grasp.dt + 1e-9), MOST_STEPS)
         if self._single:
             steps, self._single = 1, False
+        if grasp.paced:
+            steps = 1  # it waits for the wall's time itself
         try:
             for _ in range(steps):
                 if not grasp.running:
@@ -108,12 +110,12 @@ class Session:
     @property
     def paced(self) -> bool:
         """Whether steps take as long as they last, so that they are to be taken whether or not somebody asks."""
-        return self._grasp is not None and self._grasp.paced
+        return self._grasp is not None and self._grasp.paced and self._grasp.running
 
     @property
     def time(self) -> float:
         """s of the grasp."""
-        return 0.0 if self._grasp is None else self._grasp.steps * self._grasp.dt
+        return 0.0 if self._grasp is None else self._grasp.time
 
     def _step(self) -> None:
         columns = self._grasp.step(self.controls)
@@ -123,6 +125,8 @@ class Session:
 
     def _set_up(self, wanted: Choices) -> None:
         self._wanted = None
+        if self._grasp is not None and self._grasp.paced:
+            self.close()  # its ports are needed
         try:
             grasp = self._make(wanted, self._stock)
             setups = [grasp.touch_setup(row) for row in range(grasp.rows)]
@@ -152,6 +156,7 @@ class Session:
 
     def _control(self, content: Mapping[str, Any]) -> None:
         controls = self.controls.changed(content)
+        one_of("driver", controls.driver, self._stock.drivers)
         if self.paced and not (controls.playing and controls.speed == 1.0):
             raise InvalidValueError("time on a real gripper cannot be stopped or slowed down")
         self.controls = controls
@@ -185,7 +190,7 @@ class Session:
             "materials": sorted(self._stock.materials),
             "seed": [name for name in SEED_MATERIALS if name in self._stock.materials],
             "shapes": self._stock.shapes,
-            "drivers": DRIVERS,
+            "drivers": self._stock.drivers,
             "speeds": SPEEDS,
             "ranges": {name: asdict(one) for name, one in RANGES.items()},
             "choices": self.choices.told(),

@@ -44,7 +44,7 @@ class Cost:
 
 class SimulatedGrasp:
     """`choices` set up and reset. dt: s. rows: B, called `names`. paced: whether a step takes as long as it lasts, as
-    on hardware. running: whether there is more to come. steps: so far. batch, plant: what is simulated. Raises
+    on hardware. running: whether there is more to come. batch, plant: what is simulated. Raises
     InvalidValueError, such as for a tolerance that no network keeps."""
 
     paced = False
@@ -76,13 +76,18 @@ class SimulatedGrasp:
         self._driving = Driving(self._env, stock.network)
         self.reset(choices.seed)
 
+    @property
+    def time(self) -> float:
+        """s since the reset."""
+        return self._steps * self.dt
+
     def reset(self, seed: int) -> None:
         """Begins anew; both rows with the same place and noise."""
         for row, name in enumerate(self._choices.materials):
             chosen = {"material": self._stock.materials[name]}
             self._seen, self._reading = self.batch.reset([row], [np_random(seed)[0]], chosen)
         self._driving.restart(seed)
-        self._endings, self.steps = [""] * self.rows, 0
+        self._endings, self._steps = [""] * self.rows, 0
         for label in self._watch.seconds:
             self._watch.seconds[label] = 0.0
 
@@ -93,8 +98,8 @@ class SimulatedGrasp:
         for row, error in enumerate(step.reading.error):
             reasons = [name for name, ended in step.outcome.reasons.items() if ended[row]]
             self._endings[row] = self._endings[row] or error or "".join(reasons[:1])
-        self.steps += 1
-        return columns_of([step.reading], self.dt, (self.steps - 1) * self.dt)
+        self._steps += 1
+        return columns_of([step.reading], self.dt, (self._steps - 1) * self.dt)
 
     def shapes(self) -> list[dict[str, Any]]:
         """See shapes.py; all rows have the same."""
@@ -129,14 +134,14 @@ class SimulatedGrasp:
         pressing = self._reading.force[row, :, 0].min() > TOUCHING
         lift = float(self._reading.truth["lift"][row])
         if not pressing:
-            return "apart" if self.steps else "on the table"
+            return "apart" if self._steps else "on the table"
         return f"held {1e3 * lift:.0f} mm up" if lift > _UP else "gripped"
 
     def cost(self, row: int) -> Cost:
         """Of the row's heat model."""
         rung = str(self._reading.truth["rung"][row])
         orders = Orders.parse(rung.removeprefix(_NETWORK)) if rung.startswith(_NETWORK) else None
-        spent, steps = self._watch.seconds, max(self.steps, 1)
+        spent, steps = self._watch.seconds, max(self._steps, 1)
         return Cost(
             rung,
             orders.states if orders else 0,

@@ -13,7 +13,6 @@ from typing import Any
 from thermograsp.errors import SimulationError
 from thermograsp.view.choices import Choices, Stock
 
-_PATIENCE = 0.005  # s between steps of a paced grasp while nobody asks
 _LEAVING = 2.0  # s that a process is given to end by itself
 _PRELOADED = ["thermograsp.view.session"]
 
@@ -79,7 +78,7 @@ def _serve(pipe: Connection, stock: Stock, choices: Choices) -> None:
     last = time.monotonic()
     try:
         while True:
-            asked = pipe.poll(_PATIENCE if session.paced else None)
+            asked = pipe.poll(0.0 if session.paced else None)
             messages = pipe.recv() if asked else ()
             for message in messages:
                 session.handle(message)

@@ -125,7 +125,7 @@ export class Controls {
   #disable(name) {
     const slider = this.#sliders[name];
     const owner = slider?.holder.querySelector("input") ?? element(name);
-    if (owner) (owner.closest("label, .slider, .segments") ?? owner).hidden = true;
+    if (owner) (owner.closest("label, .slider, .segments") ?? owner).dataset.fixed = "";
   }
 }
 

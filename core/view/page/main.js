@@ -139,7 +139,7 @@ function showPace({ time, controls: { playing, speed } }) {
     return;
   }
   const rate = (1000 * (time - pace.time)) / (now - pace.wall);
-  element("pace").textContent = rate > 0.93 * speed ? `at ${speed} ×` : `at ${rate.toFixed(2)} ×, slower than asked`;
+  element("pace").textContent = rate > 0.9 * speed ? `at ${speed} ×` : rate > 0 ? `at ${rate.toFixed(2)} ×, slower than asked` : "";
   Object.assign(pace, { wall: now, time });
 }
 
