@@ -10,7 +10,8 @@ import numpy as np
 
 from thermograsp.errors import MeshError, MissingDependencyError, positive
 
-FORMATS = (".stl", ".obj", ".ply", ".glb")
+from .mesh_files import FORMATS, read_surface
+
 SMALLEST = 0.005  # m, along the shortest extent
 LARGEST = 0.083  # m, that fits between the pads (85 mm) with 1 mm on either side
 _VOXELS = 50_000  # of the decomposition: a ring in 12 pieces is 4 % too thick and takes about a second
@@ -51,35 +52,18 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
     pieces: most convex pieces to collide with. 1 collides with the convex hull, which fills holes and
     hollows; more decompose the solid (V-HACD, needs the package vhacdx). Mass and inertia are the true solid's.
     Results are cached by path, scale and pieces; a file that changed is not read again.
-    Raises MeshError (missing file, unknown format, not a closed solid, non-finite vertices, no volume, a size that
-    does not fit the gripper) or InvalidValueError.
+    What is mended is told by a RuntimeWarning; see read_surface. Raises MeshError (a file or surface that cannot serve,
+    a size that does not fit the gripper) or InvalidValueError.
     """
     import trimesh
 
     positive("scale", scale)
     if pieces < 1 or int(pieces) != pieces:
         raise MeshError(f"pieces {pieces}: give a whole number, 1 for the convex hull")
-    file = Path(path)
-    if file.suffix.lower() not in FORMATS:
-        raise MeshError(f"{path}: unknown mesh format {file.suffix!r}; use one of {', '.join(FORMATS)}")
-    if not file.is_file():
-        raise MeshError(f"{path}: no such file (looked in {file.resolve().parent})")
-    try:
-        mesh = trimesh.load_mesh(file, process=False)
-    except Exception as error:  # trimesh raises whatever its parsers do
-        raise MeshError(f"{path}: cannot be read as {file.suffix}: {error}") from error
-    _check_vertices(path, mesh)
-    mesh.merge_vertices()  # STL repeats every corner
-    _check_solid(path, mesh)
-    mesh.apply_scale(scale)
+    surface = read_surface(str(path))
+    mesh = trimesh.Trimesh(surface.vertices * scale, surface.faces, process=False)
     _check_size(path, mesh.extents, scale)
     mesh.apply_translation(-mesh.bounds.mean(axis=0))
-    with np.errstate(divide="ignore", invalid="ignore"):  # trimesh divides by the volume
-        volume = mesh.volume
-    if volume < 0:  # closed but inside out
-        mesh.invert()
-    if not abs(volume) > 1e-6 * np.prod(mesh.extents):
-        raise MeshError(f"{path}: encloses no volume ({volume:.3g} m3); give a solid, not a sheet")
     return MeshShape(
         path=str(path),
         scale=float(scale),
@@ -96,26 +80,6 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
 def _triple(values: np.ndarray) -> tuple[float, float, float]:
     x, y, z = (float(v) for v in values)
     return x, y, z
-
-
-def _check_vertices(path: str, mesh) -> None:
-    if len(mesh.faces) == 0:
-        raise MeshError(f"{path}: has no faces; export a surface mesh")
-    if not np.isfinite(mesh.vertices).all():
-        bad = int((~np.isfinite(mesh.vertices)).any(axis=1).sum())
-        raise MeshError(f"{path}: {bad} of {len(mesh.vertices)} vertices are not finite; export it again")
-
-
-def _check_solid(path: str, mesh) -> None:
-    if not min(mesh.extents) > 0:
-        raise MeshError(
-            f"{path}: encloses no volume, extents {mesh.extents.tolist()}; give a solid, not a sheet"
-        )
-    if not mesh.is_watertight:
-        raise MeshError(
-            f"{path}: not closed (watertight), so it has no volume or mass; close its holes, "
-            "e.g. with trimesh.repair.fill_holes or Blender's 3D Print toolbox"
-        )
 
 
 def _check_size(path: str, extents: np.ndarray, scale: float) -> None:
