@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-rl test-hardware-long test-firmware test-release bench docs lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-rl test-grippers test-hardware-long test-firmware test-release bench docs lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -33,6 +33,10 @@ test-backends: build/.backends
 # What needs stable-baselines3; without it `make test` skips it.
 test-rl: build/.rl
 	$(PY) -m pytest $(TEST_FLAGS) tests/rl
+
+# Grippers from other packages; without them `make test` skips them.
+test-grippers: build/.grippers
+	$(PY) -m pytest $(TEST_FLAGS) tests/grippers
 
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test
@@ -70,10 +74,14 @@ build/.backends: EXTRA := [test,torch,jax]
 build/.backends: PINS := torch==2.13.0
 build/.rl: EXTRA := [test,rl]
 build/.rl: PINS := torch==2.13.0
+build/.grippers: EXTRA := [test,grippers]
+# Of robosuite only the files are read, and what it depends on holds numpy back.
+build/.grippers: ALONE := robosuite==1.5.2
 build/.release: EXTRA := [release,test]
 build/.dev: EXTRA := [dev]
-build/.run build/.test build/.ray build/.backends build/.rl build/.release build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+build/.run build/.test build/.ray build/.backends build/.rl build/.grippers build/.release build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
 	$(INSTALL) --no-build-isolation -e '.$(EXTRA)' $(PINS)
+	$(if $(ALONE),$(INSTALL) --no-deps $(ALONE))
 	@touch $@
 
 build/.files: FORCE

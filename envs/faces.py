@@ -13,11 +13,11 @@ import mujoco
 import numpy as np
 
 _FACING = math.cos(math.radians(40))  # of a face's normal and the direction that it is to face
-_FLATNESS = (
-    (math.radians(2), 1e-4),
-    (math.radians(10), 6e-4),
-)  # rad and m off its face's plane: flat, and nearly
-_ENOUGH = 1e-4  # m2 of a face, for which no less flat one is looked for
+_FLATNESS = (  # rad and m off a face's plane, and m2 of the largest face for which no rounder ones are looked for
+    (math.radians(2), 1e-4, 1e-4),
+    (math.radians(10), 6e-4, 4e-5),
+    (math.radians(20), 1.5e-3, 0.0),
+)
 _SEEDS = 24  # planes tried per geom, those of the most area
 _RIM = 32  # corners that stand for a circle
 _NEAR = 0.5  # share of the best score from which a face that lies further out is preferred
@@ -82,12 +82,12 @@ def rotation(quat: np.ndarray) -> np.ndarray:
 
 def flat_faces(parts: Iterable[tuple[str, np.ndarray]], direction: np.ndarray) -> list[Face]:
     """Each part's largest flat face that looks along `direction` (unit vector). parts: geom's name, triangles (n, 3, 3)
-    m. Nearly flat ones where none is flat."""
+    m. Nearly flat ones where none is flat, such as on the balls of fingers."""
     parts, found = list(parts), []
-    for angle, uneven in _FLATNESS:
+    for angle, uneven, enough in _FLATNESS:
         faces = (_face_of(name, shape, direction, math.cos(angle), uneven) for name, shape in parts)
         found = [face for face in faces if face is not None]
-        if max((face.area for face in found), default=0.0) >= _ENOUGH:
+        if max((face.area for face in found), default=0.0) >= enough:
             break
     return found
 

@@ -139,7 +139,7 @@ class Hand:
         return (every.min(axis=0) + every.max(axis=0)) / 2
 
     def tip_of(self, name: str) -> int:
-        """The last link of the digit that a body's name, or a part of it that only one digit's bodies have, names.
+        """The last link of the digit that a body's name tells, or a part of one: of its first body's, or else of any's.
         Raises UnknownNameError, or InvalidValueError for what names several."""
         model = self.model
         bodies = {model.body(b).name: b for b in range(1, model.nbody) if model.body(b).name}
@@ -149,12 +149,15 @@ class Hand:
                 below = [tip for tip in self.tips if self.below(int(self._weld[body]), tip)]
                 return below[0] if len(below) == 1 else int(self._weld[body])
             return body
-        tips = {
+        part = name.lower()
+        roots = {tip for tip in self.tips if part in model.body(self.digit(tip)).name.lower()}
+        anywhere = {
             tip
             for tip in self.tips
-            for part, b in bodies.items()
-            if name.lower() in part.lower() and self._on(b, tip)
+            for found, b in bodies.items()
+            if part in found.lower() and self._on(b, tip)
         }
+        tips = roots or anywhere
         if len(tips) > 1:
             names = [model.body(tip).name for tip in sorted(tips)]
             raise InvalidValueError(

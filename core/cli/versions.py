@@ -13,7 +13,7 @@ import thermograsp
 from thermograsp.cli.output import Output
 
 _NEED = re.compile(r"([\w.-]+)(\[.*?\])?.*?(?:; extra == [\"']([\w-]+)[\"'])?$")
-_OURS = ("test", "dev", "docs", "release")  # extras for work on the package itself
+_OURS = ("test", "dev", "docs", "release", "grippers")  # extras for work on the package itself
 
 
 class ShowVersion(argparse.Action):

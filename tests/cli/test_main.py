@@ -20,7 +20,7 @@ from thermograsp.cli import main
 from thermograsp.cli.versions import versions
 from thermograsp.errors import ThermograspError
 
-OWN_WORK = {"test", "dev", "docs", "release"}
+OWN_WORK = {"test", "dev", "docs", "release", "grippers"}
 """Extras for work on the package itself."""
 
 
