@@ -5,7 +5,7 @@ B: environments, S: substeps, F = 2 fingertips, N: heat samples of a control ste
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -86,22 +86,28 @@ class GraspHeat:
         self._demands: dict[int, Demand] = {}
         self._films: dict[int, float] = {}
         self._touches: dict[int, Touches] = {}
+        self._waiting: set[int] = set()
         self._rows = np.zeros(num_envs, HEAT_ROW)
         self._laws = np.zeros(num_envs, CONTACT_LAW)
         self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
         self._state = np.zeros((num_envs, 0))
 
     def reset(
-        self, rows: Sequence[int], things: Sequence[Thing], sensor_temperatures: np.ndarray | None = None
+        self,
+        rows: Sequence[int],
+        things: Sequence[Thing],
+        sensor_temperatures: np.ndarray | None = None,
+        *,
+        waiting: Collection[int] = (),
     ) -> None:
         """The rows start with new objects, everything at its first temperature. sensor_temperatures: °C of each row's
-        thermostats, (n, F), where they differ from the batch's."""
+        thermostats, (n, F), where they differ from the batch's. waiting: rows whose networks are made when something
+        happens to them."""
         temperatures = np.broadcast_to(self._sensor_temperature, (len(rows), 2))
         if sensor_temperatures is not None:
             temperatures = sensor_temperatures
         for row, thing, temperature in zip(rows, things, temperatures, strict=True):
             self._place(row, thing, temperature)
-            self._state[row] = 0.0
             fresh = self._rows[row]
             fresh["sensor_temperature"] = temperature
             fresh["difference"] = temperature - thing.temperature
@@ -112,14 +118,18 @@ class GraspHeat:
             fresh["begun"] = thing.spec.reservoir is not None or fresh["ambient"] != 0
             if thing.spec.reservoir is not None:
                 fresh["enthalpy"] = thing.spec.reservoir.row(thing.temperature)[1]
+            if row not in waiting or fresh["begun"]:
+                self._build(row)
 
     def rung(self, row: int) -> str:
         """The model that computes an environment's heat."""
-        return self._networks.rungs[self._rows["network"][row]]
+        return "" if row in self._waiting else self._networks.rungs[self._rows["network"][row]]
 
     def advance(self, force: np.ndarray, place: np.ndarray) -> HeatStep:
         """One control step. force: (B, S, F) N, normal, of each substep, 0 where apart. place: (B, F, 3) m, the
         sensor faces' middles in the object's frame at the end of the step."""
+        for row in [row for row in self._waiting if force[row].any()]:
+            self._build(row)
         if self._touches:
             self._follow(force, place)
         drop = np.empty((len(force), self._samples, 2))
@@ -161,6 +171,8 @@ class GraspHeat:
     def carry(self, source: int, target: int, fingertip: int) -> None:
         """The fingertip's field goes from one row to another, whose object it touches from now on. The source's
         fingertip is left as warm as its thermostat. Raises InvalidValueError in O mode."""
+        if target in self._waiting:
+            self._build(target)
         old, new = self._rows[source], self._rows[target]
         numbers = int(old["network"]), int(new["network"])
         matrix = self._networks.carried(*numbers)
@@ -182,6 +194,7 @@ class GraspHeat:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
             self._place(row, state.things[k], state.rows["sensor_temperature"][k])
+            self._build(row)
             places = state.places[k]
             if places is not None:
                 self._touches[row] = self._touches[row].at(*places)
@@ -214,7 +227,21 @@ class GraspHeat:
         # In steps, so that nearly equal temperatures share a network.
         above = max(np.abs(sensor_temperature - each).max() for each in celsius) / LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
-        self._demands[row] = demand = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
+        self._demands[row] = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
+        self._waiting.add(row)
+        mine = self._rows[row]
+        mine["glued"] = thing.mode == "O"
+        mine["reach"] = thing.stack.width / 2
+        mine["element_capacity"] = thing.stack.heat_capacity
+        mine["ambient"] = (
+            0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
+        )
+
+    def _build(self, row: int) -> None:
+        """Makes the row's network, all at its first temperature."""
+        self._waiting.discard(row)
+        self._state[row] = 0.0
+        thing, demand = self._things[row], self._demands[row]
         geometry, capacity = thing.geometry, thing.heat_capacity
         touches = None
         if thing.solid is not None:
@@ -227,13 +254,8 @@ class GraspHeat:
             capacity = geometry.whole_capacity
         free = free_area(geometry)
         mine = self._rows[row]
-        mine["glued"], mine["lasting"] = thing.mode == "O", touches is not None
-        mine["reach"] = thing.stack.width / 2
+        mine["lasting"] = touches is not None
         mine["capacity"] = capacity
-        mine["element_capacity"] = thing.stack.heat_capacity
-        mine["ambient"] = (
-            0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
-        )
         mine["air"] = self._air * free
         # What the object gives to the air and to a reservoir, as one film of that many W/(m2 K).
         self._films[row] = self._air + float(self._reservoirs["conductance"][row]) / free

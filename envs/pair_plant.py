@@ -22,10 +22,10 @@ from ..thermal import Material, sensor
 from .electronics import Electronics, ElectronicsState
 from .mechanics import Mechanics, MechanicsState
 from .pair_config import OBJECTS, PairConfig, pair_config
-from .pair_heat import PairHeat, PairHeatState, PairHeatStep
 from .pair_truth import PAIR_TOLD, PairTruth
 from .randomization import CAUSES, checked, draw
 from .scene import LATERAL_REACH, ObjectSpec
+from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
 from .simulation_config import SAMPLE_PERIOD
 from .thermostats import Thermostats
 from .things import Thing
@@ -39,7 +39,7 @@ class PairState:
     """Everything that decides the future of some environments; picklable."""
 
     mechanics: MechanicsState
-    heat: PairHeatState
+    heat: SceneHeatState
     electronics: ElectronicsState
     thermostats: tuple[np.ndarray, ...]
     rest: np.ndarray
@@ -73,7 +73,7 @@ class PairPlant:
         self._taxels = config.tactile
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
-        self.heat = PairHeat(num_envs, **config.heat)
+        self.heat = SceneHeat(num_envs, OBJECTS, **config.heat)
         self.things: list[tuple[Thing, ...]] = [(possible[0],) * OBJECTS] * num_envs
         self._rngs = [np.random.default_rng(0)] * num_envs
         self._electronics = Electronics(
@@ -267,7 +267,7 @@ class PairPlant:
         }
 
     def _truth(
-        self, heights: np.ndarray, force: np.ndarray, step: PairHeatStep, error: tuple[str, ...]
+        self, heights: np.ndarray, force: np.ndarray, step: SceneHeatStep, error: tuple[str, ...]
     ) -> PairTruth:
         celsius = step.objects["object_temperature"].copy()
         own = {"object_temperature": celsius, "object_temperatures": celsius, "object_force": force}

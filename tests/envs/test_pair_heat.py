@@ -8,7 +8,7 @@ import pytest
 from thermograsp import thermal
 from thermograsp.envs import ObjectSpec, Thing
 from thermograsp.envs.heat import GraspHeat
-from thermograsp.envs.pair_heat import PairHeat
+from thermograsp.envs.scene_heat import SceneHeat
 
 STACK = thermal.sensor("seed")
 SETTINGS = {"tolerance": 0.05, "air": 0.0, "dt": 0.01, "samples": 2, "sensor_temperature": 36.0}
@@ -18,13 +18,13 @@ def thing(name: str, celsius: float = 24.0) -> Thing:
     return Thing(ObjectSpec(mass=0.1, friction=0.8), thermal.material(name), celsius, "T", STACK)
 
 
-def pair_heat(*things: Thing) -> PairHeat:
-    heat = PairHeat(1, **SETTINGS)
+def pair_heat(*things: Thing) -> SceneHeat:
+    heat = SceneHeat(1, 2, **SETTINGS)
     heat.reset([0], [things], np.full((1, 2), 36.0))
     return heat
 
 
-def step(heat: PairHeat, left: int | None, right: int | None, newton: float = 10.0):
+def step(heat: SceneHeat, left: int | None, right: int | None, newton: float = 10.0):
     """Each fingertip on one of the objects, or on none."""
     force = np.zeros((1, 2, 10, 2))
     for tip, number in enumerate((left, right)):

@@ -1,0 +1,140 @@
+"""Heat of grasps with several objects in reach: a row of heat for each, fingertips that go from one to another.
+
+Object o of environment i has row O i + o. A fingertip belongs to the object that it touches or touched last; there its
+field is advanced, and it is carried over when the fingertip touches another one. One that touches several belongs to
+the one that it presses hardest; the other contacts carry no heat.
+
+B: environments, O: objects, F = 2 fingertips, S: substeps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..thermal.carry import LEAST_STATES
+from .heat import GraspHeat, HeatState, HeatStep
+from .heat_rows import HEAT_TOLD
+from .things import Thing
+
+_OF_FINGERTIPS = ("conductance", "area", "sensor_surface", "object_surface", "flow", "drawn")
+_SUMMED = ("air_loss", "reservoir_flow", "imbalance", "exchanged")
+_OF_OBJECT = ("object_temperature", "reservoir_temperature")
+
+
+@dataclass(frozen=True, slots=True)
+class SceneHeatState:
+    """Everything that the heat of some environments remembers; picklable. owner: (n, F) each fingertip's object."""
+
+    rows: HeatState
+    owner: np.ndarray
+
+
+class SceneHeatStep(NamedTuple):
+    """One control step. fingertips: what a HeatStep tells, of each fingertip and the object that it belongs to; the
+    objects' heat, air loss and books are sums over all, object and reservoir temperature are the left fingertip's
+    object's. objects: (B, O) HEAT_TOLD, as each object's row tells. owner: (B, F) the object that each fingertip
+    touches or touched last."""
+
+    fingertips: HeatStep
+    objects: np.ndarray
+    owner: np.ndarray
+
+
+class SceneHeat:
+    """The thermal side of `num_envs` grasps with so many objects each, in T mode. Keywords as GraspHeat's."""
+
+    def __init__(self, num_envs: int, objects: int, **settings: Any) -> None:
+        self._objects = objects
+        self._rows = GraspHeat(objects * num_envs, least_sensor_states=LEAST_STATES, **settings)
+        self._owner = np.zeros((num_envs, 2), int)
+        self._tips: int = 2
+
+    def reset(
+        self,
+        rows: Sequence[int],
+        scenes: Sequence[Sequence[Thing]],
+        sensor_temperatures: np.ndarray,
+        *,
+        waiting: bool = False,
+    ) -> None:
+        """The rows start with new objects, O each. sensor_temperatures: (n, F) °C of the thermostats. waiting: networks
+        of all but the first are made when they are touched."""
+        things = [thing for scene in scenes for thing in scene]
+        every = self._of(rows)
+        later = [row for row in every if waiting and row % self._objects]
+        temperatures = np.repeat(sensor_temperatures, self._objects, axis=0)
+        self._rows.reset(every, things, temperatures, waiting=later)
+        self._owner[list(rows)] = 0
+        self._tips = things[0].fingertips
+
+    def rung(self, row: int) -> tuple[str, ...]:
+        """The model that computes each object's heat."""
+        return tuple(self._rows.rung(each) for each in self._of([row]))
+
+    def advance(self, force: np.ndarray, place: np.ndarray) -> SceneHeatStep:
+        """One control step. force: (B, O, S, F) N, normal, of each substep, 0 where apart. place: (B, O, F, 3) m, the
+        sensor faces' middles in each object's frame at the end of the step."""
+        most, count = force.max(axis=2), self._objects
+        owner = np.where(most.max(axis=1) > 0, most.argmax(axis=1), self._owner)
+        for row, tip in np.argwhere(owner[:, : self._tips] != self._owner[:, : self._tips]).tolist():
+            self._rows.carry(count * row + self._owner[row, tip], count * row + owner[row, tip], tip)
+        self._owner = owner
+        own = owner[:, None, None, :] == np.arange(count)[:, None, None]
+        total = count * len(force)
+        step = self._rows.advance(
+            np.where(own, force, 0.0).reshape(total, *force.shape[2:]), place.reshape(total, *place.shape[2:])
+        )
+        return self._told(step)
+
+    def rest(self) -> SceneHeatStep:
+        """What a step would tell of a batch in which nothing has touched yet."""
+        return self._told(self._rows.rest())
+
+    def set_thermostats(self, celsius: np.ndarray) -> None:
+        """Temperatures (B, F) °C of the thermostats from now on."""
+        self._rows.set_thermostats(np.repeat(celsius, self._objects, axis=0))
+
+    def state(self, rows: Sequence[int]) -> SceneHeatState:
+        """A copy of what the rows remember."""
+        return SceneHeatState(self._rows.state(self._of(rows)), self._owner[list(rows)])
+
+    def set_state(self, rows: Sequence[int], state: SceneHeatState) -> None:
+        """Puts the rows into a state taken by `state`."""
+        self._rows.set_state(self._of(rows), state.rows)
+        self._owner[list(rows)] = state.owner
+        self._tips = state.rows.things[0].fingertips
+
+    @property
+    def sensor_temperatures(self) -> np.ndarray:
+        """(B, F) °C of the thermostats at the start."""
+        return self._rows.sensor_temperatures[:: self._objects]
+
+    def _told(self, step: HeatStep) -> SceneHeatStep:
+        objects = step.told.reshape(-1, self._objects)
+        told = np.zeros(len(objects), HEAT_TOLD)
+        for name in _OF_FINGERTIPS:
+            told[name] = self._picked(objects[name])
+        told["heat"][:, :2] = self._picked(objects["heat"][:, :, :2])
+        for number in range(self._objects):
+            told["heat"][:, 2] += objects["heat"][:, number, 2]
+            for name in _SUMMED:
+                told[name] += objects[name][:, number]
+            told["events"] |= objects["events"][:, number]
+        for name in _OF_OBJECT:
+            told[name] = self._picked(np.repeat(objects[name][..., None], 2, axis=2))[:, 0]
+        drop = self._picked(step.drop.reshape(-1, self._objects, *step.drop.shape[1:]))
+        return SceneHeatStep(HeatStep(drop, told), objects, self._owner)
+
+    def _picked(self, values: np.ndarray) -> np.ndarray:
+        """(B, ..., F) of each fingertip's own object from (B, O, ..., F)."""
+        owner = self._owner.reshape(len(values), *(1,) * (values.ndim - 2), 2)
+        return np.take_along_axis(
+            values, np.broadcast_to(owner, (len(values), 1, *values.shape[2:])), axis=1
+        )[:, 0]
+
+    def _of(self, rows: Sequence[int]) -> list[int]:
+        return [self._objects * row + number for row in rows for number in range(self._objects)]
