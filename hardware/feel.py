@@ -31,7 +31,8 @@ class Feel:
     thermostat: Pair | None = None
 
 
-Source = Callable[[float], Feel]  # of the time since the emulator's start, s
+Source = Callable[[float], Feel]
+"""Of the time since the emulator's start, s."""
 
 
 def untouched(time: float) -> Feel:

@@ -24,6 +24,7 @@ class LinePacing:
 
 
 INSTANT = LinePacing(0.0, 0.0, 0.0)
+"""A line that takes no time."""
 
 Read = Callable[[int, int], list[int] | None]  # address and count -> registers; None where there are none
 Write = Callable[[int, list[int]], bool]  # address and registers -> whether they may be written

@@ -23,3 +23,4 @@ class Transport(Protocol):
 
 
 Opener = Callable[[], Transport]
+"""Opens a line, and again after it was lost."""

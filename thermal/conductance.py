@@ -132,9 +132,9 @@ class Gas:
         return alpha * beta * self.mean_free_path
 
 
-# 300 K and 101 kPa. Conductivity and Prandtl number: Incropera & DeWitt, table A.4. Mean free path from its viscosity,
-# mu/p sqrt(pi R T/2). Accommodation: correlation of Song & Yovanovich 1987 (ASME HTD 69:107) for air on alumina.
 AIR = Gas(conductivity=0.0263, mean_free_path=67.0e-9, heat_ratio=1.4, prandtl=0.707, accommodation=0.83)
+"""300 K and 101 kPa. Conductivity and Prandtl number: Incropera & DeWitt, table A.4. Mean free path from its viscosity,
+mu/p sqrt(pi R T/2). Accommodation: correlation of Song & Yovanovich 1987 (ASME HTD 69:107) for air on alumina."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,7 @@ CONTACT_LAW = np.dtype(
         ("shape", "i8"),
     ]
 )
+"""Of a row, what the conductance of a contact depends on besides force; flat_law and its like make one."""
 
 # Mean planes' distance over roughness, sqrt(2) erfc^-1(x), in powers of where sqrt(-log x) is between LOW and HIGH; the
 # series' first terms, good to 1e-11.

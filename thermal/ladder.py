@@ -104,6 +104,7 @@ RUNGS = MappingProxyType(
         )
     }
 )
+"""Name -> what is known of it, from the cheapest."""
 
 
 def solve_rung(

@@ -15,7 +15,9 @@ from .materials import Material
 from .thermostat import Thermostat
 
 Mode = Literal["T", "O"]
+"""T: the element on the thermostat. O: on the object."""
 Shape = Literal["square", "round"]
+"""Of a contact patch, and of the sensor's cross-section."""
 Conductance = float | Callable[[float], float]
 
 

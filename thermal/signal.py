@@ -64,14 +64,16 @@ class SignalChain:
 
 
 IDEAL = SignalChain()
+"""Hands the voltage on as it is."""
 
-# TI ADS1115 datasheet (SBAS444): 16 bits, +-0.256 V, noise 1 LSB rms at 128 samples/s in that range, gain error 0.01 %
-# typical, 0.15 % at most, offset 3 LSB at most. The low-pass of 30 Hz is an estimate (20 to 40 Hz).
 ADS1115 = SignalChain(
     gain_error=1e-4, offset=3 * 7.8125e-6, bandwidth=30.0, noise=7.8125e-6, span=0.256, bits=16
 )
+"""TI ADS1115 datasheet (SBAS444): 16 bits, +-0.256 V, noise 1 LSB rms at 128 samples/s in that range, gain error 0.01 %
+typical, 0.15 % at most, offset 3 LSB at most. The low-pass of 30 Hz is an estimate (20 to 40 Hz)."""
 
 SIGNAL_CHAINS: Mapping[str, SignalChain] = MappingProxyType({"ideal": IDEAL, "ads1115": ADS1115})
+"""By the names that commands and environments take."""
 
 
 class SignalState(NamedTuple):

@@ -13,7 +13,8 @@ _LONGEST = 300  # characters of a constant's value that a page shows
 
 
 def public_names(package: str) -> str:
-    """Functions, classes, errors and constants of `__all__`, each under a heading, in alphabetical order."""
+    """Functions, classes, errors and constants of `__all__`, each under a heading, in alphabetical order. Raises
+    ValueError for a constant without a text below it."""
     module = importlib.import_module(package)
     groups: dict[str, list[str]] = {"Functions": [], "Classes": [], "Errors": [], "Constants": []}
     for name in sorted(module.__all__, key=str.casefold):
@@ -45,9 +46,7 @@ def _constant(module: ModuleType, name: str, value: object) -> str:
     shown = repr(value)
     if len(shown) <= _LONGEST and " at 0x" not in shown:
         lines.append(f"   :value: {shown}")
-    text = _text(module, name)
-    if text:
-        lines += ["", "   .. markdown::", "", *("      " + line for line in text)]
+    lines += ["", "   .. markdown::", "", *("      " + line for line in _text(module, name))]
     return "\n".join(lines)
 
 
@@ -56,5 +55,7 @@ def _text(module: ModuleType, name: str) -> list[str]:
     for node in ast.parse(inspect.getsource(module)).body:
         if isinstance(node, ast.ImportFrom) and name in {alias.name for alias in node.names}:
             analyzer = ModuleAnalyzer.for_module(f"{module.__name__}.{node.module}")
-            return analyzer.find_attr_docs().get(("", name), [])
-    return []
+            text = analyzer.find_attr_docs().get(("", name))
+            if text:
+                return text
+    raise ValueError(f"{module.__name__}.{name} has no text: put one in triple quotes below its assignment")
