@@ -1,6 +1,7 @@
 """Everyday objects by name: shape, material, contents and temperature from assets/objects.toml.
 
-Meshes are made when an object is first asked for and kept in the cache's folder under a hash of what they are made of.
+Meshes are made when an object is first asked for and kept in the cache's folder under a hash of their vertices and
+faces.
 """
 
 from __future__ import annotations
@@ -36,7 +37,6 @@ FILM = 500.0
 """W/(m2 K) between contents and wall, free convection in water: Nu = .59 Ra^(1/4) over 5 cm with 10 K between the two
 (Incropera et al., Fundamentals of Heat and Mass Transfer, equation 9.24)."""
 _GRAVITY = 9.81  # m/s2
-_VERSION = 1  # of the meshes; raise it when solids.py makes others from the same parameters
 _KEYS = ("about", "recipe", "material", "temperature", "mass", "friction", "contents", "like")
 
 
@@ -102,7 +102,7 @@ class ObjectPreset:
             return ObjectSpec(shape=solid.shape, size=solid.size, **common)
         # the recipe's origin, where the fingers close, is not the middle of a cup with a handle
         x, y = (solid.surface.vertices.max(axis=0) + solid.surface.vertices.min(axis=0))[:2] / 2
-        mesh = str(self._file(solid.surface))
+        mesh = str(_file(solid.surface))
         return ObjectSpec(shape="mesh", mesh=mesh, position=(_zero(x), _zero(y)), **common)
 
     @property
@@ -111,14 +111,6 @@ class ObjectPreset:
         least."""
         spec = self.spec()
         return max(LEAST_GRIP, GRIP_MARGIN * spec.weight * _GRAVITY / (2 * spec.sliding_friction))
-
-    def _file(self, surface: Triangles) -> Path:
-        key = {
-            "recipe": self.recipe,
-            "parameters": dict(self.parameters),
-            "version": _VERSION,
-        }
-        return cached_file(key, ".ply", lambda path: _write(path, surface))
 
 
 @cache
@@ -193,6 +185,12 @@ def _volume(solid: Solid) -> float:
 def _zero(value: float) -> float:
     """Rounded to a micrometre: a symmetric body stands at 0."""
     return round(float(value), 6) + 0.0
+
+
+def _file(surface: Triangles) -> Path:
+    """Of the surface in the cache, named by what is in it."""
+    key = {"vertices": surface.vertices, "faces": surface.faces}
+    return cached_file(key, ".ply", lambda path: _write(path, surface))
 
 
 def _write(path: Path, surface: Triangles) -> None:

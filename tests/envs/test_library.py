@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from thermograsp.envs import GraspEnv, GraspVectorEnv
+from thermograsp.envs import GraspEnv, GraspVectorEnv, ObjectSpec, SimulationConfig
 from thermograsp.envs.library import ObjectPreset, library_object, load_objects, objects
 from thermograsp.envs.mechanics import Mechanics
 from thermograsp.envs.recipes import RECIPES, make
@@ -15,7 +15,7 @@ from thermograsp.envs.scene import MAX_OPENING
 from thermograsp.envs.surface_height import MAP_PITCH, map_heights, mesh_map
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.files import cache_dir
-from thermograsp.thermal import material
+from thermograsp.thermal import material, sensor
 
 NAMES = tuple(objects())
 MESHES = tuple(name for name in NAMES if objects()[name].solid.surface is not None)
@@ -205,28 +205,38 @@ def test_names_and_tables_are_checked(tmp_path) -> None:
 
 
 def test_environments_take_names() -> None:
-    env = GraspEnv(objects="cold_can", cache=False, tolerance=0.5)
+    env = GraspEnv(objects="butter", tolerance=0.5)
     _, info = env.reset(seed=0)
     thing = env.batch.plant.things[0]  # pyright: ignore[reportAttributeAccessIssue]
-    can = objects()["cold_can"]
-    assert info["material"] == "aluminium" and thing.temperature == 5.0
-    assert thing.spec.weight == pytest.approx(can.spec().weight)
+    butter = objects()["butter"]
+    assert info["material"] == "butter" and thing.temperature == 6.0
+    assert thing.spec.weight == pytest.approx(butter.spec().weight)
     _, info = env.reset(seed=0, options={"material": "steel"})
-    assert info["material"] == "steel"
+    thing = env.batch.plant.things[0]  # pyright: ignore[reportAttributeAccessIssue]
+    assert info["material"] == "steel" and thing.spec.weight > 5 * butter.spec().weight
     env.close()
     with pytest.raises(UnknownNameError, match="did you mean 'cold_can'"):
         GraspEnv(objects="cold_cann")
-    both = GraspVectorEnv(4, objects=["dice", "toy_block"], cache=False, tolerance=0.5)
+    both = GraspVectorEnv(4, objects=["dice", "toy_block"], tolerance=0.5)
     _, infos = both.reset(seed=1)
     assert set(infos["material"]) == {"abs", "maple"}
     both.close()
 
 
-def test_a_cup_with_a_handle_is_held_by_its_cup() -> None:
-    env = GraspEnv(objects="mug", cache=False, tolerance=0.5, placement=(0.0, 0.0), seconds=2.0)
-    seen, _ = env.reset(seed=0)
-    for _ in range(80):
-        seen, *_ = env.step(np.array([-1.0, -0.5, 0.0]))
-    assert seen["force"][:, 0] == pytest.approx(10.0, rel=0.02)
-    assert env.batch.plant.mechanics.object_pose[0, 0, 1] == pytest.approx(0.015, abs=1e-3)  # pyright: ignore
+def test_contents_keep_an_object_hot() -> None:
+    """The environment's heat takes the preset's reservoir and temperature."""
+    config = SimulationConfig(objects="mug_of_coffee")
+    thing = config.possible_things(sensor("seed"))[0]
+    assert thing.temperature == 60.0 and thing.material.name == "ceramic"
+    assert thing.spec.reservoir == objects()["mug_of_coffee"].spec().reservoir
+    assert thing.spec.weight == pytest.approx(objects()["mug_of_coffee"].spec().weight)
+
+
+def test_an_object_lies_where_it_says() -> None:
+    """As a cup does whose handle is not to lie between the fingers."""
+    env = GraspEnv(objects=ObjectSpec(position=(0.0, 0.006)), placement=(0.001, 0.0), tolerance=0.5)
+    for seed in range(3):
+        env.reset(seed=seed)
+        place = env.batch.plant.mechanics.object_pose[0, 0]  # pyright: ignore[reportAttributeAccessIssue]
+        assert 0.005 <= place[1] <= 0.007 and abs(place[0]) <= 0.001
     env.close()

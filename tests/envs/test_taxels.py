@@ -251,7 +251,8 @@ ACTIONS = [np.array([-1.0, -0.5, 0.0])] * 60 + [np.array([-1.0, -0.5, 1.0])] * 2
 
 
 def test_environments_feel_it_and_one_is_a_batch_of_one() -> None:
-    config = {"material": "glass", "objects": ["hex_nut", "egg"], "taxels": (6, 5), "tolerance": 0.5}
+    shapes = [ObjectSpec(), ObjectSpec(shape="sphere")]
+    config = {"material": "glass", "objects": shapes, "taxels": (6, 5), "tolerance": 0.5}
     single, vector = GraspEnv(**config), GraspVectorEnv(3, **config)
     check_env(GraspEnv(**config), skip_render_check=True)
     box = single.observation_space["pressure"]
@@ -273,6 +274,21 @@ def test_environments_feel_it_and_one_is_a_batch_of_one() -> None:
     single.set_state(state)
     again = [single.step(action)[0]["pressure"] for action in ACTIONS[-5:]]
     assert np.array_equal(first, again)
+
+
+def test_a_pad_s_map_does_not_depend_on_how_many_there_are() -> None:
+    specs = [objects()[name].spec() for name in ("egg", "hex_nut", "wrench")]
+    several = Mechanics((specs[0],), 3, library=specs, contacts=True)
+    several.reset(objects=[(spec,) for spec in specs])
+    alone = Mechanics((specs[0],), 1, library=specs, contacts=True)
+    alone.reset(objects=[(specs[1],)])
+    for mechanics in (several, alone):
+        rows = np.ones(mechanics.num_envs)
+        for _ in range(60):
+            mechanics.advance(0 * rows, 10 * rows, 0 * rows)
+    taxels = Taxels((5, 5))
+    together = taxels.pressure(several)
+    assert together.all(axis=(2, 3)).any() and np.array_equal(together[1], taxels.pressure(alone)[0])
 
 
 def test_of_two_objects_each_presses_its_own() -> None:
