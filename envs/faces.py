@@ -20,7 +20,7 @@ _FLATNESS = (  # rad and m off a face's plane, and m2 of the largest face for wh
 )
 _SEEDS = 24  # planes tried per geom, those of the most area
 _RIM = 32  # corners that stand for a circle
-_NEAR = 0.5  # share of the best score from which a face that lies further out is preferred
+_NEAR, _AMPLE = 0.5, 2e-4  # share of the best score, and m2, either of which makes a face large enough
 
 _BOX = np.array(  # corners of its six sides, outwards by the right hand
     [
@@ -93,11 +93,13 @@ def flat_faces(parts: Iterable[tuple[str, np.ndarray]], direction: np.ndarray) -
 
 
 def largest_face(faces: Sequence[Face], direction: np.ndarray) -> Face | None:
-    """The largest of them; where others of at least half its size lie further out, the outermost. None for none."""
+    """The outermost of those that are half as large as the largest, or half as large as our pad, since it is what
+    touches first. None for none."""
     if not faces:
         return None
     scores = [face.area * float(face.normal @ direction) for face in faces]
-    fit = [face for face, score in zip(faces, scores, strict=True) if score >= _NEAR * max(scores)]
+    enough = min(_NEAR * max(scores), _AMPLE)
+    fit = [face for face, score in zip(faces, scores, strict=True) if score >= enough]
     return max(fit, key=lambda face: (round(float(face.centre @ direction), 5), face.area))
 
 

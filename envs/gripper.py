@@ -269,7 +269,7 @@ def _told(name: str, hand: Hand, way: Closing, polynomials: dict[int, np.ndarray
     for number in used:
         coordinate = mechanism.coordinates[number]
         rate = _rate(mechanism, way, way.controls[at], number)
-        wide, narrow = way.controls[-1, number], way.controls[0, number]
+        wide, narrow = float(way.controls[-1, number]), float(way.controls[0, number])
         maps.append(
             ActuatorMap(
                 coordinate.name, coordinate.unit, wide, narrow, rate, _limit(model, coordinate.number)

@@ -117,9 +117,15 @@ class Mechanism:
             low, high = low + ends[0], high + ends[1]
         low, high = first + low, first + high
         stiffness = -model.actuator_biasprm[number, 1]
-        if stiffness > 0 and model.actuator_ctrllimited[number]:
+        rate = model.actuator_dyntype[number] == mujoco.mjtDyn.mjDYN_INTEGRATOR  # its control is no set point
+        limited, limits = (
+            (model.actuator_actlimited, model.actuator_actrange)
+            if rate
+            else (model.actuator_ctrllimited, model.actuator_ctrlrange)
+        )
+        if stiffness > 0 and limited[number]:
             gain, offset = model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 0]
-            ends = sorted((gain * c + offset) / stiffness for c in model.actuator_ctrlrange[number])
+            ends = sorted((gain * c + offset) / stiffness for c in limits[number])
             low, high = max(low, ends[0]), min(high, ends[1])
         return (low, high) if np.isfinite(low) and np.isfinite(high) else (0.0, 0.0)
 

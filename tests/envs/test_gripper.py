@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import thermograsp  # noqa: F401  registers the environments
+from thermograsp.assets import asset
 from thermograsp.envs import Gripper, Mechanics, ObjectSpec, action_of, load_gripper
 from thermograsp.envs.gripper_shipped import SHIPPED_GRIPPER
 from thermograsp.errors import GripperError, InvalidValueError, UnknownNameError
@@ -325,6 +326,16 @@ def test_only_the_pads_collide_and_only_with_objects():
         if not getattr(model, kind)(i).name
     ]
     assert not named
+
+
+def test_the_shipped_gripper_is_found_as_any_other_and_carries_a_second_pair_of_fingertips():
+    gripper = load_gripper(asset("gripper.xml"))
+    assert gripper.palm == "wrist" and gripper.fingers == ("finger_left", "finger_right")
+    assert gripper.pads == ("pad_left", "pad_right")
+    assert gripper.widest == pytest.approx(SHIPPED_GRIPPER.widest - 4 * 0.003, abs=1e-5)
+    assert [actuator.name for actuator in gripper.actuators] == ["grip"]
+    mechanics = Mechanics((ObjectSpec(mass=0.1),), gripper=gripper)
+    assert drive(mechanics, 1.4).force[0, -1, :, 0, 0] == pytest.approx((8.0, 8.0), rel=0.01)
 
 
 def test_the_shipped_gripper_answers_as_its_file_says():

@@ -59,6 +59,7 @@ def robosuite(name: str, *fingers: str, **options: Any) -> Theirs:
     return Theirs("robosuite", f"models/assets/grippers/{name}.xml", fingers, radians=True, options=options)  # pyright: ignore[reportArgumentType]
 
 
+PAGE = (Path(__file__).parents[2] / "docs" / "grippers.md").read_text(encoding="utf-8")
 HANDS = "envs/assets"
 THEIRS = {
     "Franka hand": robosuite("panda_gripper", "leftfinger", "rightfinger"),
@@ -98,7 +99,7 @@ def test_its_fingers_are_found(name: str):
     gripper = loaded(name)
     for finger, part in zip(gripper.fingers, THEIRS[name].fingers, strict=True):
         assert part in finger, gripper
-    assert gripper.widest > 0.05 and gripper.widest - gripper.narrowest > 0.04
+    assert gripper.widest > 0.047 and gripper.widest - gripper.narrowest > 0.04
     assert gripper.flat[0] < 0.04 < gripper.flat[1]
 
 
@@ -129,6 +130,17 @@ def test_the_opening_is_the_distance_of_the_pads(name: str):
         spots = [data.site(f"pad_{tip}").xpos for tip in ("left", "right")]
         assert motion.opening[0] == pytest.approx(opening, abs=5e-4)  # pyright: ignore[reportPossiblyUnboundVariable]
         assert spots[1][0] - spots[0][0] == pytest.approx(opening, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", THEIRS)
+def test_the_page_has_what_is_found(name: str):
+    row = next(line for line in PAGE.splitlines() if line.startswith(f"| {name} |"))
+    _, package, fingers, opens, flat, most = (cell.strip() for cell in row.strip("|").split("|"))
+    gripper = loaded(name)
+    assert (package, fingers) == (THEIRS[name].package, ", ".join(gripper.fingers))
+    for cell, found in ((opens, (gripper.narrowest, gripper.widest)), (flat, gripper.flat)):
+        assert [float(end) / 1e3 for end in cell.split("..")] == pytest.approx(found, abs=4.5e-3)
+    assert float(most) == pytest.approx(gripper.strongest, abs=0.5)
 
 
 def test_the_force_of_a_franka_hand_is_that_of_its_joints():
