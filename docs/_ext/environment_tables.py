@@ -8,7 +8,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, SOMETIMES
+from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, OPTIONS, SOMETIMES
 
 from thermograsp.envs.touch_env import TouchEnv
 from thermograsp.plant import Command
@@ -32,7 +32,7 @@ def _section(name: str) -> str:
             f"## {name}\n\n{paragraphs['']}",
             f"### Action\n\n{_numbers(env.action_space)}, one every {1e3 * env.dt:.0f} ms. "
             f"What is outside is clipped.\n\n{action_table(name, env)}",
-            f"### Observation\n\nA `Dict` of float32 boxes.\n\n{observation_table(env.observation_space)}",
+            f"### Observation\n\nA `Dict` of float32 boxes.\n\n{observation_table(name, env.observation_space)}",
             f"### Reward and end\n\n{paragraphs['Reward']}",
             f"### Info\n\n{info_table(env)}",
             f"### Keywords\n\n{paragraphs['Keywords']}",
@@ -71,20 +71,29 @@ def _changed(env: TouchEnv, component: int, value: float) -> str:
     return ", ".join(f"{name} {number}" for name, number in told)
 
 
-def observation_table(space: gymnasium.spaces.Dict) -> str:
-    """Shape, unit and bounds of every key."""
-    rows = []
-    for key, box in space.spaces.items():
-        assert isinstance(box, gymnasium.spaces.Box)
-        words = OBSERVATIONS[key]
-        for i, (what, unit) in enumerate(words):
-            low, high = (
-                np.atleast_1d(bound)[i] if len(words) > 1 else bound for bound in (box.low, box.high)
-            )
-            ends = tuple(f"{_one(bound):.4g}" for bound in (low, high))
-            index = f" [{i}]" if len(words) > 1 else ""
-            rows.append((f"`{key}`{index}", str(box.shape), what, unit, *ends))
+def observation_table(name: str, space: gymnasium.spaces.Dict) -> str:
+    """Shape, unit and bounds of every key, and of those that a keyword adds."""
+    rows = [row for key in space.spaces for row in _observed(key, space, "")]
+    for keyword, value in OPTIONS.items():
+        env = gymnasium.make(name, **{keyword: value})
+        more = env.observation_space
+        assert isinstance(more, gymnasium.spaces.Dict)
+        for key in sorted(set(more.spaces) - set(space.spaces)):
+            rows += _observed(key, more, f"; with `{keyword}={value}`")
+        env.close()
     return _table(("key", "shape", "what", "unit", "from", "to"), rows)
+
+
+def _observed(key: str, space: gymnasium.spaces.Dict, condition: str) -> list[tuple[str, ...]]:
+    """A row for each component, or one for all."""
+    box, words, rows = space[key], OBSERVATIONS[key], []
+    assert isinstance(box, gymnasium.spaces.Box)
+    for i, (what, unit) in enumerate(words):
+        low, high = (np.atleast_1d(bound)[i] if len(words) > 1 else bound for bound in (box.low, box.high))
+        ends = tuple(f"{_one(bound):.4g}" for bound in (low, high))
+        index = f" [{i}]" if len(words) > 1 else ""
+        rows.append((f"`{key}`{index}", str(box.shape), what + condition, unit, *ends))
+    return rows
 
 
 def info_table(env: TouchEnv) -> str:

@@ -6,6 +6,8 @@ missing or no longer needed.
 
 from __future__ import annotations
 
+from typing import Any
+
 GRIPPER_ACTION = ("target opening", "force limit", "lift rate of the arm")
 
 ACTIONS: dict[str, tuple[str, ...]] = {
@@ -34,8 +36,12 @@ OBSERVATIONS: dict[str, tuple[tuple[str, str], ...]] = {
     "thermostat": (("temperature of the left and the right thermostat", "°C"),),
     "lateral": (("place of the arm, sideways", "m"),),
     "goal": (("1 for what is asked, 0 for the others", ""),),
+    "pressure": (("over the left and the right pad: rows up to the wrist, columns across", "Pa"),),
 }
 """By key, (what, unit) of each component, or of all together where there is one."""
+
+OPTIONS: dict[str, Any] = {"taxels": (4, 4)}
+"""Keywords that add keys to an observation, each with a value for an example."""
 
 INFOS: dict[str, tuple[str, str]] = {
     "success": ("the task is done", ""),

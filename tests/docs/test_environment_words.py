@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 import pytest
 from environment_tables import environment_tables, info_keys, registered
-from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, SOMETIMES
+from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, OPTIONS, SOMETIMES
 
 from thermograsp.envs import EVERYTHING
 from thermograsp.hardware.serial_plant import UNKNOWN
@@ -24,6 +24,11 @@ def test_words_are_those_of_the_environments() -> None:
     for name in registered():
         env: Any = gymnasium.make(name).unwrapped
         observed |= set(env.observation_space.spaces)
+        for option, value in OPTIONS.items():
+            more: Any = gymnasium.make(name, **{option: value})
+            assert set(more.observation_space.spaces) > set(env.observation_space.spaces)
+            observed |= set(more.observation_space.spaces)
+            more.close()
         always, ends = info_keys(env)
         keys |= {*always, *ends}
         env.close()
