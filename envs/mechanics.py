@@ -272,6 +272,13 @@ class Mechanics:
         self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
         return self._motion(self._latest, self._layout, substeps)
 
+    def advance_all(
+        self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
+    ) -> tuple[Motion, ...]:
+        """The same step, told of each object."""
+        self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
+        return tuple(self._motion(self._latest, layout, substeps) for layout in self._layouts)
+
     def slide(
         self,
         opening: np.ndarray,
@@ -289,8 +296,7 @@ class Mechanics:
         change = LIFT_ACCELERATION * substeps * self._settings.timestep
         last = self._ctrl[:, servo]
         self._ctrl[:, servo] = np.clip(rate, last - change, last + change)
-        self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
-        return tuple(self._motion(self._latest, layout, substeps) for layout in self._layouts)
+        return self.advance_all(opening, force_limit, lift_rate, substeps)
 
     def pad_contacts(self) -> tuple[PadContacts, ...]:
         """Where on the pads each object pressed in the last `advance` or `slide`. Needs contacts=True, and is to be

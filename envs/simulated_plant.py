@@ -5,14 +5,14 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Command, Reading
 
-from ..thermal import sensor
+from ..thermal import Material, material, sensor
 from .electronics import Electronics, ElectronicsState
 from .heat import GraspHeat, HeatState, HeatStep
 from .mechanics import Mechanics, MechanicsState
@@ -23,13 +23,16 @@ from .thermostats import Thermostats
 from .things import Thing
 from .truth import TOLD, Episodes, Truth
 
+if TYPE_CHECKING:
+    from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
+
 
 @dataclass(frozen=True, slots=True)
 class PlantState:
     """Everything that decides the future of some environments of a simulated plant; picklable."""
 
     mechanics: MechanicsState
-    heat: HeatState
+    heat: HeatState | SceneHeatState
     electronics: ElectronicsState
     thermostats: tuple[np.ndarray, ...]
     rest: np.ndarray
@@ -49,8 +52,9 @@ class SimulatedPlant:
         self._shapes = config.shapes
         possible = config.possible_things(self._stack)
         first = possible[0]
+        self._other_specs = config.others
         self.mechanics = Mechanics(
-            (first.spec,),
+            (first.spec, *self._other_specs),
             num_envs,
             threads=config.threads,
             library=[thing.spec for thing in possible if thing.spec.mesh],
@@ -61,8 +65,9 @@ class SimulatedPlant:
         self._taxels = config.tactile
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
-        self.heat = GraspHeat(num_envs, **config.heat)
+        self.heat = self._heat_of(num_envs)
         self.things: list[Thing] = [first] * num_envs
+        self.others: list[tuple[Thing, ...]] = [()] * num_envs
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * num_envs
         self._electronics = Electronics(
             num_envs, config.chain, self._stack.seebeck, SAMPLE_PERIOD, config.samples, config.most_delay
@@ -110,17 +115,24 @@ class SimulatedPlant:
             self.things[row] = config.thing(self._stack, chosen, spec, drawn)
             self._rngs[row] = rng
             self._electronics.reset(row, drawn)
-        things = [self.things[row] for row in rows]
-        self.mechanics.reset(rows, [(thing.spec,) for thing in things])
-        self.heat.reset(
-            rows,
-            [
-                replace(thing, spec=replace(thing.spec, position=shape.position, yaw=shape.yaw))
-                for thing, shape in zip(things, own, strict=True)
-            ],
-            self._thermostats.setpoints[list(rows)]
-            + np.array([[self._drawn[row]["thermostat_error"]] for row in rows]),
+            if self._other_specs:
+                self.others[row] = self._draw_others(config, choices, drawn, rng)
+        self.mechanics.reset(
+            rows, [(self.things[row].spec, *(other.spec for other in self.others[row])) for row in rows]
         )
+        things = [
+            replace(
+                self.things[row], spec=replace(self.things[row].spec, position=shape.position, yaw=shape.yaw)
+            )
+            for row, shape in zip(rows, own, strict=True)
+        ]
+        errors = np.array([[self._drawn[row]["thermostat_error"]] for row in rows])
+        celsius = self._thermostats.setpoints[list(rows)] + errors
+        if isinstance(self.heat, GraspHeat):
+            self.heat.reset(rows, things, celsius)
+        else:
+            scenes = [(thing, *self.others[row]) for row, thing in zip(rows, things, strict=True)]
+            self.heat.reset(rows, scenes, celsius, waiting=True)
         chosen = list(rows)
         self._thermostats.reset(chosen)
         self._rest[chosen] = self.mechanics.object_pose[chosen, 0, 2]
@@ -129,10 +141,15 @@ class SimulatedPlant:
 
     def step(self, command: Command) -> Reading:
         """One control step of all environments."""
-        motion = self.mechanics.advance(
-            command.opening, command.force_limit, command.lift_rate, self.config.substeps
-        )
-        step = self.heat.advance(motion.normal, motion.place)
+        substeps, scene = self.config.substeps, None
+        if isinstance(self.heat, GraspHeat):
+            motion = self.mechanics.advance(command.opening, command.force_limit, command.lift_rate, substeps)
+            step = self.heat.advance(motion.normal, motion.place)
+        else:
+            from .other_objects import advance_scene
+
+            motion, scene = advance_scene(self.mechanics, self.heat, command, substeps)
+            step = scene.fingertips
         if not self._thermostats.ideal:
             first = self.heat.sensor_temperatures
             self.heat.set_thermostats(self._thermostats.step(step.told["drawn"], first))
@@ -145,15 +162,19 @@ class SimulatedPlant:
             force=motion.force,
             voltage=self._electronics.measure(step.drop, self._rngs),
             thermostat=self._thermostats.measured,
-            truth=self._truth(motion.object_height, step, error),
+            truth=self._truth(motion.object_height, step, scene, error),
             error=error,
-            told=TOLD,
+            told=self._told,
             pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
         """°C between which the row's heat stays: of its thermostats, object, room and reservoir."""
-        return (*self.heat.sensor_temperatures[row], *self.things[row].extremes)
+        objects = (self.things[row], *self.others[row])
+        return (
+            *self.heat.sensor_temperatures[row],
+            *(celsius for thing in objects for celsius in thing.extremes),
+        )
 
     def close(self) -> None:
         """Nothing is held."""
@@ -176,11 +197,18 @@ class SimulatedPlant:
         the rows now draw from."""
         chosen = list(rows)
         self.mechanics.set_state(state.mechanics, np.array(chosen))
-        self.heat.set_state(chosen, state.heat)
+        heat: Any = self.heat  # of the state's kind
+        heat.set_state(chosen, state.heat)
         self._electronics.set_state(chosen, state.electronics)
         rngs = tuple(copy.deepcopy(rng) for rng in state.generators)
         for k, row in enumerate(chosen):
-            self.things[row] = replace(state.heat.things[k], spec=state.mechanics.objects[k][0])
+            kept = state.heat.things if isinstance(state.heat, HeatState) else state.heat.rows.things
+            specs = state.mechanics.objects[k]
+            first, *others = (
+                replace(thing, spec=spec)
+                for thing, spec in zip(kept[k * len(specs) : (k + 1) * len(specs)], specs, strict=True)
+            )
+            self.things[row], self.others[row] = first, tuple(others)
             self._rngs[row] = rngs[k]
             self._drawn[row] = state.drawn[k]
         self._thermostats.set_state(chosen, state.thermostats)
@@ -194,18 +222,60 @@ class SimulatedPlant:
         material, rung, crushing_force = last.material.copy(), last.rung.copy(), last.crushing_force.copy()
         for row in rows:
             thing = self.things[row]
-            material[row], rung[row] = thing.material.name, self.heat.rung(row)
+            label = self.heat.rung(row)
+            material[row], rung[row] = thing.material.name, label if isinstance(label, str) else label[0]
             crushing_force[row] = thing.crushing_force
         names = [CAUSES[type(cause)][0] for cause in self._causes]
         randomized = {name: np.array([drawn[name] for drawn in self._drawn]) for name in names}
-        self._episodes = Episodes(self.config.mode, material, rung, crushing_force, randomized)
+        heaters = not self._thermostats.ideal
+        self._episodes = Episodes(self.config.mode, material, rung, crushing_force, randomized, heaters)
 
-    def _truth(self, object_height: np.ndarray, step: HeatStep, error: tuple[str, ...]) -> Truth:
-        return Truth(step, self._episodes, object_height - self._rest, error)
+    def _heat_of(self, num_envs: int) -> GraspHeat | SceneHeat:
+        if not self._other_specs:
+            return GraspHeat(num_envs, **self.config.heat)
+        from .scene_heat import SceneHeat
+
+        return SceneHeat(num_envs, 1 + len(self._other_specs), **self.config.heat)
+
+    def _draw_others(
+        self,
+        config: SimulationConfig,
+        choices: tuple[Material, ...],
+        drawn: dict[str, float],
+        rng: np.random.Generator,
+    ) -> tuple[Thing, ...]:
+        """The objects beside the first, where they were put and of their own size; else of the first's draws."""
+        things, drawn = [], {**drawn, "size_factor": 1.0}
+        for spec in self._other_specs:
+            chosen = choices[int(rng.integers(len(choices)))]
+            if spec.material is not None:
+                chosen = material(spec.material)
+            things.append(config.thing(self._stack, chosen, replace(spec, material=None), drawn))
+        return tuple(things)
+
+    @property
+    def _told(self) -> tuple[str, ...]:
+        """Names of what info tells."""
+        told = TOLD if self._thermostats.ideal else (*TOLD, "over_temperature")
+        return (*told, "touched", "object_temperatures") if self._other_specs else told
+
+    def _truth(
+        self, object_height: np.ndarray, step: HeatStep, scene: SceneHeatStep | None, error: tuple[str, ...]
+    ) -> Truth:
+        lift = object_height - self._rest
+        if scene is None:
+            return Truth(step, self._episodes, lift, error)
+        from .scene_truth import SceneTruth
+
+        own = {"object_temperatures": scene.objects["object_temperature"].copy(), "touched": scene.owner}
+        return SceneTruth(step, self._episodes, lift, error, own)
 
     def _still(self) -> Reading:
         """The reading before anything moves: nothing is touched, no voltage."""
         rows, error = self.num_envs, tuple(self.mechanics.failure)
+        rest, scene = self.heat.rest(), None
+        if not isinstance(rest, HeatStep):
+            rest, scene = rest.fingertips, rest
         return Reading(
             opening=self.mechanics.opening,
             opening_rate=np.zeros(rows),
@@ -213,9 +283,9 @@ class SimulatedPlant:
             force=np.zeros((rows, 2, 3)),
             voltage=np.zeros((rows, self.config.samples, 2)),
             thermostat=self._thermostats.measured,
-            truth=self._truth(self.mechanics.object_pose[:, 0, 2], self.heat.rest(), error),
+            truth=self._truth(self.mechanics.object_pose[:, 0, 2], rest, scene, error),
             error=error,
-            told=TOLD,
+            told=self._told,
             pressure=None if self._taxels is None else self._taxels.nothing(rows),
         )
 

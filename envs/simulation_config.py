@@ -38,7 +38,9 @@ SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
 class SimulationConfig:
     """What is simulated. material: a name, a Material, a list to draw from per episode, or None for an object's own and
     else the ten seed materials. mode: T or O. objects: the object's shape, its name in the library, or a list to draw
-    from per episode (density and friction are the material's where a shape gives none). tolerance: K that the thermal
+    from per episode (density and friction are the material's where a shape gives none). scene: objects that are all
+    there in place of one, the first is the one to grasp; where they have no material of their own it is drawn for each.
+    tolerance: K that the thermal
     network keeps. air: W/(m2 K). Temperatures in °C, that of the sensors one or each fingertip's; an object with a
     temperature of its own has that, and the room is as warm as object_temperature unless ambient_temperature is given.
     thermostat: one of finite power (its setpoint is sensor_temperature, its ambient the room where that is given), None
@@ -53,6 +55,7 @@ class SimulationConfig:
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
     objects: str | ObjectSpec | Sequence[str | ObjectSpec] | None = None
+    scene: Sequence[str | ObjectSpec] | None = None
     tolerance: float = 0.05
     sensor: str | SensorStack = "seed"
     signal: str | SignalChain = "ads1115"
@@ -93,6 +96,11 @@ class SimulationConfig:
             non_negative("placement (m, degree)", value)
         checked(self.randomize)
         _ = self.tactile  # checks it
+        if self.scene is not None and (self.objects is not None or self.mode == "O" or not len(self.scene)):
+            raise InvalidValueError(
+                f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene has one "
+                "object at least, stands in place of objects, and is of mode 'T'"
+            )
         period = self.substeps * self.solver.timestep
         if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
             raise InvalidValueError(
@@ -125,6 +133,8 @@ class SimulationConfig:
     def shapes(self) -> tuple[ObjectSpec, ...]:
         """Shapes that an episode draws from. Raises UnknownNameError; InvalidValueError for an empty list, and where
         their names or numbers of convex pieces differ, which all environments of a batch share."""
+        if self.scene is not None:
+            return self._all_there[:1]
         given = ObjectSpec() if self.objects is None else self.objects
         several = [given] if isinstance(given, str | ObjectSpec) else given
         listed = tuple(_from_library(one) if isinstance(one, str) else one for one in several)
@@ -134,6 +144,19 @@ class SimulationConfig:
                 "give at least one, all of the same name and number of pieces"
             )
         return listed
+
+    @property
+    def others(self) -> tuple[ObjectSpec, ...]:
+        """Of the scene, beside the first."""
+        return self._all_there[1:]
+
+    @property
+    def _all_there(self) -> tuple[ObjectSpec, ...]:
+        if self.scene is None:
+            return ()
+        from .other_objects import apart  # nothing that several objects need is loaded without them
+
+        return apart([_from_library(one) if isinstance(one, str) else one for one in self.scene])
 
     @property
     def tactile(self) -> Taxels | None:

@@ -21,13 +21,15 @@ TOLD = ("material", "temperature_drop", "contact_area", "conductance", "rung", "
 @dataclass(frozen=True, slots=True)
 class Episodes:
     """What stays as it is through each environment's episode; arrays are not written to later. mode: T or O. material,
-    rung (B,) names. crushing_force (B,) N. randomized: (B,) by name of what differs between episodes."""
+    rung (B,) names. crushing_force (B,) N. randomized: (B,) by name of what differs between episodes.
+    heaters: whether the thermostats have some, which go off when they are too hot."""
 
     mode: str
     material: np.ndarray
     rung: np.ndarray
     crushing_force: np.ndarray
     randomized: dict[str, np.ndarray]
+    heaters: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,7 @@ class Truth(Mapping[str, Any]):
         """What info tells of one environment; arrays are copies. Written out: name by name takes twice as long."""
         heat, episodes = self.heat.told[row], self.episodes
         left, right = heat["events"]
-        return {
+        told = {
             "material": episodes.material[row],
             "temperature_drop": self.heat.drop[row, -1].copy(),
             "contact_area": heat["area"].copy(),
@@ -55,6 +57,9 @@ class Truth(Mapping[str, Any]):
             "rung": episodes.rung[row],
             "events": EVENTS[left, right],
         }
+        if episodes.heaters:
+            told["over_temperature"] = bool(heat["over_temperature"])
+        return told
 
     def __contains__(self, name: object) -> bool:
         return name in _VALUES
