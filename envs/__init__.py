@@ -1,11 +1,17 @@
-"""MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments."""
+"""MuJoCo scenes, the simulated plant, tasks and the Gymnasium environments.
+
+What reads other grippers is imported when it is first asked for; the shipped one does not need it.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from .actions import action_of, action_space, command_of, sliding_action_of
-from .fit_fingertip import FingertipReport, fit_fingertip
 from .grasp import BatchState, GraspBatch
 from .grasp_env import GraspEnv, GraspVectorEnv
 from .grasp_task import GraspTask
-from .gripper import Gripper, load_gripper
 from .identify_env import IdentifyEnv, IdentifyVectorEnv
 from .identify_task import IdentifyTask
 from .library import ObjectPreset, library_object, objects
@@ -34,6 +40,26 @@ from .sort_env import SortEnv, SortVectorEnv
 from .sort_task import SortTask
 from .stakes import STAKES, force_window
 from .things import Thing
+
+if TYPE_CHECKING:
+    from .fingertip import FingertipReport, fit_fingertip
+    from .gripper import Gripper, load_gripper
+
+_LATER = {
+    "FingertipReport": "fingertip",
+    "fit_fingertip": "fingertip",
+    "Gripper": "gripper",
+    "load_gripper": "gripper",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_LATER[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
 
 __all__ = [
     "EVERYTHING",

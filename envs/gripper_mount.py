@@ -17,7 +17,7 @@ import numpy as np
 
 from ..assets import asset
 from .faces import rotation
-from .fit_fingertip import add_fingertip
+from .fingertip import add_fingertip
 from .gripper_fingers import parts_of
 
 if TYPE_CHECKING:

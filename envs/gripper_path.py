@@ -17,7 +17,7 @@ import numpy as np
 
 from thermograsp.errors import GripperError
 
-from .fit_fingertip import THICKNESS
+from .fingertip import THICKNESS
 from .gripper_fingers import Finger, Hand, moved_pad
 from .scene import MAX_OPENING, PAD_SIDE
 
