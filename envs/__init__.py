@@ -32,6 +32,7 @@ from .randomization import (
     ThermostatError,
 )
 from .render import Renderer, Window
+from .reservoir import Reservoir, ice, water
 from .scene import ObjectSpec, build_scene
 from .simulated_plant import PlantState, SimulatedPlant
 from .simulation_config import SimulationConfig
@@ -89,6 +90,7 @@ __all__ = [
     "Offset",
     "PlantState",
     "Renderer",
+    "Reservoir",
     "Roughness",
     "SimulatedPlant",
     "SimulationConfig",
@@ -106,10 +108,12 @@ __all__ = [
     "command_of",
     "fit_fingertip",
     "force_window",
+    "ice",
     "library_object",
     "load_gripper",
     "load_mesh",
     "objects",
     "observation_space",
     "sliding_action_of",
+    "water",
 ]
