@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import gymnasium
@@ -32,9 +32,9 @@ def _section(name: str) -> str:
             f"## {name}\n\n{paragraphs['']}",
             f"### Action\n\n{_numbers(env.action_space)}, one every {1e3 * env.dt:.0f} ms. "
             f"What is outside is clipped.\n\n{action_table(name, env)}",
-            f"### Observation\n\nA `Dict` of float32 boxes.\n\n{observation_table(name, env.observation_space)}",
+            f"### Observation\n\nA `Dict` of float32 boxes.\n\n{observation_table(name, env)}",
             f"### Reward and end\n\n{paragraphs['Reward']}",
-            f"### Info\n\n{info_table(env)}",
+            f"### Info\n\n{info_table(name, env)}",
             f"### Keywords\n\n{paragraphs['Keywords']}",
         )
     finally:
@@ -71,17 +71,23 @@ def _changed(env: TouchEnv, component: int, value: float) -> str:
     return ", ".join(f"{name} {number}" for name, number in told)
 
 
-def observation_table(name: str, space: gymnasium.spaces.Dict) -> str:
+def observation_table(name: str, env: TouchEnv) -> str:
     """Shape, unit and bounds of every key, and of those that a keyword adds."""
-    rows = [row for key in space.spaces for row in _observed(key, space, "")]
-    for keyword, value in OPTIONS.items():
-        env = gymnasium.make(name, **{keyword: value})
-        more = env.observation_space
-        assert isinstance(more, gymnasium.spaces.Dict)
-        for key in sorted(set(more.spaces) - set(space.spaces)):
-            rows += _observed(key, more, f"; with `{keyword}={value}`")
-        env.close()
+    plain = env.observation_space
+    rows = [row for key in plain.spaces for row in _observed(key, plain, "")]
+    for keyword, other in variants(name):
+        space = other.observation_space
+        for key in sorted(set(space.spaces) - set(plain.spaces)):
+            rows += _observed(key, space, f"; with `{keyword}`")
+        other.close()
     return _table(("key", "shape", "what", "unit", "from", "to"), rows)
+
+
+def variants(name: str) -> Iterator[tuple[str, TouchEnv]]:
+    """The environment with each of the keywords that add something."""
+    for keyword, value in OPTIONS[name].items():
+        made: Any = gymnasium.make(name, **{keyword: value}).unwrapped
+        yield keyword, made
 
 
 def _observed(key: str, space: gymnasium.spaces.Dict, condition: str) -> list[tuple[str, ...]]:
@@ -96,14 +102,17 @@ def _observed(key: str, space: gymnasium.spaces.Dict, condition: str) -> list[tu
     return rows
 
 
-def info_table(env: TouchEnv) -> str:
+def info_table(name: str, env: TouchEnv) -> str:
     """Keys in the order in which they come, with the shapes that they have in a first step."""
     values, ends = info_keys(env)
-    rows = []
-    for key, value in values.items():
-        rows.append((f"`{key}`", _shape(value), *INFOS[key], "always"))
+    rows = [(f"`{key}`", _shape(value), *INFOS[key], "always") for key, value in values.items()]
+    for keyword, other in variants(name):
+        more, _ = info_keys(other)
+        when = f"with `{keyword}`"
+        rows += [(f"`{key}`", _shape(more[key]), *INFOS[key], when) for key in more if key not in values]
+        other.close()
     for when, keys in (("at the end", ends), ("if there is one", SOMETIMES), ("on hardware", ON_HARDWARE)):
-        rows.extend((f"`{key}`", "", *INFOS[key], when) for key in keys)
+        rows += [(f"`{key}`", "", *INFOS[key], when) for key in keys]
     return _table(("key", "shape", "what", "unit", "when"), rows)
 
 

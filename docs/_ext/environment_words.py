@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from thermograsp.envs import ObjectSpec
+from thermograsp.thermal import Thermostat
+
 GRIPPER_ACTION = ("target opening", "force limit", "lift rate of the arm")
 
 ACTIONS: dict[str, tuple[str, ...]] = {
@@ -40,8 +43,18 @@ OBSERVATIONS: dict[str, tuple[tuple[str, str], ...]] = {
 }
 """By key, (what, unit) of each component, or of all together where there is one."""
 
-OPTIONS: dict[str, Any] = {"taxels": (4, 4)}
-"""Keywords that add keys to an observation, each with a value for an example."""
+_ASIDE = ObjectSpec(size=(0.03, 0.03, 0.03), position=(0.0, 0.06))
+_SHARED: dict[str, Any] = {
+    "taxels": (4, 4),
+    "scene": (ObjectSpec(), _ASIDE),
+    "thermostat": Thermostat(),
+}
+OPTIONS: dict[str, dict[str, Any]] = {
+    "thermograsp/Grasp-v0": _SHARED,
+    "thermograsp/Identify-v0": _SHARED,
+    "thermograsp/Sort-v0": {"taxels": (4, 4)},
+}
+"""By id, keywords that add keys to observation or info, each with a value for an example."""
 
 INFOS: dict[str, tuple[str, str]] = {
     "success": ("the task is done", ""),
@@ -62,6 +75,8 @@ INFOS: dict[str, tuple[str, str]] = {
     "asked": ("number of what is asked, in the observation's goal", ""),
     "right": ("number of the right object, 0 or 1", ""),
     "object_temperatures": ("mean temperature of each object", "°C"),
+    "touched": ("number of the object that each fingertip touches, or touched last", ""),
+    "over_temperature": ("a heater is off until the next episode, since its thermostat was too hot", ""),
     "unknown": ("names of what only a simulation knows", ""),
     "late": ("by how much the end of this step was missed", "s"),
 }

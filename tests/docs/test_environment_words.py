@@ -5,8 +5,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
-from environment_tables import environment_tables, info_keys, registered
-from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, OPTIONS, SOMETIMES
+from environment_tables import environment_tables, info_keys, registered, variants
+from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, SOMETIMES
 
 from thermograsp.envs import EVERYTHING
 from thermograsp.hardware.serial_plant import UNKNOWN
@@ -23,14 +23,15 @@ def test_words_are_those_of_the_environments() -> None:
     observed: set[str] = set()
     for name in registered():
         env: Any = gymnasium.make(name).unwrapped
-        observed |= set(env.observation_space.spaces)
-        for option, value in OPTIONS.items():
-            more: Any = gymnasium.make(name, **{option: value})
-            assert set(more.observation_space.spaces) > set(env.observation_space.spaces)
-            observed |= set(more.observation_space.spaces)
-            more.close()
         always, ends = info_keys(env)
+        observed |= set(env.observation_space.spaces)
         keys |= {*always, *ends}
+        for option, more in variants(name):
+            seen, told = set(more.observation_space.spaces), set(info_keys(more)[0])
+            assert seen > set(env.observation_space.spaces) or told > set(always), option
+            observed |= seen
+            keys |= told
+            more.close()
         env.close()
     assert set(OBSERVATIONS) == observed
     assert set(INFOS) == keys
