@@ -14,7 +14,7 @@ from .grasp_env import GraspEnv, GraspVectorEnv
 from .grasp_task import GraspTask
 from .identify_env import IdentifyEnv, IdentifyVectorEnv
 from .identify_task import IdentifyTask
-from .library import ObjectPreset, library_object, objects
+from .library import ObjectPreset, library_object, load_objects, objects
 from .mechanics import ContactRecord, Mechanics, MechanicsState
 from .meshes import MeshShape, load_mesh
 from .observation import observation_space
@@ -112,6 +112,7 @@ __all__ = [
     "library_object",
     "load_gripper",
     "load_mesh",
+    "load_objects",
     "objects",
     "observation_space",
     "sliding_action_of",

@@ -49,6 +49,8 @@ def test_an_object_fits_the_gripper_and_weighs_what_its_parts_do(name: str) -> N
     preset = objects()[name]
     spec = preset.spec()
     assert 0.002 < spec.width < MAX_OPENING
+    turned = math.radians(SimulationConfig().placement[1])
+    assert replace(spec, yaw=turned).width < MAX_OPENING  # wherever an environment lays it
     assert 0.001 < spec.weight < HEAVIEST
     if preset.mass is None and preset.contents is None:
         assert spec.weight == pytest.approx(material(preset.material).density * spec.volume)
