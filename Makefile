@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-rl test-grippers test-hardware-long test-firmware test-release bench docs lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-rl test-grippers test-view test-hardware-long test-firmware test-release bench docs lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -37,6 +37,10 @@ test-rl: build/.rl
 # Grippers from other packages; without them `make test` skips them.
 test-grippers: build/.grippers
 	$(PY) -m pytest $(TEST_FLAGS) tests/grippers
+
+# The studio's page in Debian's chromium; without it and playwright `make test` skips these.
+test-view: build/.view
+	$(PY) -m pytest -rs $(TEST_FLAGS) tests/view
 
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test
@@ -72,6 +76,8 @@ build/.test: EXTRA := [test]
 build/.ray: EXTRA := [test,ray,minari]
 build/.backends: EXTRA := [test,torch,jax]
 build/.backends: PINS := torch==2.13.0
+build/.view: EXTRA := [test]
+build/.view: PINS := playwright
 build/.rl: EXTRA := [test,rl]
 build/.rl: PINS := torch==2.13.0
 build/.grippers: EXTRA := [test,grippers]
@@ -79,7 +85,7 @@ build/.grippers: EXTRA := [test,grippers]
 build/.grippers: ALONE := robosuite==1.5.2
 build/.release: EXTRA := [release,test]
 build/.dev: EXTRA := [dev]
-build/.run build/.test build/.ray build/.backends build/.rl build/.grippers build/.release build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
+build/.run build/.test build/.ray build/.backends build/.rl build/.grippers build/.view build/.release build/.dev: $(VENV)/.created build/.files setup.cfg pyproject.toml
 	$(INSTALL) --no-build-isolation -e '.$(EXTRA)' $(PINS)
 	$(if $(ALONE),$(INSTALL) --no-deps $(ALONE))
 	@touch $@
