@@ -52,6 +52,25 @@ def enclosed(triangles: np.ndarray, edges: Edges) -> tuple[np.ndarray, np.ndarra
     return volumes, walls
 
 
+def in_planes(triangles: np.ndarray, edges: Edges) -> tuple[Edges, Edges]:
+    """Areas m2 of a mesh that lie in the planes of the grid, on each cell face across the axes (shapes as open areas):
+    those with the body below and those with the body above."""
+    below, above = [], []
+    for axis in range(3):
+        order = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        first, second, across = (edges[a] for a in order)
+        flat = np.ptp(triangles[..., axis], axis=1) == 0
+        plane = np.searchsorted(across, triangles[:, 0, axis])
+        flat &= across[np.minimum(plane, len(across) - 1)] == triangles[:, 0, axis]
+        size = (len(first) - 1, len(second) - 1, len(across))
+        found = np.zeros((2, *size))
+        _flat_areas(np.ascontiguousarray(triangles[flat][..., order]), plane[flat], first, second, found)
+        back = [order.index(a) for a in range(3)]
+        below.append(found[0].transpose(back))
+        above.append(found[1].transpose(back))
+    return (below[0], below[1], below[2]), (above[0], above[1], above[2])
+
+
 @njit(cache=True)
 def clip(polygon, count, axis, bound, above, out):
     """The part of a polygon (count corners) with coordinate `axis` above or below a bound. Returns its count."""
@@ -141,6 +160,32 @@ def _accumulate(triangles, x, y, z, walls, moments):
                 for k in range(k0, k1 + 1):
                     count = slab(in_y, m, 2, z, k, k0, k1, room, in_z)
                     _add(in_z, count, walls[i, j, k], moments, i, j, k)
+
+
+@njit(cache=True)
+def _flat_areas(triangles, plane, first, second, found):
+    """Adds the areas of triangles across the third axis to the faces (I, J) of their planes, body below or above."""
+    in_x, in_y, room = (
+        np.zeros((_MOST_CORNERS, 3)),
+        np.zeros((_MOST_CORNERS, 3)),
+        np.zeros((_MOST_CORNERS, 3)),
+    )
+    for f in range(len(triangles)):
+        i0, i1 = cell_range(triangles[f], 3, 0, first, 0.0)
+        for i in range(i0, i1 + 1):
+            n = slab(triangles[f], 3, 0, first, i, i0, i1, room, in_x)
+            if n < 3:
+                continue
+            j0, j1 = cell_range(in_x, n, 1, second, 0.0)
+            for j in range(j0, j1 + 1):
+                m = slab(in_x, n, 1, second, j, j0, j1, room, in_y)
+                area = 0.0
+                for t in range(1, m - 1):
+                    area += 0.5 * (
+                        (in_y[t, 0] - in_y[0, 0]) * (in_y[t + 1, 1] - in_y[0, 1])
+                        - (in_y[t, 1] - in_y[0, 1]) * (in_y[t + 1, 0] - in_y[0, 0])
+                    )
+                found[0 if area > 0 else 1, i, j, plane[f]] += abs(area)
 
 
 @njit(cache=True)

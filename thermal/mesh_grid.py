@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from thermograsp.errors import MeshError
 
 from .finite_volume import graded_cells
-from .mesh_cut import cut_mesh
+from .mesh_cut import Edges, cut_mesh, in_planes
 from .mesh_solid import Solid, SurfacePatch
 
 _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
@@ -71,7 +71,7 @@ class MeshGrid:
     volume: np.ndarray
 
     @property
-    def edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def edges(self) -> Edges:
         """m, cell boundaries along the axes."""
         x, y, z = self.axes
         return x.edges, y.edges, z.edges
@@ -85,8 +85,8 @@ class MeshGrid:
 
 
 def grid_frame(solid: Solid, patches: Sequence[SurfacePatch]) -> np.ndarray:
-    """(3, 3) axes as rows: the last along the first patch's normal, the first along most of the surface's sides."""
-    up = patches[0].direction
+    """(3, 3) axes as rows: the last along the last patch's normal, the first along most of the surface's sides."""
+    up = patches[-1].direction
     helper = np.eye(3)[np.argmin(np.abs(up))]
     first = np.cross(helper, up)
     first /= np.linalg.norm(first)
@@ -159,27 +159,24 @@ def _staggered(breaks: np.ndarray, fine: dict[float, float], growth: float, larg
 def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, GridAxis]) -> MeshGrid:
     """The solid on the grid. Raises MeshError where it is in separate pieces."""
     edges = (axes[0].edges, axes[1].edges, axes[2].edges)
-    volumes, areas, conductivities, capacities = [], [], [], []
-    for part in solid.parts:
-        volume, area = cut_mesh(snapped(part.triangles @ frame.T, edges), edges)
-        volumes.append(volume)
-        areas.append(area)
-        conductivities.append(part.material.conductivity)
-        capacities.append(part.material.volumetric_heat_capacity)
+    parts = [snapped(part.triangles @ frame.T, edges) for part in solid.parts]
+    volumes, areas = zip(*(cut_mesh(part, edges) for part in parts), strict=True)
+    joints = _joints(parts, edges)
+    conductivities = [part.material.conductivity for part in solid.parts]
+    capacities = [part.material.volumetric_heat_capacity for part in solid.parts]
     cell = np.multiply.outer(np.multiply.outer(*(np.diff(e) for e in edges[:2])), np.diff(edges[2]))
-    shares = _visible(volumes, cell)
+    shares = _visible(list(volumes), cell)
     filled = np.sum(shares, axis=0)
     solid_cells = filled > _EMPTY * cell
-    along = _conductivity(shares, areas, conductivities)
+    along = _conductivity(shares, list(areas), conductivities)
     index = np.where(solid_cells, np.cumsum(solid_cells).reshape(cell.shape) - 1, -1)
     count = int(solid_cells.sum())
     neighbours, links = np.full((count, 6), -1, np.int32), np.zeros((count, 6))
     for axis in range(3):
         lower = index[_cut(axis, slice(None, -1))]
         upper = index[_cut(axis, slice(1, None))]
-        open_area = np.minimum(np.sum([a[axis] for a in areas], axis=0), _full(edges, axis))[
-            _cut(axis, slice(1, -1))
-        ]
+        within = np.sum([area[axis] for area in areas], axis=0) + joints[axis]
+        open_area = np.minimum(within, _full(edges, axis))[_cut(axis, slice(1, -1))]
         joined = (lower >= 0) & (upper >= 0) & (open_area > 0)
         a, b = lower[joined], upper[joined]
         to_low, to_high = (
@@ -197,7 +194,17 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
     return _one_piece(grid)
 
 
-def snapped(triangles: np.ndarray, edges: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+def _joints(parts: list[np.ndarray], edges: Edges) -> Edges:
+    """m2 of each cell face in which surfaces of the body meet back to back, so that heat passes: each part's own open
+    areas end there. parts: triangles (F, 3, 3) m of each."""
+    if len(parts) == 1:
+        return np.zeros(1), np.zeros(1), np.zeros(1)
+    below, above = in_planes(np.concatenate(parts), edges)
+    x, y, z = (np.minimum(*sides) for sides in zip(below, above, strict=True))
+    return x, y, z
+
+
+def snapped(triangles: np.ndarray, edges: Edges) -> np.ndarray:
     """Corners moved into planes of the grid that they nearly lie in."""
     moved = np.array(triangles)
     for axis, edge in enumerate(edges):
@@ -247,7 +254,7 @@ def _visible(volumes: list[np.ndarray], cell: np.ndarray) -> list[np.ndarray]:
 
 def _conductivity(
     shares: list[np.ndarray],
-    areas: list[tuple[np.ndarray, np.ndarray, np.ndarray]],
+    areas: list[Edges],
     conductivities: list[float],
 ) -> np.ndarray:
     """(I, J, K, 3) W/(m K) along the axes: where materials share a cell, of a laminate across their boundary's normal
@@ -308,6 +315,6 @@ def _cut(axis: int, part: slice) -> tuple[slice, ...]:
     return tuple(part if a == axis else slice(None) for a in range(3))
 
 
-def _full(edges: tuple[np.ndarray, np.ndarray, np.ndarray], axis: int) -> np.ndarray:
+def _full(edges: Edges, axis: int) -> np.ndarray:
     """m2 of the whole faces across an axis, one long along it."""
     return np.expand_dims(np.multiply.outer(*(np.diff(e) for a, e in enumerate(edges) if a != axis)), axis)

@@ -45,8 +45,9 @@ def body_network(
     pattern, the uniform one first.
 
     A patch is a square of SurfacePatch.area round its centre, projected on the surface along its normal; where the
-    surface ends within it, heat flows through what is there. Patches whose normals are along the axes of the first
-    one's frame are resolved best: the grid is aligned with the first normal and with the object's sides.
+    surface ends within it, heat flows through what is there. The grid is aligned with the last patch's normal and
+    with the object's sides; it resolves a patch whose normal is along one of its axes to about 0.3 % of its impedance
+    from 0.05 s on, any other coarsely (glass: 1 % after 3 s, 5 % after 0.5 s), so the patch that matters comes last.
     points: (Q, 3) m in the object's frame, where the object's own temperature is told, such as where it may be
     touched next.
     Outputs: "heat" (J that the object has gained, exact: only the state of rate 0 holds any), "mean" (K, its mean

@@ -16,6 +16,7 @@ from .mesh_solid import SurfacePatch
 
 _FACING = 0.2  # cosine of the angle to the patch's normal, below which a face is not touched
 _ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
+_ABOVE = 5e-6  # m, more than which above a surface lies something else
 _CORNERS = 24  # of a triangle clipped by twelve planes: 15
 
 
@@ -72,7 +73,7 @@ def patch_on_grid(
     grid: MeshGrid, triangles: np.ndarray, patch: PlacedPatch, patterns: PatchPatterns
 ) -> PatchOnGrid:
     """The patch's cells. triangles: (F, 3, 3) m in the grid's frame. Surface within half a side above and below the
-    centre is touched, where it faces the patch's way."""
+    centre is touched, where it faces the patch's way and nothing of the object lies above it."""
     axes = np.stack((*patch.sides, patch.normal))
     half = patch.half_width
     areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -88,7 +89,10 @@ def patch_on_grid(
             break
         room *= 4
     cells = grid.index.ravel()[cells]
-    there = cells >= 0
+    around = (triangles - patch.centre) @ axes.T
+    over = np.all((around.min(axis=1) <= [half, half, np.inf]) & (around.max(axis=1) >= -half), axis=1)
+    covered = _covered((middles - patch.centre) @ axes.T, np.ascontiguousarray(around[over]))
+    there = (cells >= 0) & ~covered
     cells, seen, middles, spans = cells[there], seen[there], middles[there], spans[there]
     total = float(seen.sum())
     if not total > 0:
@@ -126,6 +130,27 @@ def _crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray)
     v = q @ direction / scale
     inside = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9)
     return np.einsum("fi,fi->f", second, q)[inside] / scale[inside]
+
+
+@njit(cache=True)
+def _covered(places, triangles):
+    """(n,) whether something of triangles (F, 3, 3) lies above places (n, 3), along the third axis."""
+    covered = np.zeros(len(places), np.bool_)
+    for n in range(len(places)):
+        x, y, z = places[n]
+        for f in range(len(triangles)):
+            a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+            if max(a[2], b[2], c[2]) <= z + _ABOVE:
+                continue
+            u = (b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)
+            v = (c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)
+            w = (a[0] - x) * (b[1] - y) - (a[1] - y) * (b[0] - x)
+            total = u + v + w
+            inside = (u >= 0 and v >= 0 and w >= 0) or (u <= 0 and v <= 0 and w <= 0)
+            if inside and total != 0 and (u * a[2] + v * b[2] + w * c[2]) / total > z + _ABOVE:
+                covered[n] = True
+                break
+    return covered
 
 
 @njit(cache=True)
