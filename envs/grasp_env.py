@@ -33,12 +33,12 @@ class GraspEnv(TouchEnv):
     K), rung, randomized (what randomize drew, by name), events (of this step: (kind, fingertip)); dropped, crushed or
     slipped where it ended so; error where the simulation broke down.
 
-    Keywords: material (a name, a Material, a list, None = the ten seed materials; drawn per episode), mode ("T",
-    "O"), plant ("simulated" or a URL), objects (an ObjectSpec, or a list to draw from), randomize (records of
-    envs.randomization, what else differs between episodes), tolerance (K), hold_seconds and seconds (s), most_slip
-    (m that the object may slide along the pads; any by default), render_mode
-    ("human", "rgb_array"), and the fields of SimulationConfig. reset(options={"material": name}) fixes one episode's
-    material.
+    Keywords: material (a name, a Material, a list, None = the object's own, else the ten seed materials; drawn per
+    episode), mode ("T", "O"), plant ("simulated" or a URL), objects (an ObjectSpec, a name of the library, or a list to
+    draw from), taxels ((n, m): the observation has pressure (2, n, m) Pa over the pads), randomize (records of
+    envs.randomization, what else differs between episodes), tolerance (K), hold_seconds and seconds (s), most_slip (m
+    that the object may slide along the pads; any by default), render_mode ("human", "rgb_array"), and the fields of
+    SimulationConfig. reset(options={"material": name}) fixes one episode's material.
     """
 
     def __init__(

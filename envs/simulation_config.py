@@ -50,7 +50,7 @@ class SimulationConfig:
     meshes in mode T; without, each patch is the middle of a face. gripper: an MJCF file, an MjSpec or what load_gripper
     makes of them, None for the shipped one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
     step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
-    disk."""
+    disk. taxels: (n, m) of the map of pressure over each pad, None for none."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
