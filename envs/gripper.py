@@ -87,7 +87,7 @@ class Gripper:
 
     @cached_property
     def reach(self) -> float:
-        """m, from the grasp centre up to the palm."""
+        """m, from the grasp centre up to the palm, inf where that is not above it."""
         return palm_height(self)
 
     def wrist_at(self, item: ObjectSpec) -> np.ndarray:
@@ -172,7 +172,8 @@ class Gripper:
         lines.append(
             f"  opens {1e3 * self.narrowest:.1f} to {1e3 * self.widest:.1f} mm between the pads, flat on parallel "
             f"faces from {1e3 * self.flat[0]:.0f} to {1e3 * self.flat[1]:.0f} mm; up to {self.strongest:.3g} N; "
-            f"{1e3 * self.reach:.0f} mm from the grasp up to the palm"
+            + (f"{1e3 * self.reach:.0f} mm" if np.isfinite(self.reach) else "nothing")
+            + " from the grasp up to the palm"
         )
         for one in self.actuators:
             lines.append(

@@ -19,6 +19,7 @@ from ..assets import asset
 from .faces import rotation
 from .fingertip import add_fingertip
 from .gripper_fingers import parts_of
+from .scene import PAD_SIDE
 
 if TYPE_CHECKING:
     from .gripper import Gripper
@@ -33,6 +34,7 @@ _FURTHEST = 0.1  # m, of a lever
 _SOFT = {"solref": (0.005, 1.0), "solimp": (0.95, 0.99, 0.001, 0.5, 2.0)}
 _VISUAL = 1
 _DRAWN = 3  # groups from here on MuJoCo does not draw
+_COLUMN = 0.01  # m to either side of the grasp centre
 _SUNK = 0.0015  # m, of the arm in what it carries
 _UNDRAWN = (
     int(mujoco.mjtGeom.mjGEOM_PLANE),
@@ -60,10 +62,12 @@ def mounted(gripper: Gripper) -> mujoco.MjSpec:
 
 
 def palm_height(gripper: Gripper) -> float:
-    """m, from the grasp centre up to the lowest of the palm's geoms."""
+    """m, from the grasp centre up to what of the palm is straight above it; inf where nothing is."""
     spec = mujoco.MjSpec.from_file(str(asset("gripper.xml")))
-    corners = _Bodies(spec, gripper).corners()
-    return float(max(corners[:, 2].min(), 0.0)) if len(corners) else 0.1
+    shape = _Bodies(spec, gripper).corners().reshape(-1, 3, 3)
+    low, high = shape.min(axis=1), shape.max(axis=1)
+    above = ((low < _COLUMN) & (high > -_COLUMN))[:, :2].all(axis=1) & (high[:, 2] > PAD_SIDE / 2)
+    return max(float(low[above, 2].min()), PAD_SIDE / 2) if above.any() else np.inf
 
 
 def joint_name(joint: int) -> str:
@@ -225,7 +229,7 @@ class _Bodies:
         return self._bodies[self.gripper.palm_body], there + turned @ origin, turned @ axes
 
     def corners(self) -> np.ndarray:
-        """(n, 3) m: of what stands still, in the wrist's frame."""
+        """(3 n, 3) m: of the n triangles of what stands still, in the wrist's frame."""
         palm = self.gripper.palm_body
         found = [shape.reshape(-1, 3) for _, shape in parts_of(self.model, self._fixed(), palm)]
         return np.concatenate(found) @ self._turn.T + self._shift if found else np.zeros((0, 3))

@@ -54,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="seed",
         help="a sensor's name, or a file of `thermograsp device fit` (default seed)",
     )
+    add("--gripper", metavar="FILE", help="your own in simulation, an MJCF file (default: the shipped one)")
     add(
         "--plant",
         metavar="URL",
@@ -96,6 +97,7 @@ def run(args: argparse.Namespace) -> int:
         tolerance=args.tolerance,
         object_temperature=args.temperature if args.object is None else _ROOM,
         sensor=args.sensor,
+        gripper=args.gripper,
         cache=not args.no_cache,
         **placement,
     )

@@ -17,7 +17,10 @@ MATERIALS = ("glass", "aluminium")
 WIDTH = 0.04  # m, of the object where the gripper opens that wide
 MOST_SLIP = 0.0005  # m, along the pads while held
 FELT_AFTER = 1.0  # s of contact, at which the temperature drops are told
-_ROOM = 0.008  # m beside the object when the gripper is open
+_ROOM, _GAP = (
+    0.008,
+    0.003,
+)  # m that the gripper opens beyond the object, and that it closes beyond it, where it can
 _SECONDS = 6.0
 _SETTLED = 1.0  # s at the end over which forces and slip are taken
 _OFF = (
@@ -91,7 +94,7 @@ def check_gripper(gripper: Gripper, *, shape: Shape = "box", force: float | None
         if force is None
         else min(positive("force (N)", force), gripper.strongest)
     )
-    width = min(WIDTH, gripper.widest - _ROOM)
+    width = max(min(WIDTH, gripper.widest - _ROOM), gripper.narrowest + _GAP)
     thing = ObjectSpec(shape=shape, size=(width, width, width if shape == "sphere" else WIDTH))
     batch = GraspBatch(
         len(MATERIALS),

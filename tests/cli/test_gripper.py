@@ -82,6 +82,21 @@ def test_without_opengl_the_rest_goes_on(
     assert "no picture: no OpenGL" in told.err and "fit:" in told.out and "wrote" not in told.out
 
 
+def test_other_commands_take_it(strong: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["grasp", "--gripper", str(strong), "--seconds", "4", "--hold", "0.5"]) == 0
+    assert main(["grasp", "--gripper", str(strong.parent / "none.xml")]) == 2
+    assert "no file" in capsys.readouterr().err
+
+
+def test_one_that_opens_little_is_tried_with_less(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "narrow.xml"
+    file.write_text(SLIDES.format(newton=15).replace(".05 0 -.06", ".025 0 -.06"), encoding="utf-8")
+    assert main(["gripper", "check", str(file), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["gripper"]["widest_m"] == pytest.approx(0.030, abs=1e-5)
+    assert told["width_m"] == pytest.approx(0.022, abs=1e-5)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
