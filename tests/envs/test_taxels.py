@@ -301,6 +301,25 @@ def test_of_two_objects_each_presses_its_own() -> None:
     env.close()
 
 
+def test_a_scene_s_objects_press_together() -> None:
+    """Two cubes beside each other under one pad, each with its half."""
+    halves = [
+        ObjectSpec(name=name, size=(0.04, 0.02, 0.04), position=(0.0, side * 0.0105), material="glass")
+        for name, side in (("left", -1), ("right", 1))
+    ]
+    env = GraspEnv(scene=halves, taxels=(1, 20), placement=(0.0, 0.0), tolerance=0.5)
+    env.reset(seed=0)
+    seen: dict[str, np.ndarray] = {}
+    for action in ACTIONS[:60]:
+        seen, *_ = env.step(action)
+    across = seen["pressure"][0, 0]
+    assert across.mean() * SIDE**2 == pytest.approx(seen["force"][0, 0], rel=1e-5)
+    assert (
+        across[9] == across[10] == pytest.approx(across[:9].mean() / 2, rel=0.1)
+    )  # the gap of 1 mm, a taxel's half
+    env.close()
+
+
 @pytest.mark.parametrize("wrong", [(0, 4), (4, 101), (4,), 4, (2.5, 2), "44", (True, 2)])
 def test_taxels_are_checked(wrong: object) -> None:
     with pytest.raises(InvalidValueError, match="two whole numbers"):
