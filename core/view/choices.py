@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
-from thermograsp.envs import STAKES, ObjectSpec
+from thermograsp.envs import STAKES, ObjectSpec, library_object, objects
 from thermograsp.envs.mechanics import MAX_FORCE, MAX_HEIGHT
 from thermograsp.envs.scene import MAX_OPENING
 from thermograsp.errors import InvalidValueError, finite, unknown_name
@@ -38,6 +38,7 @@ class Range:
 RANGES: Mapping[str, Range] = {
     "width": Range(0.015, 0.07, 0.005, "mm", 1e3),
     "object_temperature": Range(-10.0, 60.0, 1.0, "°C"),
+    "ambient": Range(-10.0, 60.0, 1.0, "°C"),
     "thermostat": Range(10.0, 50.0, 1.0, "°C"),
     "roughness": Range(0.1, 10.0, 0.1, "×", log=True),
     "tolerance": Range(0.01, 1.0, 0.01, "K", log=True),
@@ -45,7 +46,7 @@ RANGES: Mapping[str, Range] = {
     "opening": Range(0.0, MAX_OPENING, 0.001, "mm", 1e3),
     "height": Range(0.0, MAX_HEIGHT, 0.005, "mm", 1e3),
 }
-_OF_SIMULATION = ("material", "other", "shape", "width", "roughness", "tolerance")
+_OF_SIMULATION = ("material", "other", "shape", "width", "roughness", "ambient", "tolerance")
 _MOST_SEED = 2**31 - 1
 
 
@@ -76,20 +77,22 @@ class Stock:
     @property
     def shapes(self) -> tuple[str, ...]:
         """Of objects."""
-        return SHAPES if self.mesh is not None else SHAPES[:-1]
+        return (*(SHAPES if self.mesh is not None else SHAPES[:-1]), *objects())
 
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """An episode. materials: one name, or two to set side by side. width: m, of the object between the fingers (a heavy
-    box and a mesh have their own). Temperatures: °C. roughness: a factor on the object's. tolerance: K of the
-    temperature drop. seed: of the object's place and the noise."""
+    """An episode. materials: one name, or two to set side by side. shape: one of SHAPES, or an everyday object, which
+    has a material and a temperature of its own. width: m, between the fingers, of what has no size of its own. ambient:
+    of the air. Temperatures: °C. roughness: a factor on the object's. tolerance: K of the temperature drop. seed: of
+    the object's place and the noise."""
 
     materials: tuple[str, ...] = ("glass",)
     mode: Mode = "T"
     shape: str = "box"
     width: float = 0.04
     object_temperature: float = 24.0
+    ambient: float = 24.0
     thermostat: float = 36.0
     roughness: float = 1.0
     tolerance: float = 0.05
@@ -105,8 +108,15 @@ class Choices:
             new[name] = _READ[name](value, stock) if name in _READ else number(name, value)
         return replace(self, **new)
 
+    @property
+    def everyday(self) -> bool:
+        """Whether it is an object of the library, with a material and a temperature of its own."""
+        return self.shape in objects()
+
     def object(self, stock: Stock) -> ObjectSpec:
         """The shape. Density and friction are the material's."""
+        if self.everyday:
+            return library_object(self.shape).spec()
         if self.shape == "mesh" and stock.mesh is not None:
             return stock.mesh
         if self.shape == "heavy box":
@@ -116,7 +126,7 @@ class Choices:
     @property
     def colours(self) -> tuple[float, float]:
         """°C, the range of the colours: a kelvin more than what occurs."""
-        around = (self.object_temperature, self.thermostat)
+        around = (self.object_temperature, self.ambient, self.thermostat)
         return min(around) - 1.0, max(around) + 1.0
 
     def told(self) -> dict[str, Any]:

@@ -40,6 +40,11 @@ class MeasuredGrasp:
         self._puppet = Puppet(None)
         self.reset(choices.seed)
 
+    @property
+    def colours(self) -> tuple[float, float]:
+        """See SimulatedGrasp."""
+        return self._choices.colours
+
     def reset(self, seed: int) -> None:
         """Opens, and begins anew."""
         self._seen, self.reading = self._batch.reset([0], [np_random(seed)[0]])

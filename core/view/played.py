@@ -49,6 +49,11 @@ class PlayedGrasp:
         self._puppet = Puppet(self._width())
         self.reset(0)
 
+    @property
+    def colours(self) -> tuple[float, float]:
+        """See SimulatedGrasp."""
+        return self._choices.colours
+
     def reset(self, seed: int) -> None:
         """From its beginning."""
         del seed

@@ -32,7 +32,7 @@ def record_studio(
     strip_only = str(path).lower().endswith(".png")
     times = np.linspace(0.0, seconds, 6 if strip_only else max(2, round(FRAMES * seconds))).tolist()
     grasp = SimulatedGrasp(choices, stock)
-    low, high = choices.colours
+    low, high = grasp.colours
     films = [Film(grasp.plant, times, row, size=(960, 720), low=low, high=high) for row in range(grasp.rows)]
     controls = Controls()
     blocks: list[np.ndarray] = []

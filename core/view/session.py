@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.colors import to_hex
 
+from thermograsp.envs import objects
 from thermograsp.envs.colormap import colour_table
 from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
 from thermograsp.report.columns import csv_text
@@ -190,6 +191,7 @@ class Session:
             "materials": sorted(self._stock.materials),
             "seed": [name for name in SEED_MATERIALS if name in self._stock.materials],
             "shapes": self._stock.shapes,
+            "everyday": list(objects()),
             "drivers": self._stock.drivers,
             "speeds": SPEEDS,
             "ranges": {name: asdict(one) for name, one in RANGES.items()},
@@ -204,7 +206,7 @@ class Session:
             "shapes": self._grasp.shapes(),
             "rows": list(self._grasp.names),
             "choices": self.choices.told(),
-            "colours": self.choices.colours,
+            "colours": self._grasp.colours,
         }
 
     def _frame(self) -> Message:

@@ -52,17 +52,18 @@ class SimulatedGrasp:
 
     def __init__(self, choices: Choices, stock: Stock) -> None:
         self._choices, self._stock = choices, stock
-        self.names = choices.materials
+        self.names = (choices.shape,) if choices.everyday else choices.materials
         self.rows = len(self.names)
         roughness = () if choices.roughness == 1.0 else (Roughness(choices.roughness, choices.roughness),)
         self._env = GraspVectorEnv(
             num_envs=self.rows,
             seconds=_FOREVER,
-            material=[stock.materials[name] for name in choices.materials],
+            material=None if choices.everyday else [stock.materials[name] for name in choices.materials],
             mode=choices.mode,
             objects=choices.object(stock),
             tolerance=choices.tolerance,
             object_temperature=choices.object_temperature,
+            ambient_temperature=None if choices.ambient == choices.object_temperature else choices.ambient,
             sensor_temperature=choices.thermostat,
             randomize=roughness,
         )
@@ -81,10 +82,17 @@ class SimulatedGrasp:
         """s since the reset."""
         return self._steps * self.dt
 
+    @property
+    def colours(self) -> tuple[float, float]:
+        """°C, the range of the colours."""
+        low, high = self._choices.colours
+        own = [float(thing.temperature) for thing in self.plant.things]
+        return min(low, *(celsius - 1.0 for celsius in own)), max(high, *(celsius + 1.0 for celsius in own))
+
     def reset(self, seed: int) -> None:
         """Begins anew; both rows with the same place and noise."""
-        for row, name in enumerate(self._choices.materials):
-            chosen = {"material": self._stock.materials[name]}
+        for row, name in enumerate(self.names):
+            chosen = {} if self._choices.everyday else {"material": self._stock.materials[name]}
             self._seen, self._reading = self.batch.reset([row], [np_random(seed)[0]], chosen)
         self._driving.restart(seed)
         self._endings, self._steps = [""] * self.rows, 0
@@ -160,7 +168,7 @@ class SimulatedGrasp:
             object_size=thing.plate,
             fingertips=2,
             chain=self.plant.config.chain,
-            object_temperature=(self._choices.object_temperature, SPREAD),
+            object_temperature=(thing.temperature, SPREAD),
             sensor_temperature=(self._choices.thermostat, 0.1),
         )
 

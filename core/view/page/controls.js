@@ -35,7 +35,9 @@ export class Controls {
     this.#choices = hello.choices;
     fill(element("material"), groups(hello));
     fill(element("other"), [["", [["", "with nothing"]]], ...groups(hello)]);
-    fill(element("shape"), [["", hello.shapes.map((name) => [name, name])]]);
+    const pairs = (names) => names.map((name) => [name, readable(name)]);
+    this.everyday = hello.everyday;
+    fill(element("shape"), [["", pairs(hello.shapes.filter((name) => !this.everyday.includes(name)))], ["Everyday objects", pairs(this.everyday)]]);
     fill(element("speed"), [["", hello.speeds.map((speed) => [speed, `${speed} ×`])]]);
     element("driver").replaceChildren(...hello.drivers.map((name) => radio("driver", name, ...DRIVERS[name])));
     for (const holder of document.querySelectorAll("[data-range]")) {
@@ -52,7 +54,10 @@ export class Controls {
     element("shape").value = choices.shape;
     check("mode", choices.mode);
     for (const [name, slider] of Object.entries(this.#sliders)) if (name in choices) slider.set(choices[name]);
-    this.#sliders.width.holder.hidden = OWN_SIZE.includes(choices.shape);
+    const everyday = this.everyday.includes(choices.shape); // has a material, a size and a temperature of its own
+    this.#sliders.width.holder.hidden = everyday || OWN_SIZE.includes(choices.shape);
+    for (const id of ["material", "other"]) element(id).closest("label").hidden = everyday;
+    this.#sliders.object_temperature.holder.hidden = everyday;
   }
 
   get choices() {

@@ -53,8 +53,8 @@ function hello(message) {
 function sceneCame(message) {
   useRange(...message.colours);
   drawBar(element("bar"));
-  element("low").textContent = `${message.colours[0]} °C`;
-  element("high").textContent = `${message.colours[1]} °C`;
+  element("low").textContent = `${Math.round(message.colours[0])} °C`;
+  element("high").textContent = `${Math.round(message.colours[1])} °C`;
   materials = message.rows;
   scene?.show(message.shapes);
   controls.chosen(message.choices);
@@ -111,7 +111,8 @@ function show({ rows }) {
 
 function described(costs) {
   if (!costs.length) return "";
-  const rungs = costs.map(({ rung, states, multiply_adds: adds }) => `${rung}: ${states} states, ${adds} multiply-adds a sample`);
+  const rungs = costs.map(({ rung, states, multiply_adds: adds }) => (
+    states ? `${rung}: ${states} states, ${adds} multiply-adds a sample` : rung));
   const { heat, all } = costs[0];
   return `${[...new Set(rungs)].join("\n")}\nHeat takes ${Math.round(1e6 * heat)} of a step’s ${Math.round(1e6 * all)} µs`;
 }
