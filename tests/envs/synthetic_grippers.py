@@ -114,6 +114,42 @@ THREE = """
 </mujoco>
 """
 
+_BAR = """
+      <body name="crank_{side}" pos="{x} 0 0">
+        <joint name="crank_{side}" type="hinge" axis="0 {way} 0" range="-40 40"/>
+        <geom type="capsule" fromto="0 0 0 0 0 -.06" size=".003" mass=".02"/>
+        <body name="finger_{side}" pos="0 0 -.06">
+          <joint name="knuckle_{side}" type="hinge" axis="0 {way} 0"/>
+          <geom name="face_{side}" type="box" size=".003 .012 .025" pos="0 0 -.03" mass=".05"/>
+        </body>
+      </body>
+      <body name="rocker_{side}" pos="{out} 0 0">
+        <joint name="rocker_{side}" type="hinge" axis="0 {way} 0"/>
+        <geom type="capsule" fromto="0 0 0 0 0 -.06" size=".003" mass=".02"/>
+      </body>
+"""
+
+_LOOP = '<connect body1="finger_{side}" body2="rocker_{side}" anchor="{arm} 0 0"/>'
+
+
+def parallelograms() -> str:
+    """Two fingers on parallel cranks of 60 mm, closed by `connect`, one driven and the other coupled to it: they swing
+    without turning, at most 40 degrees either way of 80 mm between the cranks."""
+    sides = ({"side": "one", "x": -0.04, "out": -0.06, "way": -1, "arm": -0.02},
+             {"side": "two", "x": 0.04, "out": 0.06, "way": 1, "arm": 0.02})  # fmt: skip
+    bars = "".join(_BAR.format(**side) for side in sides)
+    loops = "".join(_LOOP.format(**side) for side in sides)
+    return f"""
+<mujoco model="parallelograms">
+  <worldbody>
+    <body name="base"><geom type="box" size=".07 .02 .01" pos="0 0 .02" mass=".3"/>{bars}</body>
+  </worldbody>
+  <equality>{loops}<joint joint1="crank_two" joint2="crank_one"/></equality>
+  <actuator><position name="turn" joint="crank_one" kp="10" ctrlrange="-.69 .69"/></actuator>
+</mujoco>
+"""
+
+
 ROUND = """
 <mujoco model="round">
   <worldbody>

@@ -20,7 +20,18 @@ from thermograsp.envs import Gripper, Mechanics, ObjectSpec, action_of, load_gri
 from thermograsp.envs.gripper_shipped import SHIPPED_GRIPPER
 from thermograsp.errors import GripperError, InvalidValueError, UnknownNameError
 
-from .synthetic_grippers import COUPLED, HINGE, LONE_JAW, MOTORS, POSITIONS, ROUND, TENDON, THREE, slides
+from .synthetic_grippers import (
+    COUPLED,
+    HINGE,
+    LONE_JAW,
+    MOTORS,
+    POSITIONS,
+    ROUND,
+    TENDON,
+    THREE,
+    parallelograms,
+    slides,
+)
 
 TWO = {
     "positions": slides(POSITIONS),
@@ -32,8 +43,9 @@ TWO = {
     "lone jaw": LONE_JAW,
     "hinges": HINGE,
     "three": THREE,
+    "parallelograms": parallelograms(),
 }
-SLIDES = [name for name in TWO if name not in ("hinges", "lone jaw", "three")]
+SLIDES = [name for name in TWO if name not in ("hinges", "lone jaw", "three", "parallelograms")]
 WIDEST = 0.08  # m, 92 mm between the faces less two fingertips
 
 
@@ -144,6 +156,21 @@ def test_hinged_fingers_are_fitted_so_that_the_pads_are_parallel_where_asked():
             np.array([[1.0, 0, 0], [-1.0, 0, 0]]), abs=0.02
         )
     assert gripper.flat[0] < 0.05 < gripper.flat[1]
+
+
+def test_a_closed_linkage_swings_as_its_lengths_say():
+    """Fingers on cranks of length l at angle a are 2 l sin a nearer, and stay parallel. Each newton on a pad takes
+    2 l cos a on the one driven crank, which moves both."""
+    gripper = read(parallelograms())
+    assert gripper.fingers == ("finger_one", "finger_two")
+    assert gripper.wedges == pytest.approx((0.0, 0.0), abs=1e-3)
+    between = 0.08 - 2 * 0.003 - 2 * 0.006  # m, of the fingertips at angle 0
+    for opening in (0.03, between, 0.075):
+        angle = np.arcsin((between - opening) / (2 * 0.06))
+        assert gripper.control(opening)["turn"] == pytest.approx(angle, abs=2e-3)
+    at = np.arcsin((between - 0.04) / (2 * 0.06))
+    assert gripper.actuator_limits(1.0)["turn"] == pytest.approx(2 * 0.06 * np.cos(at), rel=0.01)
+    assert gripper.flat == (gripper.narrowest, gripper.widest)
 
 
 def test_the_command_is_bounded_by_what_the_gripper_can():

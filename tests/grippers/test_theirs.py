@@ -19,7 +19,7 @@ import pytest
 
 import thermograsp  # noqa: F401  registers the environments
 from thermograsp.cli import main
-from thermograsp.envs import Gripper, Mechanics, ObjectSpec, action_of, load_gripper
+from thermograsp.envs import Gripper, Mechanics, ObjectSpec, action_of, fit_fingertip, load_gripper
 from thermograsp.report.gripper_check import MOST_SLIP, check_gripper
 
 
@@ -141,6 +141,22 @@ def test_the_page_has_what_is_found(name: str):
     for cell, found in ((opens, (gripper.narrowest, gripper.widest)), (flat, gripper.flat)):
         assert [float(end) / 1e3 for end in cell.split("..")] == pytest.approx(found, abs=4.5e-3)
     assert float(most) == pytest.approx(gripper.strongest, abs=0.5)
+
+
+@pytest.mark.parametrize("name", THEIRS)
+def test_fingertips_fit_on_the_file_as_it_is(name: str):
+    """Both compile into the whole of it, and feel nothing while nothing touches them."""
+    source = THEIRS[name].source()
+    spec = mujoco.MjSpec.from_file(str(source)) if isinstance(source, Path) else source
+    for number, finger in enumerate(loaded(name).fingers):
+        report = fit_fingertip(spec, finger, name=f"mine_{number}")
+        assert report.area > 20e-6
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 20)
+    assert np.isfinite(data.qpos).all()
+    for number in range(2):
+        assert len(data.sensor(f"contact_mine_{number}").data) == 7
 
 
 def test_the_force_of_a_franka_hand_is_that_of_its_joints():
