@@ -1,0 +1,72 @@
+import numpy as np
+import pytest
+import trimesh
+
+from thermograsp import thermal
+from thermograsp.errors import InvalidValueError
+from thermograsp.thermal.mesh_press import press_body
+from thermograsp.thermal.mesh_solid import SurfacePatch, solid
+
+CUBE = (0.04, 0.04, 0.04)
+TOP = SurfacePatch((0, 0, 0.02), (0, 0, 1))
+
+
+def of(mesh, material):
+    return solid(mesh.vertices, mesh.faces, thermal.material(material))
+
+
+@pytest.mark.parametrize("material", ["cork", "glass", "aluminium"])
+def test_a_mesh_cube_feels_like_the_box(material):
+    mesh = press_body(of(trimesh.creation.box(CUBE), material), TOP, tolerance=0.025, cache=False)
+    box = thermal.press(material, object_size=CUBE, rung="semi_analytic")
+    late = mesh.t >= 0.05
+    assert np.abs(mesh.temperature_drop - box.temperature_drop)[late].max() < 0.02
+    passed = np.concatenate(([0.0], np.cumsum((mesh.heat_flow[1:] + mesh.heat_flow[:-1]) / 2) * 0.02))
+    assert mesh.stored_heat[-1, 1] == pytest.approx(
+        passed[-1] + (mesh.stored_heat[2, 1] - passed[2]), rel=5e-3
+    )
+
+
+def test_a_cup_s_wall_is_a_layer_at_first_and_a_shell_later():
+    """3 mm of glass in a cup of 40 mm radius. The layered rung, one-dimensional, serves while diffusivity * time is
+    below 1/1000 of the contact's area (0.1 s here); after that heat spreads sideways, as in a plate of 3 mm."""
+    wall, radius = 0.003, 0.04
+    profile = [
+        (0, -0.03),
+        (radius, -0.03),
+        (radius, 0.03),
+        (radius - wall, 0.03),
+        (radius - wall, -0.027),
+        (0, -0.027),
+    ]
+    cup = of(trimesh.creation.revolve(profile, sections=256), "glass")
+    felt = press_body(cup, SurfacePatch((radius, 0, 0), (1, 0, 0)), tolerance=0.025, cache=False)
+    layer, plate = (
+        thermal.press("glass", object_size=(0.06, 0.06, wall), rung=rung)
+        for rung in ("layered", "semi_analytic")
+    )
+    first = thermal.material("glass").diffusivity * felt.t / 81e-6 < 1e-3
+    first &= felt.t >= 0.05
+    assert first.sum() > 3
+    assert np.abs(felt.temperature_drop - layer.temperature_drop)[first].max() < 0.05
+    late = felt.t >= 0.05
+    assert np.abs(felt.temperature_drop - plate.temperature_drop)[late].max() < 0.05  # 1 %, and it is curved
+    assert np.abs(felt.temperature_drop - layer.temperature_drop)[late].max() > 0.3
+
+
+def test_air_cools_by_the_true_surface():
+    body = of(trimesh.creation.box(CUBE), "aluminium")
+    mesh = press_body(body, TOP, air=20.0, cache=False, seconds=60, dt=0.1)
+    box = thermal.press(
+        "aluminium", object_size=CUBE, air=20.0, rung="network", tolerance=0.02, seconds=60, dt=0.1
+    )
+    assert mesh.object_surface[-1] == pytest.approx(box.object_surface[-1], abs=0.02)
+    assert mesh.stored_heat[-1, 1] == pytest.approx(box.stored_heat[-1, 1], rel=5e-3)
+
+
+def test_what_cannot_be_pressed_is_refused():
+    body = of(trimesh.creation.box(CUBE), "glass")
+    with pytest.raises(InvalidValueError, match="finer than a mesh's grid"):
+        press_body(body, TOP, tolerance=0.001)
+    with pytest.raises(InvalidValueError, match="more than the face"):
+        press_body(body, SurfacePatch((0, 0, 0.02), (0, 0, 1), 1e-4))
