@@ -39,7 +39,7 @@ def clean_environment(home: Path) -> dict[str, str]:
 def run(command: Sequence[str | Path], folder: Path, environment: Mapping[str, str]) -> str:
     """Its output. Fails with everything that it said where it fails."""
     done = subprocess.run(
-        list(map(str, command)), cwd=folder, env=environment, capture_output=True, text=True, timeout=900
+        list(map(str, command)), cwd=folder, env=environment, capture_output=True, text=True, timeout=1800
     )
     assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout
