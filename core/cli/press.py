@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from thermograsp.cli.arguments import add_materials_file, chosen_material, target
 from thermograsp.cli.output import Output
+from thermograsp.cli.pressed_mesh import add_mesh_arguments, press_mesh
 
 if TYPE_CHECKING:
     from thermograsp.thermal import Press
@@ -69,6 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="W",
         help="limit of the thermostat's heater (default: an ideal one)",
     )
+    add_mesh_arguments(parser)
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
     add("--csv", metavar="FILE", help="write the curves")
     add("--plot", metavar="FILE", help="draw the curves: .svg, .png or .pdf")
@@ -86,7 +88,10 @@ def run(args: argparse.Namespace) -> int:
     if args.thermostat_power is not None:
         first, around = args.sensor_temperature, args.object_temperature
         thermostat = thermal.Thermostat(setpoint=first, ambient=around, power_limit=args.thermostat_power)
-    result = thermal.press(material, **keywords, thermostat=thermostat, cache=not args.no_cache)
+    if args.mesh is None:
+        result = thermal.press(material, **keywords, thermostat=thermostat, cache=not args.no_cache)
+    else:
+        result = press_mesh(args, material, thermostat)
     columns = {
         "time_s": result.t,
         "temperature_drop_K": result.temperature_drop,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from thermograsp import thermal
 from thermograsp.cli import main, press
@@ -75,3 +76,24 @@ def test_keywords_and_defaults_are_those_of_the_function() -> None:
     assert wanted.pop("cache") is True and given["no_cache"] is False
     assert wanted.pop("thermostat") is None and given["thermostat_power"] is None
     assert {name: given[name] for name in wanted} == wanted
+
+
+def test_a_mesh_in_millimetres_is_the_plate(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "plate.stl"
+    trimesh.creation.box((40, 10, 40)).export(file)
+    line = "press glass --seconds 3 --json --tolerance 0.03"
+    assert main(f"{line} --mesh {file} --scale 0.001 --side front".split()) == 0
+    mesh = json.loads(capsys.readouterr().out)
+    assert main(line.split()) == 0
+    plate = json.loads(capsys.readouterr().out)
+    assert mesh["rung"]["name"] == "body"
+    assert mesh["final_temperature_drop_K"] == pytest.approx(plate["final_temperature_drop_K"], abs=0.05)
+
+
+def test_a_mesh_that_cannot_be_pressed_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "plate.stl"
+    trimesh.creation.box((40, 10, 40)).export(file)
+    assert main(["press", "glass", "--mesh", str(file)]) != 0
+    assert "multiply them by 0.001" in capsys.readouterr().err
+    assert main(["press", "glass", "--mesh", str(file), "--scale", "0.001", "--mode", "O"]) != 0
+    assert "--mode is for plates" in capsys.readouterr().err

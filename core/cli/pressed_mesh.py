@@ -1,0 +1,82 @@
+"""`thermograsp press --mesh`: an object from a file, touched in the middle of one of its sides."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from thermograsp.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from thermograsp.thermal import Material, Press, Thermostat
+
+SIDES = {
+    "top": (0, 0, 1),
+    "bottom": (0, 0, -1),
+    "right": (1, 0, 0),
+    "left": (-1, 0, 0),
+    "back": (0, 1, 0),
+    "front": (0, -1, 0),
+}
+"""Name -> outward direction, in the file's frame."""
+
+_PLATES = {
+    "mode": "T",
+    "shape": "square",
+    "rung": "auto",
+    "opposite": None,
+    "object_size": (0.04, 0.04, 0.01),
+}
+_KEYWORDS = (
+    "sensor",
+    "conductance",
+    "air",
+    "sensor_temperature",
+    "object_temperature",
+    "seconds",
+    "dt",
+    "tolerance",
+)
+
+
+def add_mesh_arguments(parser: argparse.ArgumentParser) -> None:
+    """--mesh, --scale and --side."""
+    add = parser.add_argument
+    add(
+        "--mesh",
+        metavar="FILE",
+        help="press an object from a mesh file (.stl, .obj, .ply, .glb), not a plate",
+    )
+    add("--scale", type=float, default=1.0, help="m per unit of length in that file (default 1)")
+    add(
+        "--side",
+        choices=tuple(SIDES),
+        default="top",
+        help="of the mesh, in whose middle it is pressed (default top)",
+    )
+
+
+def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermostat | None) -> Press:
+    """Presses the object in the file. Raises InvalidValueError for arguments that only plates have, and MeshError."""
+    import numpy as np
+
+    from thermograsp import thermal
+    from thermograsp.envs.mesh_files import read_surface
+    from thermograsp.errors import positive
+
+    for name, default in _PLATES.items():
+        if getattr(args, name) != default:
+            raise InvalidValueError(f"--{name.replace('_', '-')} is for plates: leave it out with --mesh")
+    positive("scale", args.scale)
+    surface = read_surface(args.mesh)
+    vertices = surface.vertices * args.scale
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    outward = np.array(SIDES[args.side])
+    x, y, z = ((low + high + outward * (high - low)) / 2).tolist()
+    return thermal.press_body(
+        thermal.solid(vertices, surface.faces, material),
+        thermal.SurfacePatch((x, y, z), SIDES[args.side], args.area),
+        thermostat=thermostat,
+        cache=not args.no_cache,
+        **{name: getattr(args, name) for name in _KEYWORDS},
+    )
