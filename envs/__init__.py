@@ -44,13 +44,14 @@ from .things import Thing
 
 if TYPE_CHECKING:
     from .fingertip import FingertipReport, fit_fingertip
-    from .gripper import Gripper, load_gripper
+    from .gripper import Gripper
+    from .gripper_load import load_gripper
 
 _LATER = {
     "FingertipReport": "fingertip",
     "fit_fingertip": "fingertip",
     "Gripper": "gripper",
-    "load_gripper": "gripper",
+    "load_gripper": "gripper_load",
 }
 
 

@@ -18,7 +18,8 @@ from thermograsp.errors import GripperError, unknown_name
 
 from .faces import Face
 from .gripper_file import compiled
-from .gripper_fingers import SMALLEST_FACE, Hand, Pad, chosen_face, parts_of
+from .gripper_fingers import SMALLEST_FACE, Pad, chosen_face, finger_of
+from .gripper_hand import Hand, parts_of
 from .gripper_mechanism import Mechanism
 
 THICKNESS = 0.006  # m, from the face to the pad's front
@@ -116,7 +117,7 @@ def _face(
         if towards is not None and towards not in bodies:
             raise unknown_name("body", towards, [known for known in bodies if known])
         others = [bodies[towards]] if towards is not None else hand.others(number)
-        found = [finger for other in others if (finger := hand.finger(number, other, pad)) is not None]
+        found = [finger for other in others if (finger := finger_of(hand, number, other, pad)) is not None]
         face = max(found, key=lambda finger: finger.approach).face if found else None
     if face is None or face.area < SMALLEST_FACE:
         raise GripperError(

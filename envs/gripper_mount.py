@@ -18,7 +18,7 @@ import numpy as np
 from ..assets import asset
 from .faces import rotation
 from .fingertip import add_fingertip
-from .gripper_fingers import parts_of
+from .gripper_hand import parts_of
 from .scene import PAD_SIDE
 
 if TYPE_CHECKING:

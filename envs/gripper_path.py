@@ -1,16 +1,12 @@
 """How two fingers close: the postures from wide open to shut, with the fingertips' faces opposed where that can be.
 
-u: the closing axis, from the left fingertip to the right one. A posture is found by bounded least squares over the
-actuators that move the two fingers; where they have one freedom only, there is nothing to choose and the fingertips are
-mounted so that they are parallel at one opening.
+u: the closing axis, from the left fingertip to the right one. Where fingers have one freedom only, there is nothing to
+choose, and the fingertips are mounted so that they are parallel at one opening.
 """
-
-# mujoco ships no type stubs for its compiled names
-# pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,8 +14,10 @@ import numpy as np
 from thermograsp.errors import GripperError
 
 from .fingertip import THICKNESS
-from .gripper_fingers import Finger, Hand, moved_pad
-from .scene import MAX_OPENING, PAD_SIDE
+from .gripper_fingers import Finger
+from .gripper_hand import Hand
+from .gripper_opposition import Opposition, least, moved_by
+from .scene import MAX_OPENING
 
 PARALLEL_AT = 0.04  # m, the opening at which the fingertips are parallel
 MOST_WEDGE = np.deg2rad(50)  # between a fingertip and the face that it is mounted on
@@ -28,10 +26,8 @@ _REACHED = 3e-4  # m, of an opening that counts as reached
 _EXACT, _CLOSE, _ALIGNED = 1e-4, 5e-3, 0.1  # m, m, rad: by which the terms of a posture are weighed, and
 _EVEN, _STEADY = 5e-3, 2e-2  # m, how far the middle goes along u, and otherwise
 _LOOSE = 0.2  # weight of staying near the last posture, per range
-_STARTS = (0.5, 0.25, 0.75)  # of the ranges, where a search begins
 _LEAST_TRAVEL = 0.01  # m
 _SMALL_TURN = 0.05  # rad, as ranges meant in radians look when they are read as degrees
-_FAR = 0.04  # m of approach, beyond which more is no better
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,131 +66,6 @@ class Closing:
     offset: float
 
 
-@dataclass(frozen=True, slots=True)
-class Opposition:
-    """Two fingers in the posture in which they oppose each other best near an opening. cost: less is better. offset: m
-    by which they miss each other."""
-
-    fingers: tuple[Finger, Finger]
-    values: np.ndarray
-    axes: np.ndarray
-    centre: np.ndarray
-    opening: float
-    wedges: tuple[float, float]
-    offset: float
-    cost: float
-
-
-def promising(
-    hand: Hand, pairs: Sequence[tuple[Finger, Finger]], opening: float
-) -> list[tuple[Finger, Finger]]:
-    """The pairs that oppose each other best at a first look, the best first."""
-    if len(pairs) == 1:
-        return list(pairs)
-    return sorted(pairs, key=lambda pair: _opposed(hand, pair, opening, _shares(hand, pair)[:1]).cost)
-
-
-def oppose(hand: Hand, fingers: tuple[Finger, Finger], opening: float) -> Opposition:
-    """The best posture of two fingers about `opening` (m), their pads at the ends of their faces."""
-    left, right = fingers
-    fingers = _at_the_end(left), _at_the_end(right)
-    found = _opposed(hand, fingers, opening, _shares(hand, fingers))
-    for _ in range(2):  # let the pads meet, as far as their faces go
-        fingers = _facing(hand, found)
-        found = _opposed(hand, fingers, opening, [found.values[_moved_by(fingers)]])
-    return found
-
-
-def _shares(hand: Hand, fingers: tuple[Finger, Finger]) -> list[np.ndarray]:
-    """Postures where a search begins."""
-    chosen = _moved_by(fingers)
-    low, high = hand.mechanism.low[chosen], hand.mechanism.high[chosen]
-    return [low + share * (high - low) for share in _STARTS]
-
-
-def _at_the_end(finger: Finger) -> Finger:
-    over = finger.face.extent(finger.along) - PAD_SIDE / 2
-    return moved_pad(finger, over * finger.along) if over > 0 else finger
-
-
-def _opposed(
-    hand: Hand, fingers: tuple[Finger, Finger], opening: float, starts: Sequence[np.ndarray]
-) -> Opposition:
-    mechanism, chosen = hand.mechanism, _moved_by(fingers)
-    low, high = mechanism.low[chosen], mechanism.high[chosen]
-
-    def places(part: np.ndarray) -> tuple[np.ndarray, ...]:
-        values = mechanism.middle.copy()
-        values[chosen] = part
-        mechanism.pose(values)
-        found = []
-        for finger in fingers:
-            origin, axes = mechanism.place(finger.body)
-            normal = axes @ finger.face.normal
-            found += [origin + axes @ finger.face.centre + THICKNESS * normal, normal]
-        return tuple(found)
-
-    def residuals(part: np.ndarray) -> np.ndarray:
-        a, n, b, m = places(part)
-        way = b - a
-        return np.concatenate(
-            [
-                ((way @ n - opening) / 3e-3, (-(way @ m) - opening) / 3e-3),
-                (way - (way @ n) * n) / 1e-2,
-                (way - (way @ m) * m) / 1e-2,
-                (n + m) / 0.2,
-                0.1 * ((part - low) / (high - low) - 0.5),
-            ]
-        )
-
-    tried = [_least(residuals, start, low, high) for start in starts]
-    part = min(tried, key=lambda one: one[1])[0]
-    values = mechanism.middle.copy()
-    values[chosen] = part
-    a, n, b, m = places(part)
-    u = n - m
-    u /= max(float(np.linalg.norm(u)), 1e-9)
-    up = _up(hand, fingers, u, (a + b) / 2)
-    axes = np.stack([u, np.cross(up, u), up], axis=1)
-    way = b - a
-    wedges = tuple(float(np.arccos(np.clip(c, -1, 1))) for c in (n @ u, -(m @ u)))
-    offset = float(np.linalg.norm(way - (way @ u) * u))
-    small = sum(4e-4 / min(f.face.area, 4e-4) - 1 for f in fingers)
-    approach = sum(min(f.approach, _FAR) for f in fingers)
-    missed = abs(float(way @ u) - opening)
-    cost = sum(wedges) / 0.5 + offset / 0.01 + missed / 0.01 + 0.05 * small - approach / 0.03
-    return Opposition(fingers, values, axes, (a + b) / 2, float(way @ u), wedges, offset, cost)  # pyright: ignore
-
-
-def _up(hand: Hand, fingers: tuple[Finger, Finger], u: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """From the fingertips to the palm, across u, in the posture that is shown."""
-    mechanism = hand.mechanism
-    up = -sum(mechanism.place(finger.body)[1] @ finger.along for finger in fingers)
-    up = up - (up @ u) * u
-    if np.linalg.norm(up) < 0.3:
-        origin, axes = mechanism.place(hand.palm)
-        up = origin + axes @ hand.middle(hand.palm) - centre
-        up = up - (up @ u) * u
-    return up / max(float(np.linalg.norm(up)), 1e-9)
-
-
-def _facing(hand: Hand, found: Opposition) -> tuple[Finger, Finger]:
-    """The fingers with pads moved on their faces towards each other's."""
-    mechanism, fingers = hand.mechanism, list(found.fingers)
-    mechanism.pose(found.values)
-    for number, share in ((0, 0.5), (1, 1.0), (0, 1.0)):
-        spots = []
-        for finger in fingers:
-            origin, axes = mechanism.place(finger.body)
-            spots.append(origin + axes @ finger.face.centre)
-        way = spots[1 - number] - spots[number]
-        u = found.axes[:, 0]
-        shift = share * (way - (way @ u) * u)
-        _, axes = mechanism.place(fingers[number].body)
-        fingers[number] = moved_pad(fingers[number], axes.T @ shift)
-    return fingers[0], fingers[1]
-
-
 def close(hand: Hand, start: Opposition) -> Closing:
     """The way of two fingers from as wide as they open, 85 mm at most, to as narrow. Raises GripperError for fingers
     that do not oppose or hardly move."""
@@ -211,7 +82,7 @@ def close(hand: Hand, start: Opposition) -> Closing:
         _, body = mechanism.place(finger.body)
         x, z = sign * start.axes[:, 0], start.axes[:, 2]
         tips.append(Tip(finger.body, finger.face.centre, body.T @ np.stack([x, np.cross(z, x), z], axis=1)))
-    walk = _Walk(hand, (tips[0], tips[1]), start.axes, _moved_by(start.fingers))
+    walk = _Walk(hand, (tips[0], tips[1]), start.axes, moved_by(start.fingers))
     first = walk.measure(start.values)
     wider = walk.go(
         start.values, first, np.arange(first + _GRID, MAX_OPENING + _GRID, _GRID).clip(max=MAX_OPENING)
@@ -360,23 +231,5 @@ class _Walk:
             )
 
         values = last.copy()
-        values[chosen] = _least(residuals, last[chosen], low, high)[0]
+        values[chosen] = least(residuals, last[chosen], low, high)[0]
         return values
-
-
-def _moved_by(fingers: tuple[Finger, Finger]) -> list[int]:
-    return sorted({number for finger in fingers for number in finger.moves})
-
-
-def _least(
-    residuals: Callable[[np.ndarray], np.ndarray], start: np.ndarray, low: np.ndarray, high: np.ndarray
-) -> tuple[np.ndarray, float]:
-    """Bounded least squares in units of the ranges; the place, and half the squares there."""
-    from scipy.optimize import least_squares  # only another gripper than the shipped one needs it
-
-    span = high - low
-    inside = np.clip((start - low) / span, 1e-6, 1 - 1e-6)
-    found = least_squares(
-        lambda x: residuals(low + x * span), inside, bounds=(0.0, 1.0), xtol=1e-9, max_nfev=40
-    )
-    return low + found.x * span, float(found.cost)

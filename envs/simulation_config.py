@@ -248,7 +248,7 @@ class SimulationConfig:
         take."""
         if self.gripper is None:
             return SHIPPED_GRIPPER
-        from .gripper import load_gripper  # nothing that another gripper needs is loaded without one
+        from .gripper_load import load_gripper  # nothing that another gripper needs is loaded without one
 
         gripper = load_gripper(self.gripper)
         for thing in things:
