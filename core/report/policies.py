@@ -36,7 +36,7 @@ def policy(env: gymnasium.vector.VectorEnv, name: str) -> Policy:
     if name == "trained" or name.endswith(".npz"):
         from thermograsp.report.trained import Trained
 
-        return Trained(env, asset("policies/grasp_heat_load.npz") if name == "trained" else name)
+        return Trained(env, asset("policies/grasp_heat_no-load.npz") if name == "trained" else name)
     if name not in POLICIES:
         raise unknown_name("policy", name, POLICIES)
     if name in ("scripted", "feeling"):

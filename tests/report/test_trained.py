@@ -49,7 +49,7 @@ def test_who_feels_heat_beats_every_constant_force(policy: str, points: int) -> 
 
 
 def test_all_that_is_shipped_is_small_and_says_how_it_was_trained() -> None:
-    assert asset("policies/grasp_heat_load.npz") in SHIPPED
+    assert asset("policies/grasp_heat_no-load.npz") in SHIPPED
     assert sum(path.stat().st_size for path in SHIPPED) < 1_000_000
     for path in SHIPPED:
         network = load_network(path)
