@@ -138,7 +138,7 @@ class Session:
             ]
         except ThermograspError as error:
             self._problem(error)
-            self._told.append({"kind": "chosen", "choices": self.choices.told()})
+            self._told.append({"kind": "chosen", "seen": self._seen, "choices": self.choices.told()})
             return
         self.close()
         self._grasp, self._feelings, self.choices = grasp, feelings, wanted
@@ -203,6 +203,7 @@ class Session:
     def _scene(self) -> Message:
         return {
             "kind": "scene",
+            "seen": self._seen,
             "shapes": self._grasp.shapes(),
             "rows": list(self._grasp.names),
             "choices": self.choices.told(),

@@ -47,9 +47,10 @@ export class Controls {
     this.chosen(hello.choices);
   }
 
-  // What the server holds of an episode's choices.
-  chosen(choices) {
+  // What the server holds of an episode's choices; the form shows it where the visitor has set nothing since.
+  chosen(choices, answered = true) {
     this.#choices = choices;
+    if (!answered) return;
     [element("material").value, element("other").value] = [choices.materials[0], choices.materials[1] ?? ""];
     element("shape").value = choices.shape;
     check("mode", choices.mode);

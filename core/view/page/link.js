@@ -19,11 +19,18 @@ export class Link {
     address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
     address.search = "";
     this.#why = "";
+    this.#number = 0;
     this.#sent.clear();
     const socket = new WebSocket(address);
     this.#socket = socket;
     socket.onmessage = (event) => this.#hear(JSON.parse(event.data));
     socket.onclose = (event) => this.#closed(event);
+  }
+
+  // Whether the server had everything that was sent when it had `seen`: what it tells of its state is what the visitor
+  // set last.
+  answered(seen) {
+    return seen >= this.#number;
   }
 
   send(what, content = {}) {

@@ -21,6 +21,7 @@ const plots = {
 const memory = { time: [], rows: [] };
 const pace = { wall: 0, time: 0 };
 let materials = [];
+let mode = "T";
 let posteriors = [];
 let again = null; // what to set up once more after the connection was lost
 
@@ -57,7 +58,8 @@ function sceneCame(message) {
   element("high").textContent = `${Math.round(message.colours[1])} °C`;
   materials = message.rows;
   scene?.show(message.shapes);
-  controls.chosen(message.choices);
+  mode = message.choices.mode;
+  chosen(message);
   element("names").replaceChildren(...materials.map((name, row) => {
     const title = Object.assign(document.createElement("p"), { textContent: readable(name) });
     title.style.setProperty("--row", rowColour(row));
@@ -66,8 +68,8 @@ function sceneCame(message) {
   }));
 }
 
-function chosen(message) {
-  controls.chosen(message.choices);
+function chosen({ choices, seen }) {
+  controls.chosen(choices, link.answered(seen));
 }
 
 function begin() {
@@ -82,7 +84,7 @@ function frame(message) {
   window.studio.frames++;
   document.body.dataset.state = message.busy ? "busy" : "live";
   element("busy").hidden = !message.busy;
-  controls.controlled(message.controls);
+  if (link.answered(message.seen)) controls.controlled(message.controls);
   if (!message.rows) return;
   element("time").textContent = `${message.time.toFixed(2)} s`;
   showPace(message);
@@ -100,7 +102,7 @@ function show({ rows }) {
     plots[name].draw(memory.time, memory.rows.flatMap((row, number) => row.slice(2 * at, 2 * at + 2).map((values, side) => (
       { values, colour: rowColour(number), dashed: side === 1 }))).filter(({ values }) => values.length));
   });
-  showAcross(element("across"), rows, controls.choices.mode);
+  showAcross(element("across"), rows, mode);
   showBelief(element("belief"), posteriors, materials);
   rows.forEach(({ ending, state }, row) => {
     const note = element("names").children[row]?.lastChild;
