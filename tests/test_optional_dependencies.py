@@ -12,13 +12,12 @@ from pathlib import Path
 import pytest
 
 from thermograsp.cli import main
+from thermograsp.cli.versions import OWN_WORK
 from thermograsp.errors import MissingDependencyError
 
 ROOT = Path(__file__).parents[1]
 SETUP = configparser.ConfigParser()
 SETUP.read(ROOT / "setup.cfg", encoding="utf-8")
-OWN_WORK = {"test", "docs", "release", "dev"}
-"""Extras for work on the package itself."""
 MODULES = {
     "pillow": "PIL",
     "pyserial": "serial",

@@ -13,7 +13,8 @@ import thermograsp
 from thermograsp.cli.output import Output
 
 _NEED = re.compile(r"([\w.-]+)(\[.*?\])?.*?(?:; extra == [\"']([\w-]+)[\"'])?$")
-_OURS = ("test", "dev", "docs", "release", "grippers")  # extras for work on the package itself
+OWN_WORK = {"test", "grippers", "docs", "release", "dev"}
+"""Extras for work on the package itself."""
 
 
 class ShowVersion(argparse.Action):
@@ -37,7 +38,7 @@ def versions() -> dict[str, Any]:
     packages: dict[str, str | None] = {}
     extras: dict[str, dict[str, str | None]] = {}
     for name, extra in _needs():
-        if extra not in _OURS:
+        if extra not in OWN_WORK:
             (extras.setdefault(extra, {}) if extra else packages)[name] = _installed(name)
     return {
         "thermograsp": thermograsp.__version__,

@@ -17,11 +17,8 @@ import pytest
 import thermograsp
 from thermograsp import cli
 from thermograsp.cli import main
-from thermograsp.cli.versions import versions
+from thermograsp.cli.versions import OWN_WORK, versions
 from thermograsp.errors import ThermograspError
-
-OWN_WORK = {"test", "dev", "docs", "release", "grippers"}
-"""Extras for work on the package itself."""
 
 
 def replace_run(monkeypatch: pytest.MonkeyPatch, raised: BaseException) -> None:
