@@ -121,9 +121,7 @@ def _along(hand: Hand, body: int, face: Face) -> np.ndarray:
     """From the first joint of the digit to the face, in the body's frame and across the face's normal."""
     mechanism = hand.mechanism
     mechanism.pose(mechanism.middle)
-    root = hand.digit(body)
-    chain = [link for link in hand.moving if hand.below(root, link) and hand.below(link, body)]
-    start = mechanism.data.xpos[chain[0] if chain and root != hand.palm else hand.palm]
+    start = mechanism.data.xpos[hand.root(body)]
     origin, axes = mechanism.place(body)
     way = face.centre - axes.T @ (start - origin)
     way = way - (way @ face.normal) * face.normal

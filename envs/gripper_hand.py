@@ -87,6 +87,13 @@ class Hand:
             return at
         return int(self.model.body_parentid[self._weld[at]])
 
+    def root(self, body: int) -> int:
+        """The first moving link of the digit that the body is on, the palm for what is none."""
+        digit = self.digit(body)
+        if digit == self.palm:
+            return self.palm
+        return next((n for n in self.moving if self.below(digit, n) and self.below(n, body)), self.palm)
+
     def joints(self) -> list[int]:
         """The driven joints of the fingers."""
         model, driven = self.model, np.flatnonzero(self.mechanism.moved)

@@ -300,8 +300,10 @@ def _put_arm(spec: mujoco.MjSpec, base: np.ndarray, corners: np.ndarray) -> None
     inside = (low[:2] <= base[:2]).all() and (base[:2] <= high[:2]).all()
     x, y = base[:2] if inside else (low + high)[:2] / 2
     flange, arm = spec.geom("flange"), spec.geom("arm")
-    flange.pos = (x, y, high[2] + flange.size[1] - _SUNK)
-    arm.pos = (x, y, high[2] + 2 * flange.size[1] - 2 * _SUNK + arm.size[1])
+    beneath = corners[np.hypot(corners[:, 0] - x, corners[:, 1] - y) < flange.size[0]]
+    top = beneath[:, 2].max() if len(beneath) else high[2]
+    flange.pos = (x, y, top + flange.size[1] - _SUNK)
+    arm.pos = (x, y, top + 2 * flange.size[1] - 2 * _SUNK + arm.size[1])
 
 
 def _quat(matrix: np.ndarray) -> np.ndarray:

@@ -131,7 +131,7 @@ def _along(hand: Hand, fingers: tuple[Finger, Finger], postures: list[np.ndarray
     its range, counted from the tips."""
     mechanism = hand.mechanism
     mechanism.show(mechanism.reference)
-    roots = {tip: mechanism.data.xpos[hand.digit(tip)].copy() for tip in hand.tips}
+    places = mechanism.data.xpos.copy()
     taken = {number for finger in fingers for number in finger.moves}
     table = np.array(postures)
     span = mechanism.high - mechanism.low
@@ -139,9 +139,10 @@ def _along(hand: Hand, fingers: tuple[Finger, Finger], postures: list[np.ndarray
         own = [number for number in hand.moves(tip) if number not in taken]
         if hand.digit(tip) in [finger.digit for finger in fingers] or not own:
             continue
+        here = places[hand.root(tip)]
         leader = min(
-            (finger for finger in fingers if finger.body in roots),
-            key=lambda finger: float(np.linalg.norm(roots[finger.body] - roots[tip])),
+            (finger for finger in fingers if finger.moves),
+            key=lambda finger, here=here: float(np.linalg.norm(places[hand.root(finger.body)] - here)),
         )
         for mine, theirs in zip(_from_the_tip(hand, own), _from_the_tip(hand, leader.moves), strict=False):
             share = (table[:, theirs] - mechanism.low[theirs]) / span[theirs]
