@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from typing import Any
 
@@ -49,6 +50,7 @@ class Session:
         self._owed = 0.0  # s of the grasp's time
         self._single = False
         self._feelings: list[Feeling] = []
+        self._workers = ThreadPoolExecutor(1, "identification")
         self._log = Log(1)
         self._sent = 0
         self._told: list[Message] = [self._hello()]
@@ -95,15 +97,26 @@ class Session:
 
     def messages(self) -> list[Message]:
         """What happened since the last call, a frame last."""
-        for row, feeling in enumerate(self._feelings):
-            found = feeling.look()
-            if found is not None:
-                self._told.append({"kind": "posterior", "row": row, **found})
+        try:
+            for row, feeling in enumerate(self._feelings):
+                found = feeling.look()
+                if found is not None:
+                    self._told.append({"kind": "posterior", "row": row, **found})
+        except ThermograspError as error:
+            self._feelings = []
+            self._problem(error)
         told, self._told = self._told, []
         return [*told, self._frame()]
 
     def close(self) -> None:
         """Releases the grasp."""
+        self._release()
+        self._workers.shutdown(wait=False, cancel_futures=True)
+
+    def _release(self) -> None:
+        for feeling in self._feelings:
+            feeling.close()
+        self._feelings = []
         if self._grasp is not None:
             self._grasp.close()
             self._grasp = None
@@ -127,20 +140,19 @@ class Session:
     def _set_up(self, wanted: Choices) -> None:
         self._wanted = None
         if self._grasp is not None and self._grasp.paced:
-            self.close()  # its ports are needed
+            self._release()  # its ports are needed
         try:
             grasp = self._make(wanted, self._stock)
             setups = [grasp.touch_setup(row) for row in range(grasp.rows)]
+            setups = [grasp.touch_setup(row) for row in range(grasp.rows)]
             feelings = [
-                Feeling(setup, self._stock.materials, wanted.materials)
-                for setup in setups
-                if setup is not None
+                Feeling(one, self._stock.materials, wanted.materials, self._workers) for one in setups
             ]
         except ThermograspError as error:
             self._problem(error)
             self._told.append({"kind": "chosen", "seen": self._seen, "choices": self.choices.told()})
             return
-        self.close()
+        self._release()
         self._grasp, self._feelings, self.choices = grasp, feelings, wanted
         self._begin()
         self._told.append(self._scene())

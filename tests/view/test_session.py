@@ -51,6 +51,12 @@ def play(session: Session, seconds: float) -> list[dict[str, Any]]:
     return told
 
 
+def learnt(session: Session) -> None:
+    """Waits for the library of curves."""
+    for feeling in session._feelings:
+        feeling._making.result(timeout=300)
+
+
 def test_it_computes_what_the_command_grasp_computes(session: Session) -> None:
     for name, text in (("materials", ["glass", "cotton"]), ("seed", 3)):
         session.handle({"do": "choose", name: text})
@@ -125,6 +131,7 @@ def test_the_posterior_finds_out(session: Session) -> None:
     turn(session)
     turn(session)
     last = {}
+    learnt(session)
     for found in of_kind(play(session, 3.0), "posterior"):
         assert sum(chance for _, chance in found["likely"]) <= 1.001
         last[found["row"]] = found

@@ -52,6 +52,7 @@ def test_a_recording_gives_all_its_samples(
     write_csv(file, columns)
     session = set_up(Stock(recording=str(file)))
     found = []
+    session._feelings[0]._making.result(timeout=300)
     for _ in range(round(2.0 / TURN)):
         session.advance(TURN)
         found += [message for message in messages(session) if message["kind"] == "posterior"]

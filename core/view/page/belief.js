@@ -14,7 +14,7 @@ export function showBelief(holder, posteriors, materials) {
     one.style.setProperty("--row", rowColour(row));
     const found = posteriors[row];
     if (!found || found.verdict === "no_touch") {
-      one.replaceChildren(verdict("Nothing touched yet."));
+      one.replaceChildren(verdict(found ? "Nothing touched yet." : "Learns how materials feel; the first time takes a while."));
       return;
     }
     one.replaceChildren(...found.likely.slice(0, SHOWN).flatMap(([name, chance]) => bar(name, chance, name === material)),
