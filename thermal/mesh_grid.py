@@ -26,6 +26,8 @@ from .mesh_solid import Solid, SurfacePatch
 
 _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
 _EMPTY = 1e-7  # of a cell, less than which is nothing
+_FLAT = 20e-6  # m that the surface of a patch may sag and be flat to the grid
+_SAG_CELLS = 12  # down the sag of a curved patch
 _CRUMB = 1e-3  # of the solid's volume, less than which a piece of its own is left out
 
 
@@ -111,9 +113,11 @@ def grid_axes(
     normals: np.ndarray,
     half_widths: np.ndarray,
     aligned: np.ndarray,
+    sags: np.ndarray,
     gridding: MeshGridding,
 ) -> tuple[GridAxis, GridAxis, GridAxis]:
-    """The axes around triangles (F, 3, 3) m and fine at the patches, all in the grid's frame."""
+    """The axes around triangles (F, 3, 3) m and fine at the patches, all in the grid's frame. sags: m, of the patches'
+    surfaces below their centres."""
     corners = triangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     largest = max(gridding.largest, float((high - low).max()) / 40)
@@ -121,11 +125,17 @@ def grid_axes(
     for axis in range(3):
         fine: dict[float, float] = {}
         breaks = [low[axis], high[axis], *_planes(triangles, axis)]
-        for centre, normal, half, along in zip(centres, normals, half_widths, aligned, strict=True):
+        for centre, normal, half, along, sag in zip(
+            centres, normals, half_widths, aligned, sags, strict=True
+        ):
             at = float(np.clip(centre[axis], low[axis], high[axis]))
             if along and abs(normal[axis]) > 0.5:
                 fine[at] = gridding.depth
                 breaks.append(at)
+                layers = np.arange(1, _SAG_CELLS // 2 + 1) * (2 * sag / _SAG_CELLS)
+                for below in layers[: len(layers) * (sag > _FLAT)]:
+                    place = float(np.clip(at - np.sign(normal[axis]) * below, low[axis], high[axis]))
+                    fine[place] = max(sag / _SAG_CELLS, gridding.depth)
                 continue
             if along:
                 ends, length = (-half, half), gridding.side
@@ -190,6 +200,8 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
         neighbours[a, 2 * axis + 1], links[a, 2 * axis + 1] = b, link
         neighbours[b, 2 * axis], links[b, 2 * axis] = a, link
     capacity = np.sum([c * s for c, s in zip(capacities, shares, strict=True)], axis=0)[solid_cells]
+    if len(solid.parts) == 1:  # corners that were moved into planes take up to 1e-5 of the volume along
+        capacity *= capacities[0] * solid.parts[0].volume / capacity.sum()
     grid = MeshGrid(frame, axes, index, capacity, neighbours, links, along[solid_cells], filled[solid_cells])
     return _one_piece(grid)
 

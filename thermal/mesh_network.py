@@ -18,16 +18,18 @@ from scipy.linalg import block_diag, eigh
 from thermograsp.errors import InvalidValueError
 from thermograsp.files import cached_arrays
 
-from .mesh_grid import MeshGrid, MeshGridding, grid_axes, grid_frame, mesh_grid
+from .mesh_cut import enclosed
+from .mesh_grid import MeshGrid, MeshGridding, grid_axes, grid_frame, mesh_grid, snapped
 from .mesh_patch import PatchOnGrid, patch_on_grid, place_patch
 from .mesh_patterns import PatchPatterns, uniform_pattern
 from .mesh_solid import Solid, SurfacePatch, checked, surface_patches
 from .mesh_solve import conduct, solve_shifted
 from .network import ThermalNetwork
 
-_VERSION = 1  # of the arrays' meaning and of how they are computed
+_VERSION = 2  # of the arrays' meaning and of how they are computed
 _SHIFTS = np.geomspace(4000, 1 / 400, 10)  # 1/s: moments from under a millisecond to minutes
 _SETTLED = 1e-3  # of the heat flow, left over when a field is good enough to span a state
+_LEAST_WALL = 1e-9  # singular values below that share of the largest are left out
 _RANK = 1e-10  # relative size of Gram eigenvalues that round-off has not spoiled
 
 
@@ -37,6 +39,7 @@ def body_network(
     *,
     patterns: PatchPatterns | None = None,
     points: Sequence[Sequence[float]] = (),
+    walls: np.ndarray | None = None,
     gridding: MeshGridding | None = None,
     cache: bool = True,
 ) -> ThermalNetwork:
@@ -47,9 +50,11 @@ def body_network(
     A patch is a square of SurfacePatch.area round its centre, projected on the surface along its normal; where the
     surface ends within it, heat flows through what is there. The grid is aligned with the last patch's normal and
     with the object's sides; it resolves a patch whose normal is along one of its axes to about 0.3 % of its impedance
-    from 0.05 s on, any other coarsely (glass: 1 % after 3 s, 5 % after 0.5 s), so the patch that matters comes last.
+    from 0.05 s on, any other coarsely (glass: 1 % after 3 s, 6 % after 0.2 s), so the patch that matters comes last.
     points: (Q, 3) m in the object's frame, where the object's own temperature is told, such as where it may be
     touched next.
+    walls: (F, 3, 3) m, triangles of the surface that something wets, with outputs "wet", their mean temperature, and
+    "film:0" ..., of which the sum of squares is their mean square temperature.
     Outputs: "heat" (J that the object has gained, exact: only the state of rate 0 holds any), "mean" (K, its mean
     temperature, by heat), "point:0" ... "point:Q-1" (K at the points, of the nearest cell with material). The direct
     term is 0.
@@ -64,19 +69,25 @@ def body_network(
         raise InvalidValueError("points must be finite, m in the object's frame")
     gridding = gridding or MeshGridding()
     patterns = patterns or uniform_pattern()
+    wetted = np.zeros((0, 3, 3)) if walls is None else np.asarray(walls, float).reshape(-1, 3, 3)
 
     def build() -> dict[str, np.ndarray]:
         frame = grid_frame(checked(body), patches)
         grid, placed = _gridded(body, patches, frame, gridding, patterns)
         rates, ports, basis = _reduced(grid, placed)
         cells = _nearest(grid, where @ frame.T)
-        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), "points": basis[cells]}
+        told = {"points": basis[cells], "walls": _walls(grid, basis, wetted @ frame.T)}
+        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), **told}
 
-    arrays = cached_arrays(_key(body, patches, patterns, where, gridding), build, enabled=cache)
+    key = {**_key(body, patches, patterns, where, gridding), "walls": wetted}
+    arrays = cached_arrays(key, build, enabled=cache)
     rates, capacity = arrays["rates"], float(arrays["capacity"])
     still = np.eye(len(rates))[0]
     outputs = {"heat": np.sqrt(capacity) * still, "mean": still / np.sqrt(capacity)}
     outputs |= {f"point:{n}": row for n, row in enumerate(arrays["points"])}
+    if len(arrays["walls"]):
+        outputs["wet"] = arrays["walls"][0]
+        outputs |= {f"film:{n}": row for n, row in enumerate(arrays["walls"][1:])}
     count = arrays["ports"].shape[1]
     return ThermalNetwork(rates, arrays["ports"], np.zeros((count, count)), outputs)
 
@@ -96,6 +107,7 @@ def _gridded(
         np.array([p.normal for p in placed]),
         np.array([p.half_width for p in placed]),
         np.array([p.aligned for p in placed]),
+        np.array([p.sag for p in placed]),
         gridding,
     )
     grid = mesh_grid(body, frame, axes)
@@ -144,6 +156,21 @@ def _nearest(grid: MeshGrid, points: np.ndarray) -> np.ndarray:
     """(Q,) cells with material nearest to points (Q, 3) in the grid's frame."""
     nodes = grid.nodes
     return np.array([int(np.argmin(np.sum((nodes - p) ** 2, axis=1))) for p in points], dtype=int)
+
+
+def _walls(grid: MeshGrid, basis: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(1 + J, K): mean of the states' fields (N, K) over triangles in the grid's frame, and J rows whose squares sum to
+    the fields' products' mean; none where there is no triangle."""
+    if not len(triangles):
+        return np.zeros((0, basis.shape[1]))
+    faces = enclosed(snapped(triangles, grid.edges), grid.edges)[1]
+    areas = np.linalg.norm(faces, axis=-1)
+    held = (areas > 0) & (grid.index >= 0)
+    shares = areas[held] / areas[held].sum()
+    told = basis[grid.index[held]]
+    _, sizes, vectors = np.linalg.svd(np.sqrt(shares)[:, None] * told, full_matrices=False)
+    kept = sizes > _LEAST_WALL * sizes[0]
+    return np.concatenate(((shares @ told)[None], sizes[kept, None] * vectors[kept]))
 
 
 def _key(

@@ -23,13 +23,15 @@ _CORNERS = 24  # of a triangle clipped by twelve planes: 15
 @dataclass(frozen=True, slots=True)
 class PlacedPatch:
     """A patch on the surface, in the grid's frame. centre, normal: (3,). half_width: m. sides: (2, 3) directions of
-    the square's sides. aligned: whether they and the normal are along the grid's axes."""
+    the square's sides. aligned: whether they and the normal are along the grid's axes. sag: m, how far below the centre
+    the surface reaches at the square's edges and corners."""
 
     centre: np.ndarray
     normal: np.ndarray
     half_width: float
     sides: np.ndarray
     aligned: bool
+    sag: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +62,10 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
     for middle in half * np.array([[0, 0], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]]):
         depth = _crossings(triangles, centre + middle @ sides, normal)
         if len(depth):
-            nearest = depth[np.argmin(np.abs(depth))]
-            return PlacedPatch(centre + nearest * normal, normal, half, sides, aligned)
+            placed = centre + depth[np.argmin(np.abs(depth))] * normal
+            return PlacedPatch(
+                placed, normal, half, sides, aligned, _sag(triangles, placed, normal, half * sides)
+            )
     at = ", ".join(f"{1e3 * x:.4g}" for x in patch.centre)
     raise MeshError(
         f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.normal)} does not meet the "
@@ -112,6 +116,16 @@ def patch_on_grid(
     skin = values.T @ ((weights * distance / across / total)[:, None] * values)
     levels, turn = np.linalg.eigh(skin)
     return PatchOnGrid(shares, (turn * np.maximum(levels, 0.0)) @ turn.T, total)
+
+
+def _sag(triangles: np.ndarray, centre: np.ndarray, normal: np.ndarray, sides: np.ndarray) -> float:
+    """m from the centre down to the lowest surface at the corners and the edges' middles, at most half a side."""
+    lowest = 0.0
+    for place in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+        below = -_crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
+        below = below[(below > 0) & (below < np.linalg.norm(sides[0]))]
+        lowest = max(lowest, float(below.min(initial=np.inf)) if len(below) else 0.0)
+    return lowest
 
 
 def _crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:

@@ -1,3 +1,5 @@
+from typing import Literal
+
 import numpy as np
 import pytest
 import trimesh
@@ -47,7 +49,7 @@ def network(body, *patches, **keywords):
     return body_network(body, patches, cache=False, **keywords)
 
 
-def plate(material="glass", fingertips=1):
+def plate(material="glass", fingertips: Literal[1, 2] = 1):
     return Geometry(
         thermal.sensor("seed"), thermal.material(material), "T", 81e-6, "square", PLATE, fingertips
     )
@@ -93,7 +95,8 @@ def test_a_turned_box_is_the_same_box():
     for _ in range(2):
         turn = trimesh.transformations.random_rotation_matrix(rng.random(3))
         turn[:3, 3] = rng.uniform(-0.5, 0.5, 3)
-        patch = SurfacePatch(turn[:3] @ [0, 0, 0.005, 1], turn[:3, 2])
+        (x, y, z), (u, v, w) = (turn[:3] @ [0, 0, 0.005, 1]).tolist(), turn[:3, 2].tolist()
+        patch = SurfacePatch((x, y, z), (u, v, w))
         turned = of(box(*PLATE).apply_transform(turn))
         assert network(turned, patch).impedance(MOMENTS) == pytest.approx(expected, rel=1e-6)
 
@@ -115,7 +118,13 @@ def test_a_linear_field_along_a_sheet_thinner_than_its_cells_is_met_exactly():
     triangles = sheet.parts[0].triangles
     coarse = MeshGridding(oblique=3e-3, largest=3e-3)
     axes = grid_axes(
-        triangles, np.zeros((1, 3)), turn[None, :3, 2], np.array([0.0045]), np.array([False]), coarse
+        triangles,
+        np.zeros((1, 3)),
+        turn[None, :3, 2],
+        np.array([0.0045]),
+        np.array([False]),
+        np.zeros(1),
+        coarse,
     )
     grid = mesh_grid(sheet, np.eye(3), axes)
     along = turn[:3, 0]
