@@ -257,8 +257,10 @@ class GraspHeat:
         mine["lasting"] = touches is not None
         mine["capacity"] = capacity
         mine["air"] = self._air * free
-        # What the object gives to the air and to a reservoir, as one film of that many W/(m2 K).
-        self._films[row] = self._air + float(self._reservoirs["conductance"][row]) / free
+        mine["fed"] = touches is not None and touches.fed
+        # What the object gives to the air and to a reservoir at its mean, as one film of that many W/(m2 K).
+        inside = 0.0 if mine["fed"] else float(self._reservoirs["conductance"][row])
+        self._films[row] = self._air + inside / free
         mine["network"] = self._number(row)
 
     def _number(self, row: int) -> int:
@@ -267,7 +269,7 @@ class GraspHeat:
         if touches is None:
             number = self._networks.of_plate(self._things[row].geometry, self._demands[row], film)
         else:
-            number = self._networks.of_touches(touches, film)
+            number = self._networks.of_touches(touches, film, float(self._rows["air"][row]))
         if self._networks.states > self._state.shape[1]:
             grown = np.zeros((len(self._state), self._networks.states))
             grown[:, : self._state.shape[1]] = self._state
@@ -295,7 +297,7 @@ class GraspHeat:
         before = self._state[row].copy()
         self._state[row] = 0.0
         # Row by row, so that rounding does not depend on what else the batch holds.
-        field = touches.field_from(last)
+        field = self._networks.field_carried(old, new, touches.field_from(last))
         self._state[row, : len(field)] = (field * before[: field.shape[1]]).sum(axis=1)
         matrix = self._networks.carried(old, new)
         for tip in range(len(touches.contacts)):

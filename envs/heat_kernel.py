@@ -13,6 +13,7 @@ from numba import njit
 from ..thermal.batch import HeatReading, HeatTables, advance_row, forget_row
 from ..thermal.contact_law import conductance, contact
 from ..thermal.coupling_kernel import FAST, workspace
+from ..thermal.system import NODE
 from .heat_rows import NEW_PATCH, OFF_ELEMENT, RELEASE, TOUCH
 from .reservoir import reservoir_step, reservoir_temperature
 
@@ -56,11 +57,15 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
         one.object_temperature = first = one.object_surface[0]
         around = row.ambient
         one.reservoir_temperature, one.reservoir_flow = math.nan, 0.0
-        film = reservoirs[b].conductance
+        film, above = reservoirs[b].conductance, 0.0
         if film > 0.0:
             one.reservoir_temperature = reservoir_temperature(reservoirs[b], row.enthalpy)
-            inside = film * (one.reservoir_temperature - first)
-            around = (row.air * row.ambient + inside) / (row.air + film)
+            above = one.reservoir_temperature - first
+            if row.fed:
+                _set_node(tables, row.network, x, above)
+                film = 0.0
+            else:
+                around = (row.air * row.ambient + film * above) / (row.air + film)
         if row.begun:
             for f in range(tips):  # a fingertip without a sensor takes no part
                 sensed = row.glued == 0 or _distance(place[b, f], row.anchor[f]) <= row.reach
@@ -81,10 +86,13 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
                 mean = one.air_loss / (row.air + film)  # of the object over the step, above its first
                 one.air_loss = row.air * (mean - row.ambient)
                 if film > 0.0:
-                    one.reservoir_flow = film * (one.reservoir_temperature - first - mean)
-                    reservoir = reservoirs[b]
-                    row.enthalpy = reservoir_step(reservoir, row.enthalpy, one.reservoir_flow, duration)
-                    one.reservoir_temperature = reservoir_temperature(reservoir, row.enthalpy)
+                    one.reservoir_flow = film * (above - mean)
+            if row.fed:
+                one.reservoir_flow = NODE * (above - _node(tables, row.network, x)) / duration
+            if film > 0.0 or row.fed:
+                reservoir = reservoirs[b]
+                row.enthalpy = reservoir_step(reservoir, row.enthalpy, one.reservoir_flow, duration)
+                one.reservoir_temperature = reservoir_temperature(reservoir, row.enthalpy)
         for f in range(2):
             one.drawn[f] = one.flow[f]
             if row.glued == 0:
@@ -97,6 +105,23 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
         gained = one.heat[2] + (one.heat[0] + one.heat[1] if row.glued else 0.0)
         one.imbalance = gained + row.books[2] - row.books[0]
         one.exchanged = row.books[1]
+
+
+@njit(cache=True, error_model="numpy")
+def _node(tables, network, x):
+    """K of the network's node above the object's first temperature."""
+    heat = 0.0
+    for i in range(tables.object_states[network]):
+        heat += tables.reservoir[network, i] * x[i]
+    return heat / NODE
+
+
+@njit(cache=True, error_model="numpy")
+def _set_node(tables, network, x, above):
+    """Gives the node that temperature, K; the object keeps its own."""
+    change = above - _node(tables, network, x)
+    for i in range(tables.object_states[network]):
+        x[i] += change * tables.reservoir[network, i]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

@@ -25,6 +25,7 @@ class HeatNetworks:
         self._numbers: dict[object, int] = {}
         self._films: list[float] = []
         self._carries: dict[tuple[int, int], np.ndarray] = {}
+        self._turns: dict[int, np.ndarray] = {}
         self._tables: HeatTables | None = None
         self.systems: list[ContactSystem] = []
         self.rungs: list[str] = []
@@ -52,13 +53,25 @@ class HeatNetworks:
             self._add(key, system, film, f"network:{system.orders}")
         return self._numbers[key]
 
-    def of_touches(self, touches: Touches, film: float) -> int:
-        """Number of that of an object that is touched anywhere."""
+    def of_touches(self, touches: Touches, film: float, air: float) -> int:
+        """Number of that of an object that is touched anywhere. air: W/K, of one whose contents feed its walls."""
         key = (touches.body, touches.contacts, film)
         if key not in self._numbers:
-            system = touches.body.system(touches.contacts)
+            filled = touches.body.filled(touches.film, air) if touches.fed else None
+            system = (filled or touches.body).system(touches.contacts)
+            if filled is not None:
+                self._turns[len(self.systems)] = filled.turn
             self._add(key, system, film, f"body:{system.orders}")
         return self._numbers[key]
+
+    def field_carried(self, old: int, new: int, field: np.ndarray) -> np.ndarray:
+        """Matrix that takes an object's field from one network to another, and what fills it along. field: the same of
+        the networks without contents."""
+        if old not in self._turns:
+            return field
+        whole = np.zeros((field.shape[0] + 1, field.shape[1] + 1))
+        whole[:-1, :-1], whole[-1, -1] = field, 1.0
+        return self._turns[new].T @ whole @ self._turns[old]
 
     def fingertip(self, number: int, tip: int) -> slice:
         """Where a fingertip's own states are in a network's."""

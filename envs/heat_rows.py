@@ -14,7 +14,7 @@ import numpy as np
 # capacity, element_capacity: J/K. air: W/K from the object to the air, ambient: K, the air above the object's first
 # temperature. enthalpy: J of its reservoir. network: the index of the environment's network. begun: something
 # has touched, or the object is not as warm as what is around it. glued: the elements sit on the object (O mode).
-# lasting: a new patch finds the object's field, not its mean.
+# lasting: a new patch finds the object's field, not its mean. fed: the reservoir is a node of the network.
 HEAT_ROW = np.dtype(
     [
         ("difference", "f8", (2,)),
@@ -35,6 +35,7 @@ HEAT_ROW = np.dtype(
         ("begun", "u1"),
         ("glued", "u1"),
         ("lasting", "u1"),
+        ("fed", "u1"),
     ]
 )
 

@@ -40,7 +40,7 @@ class Reservoir:
     latent_heat: J that it takes up at `melting` °C; one that starts there is all ice, one that starts above all water,
     and both have its heat capacity.
 
-    The object is met at its mean temperature, which is right where its wall conducts better than the film.
+    A mesh with a hollow is met at the walls of that; any other object at its mean temperature.
     Raises InvalidValueError for values that no such body has, and for one that follows the object within .2 s.
     """
 

@@ -26,20 +26,33 @@ _KEPT = 256
 @dataclass(frozen=True, slots=True)
 class Touches:
     """thing: the object. body: its network and its patches. contacts: (F,) the patch that each fingertip is on or was
-    on last. demand: what the network was made for. cache: keep networks on disk."""
+    on last. demand: what the network was made for. film: W/K between it and its contents, 0 for none. cache:
+    keep networks on disk."""
 
     thing: Thing
     body: TouchedBody
     contacts: tuple[int, ...]
     demand: Demand
+    film: float
     cache: bool
+
+    @property
+    def fed(self) -> bool:
+        """Whether its contents feed it through the walls of a hollow."""
+        return self.body.hollow
 
     def at(self, patches: tuple[SurfacePatch, ...], contacts: tuple[int, ...]) -> Touches:
         """The same object with these patches and contacts. Raises MeshError where a patch meets no surface."""
         body = self.body
         if patches != body.patches:
             body = _body(
-                _solid(self.thing), patches, self.thing.stack, self.demand, len(contacts), self.cache
+                _solid(self.thing),
+                patches,
+                self.thing.stack,
+                self.demand,
+                len(contacts),
+                self.film,
+                self.cache,
             )
         return replace(self, body=body, contacts=contacts)
 
@@ -76,11 +89,12 @@ def first_touches(thing: Thing, demand: Demand, cache: bool) -> Touches | None:
     surface (a ring's hole), so that a plate stands for the object."""
     contacts = tuple(range(thing.fingertips))
     patches = tuple(_grasped(thing, side) for side in (-1, 1)[: thing.fingertips])
+    film = thing.spec.reservoir.conductance if thing.spec.reservoir else 0.0
     try:
-        body = _body(_solid(thing), patches, thing.stack, demand, thing.fingertips, cache)
+        body = _body(_solid(thing), patches, thing.stack, demand, thing.fingertips, film, cache)
     except MeshError:
         return None
-    return Touches(thing, body, contacts, demand, cache)
+    return Touches(thing, body, contacts, demand, film, cache)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -95,9 +109,10 @@ def _body(
     stack: SensorStack,
     demand: Demand,
     fingertips: int,
+    film: float,
     cache: bool,
 ) -> TouchedBody:
-    return touched_body(body, patches, stack, demand, fingertips=fingertips, cache=cache)
+    return touched_body(body, patches, stack, demand, fingertips=fingertips, film=film, cache=cache)
 
 
 def _solid(thing: Thing) -> Solid:

@@ -23,8 +23,8 @@ from .system import ContactSystem
 class HeatTables(NamedTuple):
     """Networks of the same fingertips, padded to one size, for steps of dt s. states, object_states, sensor_states and
     modes: (T,) true sizes. rates (T, K), ports (T, M, K), scale_real and scale_imag (T, Q, K), gram (T, Q, M, M), drop,
-    element_heat, sensor_surface and object_surface (T, F, K), object_heat and air_loss (W) (T, K), mean (T,): the
-    index of the object's mean temperature (T mode)."""
+    element_heat, sensor_surface and object_surface (T, F, K), object_heat, air_loss (W) and reservoir (J) (T, K), mean
+    (T,): the index of the object's mean temperature (T mode)."""
 
     dt: float
     states: np.ndarray
@@ -43,6 +43,7 @@ class HeatTables(NamedTuple):
     object_heat: np.ndarray
     air_loss: np.ndarray
     mean: np.ndarray
+    reservoir: np.ndarray
 
     @property
     def fingertips(self) -> int:
@@ -91,11 +92,17 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
         object_heat=np.zeros((count, k)),
         air_loss=np.zeros((count, k)),
         mean=np.array([s.mean for s in systems]),
+        reservoir=np.zeros((count, k)),
         **rows,
     )
     for i, (system, film) in enumerate(zip(systems, air, strict=True)):
         n, p = len(system.rates), system.ports.shape[1]
-        aired, tables.air_loss[i, :n] = with_air(system, film)
+        if system.air_loss is None:
+            aired, tables.air_loss[i, :n] = with_air(system, film)
+        else:
+            aired, tables.air_loss[i, :n] = system, system.air_loss
+        if system.reservoir is not None:
+            tables.reservoir[i, :n] = system.reservoir
         stepper = propagator(aired.rates, aired.ports, dt)
         tables.rates[i, :n], tables.ports[i, :p, :n] = stepper.rates, stepper.ports.T
         tables.scale_real[i, :, :n], tables.scale_imag[i, :, :n] = (

@@ -9,7 +9,7 @@ P: patches, M: heat-flow patterns of each, F: fingertips, K: states of the objec
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -20,6 +20,7 @@ from thermograsp.files import cached_arrays
 from .bodies import Geometry
 from .body_geometry import BodyGeometry
 from .choice import Demand, responses
+from .hollow import wetted_faces
 from .layers import SensorStack
 from .materials import Material
 from .mesh_network import body_network
@@ -28,11 +29,11 @@ from .mesh_patterns import learned_patterns
 from .mesh_solid import Solid, SurfacePatch
 from .network import ThermalNetwork
 from .states import CONDUCTANCES, MOMENTS, excited_states, state_bases
-from .system import ContactSystem, sample_geometry, with_sensors
+from .system import NODE, ContactSystem, sample_geometry, with_sensors
 
 PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
 PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
-_VERSION = 1  # of the arrays' meaning and of how they are computed
+_VERSION = 2  # of the arrays' meaning and of how they are computed
 _COARSE = (
     0.08  # K of tolerance per 12 K of difference from which on two patterns of flux serve in place of three
 )
@@ -68,6 +69,65 @@ class TouchedBody:
         heat = self.object.outputs["heat"]
         return with_sensors(self.geometry, self.sensor, self.object.rates, touched, heat, orders)
 
+    @property
+    def hollow(self) -> bool:
+        """Whether there is a wall that contents wet."""
+        return "wet" in self.object.outputs
+
+    def filled(self, film: float, air: float) -> FilledBody:
+        """In air, with contents behind a film on the walls of its hollow, W/K each in all."""
+        rows, order = self.object.outputs, self.object.order
+        wet = np.stack([row for name, row in rows.items() if name.startswith("film:")])
+        walls = wet.T @ wet
+        # The walls' mean as the squares have it, so that what is as warm as its contents is at rest to round-off.
+        mean = walls[:, 0] * rows["heat"][0]
+        matrix = np.zeros((order + 1, order + 1))
+        matrix[:order, :order] = np.diag(self.object.rates) + film * walls
+        matrix[:order, :order] += air * np.outer(rows["mean"], rows["mean"])
+        matrix[order, :order] = matrix[:order, order] = -film * mean / np.sqrt(NODE)
+        matrix[order, order] = film * mean[0] * rows["heat"][0] / NODE
+        rates, turn = np.linalg.eigh(matrix)
+        lost = air * turn[:order].T @ rows["mean"]
+        return FilledBody(self, np.maximum(rates, 0.0), turn, lost, np.sqrt(NODE) * turn[order])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilledBody:
+    """A touched body whose walls feed a node of NODE J/K that stands for contents of any heat capacity: what steps it
+    sets the node's temperature before each step. rates: (K + 1,) 1/s. turn: (K + 1, K + 1), the body's states and the
+    node's from its own. air_loss: (K + 1,) W. reservoir: (K + 1,) J of the node."""
+
+    body: TouchedBody
+    rates: np.ndarray
+    turn: np.ndarray
+    air_loss: np.ndarray
+    reservoir: np.ndarray
+
+    def system(self, contacts: Sequence[int]) -> ContactSystem:
+        """As TouchedBody's."""
+        empty, order = self.body.system(contacts), self.body.object.order
+        ports = np.concatenate((self.turn[:order].T @ empty.ports[:order], empty.ports[order:]))
+
+        def turned(rows: np.ndarray) -> np.ndarray:
+            return np.concatenate((rows[..., :order] @ self.turn[:order], rows[..., order:]), axis=-1)
+
+        def own(row: np.ndarray) -> np.ndarray:
+            return np.concatenate((row, np.zeros(len(empty.rates) - order)))
+
+        return replace(
+            empty,
+            orders=replace(empty.orders, even=order + 1),
+            rates=np.concatenate((self.rates, empty.rates[order:])),
+            ports=ports,
+            drop=turned(empty.drop),
+            element_heat=turned(empty.element_heat),
+            object_heat=turned(empty.object_heat),
+            sensor_surface=turned(empty.sensor_surface),
+            object_surface=turned(empty.object_surface),
+            air_loss=own(self.air_loss),
+            reservoir=own(self.reservoir),
+        )
+
 
 def touched_body(
     body: Solid,
@@ -76,10 +136,12 @@ def touched_body(
     demand: Demand,
     *,
     fingertips: int = 2,
+    film: float = 0.0,
     cache: bool = True,
 ) -> TouchedBody:
     """An object and its patches, of one area, with as few states as keep half the demand's tolerance where the
-    fingertips are on the last of the patches; the other half is the grid's and the patterns'.
+    fingertips are on the last of the patches; the other half is the grid's and the patterns'. film: W/K between
+    contents and the walls of its hollow, where it has one, which makes outputs of them (see body_network's walls).
 
     Raises InvalidValueError for other patches and where no network keeps the tolerance, MeshError as body_network
     does."""
@@ -97,17 +159,20 @@ def touched_body(
         "stack": stack,
         "demand": demand,
         "fingertips": fingertips,
+        "film": film,
     }
 
     def build() -> dict[str, np.ndarray]:
-        whole = body_network(body, patches, patterns=learned_patterns(plate, modes), cache=False)
+        walls = wetted_faces(body) if film else None
+        patterns = learned_patterns(plate, modes)
+        whole = body_network(body, patches, patterns=patterns, walls=walls, cache=False)
         learned = sample_geometry(plate).networks(modes)
         basis = state_bases(learned, area)["sensor"]
         geometry = _geometry(plate, whole, body, fingertips)
         triangles = np.concatenate([part.triangles for part in body.parts])
         centres = np.array([place_patch(triangles, patch, np.eye(3)).centre for patch in patches])
         full = TouchedBody(geometry, learned["sensor"], whole, patches, centres)
-        reduced = _smallest(full, basis.vectors, basis.weights, demand)
+        reduced = _smallest(full, basis.vectors, basis.weights, demand, film)
         return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), "centres": centres}
 
     arrays = cached_arrays(key, build, enabled=cache)
@@ -179,27 +244,49 @@ def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: i
     )
 
 
-def _smallest(full: TouchedBody, sensor: np.ndarray, weights: np.ndarray, demand: Demand) -> TouchedBody:
+def _smallest(
+    full: TouchedBody, sensor: np.ndarray, weights: np.ndarray, demand: Demand, film: float
+) -> TouchedBody:
     """The first that keeps the tolerance. sensor: (states, R) basis of its field, and weights (R,)."""
-    basis = excited_states(full.object, _flows(full))
+    film = film if full.hollow else 0.0
+    turn, held = _held(full.object, film)
+    basis = excited_states(held, _flows(replace(full, object=held)))
+    states = turn @ basis.vectors
+    if film:  # what is uniform is a state of its own
+        states[0] = 0.0
+        states = np.concatenate((np.eye(len(states))[:, :1], np.linalg.qr(states)[0]), axis=1)
+        basis = replace(basis, weights=np.append(np.inf, basis.weights))
     last = range(len(full.patches) - full.geometry.fingertips, len(full.patches))
-    reference = responses(full.system(last), demand)
+
+    def felt(body: TouchedBody) -> np.ndarray:
+        return responses(body.filled(film, 0.0).system(last) if film else body.system(last), demand)
+
+    reference = felt(full)
     error = np.inf
     for cut in _CUTS:
         smaller = TouchedBody(
             full.geometry,
             full.sensor.projected(sensor[:, weights > cut / 8]),
-            full.object.projected(basis.vectors[:, basis.weights > cut]),
+            full.object.projected(states[:, basis.weights > cut]),
             full.patches,
             full.centres,
         )
-        error = float(np.max(np.abs(responses(smaller.system(last), demand) - reference)))
+        error = float(np.max(np.abs(felt(smaller) - reference)))
         if error <= demand.tolerance / 2:
             return smaller
     raise InvalidValueError(
         f"no network keeps {demand.tolerance / 2:g} K for this contact; the best misses {error:.2g} K: "
         "ask for a larger tolerance"
     )
+
+
+def _held(body: ThermalNetwork, film: float) -> tuple[np.ndarray, ThermalNetwork]:
+    """The network with contents that are held behind a film of W/K in all, and the matrix from its states."""
+    if not film:
+        return np.eye(body.order), body
+    wet = np.stack([row for name, row in body.outputs.items() if name.startswith("film:")])
+    rates, turn = np.linalg.eigh(np.diag(body.rates) + film * wet.T @ wet)
+    return turn, ThermalNetwork(np.maximum(rates, 0.0), turn.T @ body.ports, body.direct)
 
 
 def _flows(full: TouchedBody) -> np.ndarray:

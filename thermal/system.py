@@ -20,6 +20,9 @@ from .states import Orders, reduce, state_bases
 
 SHIFTS = np.geomspace(1 / 400, 4000, 18)  # 1/s: moments from under a millisecond to minutes
 MOST_MODES = 6
+NODE = 100.0
+"""J/K of the node that stands for what fills an object: in 20 ms 10 W change it by 2 mK. The larger it is, the more of
+its heat is lost to rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +30,8 @@ class ContactSystem:
     """rates: (K,) 1/s. ports: (K, M) sqrt(K/J): heat flow from sensor to object in, temperature of the object less the
     sensor's out, above what each started from. Rows on the state: drop (F, K) K, element_heat (F, K) J, object_heat
     (K,) J, sensor_surface and object_surface (F, K) K above the start. mean: index of the state that holds the
-    object's mean temperature (in O mode with the elements'). F = 1 or 2 fingertips."""
+    object's mean temperature (in O mode with the elements'). F = 1 or 2 fingertips. air_loss: (K,) W, where the rates
+    include the air's; reservoir: (K,) J above the start of a node that the object's walls feed, see body_system.py."""
 
     geometry: Geometry
     orders: Orders
@@ -39,6 +43,8 @@ class ContactSystem:
     sensor_surface: np.ndarray
     object_surface: np.ndarray
     mean: int
+    air_loss: np.ndarray | None = None
+    reservoir: np.ndarray | None = None
 
     @property
     def modes(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -10,7 +11,7 @@ import trimesh
 from scipy.linalg import expm
 
 from thermograsp import thermal
-from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, Thing, action_of
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, Thing, action_of, ice, water
 from thermograsp.envs.heat import GraspHeat
 from thermograsp.envs.object_solids import object_solid
 from thermograsp.thermal.body_system import field_carried, surface_normal
@@ -94,13 +95,40 @@ def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
     assert np.all(felt["full"][1] - felt["cup"][1] > 0.2e-3)
 
 
+@pytest.mark.parametrize("moves", [False, True])
+def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
+    """Through the wall, so that a finger feels more heat than where they warm the cup at its mean, and the books hold,
+    also when the finger goes on to another place and while ice melts."""
+    flows = {}
+    for inside in (None, water(0.03, 3.0), ice(2e-4, 3.0)):
+        celsius = 0.0 if inside and inside.latent_heat else 60.0
+        spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8, reservoir=inside)
+        heat = heat_of(replace(thing(spec, "plastic"), temperature=celsius, ambient=celsius), air=5.0)
+        places = [np.array([-0.02, 0.0, 0.0])] + [np.array([0.0, -0.02, 0.004])] * moves
+        taken = supplied = lost = 0.0
+        for place in places:
+            for step in press(heat, 4.0, place):
+                told = step.told[0]
+                taken += STEP * told["flow"].sum()
+                supplied += STEP * told["reservoir_flow"]
+                lost += STEP * told["air_loss"]
+                assert abs(told["imbalance"]) < 1e-8 * (1 + told["exchanged"])
+                if inside and inside.latent_heat:
+                    assert told["reservoir_temperature"] == pytest.approx(0.0, abs=1e-3)
+        gained = told["heat"][2]
+        assert gained == pytest.approx(taken + supplied - lost, abs=1e-7)
+        flows[celsius, inside is not None] = taken
+    assert flows[60.0, True] < 1.1 * flows[60.0, False] < 0 < flows[0.0, True]
+
+
 @pytest.mark.parametrize("name", ["glass", "aluminium"])
 def test_heat_taken_is_the_rise_times_the_heat_capacity(name, meshes):
-    """With the capacity of the mesh's own volume, in air and without, also after a touch elsewhere."""
+    """Also after a touch elsewhere; the capacity is that of the mesh's own volume, as its grid has it."""
     spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8)
     heat = heat_of(thing(spec, name))
     solid = trimesh.load_mesh(meshes["cup"])
-    capacity = solid.volume * thermal.material(name).volumetric_heat_capacity
+    capacity = heat._touches[0].body.geometry.whole_capacity
+    assert capacity == pytest.approx(solid.volume * thermal.material(name).volumetric_heat_capacity, rel=1e-4)
     places = [np.array([-0.02, 0.0, 0.0]), None, np.array([0.0, -0.02, 0.004]), None]
     taken = 0.0
     for place in places:
