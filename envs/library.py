@@ -31,7 +31,7 @@ from .scene import ObjectSpec
 from .solids import Triangles
 
 ROOM = 24.0  # °C
-LEAST_GRIP = 5.0  # N
+LEAST_GRIP = 2.0  # N
 GRIP_MARGIN = 1.6
 FILM = 500.0
 """W/(m2 K) between contents and wall, free convection in water: Nu = .59 Ra^(1/4) over 5 cm with 10 K between the two

@@ -33,6 +33,7 @@ from .scene import ObjectSpec
 
 if TYPE_CHECKING:
     from ..thermal import Solid
+    from .mesh_contact import Met
 
 PAD = Pad()
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
@@ -57,10 +58,18 @@ class Thing:
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:
-        """What the pads meet. An element glued on (O mode) is flat; a mesh's sides are taken as flat."""
-        if self.mode == "O" or self.spec.shape in ("box", "mesh"):
+        """What the pads meet, of a mesh about. An element glued on (O mode) is flat."""
+        if self.mode == "O" or self.spec.shape == "box":
             return "flat"
-        return "cylinder" if self.spec.shape == "cylinder" else "sphere"
+        return self._met.shape if self.spec.shape == "mesh" else self.spec.shape
+
+    @cached_property
+    def _met(self) -> Met:
+        """What the pads meet of a mesh; where they meet nothing, a face as wide as its bounding box stands for it."""
+        from .mesh_contact import Met, met
+
+        found = met(PAD, self.spec, NOMINAL_FORCE)
+        return found if min(found.size) > 0 else Met("flat", np.inf, self.spec.size[1:])
 
     @cached_property
     def plate(self) -> tuple[float, float, float]:
@@ -93,26 +102,33 @@ class Thing:
 
     def contact(self, force: np.ndarray) -> ContactArea:
         """Areas and force share at that normal force N on a pad."""
-        x, _, z = self.spec.size
         if self.contact_shape == "cylinder":
-            return cylinder_contact(PAD, force, x / 2, z)
+            return cylinder_contact(PAD, force, *self._round)
         if self.contact_shape == "sphere":
-            return sphere_contact(PAD, force, x / 2)
+            return sphere_contact(PAD, force, self._round[0])
         return flat_contact(PAD, force, self._face)
 
     @property
     def _face(self) -> tuple[float, float]:
         """m, the flat face that the pads meet."""
-        return self.spec.size[1:] if self.mode == "T" else (self.stack.width, self.stack.width)
+        if self.mode == "O":
+            return self.stack.width, self.stack.width
+        return self._met.size if self.spec.shape == "mesh" else self.spec.size[1:]
+
+    @property
+    def _round(self) -> tuple[float, float]:
+        """m, radius and length of the round body that the pads meet."""
+        if self.spec.shape == "mesh":
+            return self._met.radius, self._met.size[0]
+        return self.spec.size[0] / 2, self.spec.size[2]
 
     @cached_property
     def law(self) -> np.void:
         """Area and conductance by force, for compiled code."""
-        x, _, z = self.spec.size
         if self.contact_shape == "cylinder":
-            return cylinder_law(PAD, self.joint, x / 2, z)
+            return cylinder_law(PAD, self.joint, *self._round)
         if self.contact_shape == "sphere":
-            return sphere_law(PAD, self.joint, x / 2)
+            return sphere_law(PAD, self.joint, self._round[0])
         return flat_law(PAD, self.joint, self._face)
 
     @cached_property
