@@ -20,6 +20,10 @@ def compiled(source: Source) -> tuple[str, mujoco.MjModel]:
     not compile, with MuJoCo's reason."""
     if isinstance(source, mujoco.MjSpec):
         name, spec = source.modelname or "MjSpec", source  # a copy would lose what refers to nothing
+    elif not isinstance(source, str | os.PathLike):
+        raise GripperError(
+            f"gripper {source!r}: give an MJCF file, a mujoco.MjSpec, or what load_gripper returned"
+        )
     else:
         path = Path(source)
         name, spec = path.name, _parsed(path)

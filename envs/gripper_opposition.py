@@ -15,22 +15,25 @@ from .gripper_fingers import Finger, moved_pad
 from .gripper_hand import Hand
 from .scene import PAD_SIDE
 
+# What weighs one in a posture: of the opening m, beside each other m, out of parallel rad, off the ranges' middles.
+_PRECISE, _ASIDE, _PARALLEL, _CENTRED = 3e-3, 1e-2, 0.2, 10.0
+# What weighs one in the cost of a pair: wedges rad, misses m; and what takes one off: approach m.
+_WEDGE, _MISS, _APPROACH = 0.5, 1e-2, 3e-2
+_FULL, _SMALL = 4e-4, 0.05  # m2 of a face that is as large as our pad; cost of one that is half as large
 _STARTS = (0.5, 0.25, 0.75)  # of the ranges, where a search begins
 _FAR = 0.04  # m of approach, beyond which more is no better
 
 
 @dataclass(frozen=True, slots=True)
 class Opposition:
-    """Two fingers in the posture in which they oppose each other best near an opening. cost: less is better. offset: m
-    by which they miss each other."""
+    """Two fingers in the posture in which they oppose each other best near an opening. values: the coordinates. axes
+    (3, 3): columns from the first finger to the second, across, up, world. wedges: rad, of the faces off that line.
+    cost: of how well that is, less is better."""
 
     fingers: tuple[Finger, Finger]
     values: np.ndarray
     axes: np.ndarray
-    centre: np.ndarray
-    opening: float
     wedges: tuple[float, float]
-    offset: float
     cost: float
 
 
@@ -88,11 +91,11 @@ def _opposed(
         way = b - a
         return np.concatenate(
             [
-                ((way @ n - opening) / 3e-3, (-(way @ m) - opening) / 3e-3),
-                (way - (way @ n) * n) / 1e-2,
-                (way - (way @ m) * m) / 1e-2,
-                (n + m) / 0.2,
-                0.1 * ((part - low) / (high - low) - 0.5),
+                ((way @ n - opening) / _PRECISE, (-(way @ m) - opening) / _PRECISE),
+                (way - (way @ n) * n) / _ASIDE,
+                (way - (way @ m) * m) / _ASIDE,
+                (n + m) / _PARALLEL,
+                ((part - low) / (high - low) - 0.5) / _CENTRED,
             ]
         )
 
@@ -106,13 +109,18 @@ def _opposed(
     up = _up(hand, fingers, u, (a + b) / 2)
     axes = np.stack([u, np.cross(up, u), up], axis=1)
     way = b - a
-    wedges = tuple(float(np.arccos(np.clip(c, -1, 1))) for c in (n @ u, -(m @ u)))
+    wedges = _angle(n, u), _angle(m, -u)
     offset = float(np.linalg.norm(way - (way @ u) * u))
-    small = sum(4e-4 / min(f.face.area, 4e-4) - 1 for f in fingers)
+    small = sum(_FULL / min(f.face.area, _FULL) - 1 for f in fingers)
     approach = sum(min(f.approach, _FAR) for f in fingers)
     missed = abs(float(way @ u) - opening)
-    cost = sum(wedges) / 0.5 + offset / 0.01 + missed / 0.01 + 0.05 * small - approach / 0.03
-    return Opposition(fingers, values, axes, (a + b) / 2, float(way @ u), wedges, offset, cost)  # pyright: ignore
+    cost = sum(wedges) / _WEDGE + (offset + missed) / _MISS + _SMALL * small - approach / _APPROACH
+    return Opposition(fingers, values, axes, wedges, cost)
+
+
+def _angle(a: np.ndarray, b: np.ndarray) -> float:
+    """rad, between two unit vectors."""
+    return float(np.arccos(np.clip(a @ b, -1, 1)))
 
 
 def _up(hand: Hand, fingers: tuple[Finger, Finger], u: np.ndarray, centre: np.ndarray) -> np.ndarray:

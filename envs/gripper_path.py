@@ -63,7 +63,6 @@ class Closing:
     centres: np.ndarray = field(repr=False)
     tilt: np.ndarray = field(repr=False)
     wedges: tuple[float, float]
-    offset: float
 
 
 def close(hand: Hand, start: Opposition) -> Closing:
@@ -112,7 +111,6 @@ def close(hand: Hand, start: Opposition) -> Closing:
         np.array([(centre - base) @ start.axes for centre, _ in told]),
         np.array([tilt for _, tilt in told]),
         start.wedges,
-        start.offset,
     )
 
 

@@ -268,6 +268,11 @@ def test_files_that_are_no_gripper_are_refused(tmp_path: Path):
             load_gripper(file)
 
 
+def test_what_is_no_file_is_refused():
+    with pytest.raises(GripperError, match="give an MJCF file"):
+        load_gripper(85)  # pyright: ignore[reportArgumentType]
+
+
 def test_every_environment_takes_it(tmp_path: Path):
     file = tmp_path / "mine.xml"
     file.write_text(slides(name="mine"), encoding="utf-8")
