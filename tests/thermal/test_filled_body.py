@@ -18,8 +18,10 @@ SIDE, WALL = 0.024, 0.001  # m
 def hollow_box(name: str) -> thermal.Solid:
     inner = trimesh.creation.box((SIDE - 2 * WALL,) * 3)
     inner.invert()
-    mesh = trimesh.util.concatenate([trimesh.creation.box((SIDE,) * 3), inner])
-    return thermal.solid(mesh.vertices, mesh.faces, thermal.material(name))
+    outer = trimesh.creation.box((SIDE,) * 3)
+    vertices = np.concatenate((outer.vertices, inner.vertices))
+    faces = np.concatenate((outer.faces, inner.faces + len(outer.vertices)))
+    return thermal.solid(vertices, faces, thermal.material(name))
 
 
 def patches(count: int = 1) -> list[SurfacePatch]:
