@@ -1,5 +1,6 @@
 """Solves (s capacity + conduction) x = b on a mesh's grid for several b at once: conjugate gradients, preconditioned by
-a modified incomplete Cholesky factorisation without fill (Gustafsson, BIT 18, 1978).
+an incomplete Cholesky factorisation without fill (Meijerink & van der Vorst, Math. Comp. 31, 1977). Moving the fill to
+the diagonal (Gustafsson, BIT 18, 1978) takes three times the iterations where walls are much thinner than cells.
 
 N: cells, P: right-hand sides.
 """
@@ -13,7 +14,6 @@ from thermograsp.errors import SimulationError
 
 from .mesh_grid import MeshGrid
 
-_RELAXATION = 0.97  # of the fill that is moved to the diagonal
 _MOST_ITERATIONS = 2000
 
 
@@ -25,7 +25,7 @@ def solve_shifted(
     tolerance: norm of what is left over of `right` relative to its norm. Raises SimulationError where it is not met.
     """
     diagonal = s * grid.capacity + grid.links.sum(axis=1)
-    pivots = _factor(diagonal, grid.neighbours, grid.links, _RELAXATION)
+    pivots = _factor(diagonal, grid.neighbours, grid.links)
     x = np.array(guess, float)
     count = _iterate(diagonal, pivots, grid.neighbours, grid.links, right, x, tolerance, _MOST_ITERATIONS)
     if count < 0:
@@ -63,7 +63,7 @@ def _multiply(diagonal, neighbours, links, x, out):
 
 
 @njit(cache=True)
-def _factor(diagonal, neighbours, links, relaxation):
+def _factor(diagonal, neighbours, links):
     """Inverse pivots (N,) of the incomplete factorisation, cells in their order."""
     cells = len(diagonal)
     inverse = np.empty(cells)
@@ -72,9 +72,8 @@ def _factor(diagonal, neighbours, links, relaxation):
         for n in (0, 2, 4):
             j = neighbours[i, n]
             if j >= 0:
-                others = links[j, 1] + links[j, 3] + links[j, 5] - links[i, n]
-                pivot -= links[i, n] * inverse[j] * (links[i, n] + relaxation * others)
-        inverse[i] = 1 / pivot if pivot > 0.01 * diagonal[i] else 1 / diagonal[i]
+                pivot -= links[i, n] ** 2 * inverse[j]
+        inverse[i] = 1 / pivot
     return inverse
 
 
