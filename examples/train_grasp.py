@@ -16,7 +16,7 @@ from typing import Any
 import gymnasium
 import torch  # pyright: ignore[reportMissingImports]
 from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
-from stable_baselines3.common.callbacks import BaseCallback  # pyright: ignore[reportMissingImports]
+from stable_baselines3.common.callbacks import BaseCallback, CallbackList  # pyright: ignore[reportMissingImports]
 from stable_baselines3.common.utils import LinearSchedule  # pyright: ignore[reportMissingImports]
 
 import thermograsp  # noqa: F401  registers the environments
@@ -163,7 +163,8 @@ def main() -> None:
     with torch.no_grad():
         start = action_of(opening=0.0, force_limit=args.start_force, lift_rate=0.035)
         model.policy.action_net.bias.copy_(torch.from_numpy(start))  # pyright: ignore
-    model.learn(args.steps // REPEAT, callback=[curve, Quieter(*args.noise, args.steps // REPEAT)])
+    quieter = Quieter(args.noise[0], args.noise[1], args.steps // REPEAT)
+    model.learn(args.steps // REPEAT, callback=CallbackList([curve, quieter]))
     curve.measure()
     about = {"env": ENV, "seed": args.seed, "control_steps": model.num_timesteps * REPEAT, "ppo": settings}
     about |= {"start_force": args.start_force, "noise": args.noise}
