@@ -33,7 +33,7 @@ def measure(
         advance("", 1)
         memory = processes.memory((64, 256) if args.quick else counts, lambda what: advance(what, 0))
         advance("", 1)
-        start = processes.start_up(1 if args.quick else 9, lambda what: advance(what, 0))
+        start = processes.start_up(1 if args.quick else 5, lambda what: advance(what, 0))
         advance("", 1)
 
     output.line("share of bare mujoco.batch's speed: median (quartiles), by CPU time; parts of a step's time")
@@ -86,5 +86,5 @@ def _plan(num_envs: int, quick: bool) -> tuple[int, int]:
     if quick:
         return 2, 10
     return (
-        (40, 25) if num_envs <= 16 else (24, 10) if num_envs <= 64 else (16, 6) if num_envs <= 256 else (8, 4)
+        (40, 25) if num_envs <= 16 else (24, 10) if num_envs <= 64 else (10, 6) if num_envs <= 256 else (5, 4)
     )
