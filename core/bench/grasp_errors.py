@@ -65,9 +65,12 @@ def fates(grasp: Grasp) -> list[str]:
 
 
 class HeatOfGrasps:
-    """Temperature drops that follow from grasps of one shape: the environments' own heat step."""
+    """Temperature drops that follow from grasps of one shape: the environments' own heat step. A mesh has the heat of
+    the box around it, since mechanics is what differs, and slips would make networks of ever more patches."""
 
     def __init__(self, spec: ObjectSpec, count: int, cache: bool = True) -> None:
+        if spec.mesh:
+            spec = replace(spec, shape="box", mesh=None)
         thing = Thing(spec, material(MATERIAL), _OBJECT, "T", sensor("seed"))
         self._things = [thing] * count
         self._heat = GraspHeat(
