@@ -45,6 +45,8 @@ def test_an_hour_of_grasps() -> None:
         if place % 10 == 5:
             session.handle({"do": "csv"})
         session.advance(TURN)
+        for feeling in session._feelings:
+            feeling._making.result()  # so that all libraries of curves are in memory before it is measured
         session.messages()
         if turn * TURN == HOUR / 6:  # every material in both modes has been there
             threads, early = threading.active_count(), resident()
