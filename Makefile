@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-rl test-grippers test-view test-hardware-long test-firmware test-release bench docs lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-rl test-grippers test-view test-hardware-long test-firmware test-bench test-release bench docs lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -50,6 +50,10 @@ test-hardware-long: build/.test
 test-firmware: build/.test
 	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
 
+# Every benchmark, coarsely, and what they must show.
+test-bench: build/.test
+	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench
+
 # What is published: a wheel and an sdist, installed where nothing else is, and the first page of docs/ done literally.
 test-release: build/.release
 	THERMOGRASP_RELEASE=1 $(PY) -m pytest $(TEST_FLAGS) tests/release
@@ -57,10 +61,10 @@ test-release: build/.release
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)
 
-# The site in build/site; a warning is an error.
+# The site in build/site, where a warning is an error, and the code of its pages.
 docs: build/.dev
 	$(PY) -m sphinx -E -W --keep-going -q -b html docs build/site
-	THERMOGRASP_SITE=build/site $(PY) -m pytest $(TEST_FLAGS) tests/docs/test_site.py
+	THERMOGRASP_SITE=build/site $(PY) -m pytest $(TEST_FLAGS) tests/docs
 
 lint: build/.dev
 	$(PY) -m ruff check .

@@ -8,6 +8,21 @@ from pathlib import Path
 
 import pytest
 
+TIERS = {
+    "bench": ("THERMOGRASP_BENCH", "runs all benchmarks for minutes: make test-bench"),
+    "docs/test_code.py": ("THERMOGRASP_SITE", "runs the code of every page: make docs"),
+    "release": ("THERMOGRASP_RELEASE", "builds and installs for minutes: make test-release"),
+}
+"""Tests that run only where a variable of the environment asks for them, which their targets in the Makefile set."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    here = Path(__file__).parent
+    for place, (variable, reason) in TIERS.items():
+        for item in items:
+            if not os.environ.get(variable) and item.path.is_relative_to(here / place):
+                item.add_marker(pytest.mark.skip(reason=reason))
+
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:

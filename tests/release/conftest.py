@@ -1,6 +1,5 @@
 """What is published, built once for all tests of this folder: a wheel, an sdist, and the sdist's own wheel."""
 
-import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,14 +16,6 @@ class Release:
     wheel: Path
     sdist: Path
     rebuilt: Path
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    if not os.environ.get("THERMOGRASP_RELEASE"):
-        here = Path(__file__).parent
-        for item in items:
-            if here in item.path.parents:
-                item.add_marker(pytest.mark.skip(reason="builds and installs for minutes: make test-release"))
 
 
 @pytest.fixture(scope="session")
