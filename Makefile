@@ -50,9 +50,9 @@ test-hardware-long: build/.test
 test-firmware: build/.test
 	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
 
-# Every benchmark, coarsely, and what they must show.
+# Every benchmark, coarsely, and what they must show; the physics beside elements in 3-D.
 test-bench: build/.test
-	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench
+	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench tests/benchmarks
 
 # What is published: a wheel and an sdist, installed where nothing else is, and the first page of docs/ done literally.
 test-release: build/.release

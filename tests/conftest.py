@@ -10,6 +10,7 @@ import pytest
 
 TIERS = {
     "bench": ("THERMOGRASP_BENCH", "runs all benchmarks for minutes: make test-bench"),
+    "benchmarks": ("THERMOGRASP_BENCH", "compares with elements in 3-D for minutes: make test-bench"),
     "docs/test_code.py": ("THERMOGRASP_SITE", "runs the code of every page: make docs"),
     "release": ("THERMOGRASP_RELEASE", "builds and installs for minutes: make test-release"),
 }
