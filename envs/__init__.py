@@ -9,13 +9,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from .actions import action_of, action_space, command_of, sliding_action_of
+from .contact_record import ContactRecord
 from .grasp import BatchState, GraspBatch
 from .grasp_env import GraspEnv, GraspVectorEnv
 from .grasp_task import GraspTask
 from .identify_env import IdentifyEnv, IdentifyVectorEnv
 from .identify_task import IdentifyTask
 from .library import ObjectPreset, library_object, load_objects, objects
-from .mechanics import ContactRecord, Mechanics, MechanicsState
+from .mechanics import Mechanics, MechanicsState
 from .meshes import MeshShape, load_mesh
 from .observation import observation_space
 from .randomization import (

@@ -19,6 +19,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from .contact_record import FULL_RECORD, ContactRecord, contact_record
 from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .mechanics_kernel import ADDRESSES, LIFT_ACCELERATION, Motion, any_risen, set_points, summarise
 from .scene import MAX_LATERAL_RATE, MAX_OPENING, TIPS, ObjectSpec, build_scene, contact_sensor, placeless
@@ -39,38 +40,9 @@ _RANGES = (
 )
 _HIGHEST = tuple(high for _, _, high in _RANGES)
 _RECORD: tuple = ("sensordata", "site_xmat")
-_FULL_RECORD: tuple = (*_RECORD, "site_xpos", "qpos", "qvel")
 # The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
 _FAMILIES = ("body_", "bvh_", "cam_", "dof_", "geom_", "light_", "qpos")
 _MODEL_ARRAYS = tuple(sorted(name for name in mujoco.batch.MODEL_FIELDS if name.startswith(_FAMILIES)))
-
-
-@dataclass(frozen=True, slots=True)
-class ContactRecord:
-    """What happened at each substep of one control step; arrays of their own, never overwritten later.
-
-    force (B, S, T, O, 3) N: net force of the fingertip on the object in the pad's frame: normal (out of the
-    pad, > 0 when pressing), horizontal, and towards the wrist (a held object's weight shows as > 0).
-    touching (B, S, T, O) bool: whether there was any contact.
-    centroid (B, S, T, O, 2) m: force-weighted centre of the contact from the pad's middle, along the pad's two
-    tangential axes; 0 where nothing touches.
-    place (B, 1, T, O, 3) m: the pad's middle in the object's frame at the last substep, touching or not.
-    opening (B, S) m, opening_rate (B, S) m/s, height (B, S) m over the lowest position.
-    object_pose (B, S, O, 7): position m and quaternion (w, x, y, z), world frame.
-    failed (B,) bool: the simulation broke down (see Mechanics.failure); ignore that environment's other rows.
-
-    Forces act during a substep; opening, height and pose are those at its end.
-    """
-
-    force: np.ndarray
-    touching: np.ndarray
-    centroid: np.ndarray
-    place: np.ndarray
-    opening: np.ndarray
-    opening_rate: np.ndarray
-    height: np.ndarray
-    object_pose: np.ndarray
-    failed: np.ndarray
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +234,9 @@ class Mechanics:
         lift_rate: m/s, -0.05 .. 0.05; the lift stops by itself at 0 and 0.15 m.
         Raises InvalidValueError for a shape, a non-finite value or one outside its range, naming it.
         """
-        return self._record(self._roll(opening, force_limit, lift_rate, substeps, _FULL_RECORD))
+        out = self._roll(opening, force_limit, lift_rate, substeps, FULL_RECORD)
+        failed = np.array([bool(reason) for reason in self.failure])
+        return contact_record(out, self._contacts, self._poses, self._at, failed)
 
     def advance(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
@@ -466,42 +440,6 @@ class Mechanics:
                 self.failure[env] = (
                     f"the simulation broke down (MuJoCo warning {warning}); reset this environment"
                 )
-
-    def _record(self, out: dict[str, np.ndarray]) -> ContactRecord:
-        qpos, qvel, positions = out["qpos"], out["qvel"], out["site_xpos"]
-        # (B, S, T, O, found force position), in the world's frame
-        contacts = out["sensordata"].reshape(*qpos.shape[:2], *self._contacts)
-        vectors = contacts[..., 1:].reshape(*contacts.shape[:-1], 2, 3).copy()
-        vectors[..., 1, :] -= positions[:, :, :, None]
-        axes = out["site_xmat"].reshape(*contacts.shape[:3], 1, 1, 3, 3)
-        # Written out: a matmul's rounding may depend on the number of environments.
-        x, y, z = (axes[..., i, :] * vectors[..., i : i + 1] for i in range(3))
-        local = x + y + z
-        touching = contacts[..., 0] > 0
-        poses = qpos[..., self._poses].reshape(*qpos.shape[:2], -1, 7).copy()
-        before = max(qpos.shape[1] - 2, 0)  # the pads are where they were before the last substep
-        at = self._at
-        return ContactRecord(
-            force=local[..., 0, :].copy(),
-            touching=touching,
-            centroid=np.where(touching[..., None], local[..., 1, 1:], 0.0),
-            place=_in_frame(positions[:, -1:, :, None], poses[:, before : before + 1, None]),
-            opening=qpos[..., at.left] + qpos[..., at.right],
-            opening_rate=qvel[..., at.left_dof] + qvel[..., at.right_dof],
-            height=qpos[..., at.height].copy(),
-            object_pose=poses,
-            failed=np.array([bool(reason) for reason in self.failure]),
-        )
-
-
-def _in_frame(point: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """Points (..., 3) of the world in the frames of poses (..., 7), written out so that rounding is each row's own."""
-    x, y, z = (point[..., i] - pose[..., i] for i in range(3))
-    w, a, b, c = pose[..., 3], -pose[..., 4], -pose[..., 5], -pose[..., 6]
-    p, q, r = 2 * (b * z - c * y), 2 * (c * x - a * z), 2 * (a * y - b * x)
-    return np.stack(
-        (x + w * p + (b * r - c * q), y + w * q + (c * p - a * r), z + w * r + (a * q - b * p)), axis=-1
-    )
 
 
 def within(name: str, values: np.ndarray, low: float, high: float) -> np.ndarray:

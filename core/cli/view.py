@@ -94,7 +94,9 @@ def _start(args: argparse.Namespace) -> tuple[Stock, Choices]:
     """What visitors may choose, and what they find chosen."""
     from thermograsp import thermal
     from thermograsp.envs import ObjectSpec
+    from thermograsp.report.trained import load_network
     from thermograsp.view.choices import Choices, Stock
+    from thermograsp.view.played import PlayedGrasp
 
     if args.recording is not None and args.plant is not None:
         raise InvalidValueError("--recording and --plant exclude each other")
@@ -109,7 +111,13 @@ def _start(args: argparse.Namespace) -> tuple[Stock, Choices]:
     if args.mesh is not None:
         stock = replace(stock, mesh=ObjectSpec(shape="mesh", mesh=args.mesh, scale=args.scale))
         wanted["shape"] = "mesh"
-    return stock, Choices().changed(wanted, stock)
+    choices = Choices().changed(wanted, stock)
+    # What can't be read is refused here, not to each visitor.
+    if args.policy is not None:
+        load_network(args.policy)
+    if args.recording is not None and args.record is None:
+        PlayedGrasp(choices, stock)
+    return stock, choices
 
 
 def _record(args: argparse.Namespace, output: Output, stock: Stock, choices: Choices) -> int:

@@ -31,8 +31,8 @@ class Policy(Protocol):
 
 
 def policy(env: gymnasium.vector.VectorEnv, name: str) -> Policy:
-    """The policy of that name, or of a file of trained.py. Raises UnknownNameError, FileNotFoundError, and
-    InvalidValueError where it cannot act in `env`."""
+    """The policy of that name, or of a file of trained.py. Raises UnknownNameError, and InvalidValueError
+    where there is no such file or it cannot act in `env`."""
     if name == "trained" or name.endswith(".npz"):
         from thermograsp.report.trained import Trained
 

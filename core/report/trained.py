@@ -52,13 +52,15 @@ class Network:
 
 
 def load_network(path: str | Path) -> Network:
-    """Of a file that `Network.save` wrote. Raises InvalidValueError for one that is none, FileNotFoundError."""
+    """Of a file that `Network.save` wrote. Raises InvalidValueError where there is none."""
     try:
         with np.load(path, allow_pickle=False) as file:
             setup = json.loads(str(file["setup"]))
             count = sum(name.startswith("weight_") for name in file.files)
             layers = tuple((file[f"weight_{at}"], file[f"bias_{at}"]) for at in range(count))
         network = Network(layers, Senses(**setup["senses"]), int(setup["repeat"]), setup["about"])
+    except FileNotFoundError as error:
+        raise InvalidValueError(f"no file {path}: give one that examples/train_grasp.py wrote") from error
     except (KeyError, TypeError, ValueError, BadZipFile) as error:
         raise InvalidValueError(f"{path} holds no trained policy: {error}") from error
     sizes = [SIZE, *(len(bias) for _, bias in layers)]

@@ -75,7 +75,7 @@ def test_episodes_do_not_depend_on_how_many_run_at_once(tmp_path: Path) -> None:
 
 def test_what_is_no_policy_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "one.npz"
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(InvalidValueError, match="no file"):
         rollout(stakes(1), 1, 0, str(path))
     path.write_bytes(b"no archive")
     with pytest.raises(InvalidValueError, match="no trained policy"):

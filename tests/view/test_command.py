@@ -26,6 +26,8 @@ from thermograsp.errors import MissingDependencyError
         ("--plant robotiq:///dev/null", "--plant takes serial:"),
         ("--record x.mp4", "must end with"),
         ("--record x.gif --seconds 61", "60 s at most"),
+        ("--recording nosuch.csv", "cannot read nosuch.csv"),
+        ("--policy nosuch.npz", "no file nosuch.npz"),
         ("--record x.gif --recording y.csv", "leave --recording and --plant out"),
     ],
 )
