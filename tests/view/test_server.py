@@ -182,7 +182,9 @@ def test_two_visitors_have_a_simulation_each_and_one_that_is_killed_says_so() ->
         return made[-1]
 
     async def act() -> None:
-        async with serving(make) as url, connect(socket_of(url)) as first, connect(socket_of(url)) as second:
+        async with serving(make) as url, connect(socket_of(url)) as first:
+            await heard(first, lambda message: message["kind"] == "frame")  # so that its worker is made[0]
+            second = await connect(socket_of(url))
             for socket, name in ((first, "aluminium"), (second, "cotton")):
                 await socket.send(json.dumps({"do": "choose", "materials": [name]}))
                 await heard(socket, lambda message, name=name: message.get("rows") == [name])
@@ -200,6 +202,7 @@ def test_two_visitors_have_a_simulation_each_and_one_that_is_killed_says_so() ->
                 await first.recv()
             assert closed.value.rcvd is not None and closed.value.rcvd.code == 1011
             await heard(second, lambda message: message["kind"] == "frame")
+            await second.close()
 
     within(act())
 
