@@ -33,7 +33,7 @@ from .system import NODE, ContactSystem, sample_geometry, with_sensors
 
 PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
 PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
-_VERSION = 2  # of the arrays' meaning and of how they are computed
+_VERSION = 3  # of the arrays' meaning and of how they are computed
 _COARSE = (
     0.08  # K of tolerance per 12 K of difference from which on two patterns of flux serve in place of three
 )
@@ -169,8 +169,7 @@ def touched_body(
         learned = sample_geometry(plate).networks(modes)
         basis = state_bases(learned, area)["sensor"]
         geometry = _geometry(plate, whole, body, fingertips)
-        triangles = np.concatenate([part.triangles for part in body.parts])
-        centres = np.array([place_patch(triangles, patch, np.eye(3)).centre for patch in patches])
+        centres = np.array([place_patch(body.outside, patch, np.eye(3)).centre for patch in patches])
         full = TouchedBody(geometry, learned["sensor"], whole, patches, centres)
         reduced = _smallest(full, basis.vectors, basis.weights, demand, film)
         return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), "centres": centres}
@@ -183,7 +182,7 @@ def touched_body(
 
 def surface_normal(body: Solid, place: np.ndarray) -> np.ndarray:
     """(3,) outward normal of the face nearest to a place (3,) m."""
-    triangles = np.concatenate([part.triangles for part in body.parts])
+    triangles = body.outside
     a = triangles[:, 0]
     normals = np.cross(triangles[:, 1] - a, triangles[:, 2] - a)
     areas = np.linalg.norm(normals, axis=1)

@@ -21,7 +21,7 @@ _EMPTY = 1e-6  # of a cell, less than which is nothing
 
 def wetted_faces(body: Solid) -> np.ndarray:
     """(F, 3, 3) m, the faces that look into a hollow; none where there is no hollow."""
-    triangles = np.concatenate([part.triangles for part in body.parts])
+    triangles = body.outside
     low, high = body.bounds
     pitch = max(_PITCH, float((high - low).max()) / _MOST)
     counts = np.ceil((high - low) / pitch).astype(int) + 2

@@ -22,6 +22,7 @@ from thermograsp.errors import MeshError
 
 from .finite_volume import graded_cells
 from .mesh_cut import Edges, cut_mesh, in_planes
+from .mesh_nesting import own_volumes
 from .mesh_solid import Solid, SurfacePatch
 
 _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
@@ -175,7 +176,7 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
     conductivities = [part.material.conductivity for part in solid.parts]
     capacities = [part.material.volumetric_heat_capacity for part in solid.parts]
     cell = np.multiply.outer(np.multiply.outer(*(np.diff(e) for e in edges[:2])), np.diff(edges[2]))
-    shares = _visible(list(volumes), cell)
+    shares = _visible(list(volumes), cell, solid.hosts)
     filled = np.sum(shares, axis=0)
     solid_cells = filled > _EMPTY * cell
     along = _conductivity(shares, list(areas), conductivities)
@@ -199,9 +200,11 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
         link = open_area[joined] / (to_high[a] + to_low[b])
         neighbours[a, 2 * axis + 1], links[a, 2 * axis + 1] = b, link
         neighbours[b, 2 * axis], links[b, 2 * axis] = a, link
-    capacity = np.sum([c * s for c, s in zip(capacities, shares, strict=True)], axis=0)[solid_cells]
-    if len(solid.parts) == 1:  # corners that were moved into planes take up to 1e-5 of the volume along
-        capacity *= capacities[0] * solid.parts[0].volume / capacity.sum()
+    held = [share[solid_cells] for share in shares]
+    if solid.hosts is not None:  # corners that were moved into planes take up to 1e-5 of the volume along
+        whole = own_volumes([np.array(part.volume) for part in solid.parts], solid.hosts)
+        held = [s * max(float(v), 0.0) / s.sum() if s.any() else s for s, v in zip(held, whole, strict=True)]
+    capacity = np.sum([c * s for c, s in zip(capacities, held, strict=True)], axis=0)
     grid = MeshGrid(frame, axes, index, capacity, neighbours, links, along[solid_cells], filled[solid_cells])
     return _one_piece(grid)
 
@@ -251,9 +254,13 @@ def _apart(values: Sequence[float] | np.ndarray) -> np.ndarray:
     return np.array([*kept, ordered[-1]])
 
 
-def _visible(volumes: list[np.ndarray], cell: np.ndarray) -> list[np.ndarray]:
-    """Each part's volume in the cells less what later parts take of it. Parts that overlap anywhere are taken as
-    overlapping as much as they can in a cell, parts that nowhere do as lying side by side."""
+def _visible(
+    volumes: list[np.ndarray], cell: np.ndarray, within: tuple[int | None, ...] | None
+) -> list[np.ndarray]:
+    """Each part's volume in the cells less what later parts take of it, by the part that each lies in. Without that,
+    parts that overlap anywhere are taken as overlapping as much as they can in a cell, others as side by side."""
+    if within is not None:
+        return [np.maximum(own, 0.0) for own in own_volumes(volumes, within)]
     shares = []
     for n, volume in enumerate(volumes):
         left = volume.copy()

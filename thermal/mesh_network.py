@@ -26,7 +26,7 @@ from .mesh_solid import Solid, SurfacePatch, checked, surface_patches
 from .mesh_solve import conduct, solve_shifted
 from .network import ThermalNetwork
 
-_VERSION = 2  # of the arrays' meaning and of how they are computed
+_VERSION = 3  # of the arrays' meaning and of how they are computed
 _SHIFTS = np.geomspace(4000, 1 / 400, 10)  # 1/s: moments from under a millisecond to minutes
 _SETTLED = 1e-3  # of the heat flow, left over when a field is good enough to span a state
 _LEAST_WALL = 1e-9  # singular values below that share of the largest are left out
@@ -100,7 +100,8 @@ def _gridded(
     patterns: PatchPatterns,
 ) -> tuple[MeshGrid, list[PatchOnGrid]]:
     triangles = np.concatenate([part.triangles for part in body.parts]) @ frame.T
-    placed = [place_patch(triangles, patch, frame) for patch in patches]
+    outside = body.outside @ frame.T
+    placed = [place_patch(outside, patch, frame) for patch in patches]
     axes = grid_axes(
         triangles,
         np.array([p.centre for p in placed]),
@@ -111,7 +112,7 @@ def _gridded(
         gridding,
     )
     grid = mesh_grid(body, frame, axes)
-    return grid, [patch_on_grid(grid, triangles, patch, patterns) for patch in placed]
+    return grid, [patch_on_grid(grid, outside, patch, patterns) for patch in placed]
 
 
 def _reduced(grid: MeshGrid, placed: list[PatchOnGrid]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -123,8 +123,8 @@ def _sag(triangles: np.ndarray, centre: np.ndarray, normal: np.ndarray, sides: n
     lowest = 0.0
     for place in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
         below = -_crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
-        below = below[(below > 0) & (below < np.linalg.norm(sides[0]))]
-        lowest = max(lowest, float(below.min(initial=np.inf)) if len(below) else 0.0)
+        nearest = float(below[np.argmin(np.abs(below))]) if len(below) else 0.0
+        lowest = max(lowest, nearest if nearest < np.linalg.norm(sides[0]) else 0.0)
     return lowest
 
 

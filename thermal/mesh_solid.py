@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from thermograsp.errors import InvalidValueError, MeshError, positive
 
 from .materials import Material
 from .mesh_check import open_edges, wrongly_enclosed
+from .mesh_nesting import hosts, shares_within
 
 LARGEST = 5.0  # m, the longest side of an object that a hand may touch
 SMALLEST = 0.5e-3
@@ -89,15 +91,33 @@ class Solid:
             raise InvalidValueError("an object needs at least one part")
 
     @property
+    def hosts(self) -> tuple[int | None, ...] | None:
+        """The last of the earlier parts that each lies in, None where in none. None in all where parts cross."""
+        return _hosts(self)
+
+    @property
+    def outside(self) -> np.ndarray:
+        """(F, 3, 3) m, faces of the parts that lie in no other: all that can be touched."""
+        within = self.hosts or (None,) * len(self.parts)
+        shown = [part.triangles for part, host in zip(self.parts, within, strict=True) if host is None]
+        return np.concatenate(shown)
+
+    @property
     def surface(self) -> float:
-        """m2 of all the parts' surfaces, walls of cavities included; where parts meet, both count."""
-        return float(sum(np.linalg.norm(part.area_vectors, axis=1).sum() for part in self.parts))
+        """m2 of the outside, walls of cavities included; where parts meet side by side, both count."""
+        a, b, c = np.moveaxis(self.outside, 1, 0)
+        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
 
     @property
     def bounds(self) -> np.ndarray:
         """(2, 3) m, the lowest and the highest corner."""
         used = np.concatenate([part.triangles.reshape(-1, 3) for part in self.parts])
         return np.stack((used.min(axis=0), used.max(axis=0)))
+
+
+@lru_cache(maxsize=256)
+def _hosts(body: Solid) -> tuple[int | None, ...] | None:
+    return hosts(shares_within([part.triangles for part in body.parts]))
 
 
 @dataclass(frozen=True, slots=True)
