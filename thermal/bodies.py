@@ -132,13 +132,19 @@ class BodySamples:
     uniform_outputs: dict[str, float] = field(default_factory=dict)
 
 
-def sample_bodies(geometry: Geometry, s: np.ndarray) -> dict[str, BodySamples]:
+ElementSamples = tuple[Sampled, Sampled, Sampled]
+
+
+def sample_bodies(
+    geometry: Geometry, s: np.ndarray, element: ElementSamples | None = None
+) -> dict[str, BodySamples]:
     """The bodies by name: "sensor" (T mode only; in O mode the thermostat holds its temperature), "even" and, for two
-    fingertips, "odd" (the object, in O mode with the element). s: (S,) 1/s. Outputs "drop" (K, thermostat side less
-    object side, heat flow counted into the body), "element" and "object" (J stored)."""
+    fingertips, "odd" (the object, in O mode with the element). s: (S,) 1/s. element: of sample_element, where it is
+    there already. Outputs "drop" (K, thermostat side less object side, heat flow counted into the body), "element" and
+    "object" (J stored)."""
     if geometry.mode == "T":
         return {"sensor": _sensor(geometry, s), **{p: _object(geometry, p, s) for p in geometry.parities}}
-    element = _element(geometry, s)
+    element = sample_element(geometry, s) if element is None else element
     return {parity: _bonded(geometry, parity, s, element) for parity in geometry.parities}
 
 
@@ -164,9 +170,9 @@ def _object(geometry: Geometry, parity: str, s: np.ndarray) -> BodySamples:
     return BodySamples(impedance, capacity, {"object": none}, {"object": capacity})
 
 
-def _element(geometry: Geometry, s: np.ndarray) -> tuple[Sampled, Sampled, Sampled]:
+def sample_element(geometry: Geometry, s: np.ndarray) -> ElementSamples:
     """The element alone, both faces adiabatic: its impedance at the contact, at the bond, and across, (S, bond,
-    contact)."""
+    contact). It does not depend on the object's material."""
     slabs, section = geometry.slabs, geometry.element_section
     top, bond = geometry.patch, geometry.face
     return (
@@ -176,9 +182,7 @@ def _element(geometry: Geometry, s: np.ndarray) -> tuple[Sampled, Sampled, Sampl
     )
 
 
-def _bonded(
-    geometry: Geometry, parity: str, s: np.ndarray, element: tuple[Sampled, Sampled, Sampled]
-) -> BodySamples:
+def _bonded(geometry: Geometry, parity: str, s: np.ndarray, element: ElementSamples) -> BodySamples:
     slabs, section = geometry.slabs, geometry.element_section
     top, bond = geometry.patch, geometry.face
     own, own_bond, across = element

@@ -18,7 +18,7 @@ from .identify_evidence import Evidence, Explained, Seen, explain, gather, see, 
 from .identify_library import CurveLibrary, curve_library
 from .identify_result import ANY_DIFFERENCE, Identification, judge
 from .identify_setup import TouchSetup
-from .identify_touch import FOUND_WITHIN, SETTLED, find_touch, onset, smooth_curve
+from .identify_touch import FOUND_WITHIN, OPENING, SETTLED, find_touch, onset, smooth_curve
 from .materials import Material, materials
 from .materials import material as named_material
 from .signal import saturated
@@ -122,6 +122,8 @@ class Identifier:
     def _gather(self, kelvin: np.ndarray, touch: float) -> Evidence:
         setup = self.setup
         used = (self._t <= touch + setup.horizon) & ~saturated(setup.chain, kelvin * setup.stack.seebeck)
+        if self._given is None:
+            used &= (self._t < touch - OPENING[0]) | (self._t > touch + OPENING[1])
         since, values = self._t[used] - touch, kelvin[used]
         noise, offset = self._kelvins()
         mean, deviation = setup.difference
@@ -132,9 +134,9 @@ class Identifier:
             curve, rate = smooth_curve(self.library, since, values, noise, scale)
             touch_error = setup.touch_error if self._given is not None else FOUND_WITHIN
             nuisances.append(touch_error * rate[:, None])
-            # What the model lacks is the same for every fingertip: it does not average out.
-            share = setup.model_error * np.abs(curve).max() * np.sqrt(self._kelvin.shape[1])
-            nuisances.append(slow_deviations(since, float(share), setup.horizon))
+            lacking = np.hypot(setup.model_error * np.abs(curve).max(), setup.tolerance / 2)
+            lacking *= np.sqrt(self._kelvin.shape[1])  # the same for every fingertip: it does not average out
+            nuisances.append(slow_deviations(since, float(lacking), setup.horizon))
         return gather(
             basis,
             self.library.typical * scale,

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .bodies import Geometry
+from .bodies import ElementSamples, Geometry, sample_element
 from .materials import Material
 from .states import Orders, reduce, state_bases
-from .system import ContactSystem, assemble, sample_geometry
+from .system import SHIFTS, ContactSystem, assemble, sample_geometry
 
 _MODES = 6  # of the patch
 _CUT = (
@@ -21,9 +21,9 @@ _CUT = (
 _BAND = 4.0  # ratio of the diffusivities between which one network is scaled
 
 
-def fine_system(geometry: Geometry) -> ContactSystem:
-    """The contact's network, with all states that show."""
-    samples = sample_geometry(geometry)
+def fine_system(geometry: Geometry, element: ElementSamples | None = None) -> ContactSystem:
+    """The contact's network, with all states that show. element: as in sample_geometry."""
+    samples = sample_geometry(geometry, element)
     full = samples.networks(_MODES)
     bases = state_bases(full, geometry.area)
     kept = {name: int(np.sum(basis.weights > _CUT)) for name, basis in bases.items()}
@@ -37,22 +37,24 @@ class SystemFamily:
 
     In T mode the object is a body of its own whose impedance is Z(s) = f(s/alpha)/k, f fixed by the geometry: rates
     scale with alpha and ports with (rho c)^-0.5, exactly. So one network per band of diffusivity serves all materials.
-    In O mode the element is bonded to the object and every material is sampled.
+    In O mode the element is bonded to the object: every material is sampled, the element once.
     """
 
     geometry: Geometry
     _known: dict[int, ContactSystem]
+    _element: ElementSamples | None
 
     def __init__(self, geometry: Geometry) -> None:
         self.geometry = geometry
         self._known = {}
+        self._element = sample_element(geometry, SHIFTS) if geometry.mode == "O" else None
 
     def system(self, conductivity: float, heat_capacity: float) -> ContactSystem:
         """conductivity: W/(m K). heat_capacity: J/(m3 K)."""
         material = Material("object", conductivity, heat_capacity, 1.0)
         geometry = replace(self.geometry, material=material)
         if geometry.mode == "O":
-            return fine_system(geometry)
+            return fine_system(geometry, self._element)
         band = round(np.log(material.diffusivity) / np.log(_BAND))
         if band not in self._known:
             reference = Material("reference", _BAND**band * 2e6, 2e6, 1.0)

@@ -25,7 +25,8 @@ class TouchSetup:
     are the noise, its bandwidth is part of the curve, its offset is taken as unknown with that standard deviation.
     conductance: (lowest, highest) W/(m2 K), log-uniform between. object_temperature, sensor_temperature: (mean,
     standard deviation) °C at the touch, normal. model_error: rms of slow deviations of real curves from the model, as
-    a share of the curve's largest value; the default is what networks for a tolerance of 0.05 K have. touch_error: s,
+    a share of the curve's largest value. tolerance: K that the network which simulated a curve may be off, however
+    small the curve is; taken as two standard deviations of more such deviations, 0 where none did. touch_error: s,
     standard deviation of a touch time that is given.
     horizon: s after the touch; later samples are not used.
     Raises InvalidValueError.
@@ -42,6 +43,7 @@ class TouchSetup:
     object_temperature: tuple[float, float] = (24.0, 3.0)
     sensor_temperature: tuple[float, float] = (36.0, 0.1)
     model_error: float = 0.005
+    tolerance: float = 0.05
     touch_error: float = 0.0
     horizon: float = 10.0
 
@@ -57,6 +59,7 @@ class TouchSetup:
             non_negative(f"{name}: standard deviation (K)", deviation)
         positive("standard deviation of the temperature difference (K)", self.difference[1])
         non_negative("model_error", self.model_error)
+        non_negative("tolerance (K)", self.tolerance)
         non_negative("touch_error (s)", self.touch_error)
         positive("horizon (s)", self.horizon)
         positive("noise and resolution of the signal chain (V)", self.noise)

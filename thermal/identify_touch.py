@@ -13,6 +13,8 @@ from .identify_library import CurveLibrary
 
 SETTLED = 0.4  # s after the onset; later samples tell no more about the touch
 FOUND_WITHIN = 5e-3  # s, standard deviation that a touch which was found is given
+OPENING = (0.02, 0.04)
+"""s before and after a touch that was found, in which a grasp's contact opens: how is not known."""
 _BEFORE = 0.3  # s before the onset in which the touch is looked for
 _STEP = 5e-3  # s
 _IN_A_ROW = 3

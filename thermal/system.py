@@ -11,7 +11,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
-from .bodies import BodySamples, Geometry, sample_bodies
+from .bodies import BodySamples, ElementSamples, Geometry, sample_bodies
 from .impedance import Sampled
 from .modes import patch_modes
 from .network import ThermalNetwork
@@ -78,9 +78,10 @@ class GeometrySamples:
         return {name: self.network(name, modes) for name in self.bodies}
 
 
-def sample_geometry(geometry: Geometry) -> GeometrySamples:
-    """Samples a geometry's bodies and learns its patch modes."""
-    bodies = sample_bodies(geometry, SHIFTS)
+def sample_geometry(geometry: Geometry, element: ElementSamples | None = None) -> GeometrySamples:
+    """Samples a geometry's bodies and learns its patch modes. element: in O mode, of sample_element at SHIFTS, where it
+    is there already."""
+    bodies = sample_bodies(geometry, SHIFTS, element)
     basis = patch_modes(geometry, bodies, SHIFTS, MOST_MODES)
     area = geometry.patch.area
     projected = {}

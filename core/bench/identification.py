@@ -21,7 +21,7 @@ from thermograsp.thermal.identify_response import SystemFamily, unit_response
 
 RATE = 100.0  # Hz
 WINDOWS = (0.5, 1.0, 2.0, 4.0)  # s of contact
-SETUP = thermal.TouchSetup(model_error=0.0, sensor_temperature=(36.0, 0.0))
+SETUP = thermal.TouchSetup(model_error=0.0, tolerance=0.0, sensor_temperature=(36.0, 0.0))
 """Ten seed materials' task: conductance 1e3 .. 2e4, object 24 +- 3 °C, thermostat 36 °C, the model exact."""
 
 _NODES = 64  # of log conductance, between which curves are interpolated by splines

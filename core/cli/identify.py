@@ -61,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--until", type=float, help="use samples up to this time, s (default: all)")
     add("--bandwidth", type=float, help="of the amplifier, Hz, inf for none (default 30)")
     add("--model-error", type=float, help="of the curves, rms, share of the largest value (default 0.005)")
+    add("--tolerance", type=float, help="K that the network of a simulated curve may be off (default 0.05)")
     add("--no-cache", action="store_true", help="do not keep curves on disk")
     add("--out", metavar="FILE", help="draw voltage and posteriors: .svg, .png or .pdf")
 
@@ -118,8 +119,9 @@ def _setup(args: argparse.Namespace, columns: int) -> TouchSetup:
     }
     if args.bandwidth is not None:
         setup = replace(setup, chain=replace(setup.chain, bandwidth=args.bandwidth))
-    if args.model_error is not None:
-        setup = replace(setup, model_error=args.model_error)
+    for name in ("model_error", "tolerance"):
+        if (value := getattr(args, name)) is not None:
+            setup = replace(setup, **{name: value})
     return replace(
         setup,
         stack=thermal.sensor(args.sensor),

@@ -170,6 +170,7 @@ class SimulatedGrasp:
             chain=self.plant.config.chain,
             object_temperature=(thing.temperature, SPREAD),
             sensor_temperature=(self._choices.thermostat, 0.1),
+            tolerance=self._choices.tolerance,
         )
 
     def close(self) -> None:

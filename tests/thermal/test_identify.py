@@ -187,17 +187,33 @@ def test_says_when_nothing_it_knows_explains_the_curve(identifier: thermal.Ident
     assert identifier.update(T, late).verdict is thermal.Verdict.UNEXPLAINED
 
 
-def test_model_error_widens_the_posterior() -> None:
+@pytest.mark.parametrize(
+    ("field", "values"), [("model_error", (0.0, 0.002, 0.01)), ("tolerance", (0.0, 0.02, 0.1))]
+)
+def test_what_the_model_lacks_widens_the_posterior(field: str, values: tuple[float, ...]) -> None:
     rng = np.random.default_rng(8)
     voltage = volts("glass", 12.0, rng)
     widths = []
-    for share in (0.0, 0.002, 0.01):
-        setup = replace(SETUP, model_error=share)
+    for value in values:
+        setup = replace(SETUP, **{field: value})
         low, high = thermal.identify(
             T, voltage, setup=setup, candidates=NAMES, touch=0.0
         ).effusivity.interval()
         widths.append(np.log(high / low))
     assert widths[0] < widths[1] < widths[2]
+
+
+def test_how_a_contact_opens_does_not_count_where_its_touch_is_found() -> None:
+    """Pressed up within 40 ms, as fingers do: a tenth of the conductance at first."""
+    drop = volts("stainless_steel", 12.0, np.random.default_rng(10))
+    early = T < 0.04
+    drop[early] *= 0.1 + 0.9 * T[early] / 0.04
+    still = 1e-5 * np.random.default_rng(11).standard_normal(100)
+    voltage = np.concatenate((still, drop))
+    t = np.concatenate((np.arange(-99, 1) / 100, T))
+    found = thermal.identify(t, voltage, setup=SETUP, candidates=(*NAMES, "stainless_steel"))
+    assert found.verdict is thermal.Verdict.MATERIAL and found.best == "stainless_steel"
+    assert found.conductance == pytest.approx(5e3, rel=0.03)
 
 
 def test_the_prior_of_objects_is_that_of_the_table() -> None:
@@ -233,6 +249,7 @@ def test_bad_input_is_refused(identifier: thermal.Identifier) -> None:
         {"object_temperature": (24.0, 0.0)},
         {"chain": thermal.IDEAL},
         {"model_error": -1.0},
+        {"tolerance": -1.0},
     ):
         with pytest.raises(InvalidValueError):
             replace(SETUP, **wrong)
