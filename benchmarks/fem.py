@@ -93,7 +93,7 @@ def _conduction(u, v, w):
 
 
 @BilinearForm
-def _weighted(u, v, w):
+def weighted(u, v, w):
     return w.value * u * v
 
 
@@ -128,7 +128,7 @@ class Block:
         self.stiffness = _conduction.assemble(
             self.basis, value=DiscreteField(np.asarray(conductivity)[layer])
         )
-        self.mass = _weighted.assemble(self.basis, value=DiscreteField(np.asarray(heat_capacity)[layer]))
+        self.mass = weighted.assemble(self.basis, value=DiscreteField(np.asarray(heat_capacity)[layer]))
 
     def face(self, axis: int, position: float, within: float = np.inf) -> FacetBasis:
         """The facets in a plane, those with x and y below `within` (m)."""
@@ -157,7 +157,7 @@ def toward(start: float, stop: float, count: int, last: float) -> np.ndarray:
     return start + (stop - start) * np.concatenate(([0.0], np.cumsum(widths))) / widths.sum()
 
 
-def _joined(*parts: np.ndarray) -> np.ndarray:
+def joined(*parts: np.ndarray) -> np.ndarray:
     return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
 
 
@@ -175,15 +175,15 @@ def blocks(problem: PressProblem, refine: float) -> tuple[Block, Block, float]:
     face = toward(0.0, patch, cells(6), last)
     if patch < half * (1 - 1e-6):
         if problem.mode == "T":
-            face = _joined(face, toward(half, patch, cells(4), last)[::-1])
+            face = joined(face, toward(half, patch, cells(4), last)[::-1])
         else:
             middle = (half + patch) / 2
-            face = _joined(
+            face = joined(
                 face, toward(middle, patch, cells(4), last)[::-1], toward(middle, half, cells(4), last)
             )
     inner = face if problem.mode == "O" else face[face <= patch * (1 + 1e-9)]
     sides = [
-        _joined(inner, toward(size / 2, inner[-1], cells(7), last)[::-1])
+        joined(inner, toward(size / 2, inner[-1], cells(7), last)[::-1])
         if size / 2 > inner[-1] * (1 + 1e-6)
         else inner
         for size in problem.object_size[:2]
@@ -206,7 +206,7 @@ def blocks(problem: PressProblem, refine: float) -> tuple[Block, Block, float]:
     upper = Block(
         face,
         face,
-        _joined(*pieces),
+        joined(*pieces),
         list(heights),
         [layer.conductivity for layer in layers],
         [layer.density * layer.specific_heat for layer in layers],

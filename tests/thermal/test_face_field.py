@@ -1,0 +1,184 @@
+"""The temperature over a face, against a grid of its own and what must be so."""
+
+import numpy as np
+import pytest
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.thermal import material, sensor
+from thermograsp.thermal.face_field import (
+    CELLS,
+    COSINES,
+    cosine_means,
+    face_field,
+    face_means,
+    face_state,
+    step_face,
+)
+from thermograsp.thermal.impedance import Slab
+
+STACK, DT, DEPTH = sensor("seed"), 0.02, 0.01
+CELL_MEANS = cosine_means(CELLS)
+
+
+def field_of(name: str):
+    body = material(name)
+    return face_field(STACK, Slab(DEPTH, body.conductivity, body.volumetric_heat_capacity), DT)
+
+
+def half_covered() -> np.ndarray:
+    """W/(m2 K): columns of one half."""
+    conductance = np.full((CELLS, CELLS), 1e4)
+    conductance[:, : CELLS // 2] = 0.0
+    return conductance
+
+
+def by_grid(name: str, seconds: float, difference: float = 12.0):
+    """A half-covered face as a problem of breadth and depth, both bodies as broad as the face: cell by cell in depth,
+    backward Euler in fifths of a step. Flux (steps,) W/m2, and the face's columns (steps, CELLS) K."""
+    body = material(name)
+    layers = [(each.thickness, each.conductivity, each.volumetric_heat_capacity) for each in STACK.layers]
+    below = [(DEPTH, body.conductivity, body.volumetric_heat_capacity)]
+    fine = 5  # columns in a cell
+    columns, width = CELLS * fine, STACK.width / CELLS / fine
+    depths, k, c = [], [], []
+    for thickness, conductivity, capacity in layers + below:
+        count = 20 if thickness < 5e-3 else 60
+        edges = np.linspace(0, 1, count + 1)
+        if thickness > 5e-3:
+            edges = edges**2  # fine at the contact
+        depths += list(np.diff(edges) * thickness)
+        k += [conductivity] * count
+        c += [capacity] * count
+    depths, k, c = np.array(depths), np.array(k), np.array(c)
+    rows, contact = len(depths), 60  # the first row of the object
+    down = 1 / (depths[:-1] / 2 / k[:-1] + depths[1:] / 2 / k[1:])
+    number = np.arange(rows * columns).reshape(rows, columns)
+    matrix = sparse.csr_matrix((number.size, number.size))
+    load = np.zeros(number.size)
+    resistance = depths[contact - 1] / 2 / k[contact - 1] + 1e-4 + depths[contact] / 2 / k[contact]
+
+    def link(a: np.ndarray, b: np.ndarray, conductance: np.ndarray | float) -> None:
+        nonlocal matrix
+        values = np.broadcast_to(conductance, a.shape).ravel()
+        a, b = a.ravel(), b.ravel()
+        entries = (np.concatenate((values, values, -values, -values)),)
+        places = np.concatenate((a, b, a, b)), np.concatenate((a, b, b, a))
+        matrix = matrix + sparse.coo_matrix((*entries, places), shape=matrix.shape)
+
+    for row in range(rows - 1):
+        if row == contact - 1:
+            half = slice(columns // 2, None)
+            link(number[row, half], number[row + 1, half], width / resistance)
+        else:
+            link(number[row], number[row + 1], down[row] * width)
+    link(number[:, :-1], number[:, 1:], (k * depths / width)[:, None])
+    first = 2 * k[0] / depths[0] * width
+    held = sparse.coo_matrix((np.full(columns, first), (number[0], number[0])), shape=matrix.shape)
+    load[number[0]] = first * difference
+    capacity = np.repeat(c * depths * width, columns)
+    step = DT / 5
+    solver = splu(sparse.csc_matrix(sparse.diags(capacity / step) + matrix + held))
+    u = np.where(np.arange(number.size) < contact * columns, difference, 0.0)
+    flux, faces = [], []
+    jump = np.zeros(columns)
+    for _ in range(round(seconds / DT)):
+        total = 0.0
+        for _ in range(5):
+            u = solver.solve(capacity / step * u + load)
+            half = slice(columns // 2, None)
+            jump[half] = (u[number[contact - 1]] - u[number[contact]])[half] / resistance
+            total += jump.mean() / 5
+        flux.append(total)
+        face = u[number[contact - 1]] - jump * depths[contact - 1] / 2 / k[contact - 1]
+        faces.append(face.reshape(CELLS, fine).mean(axis=1))
+    return np.array(flux), np.array(faces)
+
+
+@pytest.mark.parametrize("name", ["aluminium", "glass", "cotton"])
+def test_a_half_covered_face_is_that_of_a_grid(name: str) -> None:
+    """The same bodies by other means."""
+    field, state, conductance = field_of(name), face_state(), half_covered()
+    flux, faces = by_grid(name, 2.0)
+    found = []
+    for each in flux:
+        step_face(field, conductance, each, *state)
+        found.append(face_means(state, CELL_MEANS, CELL_MEANS))
+    found = np.array(found)
+    assert np.ptp(found, axis=1).max() < 1e-9 * found.max()  # the same along the border
+    expected = faces - faces[:, CELLS // 2 :].mean(axis=1)[:, None]
+    late = slice(4, None)  # from 0.1 s on
+    assert np.ptp(expected[-1]) > 0.1
+    assert found[late, 0] == pytest.approx(expected[late], abs=0.02 * np.ptp(expected))
+
+
+def test_evenly_touched_it_is_even_and_its_mean_over_the_contact_is_0() -> None:
+    field, state = field_of("glass"), face_state()
+    for flux in (4000.0, -300.0, 1e4):
+        step_face(field, np.full((CELLS, CELLS), 2e3), flux, *state)
+    assert np.abs(face_means(state, CELL_MEANS, CELL_MEANS)).max() < 1e-9
+    rng = np.random.default_rng(3)
+    spots = np.where(rng.random((CELLS, CELLS)) < 0.4, rng.uniform(10, 1e5, (CELLS, CELLS)), 0.0)
+    step_face(field, spots, 5000.0, *state)
+    above = face_means(state, CELL_MEANS, CELL_MEANS)
+    assert np.ptp(above) > 0.1 and abs(above[spots > 0].mean()) < 1e-12
+    parts = face_means(state, cosine_means(2), cosine_means(3))
+    assert parts == pytest.approx(above.reshape(2, 9, 3, 6).mean(axis=(1, 3)), abs=1e-12)
+
+
+def test_two_levels_where_half_is_touched_and_none_after_a_while_apart() -> None:
+    field, state = field_of("aluminium"), face_state()
+    for _ in range(100):
+        step_face(field, half_covered(), 4000.0, *state)
+    above = face_means(state, CELL_MEANS, CELL_MEANS)
+    free, touched = above[:, : CELLS // 2], above[:, CELLS // 2 :]
+    assert free.min() > touched.max() and free.mean() - touched.mean() > 1.5
+    assert np.diff(above[0]).max() <= 1e-9  # cooler and cooler from the free side on
+    for _ in range(1000):
+        step_face(field, np.zeros((CELLS, CELLS)), 0.0, *state)
+    assert np.abs(face_means(state, CELL_MEANS, CELL_MEANS)).max() < 1e-3
+
+
+def test_it_is_as_symmetric_as_the_contact_and_linear_in_the_flow() -> None:
+    rng = np.random.default_rng(4)
+    conductance = np.where(rng.random((CELLS, CELLS)) < 0.5, 1e4, 0.0)
+    found = []
+    for each, factor in (
+        (conductance, 1.0),
+        (conductance.T, 1.0),
+        (conductance[::-1], 1.0),
+        (conductance, 3.0),
+    ):
+        field, state = field_of("glass"), face_state()
+        for _ in range(20):
+            step_face(field, np.ascontiguousarray(each), 2000.0 * factor, *state)
+        found.append(face_means(state, CELL_MEANS, CELL_MEANS))
+    plain, turned, mirrored, thrice = found
+    assert turned.T == pytest.approx(plain, abs=1e-4)
+    assert mirrored[::-1] == pytest.approx(plain, abs=1e-4)
+    assert thrice == pytest.approx(3 * plain, abs=1e-4)
+
+
+def test_steady_it_is_the_impedances_sum() -> None:
+    """An infinite conductance over nothing but one cell hands it the whole flow: each cosine as it conducts at rest."""
+    field, state = field_of("cotton"), face_state()
+    conductance = np.zeros((CELLS, CELLS))
+    conductance[4, 7] = 1e6
+    for _ in range(2000):
+        step_face(field, conductance, 1000.0, *state)
+    flux = 1000.0 * CELL_MEANS[:, 4, None] * CELL_MEANS[:, 7]
+    order = np.arange(COSINES)
+    kappa = np.pi / STACK.width * np.hypot(order[:, None], order)
+    kappa[0, 0], steady = 1.0, np.zeros_like(kappa)
+    for layer in STACK.layers:  # from the thermostat
+        t = np.tanh(kappa * layer.thickness)
+        k = layer.conductivity * kappa
+        steady = (steady + t / k) / (1 + steady * k * t)
+    steady[0, 0] = 0.0  # the mean is the network's
+    assert state.surface == pytest.approx(-steady * flux, rel=1e-6, abs=1e-9)
+
+
+def test_a_step_that_is_none() -> None:
+    with pytest.raises(InvalidValueError, match="dt"):
+        face_field(STACK, Slab(DEPTH, 1.0, 2e6), 0.0)
