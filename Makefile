@@ -12,7 +12,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs thermal assets hardware
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-rl test-grippers test-view test-hardware-long test-firmware test-bench test-release bench docs lint install clean distclean FORCE
+.PHONY: demo test test-ray test-backends test-rl test-grippers test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -41,6 +41,10 @@ test-grippers: build/.grippers
 # The studio's page in Debian's chromium; without it and playwright `make test` skips these.
 test-view: build/.view
 	$(PY) -m pytest -rs $(TEST_FLAGS) tests/view
+
+# An hour of grasps in the studio, in minutes, and dozens of visits: they leave nothing behind.
+test-view-long: build/.view
+	THERMOGRASP_LONG=1 $(PY) -m pytest -s $(TEST_FLAGS) tests/view/test_long.py tests/view/test_feeling.py
 
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test

@@ -134,7 +134,7 @@ class Identifier:
             curve, rate = smooth_curve(self.library, since, values, noise, scale)
             touch_error = setup.touch_error if self._given is not None else FOUND_WITHIN
             nuisances.append(touch_error * rate[:, None])
-            lacking = np.hypot(setup.model_error * np.abs(curve).max(), setup.tolerance / 2)
+            lacking = np.hypot(setup.model_error * np.abs(curve).max(), setup.tolerance / 4)
             lacking *= np.sqrt(self._kelvin.shape[1])  # the same for every fingertip: it does not average out
             nuisances.append(slow_deviations(since, float(lacking), setup.horizon))
         return gather(

