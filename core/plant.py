@@ -34,7 +34,8 @@ class Reading(NamedTuple):
     hardware `unknown`, the names that are missing, and `late`, s by which the step's end was missed. error: (B,) why an
     environment can't go on, "" while it can. told: names of what info tells of truth at every step. lateral (B,) m of
     the arm along the table, None without such an axis. pressure (B, F, n, m) Pa over each pad, rows from the
-    fingertip's end up, columns along its horizontal axis; None without taxels.
+    fingertip's end up, columns along its horizontal axis; None without taxels. face_temperature (B, F, n, m) °C over
+    each sensor's face, rows and columns alike; None where it is not asked for.
     """
 
     opening: np.ndarray
@@ -48,6 +49,7 @@ class Reading(NamedTuple):
     told: tuple[str, ...] = ()
     lateral: np.ndarray | None = None
     pressure: np.ndarray | None = None
+    face_temperature: np.ndarray | None = None
 
 
 def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:

@@ -20,6 +20,9 @@ from .observation import Observation, Observer
 from .tasks import Outcome, Task, stopped
 from .truth import Truth
 
+MAPS = ("taxels", "face_temperature")
+"""Keywords that add a map of each fingertip to the observation."""
+
 
 @dataclass(frozen=True, slots=True)
 class BatchState:
@@ -138,10 +141,11 @@ class GraspBatch:
         self.plant: Plant = plant_factory(plant)(plant, num_envs, **config)
         self.num_envs = num_envs
         self._observer = observer(num_envs)
-        if config.get("taxels") is not None:
-            from .taxel_observation import TaxelObserver  # nothing that taxels need is loaded without them
+        maps = {name: config[name] for name in MAPS if config.get(name) is not None}
+        if maps:
+            from .map_observation import with_maps  # nothing that maps need is loaded without them
 
-            self._observer = TaxelObserver(self._observer, config["taxels"])
+            self._observer = with_maps(self._observer, maps)
         self.observation_space = self._observer.space
         self.action_space = self.task.action_space()
         self._judged = self.task.fresh(num_envs)

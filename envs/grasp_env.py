@@ -35,10 +35,11 @@ class GraspEnv(TouchEnv):
 
     Keywords: material (a name, a Material, a list, None = the object's own, else the ten seed materials; drawn per
     episode), mode ("T", "O"), plant ("simulated" or a URL), objects (an ObjectSpec, a name of the library, or a list to
-    draw from), taxels ((n, m): the observation has pressure (2, n, m) Pa over the pads), randomize (records of
-    envs.randomization, what else differs between episodes), tolerance (K), hold_seconds and seconds (s), most_slip (m
-    that the object may slide along the pads; any by default), render_mode ("human", "rgb_array"), and the fields of
-    SimulationConfig. reset(options={"material": name}) fixes one episode's material.
+    draw from), taxels ((n, m): the observation has pressure (2, n, m) Pa over the pads), face_temperature ((n, m): it
+    has that (2, n, m), °C over the sensors' faces), randomize (records of envs.randomization, what else differs between
+    episodes), tolerance (K), hold_seconds and seconds (s), most_slip (m that the object may slide along the pads; any
+    by default), render_mode ("human", "rgb_array"), and the fields of SimulationConfig. reset(options={"material":
+    name}) fixes one episode's material.
     """
 
     def __init__(

@@ -11,7 +11,7 @@ import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,6 +31,9 @@ from .thermostats import Thermostats
 from .things import Thing
 from .truth import Episodes
 
+if TYPE_CHECKING:
+    from .face_temperature import FaceTemperatureState
+
 GAP = 0.03  # m between the two objects, wider than a pad
 
 
@@ -47,6 +50,7 @@ class PairState:
     asked: np.ndarray
     generators: tuple[np.random.Generator, ...]
     drawn: tuple[dict[str, float], ...]
+    faces: FaceTemperatureState | None
 
 
 class PairPlant:
@@ -68,9 +72,9 @@ class PairPlant:
             settings=config.solver,
             gripper=config.gripper_for(possible),
             lateral=True,
-            contacts=config.taxels is not None,
+            contacts=config.taxels is not None or config.face_temperature is not None,
         )
-        self._taxels = config.tactile
+        self._taxels, self._faces = config.tactile, config.face_maps(num_envs, self._stack)
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.heat = SceneHeat(num_envs, OBJECTS, **config.heat)
@@ -125,6 +129,8 @@ class PairPlant:
             self._thermostats.setpoints[chosen]
             + np.array([[self._drawn[row]["thermostat_error"]] for row in chosen]),
         )
+        if self._faces is not None:
+            self._faces.reset(chosen, things)
         self._thermostats.reset(chosen)
         self._rest[chosen] = self.mechanics.object_pose[chosen, :, 2]
         self._relabel()
@@ -160,6 +166,9 @@ class PairPlant:
             told=PAIR_TOLD,
             lateral=self.mechanics.lateral,
             pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
+            face_temperature=None
+            if self._faces is None
+            else self._faces.step(self.mechanics, step.fingertips, step.owner),
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
@@ -183,6 +192,7 @@ class PairPlant:
             self._asked[chosen],
             tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
             tuple(self._drawn[row] for row in chosen),
+            None if self._faces is None else self._faces.state(chosen),
         )
 
     def set_state(self, rows: Sequence[int], state: PairState) -> tuple[np.random.Generator, ...]:
@@ -199,6 +209,8 @@ class PairPlant:
             specs = state.mechanics.objects[k]
             self.things[row] = tuple(replace(t, spec=s) for t, s in zip(pair, specs, strict=True))
             self._rngs[row], self._drawn[row] = rngs[k], state.drawn[k]
+        if self._faces is not None and state.faces is not None:
+            self._faces.set_state(chosen, state.faces, [self.things[row] for row in chosen])
         self._rest[chosen], self._right[chosen], self._asked[chosen] = state.rest, state.right, state.asked
         self._relabel()
         return rngs
@@ -289,6 +301,7 @@ class PairPlant:
             told=PAIR_TOLD,
             lateral=self.mechanics.lateral,
             pressure=None if self._taxels is None else self._taxels.nothing(rows),
+            face_temperature=None if self._faces is None else self._faces.rest(self.heat.rest().fingertips),
         )
 
 

@@ -24,6 +24,7 @@ from .things import Thing
 from .truth import TOLD, Episodes, Truth
 
 if TYPE_CHECKING:
+    from .face_temperature import FaceTemperatureState
     from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
 
 
@@ -38,6 +39,7 @@ class PlantState:
     rest: np.ndarray
     generators: tuple[np.random.Generator, ...]
     drawn: tuple[dict[str, float], ...]
+    faces: FaceTemperatureState | None
 
 
 class SimulatedPlant:
@@ -60,9 +62,9 @@ class SimulatedPlant:
             library=[thing.spec for thing in possible if thing.spec.mesh],
             settings=config.solver,
             gripper=config.gripper_for(possible),
-            contacts=config.taxels is not None,
+            contacts=config.taxels is not None or config.face_temperature is not None,
         )
-        self._taxels = config.tactile
+        self._taxels, self._faces = config.tactile, config.face_maps(num_envs, self._stack)
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.heat = self._heat_of(num_envs)
@@ -134,6 +136,8 @@ class SimulatedPlant:
             scenes = [(thing, *self.others[row]) for row, thing in zip(rows, things, strict=True)]
             self.heat.reset(rows, scenes, celsius, waiting=True)
         chosen = list(rows)
+        if self._faces is not None:
+            self._faces.reset(chosen, [(self.things[row], *self.others[row]) for row in chosen])
         self._thermostats.reset(chosen)
         self._rest[chosen] = self.mechanics.object_pose[chosen, 0, 2]
         self._relabel(chosen)
@@ -166,6 +170,9 @@ class SimulatedPlant:
             error=error,
             told=self._told,
             pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
+            face_temperature=None
+            if self._faces is None
+            else self._faces.step(self.mechanics, step, None if scene is None else scene.owner),
         )
 
     def temperatures(self, row: int) -> tuple[float, ...]:
@@ -190,6 +197,7 @@ class SimulatedPlant:
             self._rest[chosen],
             tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
             tuple(self._drawn[row] for row in chosen),
+            None if self._faces is None else self._faces.state(chosen),
         )
 
     def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
@@ -211,6 +219,9 @@ class SimulatedPlant:
             self.things[row], self.others[row] = first, tuple(others)
             self._rngs[row] = rngs[k]
             self._drawn[row] = state.drawn[k]
+        if self._faces is not None and state.faces is not None:
+            scenes = [(self.things[row], *self.others[row]) for row in chosen]
+            self._faces.set_state(chosen, state.faces, scenes)
         self._thermostats.set_state(chosen, state.thermostats)
         self._rest[chosen] = state.rest
         self._relabel(chosen)
@@ -287,6 +298,7 @@ class SimulatedPlant:
             error=error,
             told=self._told,
             pressure=None if self._taxels is None else self._taxels.nothing(rows),
+            face_temperature=None if self._faces is None else self._faces.rest(rest),
         )
 
 

@@ -29,6 +29,7 @@ from .solver_settings import SHIPPED, SolverSettings
 from .things import Thing
 
 if TYPE_CHECKING:
+    from .face_temperature import FaceTemperature
     from .taxels import Taxels
 
 SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's
@@ -50,7 +51,8 @@ class SimulationConfig:
     meshes in mode T; without, each patch is the middle of a face. gripper: an MJCF file, an MjSpec or what load_gripper
     makes of them, None for the shipped one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control
     step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on
-    disk. taxels: (n, m) of the map of pressure over each pad, None for none."""
+    disk. taxels: (n, m) of the map of pressure over each pad, None for none. face_temperature: (n, m) of the map of
+    temperature over each sensor's face (T mode), None for none."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -74,6 +76,7 @@ class SimulationConfig:
     threads: int = 1
     cache: bool = True
     taxels: tuple[int, int] | None = None
+    face_temperature: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -96,6 +99,8 @@ class SimulationConfig:
             non_negative("placement (m, degree)", value)
         checked(self.randomize)
         _ = self.tactile  # checks it
+        if self.face_temperature is not None:
+            self._check_face()
         if self.scene is not None and (self.objects is not None or self.mode == "O" or not len(self.scene)):
             raise InvalidValueError(
                 f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene has one "
@@ -166,6 +171,24 @@ class SimulationConfig:
         from .taxels import Taxels  # nothing that taxels need is loaded without them
 
         return Taxels(self.taxels)
+
+    def face_maps(self, num_envs: int, stack: SensorStack) -> FaceTemperature | None:
+        """What maps the temperature over the sensors' faces."""
+        if self.face_temperature is None:
+            return None
+        from .face_temperature import FaceTemperature  # nothing that it needs is loaded without it
+
+        return FaceTemperature(self.face_temperature, num_envs, stack, self.samples * SAMPLE_PERIOD)
+
+    def _check_face(self) -> None:
+        from .taxels import checked_taxels
+
+        checked_taxels(self.face_temperature, "face_temperature")
+        if self.mode == "O":
+            raise InvalidValueError(
+                "face_temperature in mode 'O': the fingertip's face is its thermostat there, whose temperature is the "
+                "observation's thermostat; leave face_temperature out or use mode 'T'"
+            )
 
     @property
     def samples(self) -> int:

@@ -50,11 +50,13 @@ class Taxels:
         """(B, F, n, m) Pa where nothing is touched."""
         return np.zeros((rows, len(TIPS), *self.shape))
 
-    def pressure(self, mechanics: Mechanics) -> np.ndarray:
-        """(B, F, n, m) Pa, of the control step that mechanics made last."""
+    def pressure(self, mechanics: Mechanics, owner: np.ndarray | None = None) -> np.ndarray:
+        """(B, F, n, m) Pa, of the control step that mechanics made last. owner: (B, F) the number of the object whose
+        pressure is meant, None for that of all."""
         maps = self.nothing(mechanics.num_envs)
         for number, contact in enumerate(mechanics.pad_contacts()):
-            for row, tip in np.argwhere((contact.force > 0.0) & np.isfinite(contact.force)):
+            pressed = (contact.force > 0.0) & np.isfinite(contact.force)
+            for row, tip in np.argwhere(pressed if owner is None else pressed & (owner == number)):
                 spec, pad = mechanics.objects[row][number], contact.pad[row, tip]
                 maps[row, tip] += self._map(
                     spec, pad, float(contact.force[row, tip]), contact.centre[row, tip]
@@ -97,14 +99,15 @@ class Taxels:
         self._height[on], self._cover[on] = height[on], self._elements[on]
 
 
-def checked_taxels(shape: object) -> tuple[int, int]:
-    """The shape. Raises InvalidValueError unless it is two whole numbers from 1 to MOST_TAXELS."""
+def checked_taxels(shape: object, name: str = "taxels") -> tuple[int, int]:
+    """The shape. Raises InvalidValueError, with the keyword's name, unless it is two whole numbers from 1 to
+    MOST_TAXELS."""
     sides = tuple(shape) if isinstance(shape, tuple | list) else (shape,)
     if len(sides) != 2 or not all(
         isinstance(side, int) and not isinstance(side, bool) and 1 <= side <= MOST_TAXELS for side in sides
     ):
         raise InvalidValueError(
-            f"taxels must be two whole numbers (rows, columns) from 1 to {MOST_TAXELS}, got {shape!r}"
+            f"{name} must be two whole numbers (rows, columns) from 1 to {MOST_TAXELS}, got {shape!r}"
         )
     return sides[0], sides[1]
 

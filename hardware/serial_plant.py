@@ -282,6 +282,12 @@ class SerialPlant:
                 self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
 
 
+_SIMULATED = {
+    "taxels": "they are simulated, since a real fingertip has one load cell and no map of pressure",
+    "face_temperature": "it is simulated, since a real fingertip has one heat flux sensor and no map of temperature",
+}
+
+
 def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
     """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
     as open_gripper takes it. config: SerialConfig's. Raises InvalidValueError for anything else, and DeviceError."""
@@ -294,10 +300,9 @@ def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
         )
     if num_envs != 1:
         raise InvalidValueError(f"a serial plant is one gripper, so num_envs must be 1, got {num_envs}")
-    if config.pop("taxels", None) is not None:
-        raise InvalidValueError(
-            "taxels are simulated: a real fingertip has one load cell and no map of pressure; leave taxels out"
-        )
+    for name, what in _SIMULATED.items():
+        if config.pop(name, None) is not None:
+            raise InvalidValueError(f"{name}: {what}; leave {name} out")
     try:
         settings = SerialConfig(**config)
     except TypeError as error:

@@ -40,19 +40,21 @@ OBSERVATIONS: dict[str, tuple[tuple[str, str], ...]] = {
     "lateral": (("place of the arm, sideways", "m"),),
     "goal": (("1 for what is asked, 0 for the others", ""),),
     "pressure": (("over the left and the right pad: rows up to the wrist, columns across", "Pa"),),
+    "face_temperature": (("over the left and the right sensor's face: rows and columns alike", "°C"),),
 }
 """By key, (what, unit) of each component, or of all together where there is one."""
 
 _ASIDE = ObjectSpec(size=(0.03, 0.03, 0.03), position=(0.0, 0.06))
 _SHARED: dict[str, Any] = {
     "taxels": (4, 4),
+    "face_temperature": (3, 3),
     "scene": (ObjectSpec(), _ASIDE),
     "thermostat": Thermostat(),
 }
 OPTIONS: dict[str, dict[str, Any]] = {
     "thermograsp/Grasp-v0": _SHARED,
     "thermograsp/Identify-v0": _SHARED,
-    "thermograsp/Sort-v0": {"taxels": (4, 4)},
+    "thermograsp/Sort-v0": {"taxels": (4, 4), "face_temperature": (3, 3)},
 }
 """By id, keywords that add keys to observation or info, each with a value for an example."""
 

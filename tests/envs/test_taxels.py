@@ -338,8 +338,10 @@ def test_without_them_nothing_of_theirs_is_loaded_or_recorded() -> None:
         "env = GraspEnv(material='glass', tolerance=0.5)\n"
         "seen, _ = env.reset(seed=0)\n"
         "env.step(np.zeros(3))\n"
-        "names = ('taxels', 'taxel_observation', 'foundation', 'surface_height', 'pad_contacts')\n"
-        "print([name for name in names if f'thermograsp.envs.{name}' in sys.modules], 'pressure' in seen)\n"
+        "names = ['taxels', 'map_observation', 'foundation', 'surface_height', 'pad_contacts', 'face_temperature']\n"
+        "keys = {'pressure', 'face_temperature'} & set(seen)\n"
+        "names = [f'thermograsp.envs.{name}' for name in names] + ['thermograsp.thermal.face_field']\n"
+        "print([name for name in names if name in sys.modules], bool(keys))\n"
         "print('site_xpos' in env.batch.plant.mechanics._latest)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
