@@ -25,7 +25,7 @@ def action_space() -> gymnasium.spaces.Box:
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
     finite."""
-    array = np.ascontiguousarray(action, dtype=float)
+    array = np.ascontiguousarray(action, np.float32)  # as the space's
     if array.ndim != 2 or array.shape[1] != 3:
         raise InvalidValueError(
             f"an action is (3,): opening, force limit, lift rate, each -1 .. 1; got shape {np.shape(action)[1:]}"

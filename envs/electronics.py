@@ -52,7 +52,7 @@ class Electronics:
         generators."""
         for row, rng in enumerate(rngs):
             rng.standard_normal(out=self._noise[row])
-        voltage = np.empty_like(drop)
+        voltage = np.empty(drop.shape)
         measure_rows(self._chains, self._filtered, self._last, self._late, drop, self._noise, voltage)
         return voltage
 

@@ -170,8 +170,7 @@ class GraspBatch:
         chosen = np.zeros(self.num_envs, bool)
         chosen[list(rows)] = True
         self._observer.restart(chosen)
-        for values in self._judged:
-            values[chosen] = 0
+        self._judged[chosen] = np.zeros(1, self._judged.dtype)
         if self.reading is None:
             # Once without consequence, so that nothing compiles after the first step, when a real gripper moves.
             idle = np.zeros((self.num_envs, *self.action_space.shape))

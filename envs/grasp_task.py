@@ -6,7 +6,6 @@ B: environments.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import gymnasium
 import numpy as np
@@ -17,7 +16,14 @@ from thermograsp.plant import Command, Reading
 
 from .actions import action_space, command_of
 from .tasks import Outcome
+from .truth import Truth
 
+GRASP_STATE = np.dtype(
+    [("elapsed", "f8"), ("held", "f8"), ("gripped", "f8"), ("lifted", "?"), ("pressed", "?")]
+)
+"""s; s at 5 cm without a break; m, how high the object was above the arm when both pads came to press; has been at
+5 cm; both pads pressed at the last step."""
+_REASONS: tuple[str, ...] = ("dropped", "crushed", "slipped")
 LIFTED = 0.05  # m
 TOUCHING = 0.2  # N on each pad that counts as holding
 
@@ -49,23 +55,23 @@ class GraspTask:
         """See actions.py."""
         return command_of(action)
 
-    def fresh(self, num_envs: int) -> TaskState:
+    def fresh(self, num_envs: int) -> np.ndarray:
         """Before the first step."""
-        flags = np.zeros((2, num_envs), bool)
-        return TaskState(np.zeros(num_envs), np.zeros(num_envs), np.zeros(num_envs), *flags)
+        return np.zeros(num_envs, GRASP_STATE)
 
     def judge(
-        self, state: TaskState, dt: float, action: np.ndarray, reading: Reading
-    ) -> tuple[TaskState, Outcome]:
+        self, state: np.ndarray, dt: float, action: np.ndarray, reading: Reading
+    ) -> tuple[np.ndarray, Outcome]:
         """After a control step of dt s. Where a plant cannot know how high the object is and at which force it breaks,
         the arm's height stands for it, and nothing slips or breaks."""
         del action
-        lift = reading.truth["lift"] if "lift" in reading.truth else reading.height
-        numbers, flags = np.empty((4, len(lift))), np.empty((8, len(lift)), bool)
-        crushing = reading.truth.get("crushing_force")
-        if crushing is None:
-            crushing = np.full(len(lift), np.inf)
-        _judge_rows(
+        truth, rows = reading.truth, len(state)
+        if isinstance(truth, Truth):
+            lift, crushing = truth.lift, truth.episodes.crushing_force
+        else:
+            lift, crushing = reading.height, np.full(rows, np.inf)
+        after, reward, flags = np.empty(rows, GRASP_STATE), np.empty(rows), np.empty((6, rows), bool)
+        failed = _judge_rows(
             dt,
             self.hold_seconds,
             self.seconds,
@@ -74,26 +80,13 @@ class GraspTask:
             lift,
             reading.height,
             crushing,
-            *state,
-            numbers,
+            state,
+            after,
+            reward,
             flags,
         )
-        elapsed, held, gripped, reward = numbers
-        lifted, pressed, success, terminated, truncated, dropped, crushed, slipped = flags
-        reasons = {"dropped": dropped, "crushed": crushed, "slipped": slipped}
-        after = TaskState(elapsed, held, gripped, lifted, pressed)
-        return after, Outcome(reward, success, terminated, truncated, reasons, {})
-
-
-class TaskState(NamedTuple):
-    """elapsed (B,) s. held (B,) s at 5 cm without a break. gripped (B,) m, how high the object was above the arm when
-    both pads came to press. lifted (B,): has been at 5 cm. pressed (B,): both pads pressed at the last step."""
-
-    elapsed: np.ndarray
-    held: np.ndarray
-    gripped: np.ndarray
-    lifted: np.ndarray
-    pressed: np.ndarray
+        reasons = dict(zip(_REASONS, flags[3:], strict=True)) if failed else {}
+        return after, Outcome(reward, flags[0], flags[1], flags[2], reasons, {})
 
 
 @njit(cache=True, error_model="numpy")
@@ -106,35 +99,37 @@ def _judge_rows(
     lift,
     height,
     crushing,
-    elapsed,
-    held,
-    gripped,
-    lifted,
-    pressed,
-    numbers,
+    before,
+    after,
+    rewards,
     flags,
 ):
-    """Fills numbers (elapsed, held, gripped, reward) and flags (lifted, pressed, success, terminated, truncated,
-    dropped, crushed, slipped)."""
+    """Fills after (B,) GRASP_STATE, rewards (B,) and flags (success, terminated, truncated, and _REASONS). Returns
+    whether any has failed."""
+    any_failed = False
     for b in range(len(lift)):
         least, most = force[b, :, 0].min(), force[b, :, 0].max()
         pressing = least > TOUCHING
         at_height = pressing and lift[b] >= LIFTED * 0.98
-        time, holding = elapsed[b] + dt, held[b] + dt if at_height else 0.0
-        has_been = lifted[b] or at_height
+        time, holding = before[b].elapsed + dt, before[b].held + dt if at_height else 0.0
+        has_been = before[b].lifted or at_height
         above = lift[b] - height[b]
-        grip = gripped[b] if pressed[b] else above
+        grip = before[b].gripped if before[b].pressed else above
         crushed = most > crushing[b]
         dropped = has_been and not pressing and lift[b] < LIFTED / 2
         slipped = pressing and grip - above > most_slip
         failed = crushed or dropped or slipped
+        any_failed |= failed
         # In float steps of dt a rounding must not cost a control step.
         success = holding >= hold_seconds - dt / 2 and not failed
         reward = (1.0 if success else 0.0) - (1.0 if failed else 0.0)
         if pressing:
             share = min(max(lift[b] / LIFTED, 0.0), 1.0)
             reward += dt * (0.2 + 0.3 * share + (0.5 if at_height else 0.0))
-        numbers[0, b], numbers[1, b], numbers[2, b], numbers[3, b] = time, holding, grip, reward
-        flags[0, b], flags[1, b], flags[2, b], flags[3, b] = has_been, pressing, success, success or failed
-        flags[4, b] = not (success or failed) and time >= seconds - dt / 2
-        flags[5, b], flags[6, b], flags[7, b] = dropped, crushed, slipped
+        after[b].elapsed, after[b].held, after[b].gripped = time, holding, grip
+        after[b].lifted, after[b].pressed = has_been, pressing
+        rewards[b] = reward
+        flags[0, b], flags[1, b] = success, success or failed
+        flags[2, b] = not (success or failed) and time >= seconds - dt / 2
+        flags[3, b], flags[4, b], flags[5, b] = dropped, crushed, slipped
+    return any_failed

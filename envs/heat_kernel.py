@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
-from ..thermal.batch import HeatReading, HeatTables, advance_row, forget_row
+from ..thermal.batch import RESERVOIR, HeatReading, HeatTables, advance_row, fingertips_of, forget_row
 from ..thermal.contact_law import conductance, contact
 from ..thermal.coupling_kernel import FAST, workspace
 from ..thermal.system import NODE
@@ -24,17 +24,11 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
     HEAT_TOLD. laws: (B,) CONTACT_LAW. reservoirs: (B,) RESERVOIR_ROW. normal: (B, S, F) N. place: (B, F, 3) m.
     numbers: a HeatTables' fields, which cost less to hand over one by one."""
     tables = HeatTables(*numbers)
-    samples, tips = drop.shape[1], tables.drop.shape[1]
-    room = workspace(tables.rates.shape[1], tables.ports.shape[1])
-    per_tip, per_row = (1, samples, tips), (1, samples)
+    samples, tips = drop.shape[1], fingertips_of(tables)
+    room = workspace(tables.rows.shape[2], tables.gram.shape[3])
+    by_tip, by_row = np.zeros((5, samples, tips)), np.zeros((2, samples))
     reading = HeatReading(
-        np.zeros(per_tip),
-        np.zeros(per_tip),
-        np.zeros(per_row),
-        np.zeros(per_tip),
-        np.zeros(per_tip),
-        np.zeros(per_tip),
-        np.zeros(per_row),
+        by_tip[0:1], by_tip[1:2], by_row[0:1], by_tip[2:3], by_tip[3:4], by_tip[4:5], by_row[1:2]
     )
     felt = np.zeros(tips)
     duration = tables.dt * samples
@@ -111,8 +105,8 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
 def _node(tables, network, x):
     """K of the network's node above the object's first temperature."""
     heat = 0.0
-    for i in range(tables.object_states[network]):
-        heat += tables.reservoir[network, i] * x[i]
+    for i in range(tables.sizes[network, 1]):
+        heat += tables.rows[network, RESERVOIR, i] * x[i]
     return heat / NODE
 
 
@@ -120,8 +114,8 @@ def _node(tables, network, x):
 def _set_node(tables, network, x, above):
     """Gives the node that temperature, K; the object keeps its own."""
     change = above - _node(tables, network, x)
-    for i in range(tables.object_states[network]):
-        x[i] += change * tables.reservoir[network, i]
+    for i in range(tables.sizes[network, 1]):
+        x[i] += change * tables.rows[network, RESERVOIR, i]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

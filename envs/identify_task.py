@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import gymnasium
 import numpy as np
@@ -24,10 +23,8 @@ SHARPNESS = 5.0  # of the declared distribution: softmax of 5 times the action, 
 _DECLARES = 0.5
 
 
-class IdentifyState(NamedTuple):
-    """elapsed (B,) s."""
-
-    elapsed: np.ndarray
+IDENTIFY_STATE = np.dtype([("elapsed", "f8")])
+"""s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,27 +72,28 @@ class IdentifyTask:
         force = np.clip(array[:, 0], 0.0, 1.0) * MAX_FORCE
         return Command(np.where(force > 0, 0.0, MAX_OPENING), force, np.zeros(len(array)))
 
-    def fresh(self, num_envs: int) -> IdentifyState:
+    def fresh(self, num_envs: int) -> np.ndarray:
         """Before the first step."""
-        return IdentifyState(np.zeros(num_envs))
+        return np.zeros(num_envs, IDENTIFY_STATE)
 
     def judge(
-        self, state: IdentifyState, dt: float, action: np.ndarray, reading: Reading
-    ) -> tuple[IdentifyState, Outcome]:
+        self, state: np.ndarray, dt: float, action: np.ndarray, reading: Reading
+    ) -> tuple[np.ndarray, Outcome]:
         """After a control step of dt s. Where a plant cannot know the material, reward is the cost alone and success
         never comes."""
-        rows = len(state.elapsed)
+        rows = len(state)
         names = reading.truth.get("material", np.full(rows, "", object))
         target = np.array([self.classes.index(name) if name in self.classes else -1 for name in names])
-        elapsed, reward, loss = np.empty((3, rows))
+        after = np.empty(rows, IDENTIFY_STATE)
+        reward, loss = np.empty((2, rows))
         success, terminated, truncated = np.empty((3, rows), bool)
         share = np.empty((rows, len(self.classes)))
         _judge_rows(
             *(dt, self.seconds, self.cost_per_second, np.ascontiguousarray(action, dtype=float), target),
-            *(state.elapsed, elapsed, reward, loss, success, terminated, truncated, share),
+            *(state, after, reward, loss, success, terminated, truncated, share),
         )
         told = {"prediction": share, "loss": loss}
-        return IdentifyState(elapsed), Outcome(reward, success, terminated, truncated, {}, told)
+        return after, Outcome(reward, success, terminated, truncated, {}, told)
 
 
 @njit(cache=True, error_model="numpy")
@@ -106,7 +104,7 @@ def _judge_rows(
     action,
     target,
     before,
-    elapsed,
+    after,
     reward,
     loss,
     success,
@@ -116,7 +114,7 @@ def _judge_rows(
 ):
     rows, classes = share.shape
     for b in range(rows):
-        elapsed[b] = before[b] + dt
+        after[b].elapsed = before[b].elapsed + dt
         total, best = 0.0, 0
         for k in range(classes):
             share[b, k] = math.exp(SHARPNESS * min(max(action[b, 2 + k], -1.0), 1.0))
@@ -128,7 +126,7 @@ def _judge_rows(
         known = target[b] >= 0
         loss[b] = -math.log(share[b, target[b]]) if known else math.nan
         terminated[b] = action[b, 1] > _DECLARES
-        truncated[b] = not terminated[b] and elapsed[b] >= seconds - dt / 2
+        truncated[b] = not terminated[b] and after[b].elapsed >= seconds - dt / 2
         success[b] = terminated[b] and known and best == target[b]
         reward[b] = -cost * dt
         if known and (terminated[b] or truncated[b]):

@@ -303,15 +303,12 @@ class Mechanics:
             np.empty((rows, substeps, tips)),
             np.empty((rows, tips, 3)),
             np.empty((rows, tips, 3)),
-            *(np.empty(rows) for _ in range(4)),
+            np.empty(rows),
+            np.empty(rows),
+            np.empty(rows),
+            np.empty(rows),
         )
-        summarise(
-            layout,
-            out["sensordata"],
-            out["site_xmat"],
-            *self._moved,
-            *motion,
-        )
+        summarise(layout, out["sensordata"], out["site_xmat"], *self._moved, *motion)
         return motion
 
     def state(self, ids: Sequence[int] | np.ndarray | None = None) -> MechanicsState:

@@ -60,7 +60,7 @@ class Observer:
         """Observations (B, ...) after a reading; arrays of their own. force_limit: (B,) N, as commanded. Rows of which
         `seen` (B,) is False keep what they last observed."""
         last = self.last[: len(_SHAPES)]  # those that follow are a kind's own
-        fresh = [np.empty_like(values) for values in last]
+        fresh = [np.empty(values.shape, np.float32) for values in last]
         _observe_rows(
             seen,
             reading.opening,

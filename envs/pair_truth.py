@@ -15,7 +15,7 @@ PAIR_TOLD = (*TOLD, "asked", "right", "object_temperatures")
 """What info tells at every step."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class PairTruth(SceneTruth):
     """As a scene's. episodes: material, rung (B,) tuples of both, crushing_force (B, O). lift (B, O). own:
     object_temperature and object_temperatures (B, O) °C, object_force (B, O, F, 3) N, goal (B, G), asked (B,) and right

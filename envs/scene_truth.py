@@ -15,7 +15,7 @@ SCENE_TOLD = (*TOLD, "touched", "object_temperatures")
 """What info tells at every step."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class SceneTruth(Truth):
     """The same of a gripper over several objects; what heat tells of fingertips is of the object that each touches or
     touched last, heat's last column and the books are all objects'. own: what besides is known, by name; here

@@ -6,7 +6,6 @@ B: environments, O = 2 objects.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import gymnasium
 import numpy as np
@@ -23,12 +22,8 @@ WRONG = (
 )  # m at which the wrong object counts as lifted; tipping one by its corner raises it by less
 
 
-class SortState(NamedTuple):
-    """elapsed (B,) s. held (B,) s of the right object at 5 cm without a break. lifted (B,): it has been there."""
-
-    elapsed: np.ndarray
-    held: np.ndarray
-    lifted: np.ndarray
+SORT_STATE = np.dtype([("elapsed", "f8"), ("held", "f8"), ("lifted", "?")])
+"""s; s of the right object at 5 cm without a break; it has been there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,26 +51,28 @@ class SortTask:
         """See actions.py."""
         return sliding_command_of(action)
 
-    def fresh(self, num_envs: int) -> SortState:
+    def fresh(self, num_envs: int) -> np.ndarray:
         """Before the first step."""
-        return SortState(np.zeros(num_envs), np.zeros(num_envs), np.zeros(num_envs, bool))
+        return np.zeros(num_envs, SORT_STATE)
 
     def judge(
-        self, state: SortState, dt: float, action: np.ndarray, reading: Reading
-    ) -> tuple[SortState, Outcome]:
+        self, state: np.ndarray, dt: float, action: np.ndarray, reading: Reading
+    ) -> tuple[np.ndarray, Outcome]:
         """After a control step of dt s. Raises InvalidValueError for a plant that does not know which object is
         right."""
         del action
         truth = reading.truth
         if "right" not in truth:
             raise InvalidValueError("this plant does not know two objects: sorting needs a simulated pair")
-        rows, right = np.arange(len(state.elapsed)), truth["right"]
+        rows, right = np.arange(len(state)), truth["right"]
         lift, other = truth["lift"][rows, right], truth["lift"][rows, 1 - right]
         normal = truth["object_force"][..., 0]  # (B, O, F)
         pressing = normal[rows, right].min(axis=1) > TOUCHING
         at_height = pressing & (lift >= LIFTED * 0.98)
-        elapsed, held = state.elapsed + dt, np.where(at_height, state.held + dt, 0.0)
-        lifted = state.lifted | at_height
+        after = np.empty_like(state)
+        after["elapsed"] = elapsed = state["elapsed"] + dt
+        after["held"] = held = np.where(at_height, state["held"] + dt, 0.0)
+        after["lifted"] = lifted = state["lifted"] | at_height
         wrong = other >= WRONG
         crushed = (normal.max(axis=2) > truth["crushing_force"]).any(axis=1)
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
@@ -93,4 +90,4 @@ class SortTask:
             reasons={"wrong": wrong, "dropped": dropped, "crushed": crushed},
             told={},
         )
-        return SortState(elapsed, held, lifted), outcome
+        return after, outcome

@@ -6,7 +6,7 @@ B: environments.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import gymnasium
 import numpy as np
@@ -16,7 +16,8 @@ from thermograsp.plant import Command, Reading
 
 class Outcome(NamedTuple):
     """After a control step, all (B,): reward, success, terminated, truncated. reasons: name -> (B,) bool of how an
-    episode can end that is no success; info names those that did. told: name -> (B, ...) that info always has."""
+    episode can terminate that is no success, empty where none did; info names those that did. told: name -> (B, ...)
+    that info always has."""
 
     reward: np.ndarray
     success: np.ndarray
@@ -27,7 +28,7 @@ class Outcome(NamedTuple):
 
 
 class Task(Protocol):
-    """Pure functions of arrays; states are named tuples of arrays (B, ...) that are 0 before the first step."""
+    """Pure functions of arrays; a state is an array (B,) of records, all 0 before the first step."""
 
     def action_space(self) -> gymnasium.spaces.Box:
         """Of one environment."""
@@ -38,11 +39,13 @@ class Task(Protocol):
         finite."""
         ...
 
-    def fresh(self, num_envs: int) -> Any:
+    def fresh(self, num_envs: int) -> np.ndarray:
         """The state before the first step."""
         ...
 
-    def judge(self, state: Any, dt: float, action: np.ndarray, reading: Reading) -> tuple[Any, Outcome]:
+    def judge(
+        self, state: np.ndarray, dt: float, action: np.ndarray, reading: Reading
+    ) -> tuple[np.ndarray, Outcome]:
         """The state and the outcome after a control step of dt s."""
         ...
 

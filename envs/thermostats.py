@@ -69,9 +69,9 @@ class Thermostats:
 
     @property
     def measured(self) -> np.ndarray:
-        """(B, F) °C by their own sensors."""
+        """(B, F) °C by their own sensors; not to be written to."""
         if self._model is None:
-            return self.setpoints.copy()
+            return self.setpoints
         return self._state.measured.reshape(-1, 2).copy()
 
     def tell(self, told: np.ndarray) -> None:

@@ -83,10 +83,13 @@ class TouchEnv(gymnasium.Env[Observation, np.ndarray]):
 
     def render(self) -> np.ndarray | None:
         """(height, width, 3) uint8 in "rgb_array", None in "human" (a window). Fingertips and object are coloured by
-        their temperature. Raises MissingDependencyError, naming the packages, where there is no GL library."""
+        their temperature. Raises MissingDependencyError, naming the packages, where there is no GL library, and
+        InvalidValueError before the first reset."""
         if self.render_mode is None:
             gymnasium.logger.warn("render() without a render_mode: give render_mode='rgb_array' or 'human'")
             return None
+        if not self._started:
+            raise InvalidValueError("call reset before render")
         if self._renderer is None:
             from .picture import GraspPicture  # loads GL
 

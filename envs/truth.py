@@ -32,10 +32,10 @@ class Episodes:
     heaters: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class Truth(Mapping[str, Any]):
     """A mapping name -> (B, ...); see HeatStep for what heat tells. lift (B,) m: the object above where it lay. error:
-    (B,) why an environment broke down."""
+    (B,) why an environment broke down. Nothing writes to one; that it could costs every step half as much."""
 
     heat: HeatStep
     episodes: Episodes
@@ -46,19 +46,20 @@ class Truth(Mapping[str, Any]):
         return _VALUES[name](self)
 
     def told(self, row: int) -> dict[str, Any]:
-        """What info tells of one environment; arrays are copies. Written out: name by name takes twice as long."""
+        """What info tells of one environment. Written out: name by name takes twice as long."""
         heat, episodes = self.heat.told[row], self.episodes
-        left, right = heat["events"]
         told = {
             "material": episodes.material[row],
-            "temperature_drop": self.heat.drop[row, -1].copy(),
-            "contact_area": heat["area"].copy(),
-            "conductance": heat["conductance"].copy(),
+            "temperature_drop": self.heat.drop[row, -1],
+            "contact_area": heat["area"],
+            "conductance": heat["conductance"],
             "rung": episodes.rung[row],
-            "events": EVENTS[left, right],
+            "events": EVENTS.item(*heat["events"].tolist()),
         }
         if episodes.heaters:
             told["over_temperature"] = bool(heat["over_temperature"])
+        if episodes.randomized:
+            told["randomized"] = {name: float(values[row]) for name, values in episodes.randomized.items()}
         return told
 
     def __contains__(self, name: object) -> bool:

@@ -46,7 +46,7 @@ def array_tables(tables: HeatTables, like: Array) -> ArrayTables:
     most = int(tables.modes.max())
     networks = [
         _network(HeatTables(tables.dt, *(array[i] for array in tables[1:])), most)
-        for i in range(len(tables.states))
+        for i in range(len(tables.sizes))
     ]
     return ArrayTables(*(as_like(np.stack(arrays), like) for arrays in zip(*networks, strict=True)))
 

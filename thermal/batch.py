@@ -19,36 +19,117 @@ from .coupling import POLES, propagator
 from .coupling_kernel import FAST, StepArrays, advance, workspace
 from .system import ContactSystem
 
+# Rows of HeatTables; the fingertips' begin at TIPPED.
+RATES, OBJECT_HEAT, AIR_LOSS, RESERVOIR, TIPPED = range(5)
+
 
 class HeatTables(NamedTuple):
-    """Networks of the same fingertips, padded to one size, for steps of dt s. states, object_states, sensor_states and
-    modes: (T,) true sizes. rates (T, K), ports (T, M, K), scale_real and scale_imag (T, Q, K), gram (T, Q, M, M), drop,
-    element_heat, sensor_surface and object_surface (T, F, K), object_heat, air_loss (W) and reservoir (J) (T, K), mean
-    (T,): the index of the object's mean temperature (T mode)."""
+    """Networks of the same fingertips, padded to one size, for steps of dt s: few arrays, since compiled code takes as
+    long to receive each as to use it.
+
+    sizes (T, 5): states, object_states and sensor_states, modes, and mean, the index of the object's mean temperature
+    (T mode). rows (T, R, K), each a property: rates 1/s, object_heat J, air_loss W and reservoir J (T, K); drop,
+    element_heat, sensor_surface and object_surface (T, F, K); scale_real and scale_imag (T, Q, K); ports (T, M, K).
+    gram (T, Q, M, M). The leading axis may be missing, for one network."""
 
     dt: float
-    states: np.ndarray
-    object_states: np.ndarray
-    sensor_states: np.ndarray
-    modes: np.ndarray
-    rates: np.ndarray
-    ports: np.ndarray
-    scale_real: np.ndarray
-    scale_imag: np.ndarray
+    sizes: np.ndarray
+    rows: np.ndarray
     gram: np.ndarray
-    drop: np.ndarray
-    element_heat: np.ndarray
-    sensor_surface: np.ndarray
-    object_surface: np.ndarray
-    object_heat: np.ndarray
-    air_loss: np.ndarray
-    mean: np.ndarray
-    reservoir: np.ndarray
 
     @property
     def fingertips(self) -> int:
         """F."""
-        return self.drop.shape[1]
+        return _fingertips(self.rows.shape[-2], self.gram.shape[-3], self.gram.shape[-1])
+
+    @property
+    def states(self) -> np.ndarray:
+        """(T,), true sizes."""
+        return self.sizes[..., 0]
+
+    @property
+    def object_states(self) -> np.ndarray:
+        """(T,), which come first."""
+        return self.sizes[..., 1]
+
+    @property
+    def sensor_states(self) -> np.ndarray:
+        """(T,), of each fingertip."""
+        return self.sizes[..., 2]
+
+    @property
+    def modes(self) -> np.ndarray:
+        """(T,), ports of each contact."""
+        return self.sizes[..., 3]
+
+    @property
+    def mean(self) -> np.ndarray:
+        """(T,), an index."""
+        return self.sizes[..., 4]
+
+    @property
+    def rates(self) -> np.ndarray:
+        """(T, K)."""
+        return self.rows[..., RATES, :]
+
+    @property
+    def object_heat(self) -> np.ndarray:
+        """(T, K)."""
+        return self.rows[..., OBJECT_HEAT, :]
+
+    @property
+    def air_loss(self) -> np.ndarray:
+        """(T, K)."""
+        return self.rows[..., AIR_LOSS, :]
+
+    @property
+    def reservoir(self) -> np.ndarray:
+        """(T, K)."""
+        return self.rows[..., RESERVOIR, :]
+
+    @property
+    def drop(self) -> np.ndarray:
+        """(T, F, K)."""
+        return self._tipped(0)
+
+    @property
+    def element_heat(self) -> np.ndarray:
+        """(T, F, K)."""
+        return self._tipped(1)
+
+    @property
+    def sensor_surface(self) -> np.ndarray:
+        """(T, F, K)."""
+        return self._tipped(2)
+
+    @property
+    def object_surface(self) -> np.ndarray:
+        """(T, F, K)."""
+        return self._tipped(3)
+
+    @property
+    def scale_real(self) -> np.ndarray:
+        """(T, Q, K)."""
+        return self.rows[..., self._scales : self._scales + self.gram.shape[-3], :]
+
+    @property
+    def scale_imag(self) -> np.ndarray:
+        """(T, Q, K)."""
+        first = self._scales + self.gram.shape[-3]
+        return self.rows[..., first : first + self.gram.shape[-3], :]
+
+    @property
+    def ports(self) -> np.ndarray:
+        """(T, M, K)."""
+        return self.rows[..., self._scales + 2 * self.gram.shape[-3] :, :]
+
+    @property
+    def _scales(self) -> int:
+        return TIPPED + 4 * self.fingertips
+
+    def _tipped(self, number: int) -> np.ndarray:
+        first = TIPPED + number * self.fingertips
+        return self.rows[..., first : first + self.fingertips, :]
 
 
 class HeatReading(NamedTuple):
@@ -70,31 +151,13 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
     if len({system.geometry.fingertips for system in systems}) != 1:
         raise InvalidValueError("systems of one batch must have the same number of fingertips")
     count, fingertips, pairs = len(systems), systems[0].geometry.fingertips, len(POLES)
-    states = np.array([len(s.rates) for s in systems])
-    sensor_states = np.array([s.orders.sensor for s in systems])
-    modes = np.array([s.modes for s in systems])
-    k, m = int(states.max()), int(modes.max()) * fingertips
-    rows = {
-        name: np.zeros((count, fingertips, k))
-        for name in ("drop", "element_heat", "sensor_surface", "object_surface")
-    }
-    tables = HeatTables(
-        dt=dt,
-        states=states,
-        object_states=states - fingertips * sensor_states,
-        sensor_states=sensor_states,
-        modes=modes,
-        rates=np.zeros((count, k)),
-        ports=np.zeros((count, m, k)),
-        scale_real=np.zeros((count, pairs, k)),
-        scale_imag=np.zeros((count, pairs, k)),
-        gram=np.zeros((count, pairs, m, m), complex),
-        object_heat=np.zeros((count, k)),
-        air_loss=np.zeros((count, k)),
-        mean=np.array([s.mean for s in systems]),
-        reservoir=np.zeros((count, k)),
-        **rows,
-    )
+    sizes = np.empty((count, 5), np.int64)
+    for own, s in zip(sizes, systems, strict=True):
+        states, sensor_states = len(s.rates), s.orders.sensor
+        own[:] = states, states - fingertips * sensor_states, sensor_states, s.modes, s.mean
+    k, m = int(sizes[:, 0].max()), int(sizes[:, 3].max()) * fingertips
+    rows = np.zeros((count, TIPPED + 4 * fingertips + 2 * pairs + m, k))
+    tables = HeatTables(dt, sizes, rows, np.zeros((count, pairs, m, m), complex))
     for i, (system, film) in enumerate(zip(systems, air, strict=True)):
         n, p = len(system.rates), system.ports.shape[1]
         if system.air_loss is None:
@@ -110,8 +173,8 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
             np.imag(stepper.scale),
         )
         tables.gram[i, :, :p, :p] = stepper.gram
-        for name, table in rows.items():
-            table[i, :, :n] = getattr(aired, name)
+        for name in ("drop", "element_heat", "sensor_surface", "object_surface"):
+            getattr(tables, name)[i, :, :n] = getattr(aired, name)
         tables.object_heat[i, :n] = aired.object_heat
     return tables
 
@@ -173,7 +236,7 @@ def shift_thermostats(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _advance_rows(tables, network, state, conductance, difference, active, reading):
-    room = workspace(tables.rates.shape[1], tables.ports.shape[1])
+    room = workspace(tables.rows.shape[2], tables.gram.shape[3])
     for b in range(len(active)):
         if active[b]:
             advance_row(tables, network[b], state[b], conductance[b], difference[b], 0.0, room, reading, b)
@@ -185,19 +248,28 @@ def advance_row(tables, i, x, conductance, difference, around, room, reading, b)
     into row b of the reading. around: K, the surroundings above the object's first temperature; air_loss stays what
     would be lost to surroundings at that temperature. room: a workspace of the tables' size."""
     samples, fingertips = reading.drop.shape[1:]
-    n, p = tables.states[i], tables.modes[i]
+    n, object_states, sensor_states, p = (
+        tables.sizes[i, 0],
+        tables.sizes[i, 1],
+        tables.sizes[i, 2],
+        tables.sizes[i, 3],
+    )
+    rows, gram = tables.rows[i], tables.gram[i]
+    drop, heat, sensor, face = TIPPED, TIPPED + fingertips, TIPPED + 2 * fingertips, TIPPED + 3 * fingertips
+    real = TIPPED + 4 * fingertips
+    imag, ports = real + len(gram), real + 2 * len(gram)
     system = StepArrays(
         tables.dt,
-        tables.rates[i],
-        tables.ports[i],
-        tables.scale_real[i],
-        tables.scale_imag[i],
-        tables.gram[i],
-        tables.object_states[i],
-        tables.sensor_states[i],
+        rows[RATES],
+        rows[ports:],
+        rows[real:imag],
+        rows[imag:ports],
+        gram,
+        object_states,
+        sensor_states,
         p,
         fingertips,
-        tables.air_loss[i],
+        rows[AIR_LOSS],
         around,
     )
     weight, drive, flow = room.weight, room.drive, room.flow
@@ -208,28 +280,38 @@ def advance_row(tables, i, x, conductance, difference, around, room, reading, b)
     for k in range(samples):
         reading.air_loss[b, k] = advance(system, x, weight, drive, flow, room)
         for f in range(fingertips):
-            reading.drop[b, k, f] = _dot(tables.drop, i, f, x, n)
-            reading.element_heat[b, k, f] = _dot(tables.element_heat, i, f, x, n)
-            reading.sensor_rise[b, k, f] = _dot(tables.sensor_surface, i, f, x, n)
-            reading.object_rise[b, k, f] = _dot(tables.object_surface, i, f, x, n)
+            reading.drop[b, k, f] = _dot(rows[drop + f], x, n)
+            reading.element_heat[b, k, f] = _dot(rows[heat + f], x, n)
+            reading.sensor_rise[b, k, f] = _dot(rows[sensor + f], x, n)
+            reading.object_rise[b, k, f] = _dot(rows[face + f], x, n)
             reading.flow[b, k, f] = flow[f * p]
-        total = 0.0
-        for j in range(n):
-            total += tables.object_heat[i, j] * x[j]
-        reading.object_heat[b, k] = total
+        reading.object_heat[b, k] = _dot(rows[OBJECT_HEAT], x, n)
+
+
+@njit(cache=True, inline="always")
+def _fingertips(rows, pairs, ports):
+    """How many there are in tables of so many rows."""
+    return (rows - TIPPED - 2 * pairs - ports) // 4
+
+
+@njit(cache=True)
+def fingertips_of(tables):
+    """HeatTables.fingertips for compiled callers."""
+    return _fingertips(tables.rows.shape[1], tables.gram.shape[1], tables.gram.shape[3])
 
 
 @njit(cache=True, error_model="numpy")
 def forget_row(tables, i, x):
     """forget_field of one row for compiled callers: network i, state x (K,) in place."""
-    mean = x[tables.mean[i]]
-    x[: tables.object_states[i]] = 0.0
-    x[tables.mean[i]] = mean
+    place = tables.sizes[i, 4]
+    mean = x[place]
+    x[: tables.sizes[i, 1]] = 0.0
+    x[place] = mean
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _dot(rows, i, f, state, count):
+def _dot(row, state, count):
     total = 0.0
     for j in range(count):
-        total += rows[i, f, j] * state[j]
+        total += row[j] * state[j]
     return total

@@ -87,17 +87,20 @@ class Workspace(NamedTuple):
 @njit(cache=True)
 def workspace(states: int, ports: int) -> Workspace:
     """Room for systems of up to that many states and ports."""
+    # Few blocks: getting one takes as long as a loop over it.
+    long, short = np.zeros((4, states)), np.zeros((4, ports))
+    matrix = np.zeros((1 + ports, ports), np.complex128)
     return Workspace(
-        np.zeros(states),
-        np.zeros(states),
-        np.zeros(states),
-        np.zeros(states),
-        np.zeros(ports),
-        np.zeros(ports, np.complex128),
-        np.zeros((ports, ports), np.complex128),
-        np.zeros(ports),
-        np.zeros(ports),
-        np.zeros(ports),
+        long[0],
+        long[1],
+        long[2],
+        long[3],
+        short[0],
+        matrix[ports],
+        matrix[:ports],
+        short[1],
+        short[2],
+        short[3],
     )
 
 
@@ -130,6 +133,10 @@ def advance(
     for i in range(n):
         rate[i] = around * watched[i] - rates[i] * state[i]
         change[i] = 0.0
+    met = 0  # ports to solve for: none where nothing conducts
+    for j in range(m):
+        if conductance[j] > 0:
+            met = m
     watched_now, watched_lag = 0.0, 0.0
     for i in range(n):
         watched_now += watched[i] * state[i]
@@ -137,18 +144,18 @@ def advance(
         for i in range(n):
             real[i] = scale_real[q, i] * rate[i]
             imag[i] = scale_imag[q, i] * rate[i]
-        for j in range(m):
+        for j in range(met):
             heard = _hear(ports, j, real, imag, shared, shared + (j // modes) * own, own)
             weight = dt * conductance[j]
             gathered[j] = flow[j] - weight * heard
             for k in range(m):
                 matrix[j, k] = weight * gram[q, j, k]
             matrix[j, j] += 1.0
-        _solve(matrix, gathered, m)
+        _solve(matrix, gathered, met)
         for i in range(n):
             real[i] = rate[i]
             imag[i] = 0.0
-        for j in range(m):
+        for j in range(met):
             _push(ports, j, gathered[j], real, imag, shared, shared + (j // modes) * own, own)
             lagged[j] += (_LAGS[q] * gathered[j]).real
         a, b = WEIGHTS[q].real, WEIGHTS[q].imag

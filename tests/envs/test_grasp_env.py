@@ -135,6 +135,14 @@ def test_actions_beyond_the_bounds_are_clipped():
         assert same(a.step(np.array([-9.0, 5.0, 7.0]))[0], b.step(np.array([-1.0, 1.0, 1.0]))[0])
 
 
+def test_what_needs_a_reset_says_so():
+    env = gymnasium.make("thermograsp/Grasp-v0", material="glass", render_mode="rgb_array")
+    with pytest.raises(InvalidValueError, match="call reset before step"):
+        env.step(env.action_space.sample())
+    with pytest.raises(InvalidValueError, match="call reset before render"):
+        env.render()
+
+
 def test_bad_keywords_say_what_to_do():
     with pytest.raises(UnknownNameError, match="glass"):
         GraspEnv(material="glas")
