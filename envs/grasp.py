@@ -61,20 +61,18 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
     info: dict[str, Any] = {"success": False}
     if outcome is not None:
         info["success"] = bool(outcome.success[row])
-        for name, ended in outcome.reasons.items():
-            if ended[row]:
-                info[name] = True
+        if outcome.terminated[row]:
+            info |= {name: True for name, ended in outcome.reasons.items() if ended[row]}
         for name, values in outcome.told.items():
             info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
         if reading.error[row]:
             info["error"] = reading.error[row]
-    if isinstance(reading.truth, Truth):
-        info |= reading.truth.told(row)
-    else:
-        info |= {name: _item(reading.truth[name][row]) for name in reading.told}
-    randomized = reading.truth.get("randomized")
-    if randomized:
-        info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
+    truth = reading.truth
+    if isinstance(truth, Truth):
+        return info | truth.told(row)
+    info |= {name: _item(truth[name][row]) for name in reading.told}
+    if truth.get("randomized"):
+        info["randomized"] = {name: float(values[row]) for name, values in truth["randomized"].items()}
     return info
 
 
