@@ -77,6 +77,8 @@ class SimulatedPlant:
         self._drawn = [plain] * num_envs
         self._thermostats = Thermostats(num_envs, config.heater, config.sensor_temperatures, self.dt)
         self._rest = np.zeros(num_envs)
+        told = TOLD if self._thermostats.ideal else (*TOLD, "over_temperature")
+        self._told = (*told, "touched", "object_temperatures") if self._other_specs else told
         # Replaced, never written to: readings keep it.
         self._episodes = Episodes(
             config.mode,
@@ -263,12 +265,6 @@ class SimulatedPlant:
                 chosen = material(spec.material)
             things.append(config.thing(self._stack, chosen, replace(spec, material=None), drawn))
         return tuple(things)
-
-    @property
-    def _told(self) -> tuple[str, ...]:
-        """Names of what info tells."""
-        told = TOLD if self._thermostats.ideal else (*TOLD, "over_temperature")
-        return (*told, "touched", "object_temperatures") if self._other_specs else told
 
     def _truth(
         self, object_height: np.ndarray, step: HeatStep, scene: SceneHeatStep | None, error: tuple[str, ...]
