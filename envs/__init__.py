@@ -19,6 +19,7 @@ from .library import ObjectPreset, library_object, load_objects, objects
 from .mechanics import Mechanics, MechanicsState
 from .meshes import MeshShape, load_mesh
 from .observation import observation_space
+from .parts import Part
 from .randomization import (
     EVERYTHING,
     Delay,
@@ -90,6 +91,7 @@ __all__ = [
     "ObjectSpec",
     "ObjectTemperature",
     "Offset",
+    "Part",
     "PlantState",
     "Renderer",
     "Reservoir",

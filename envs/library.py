@@ -7,12 +7,14 @@ faces.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from thermograsp.errors import (
     InvalidValueError,
@@ -25,6 +27,7 @@ from thermograsp.files import cached_file
 
 from ..assets import asset
 from ..thermal import material
+from .parts import Part
 from .recipes import Solid, make
 from .reservoir import Reservoir
 from .scene import ObjectSpec
@@ -37,7 +40,7 @@ FILM = 500.0
 """W/(m2 K) between contents and wall, free convection in water: Nu = .59 Ra^(1/4) over 5 cm with 10 K between the two
 (Incropera et al., Fundamentals of Heat and Mass Transfer, equation 9.24)."""
 _GRAVITY = 9.81  # m/s2
-_KEYS = ("about", "recipe", "material", "temperature", "mass", "friction", "contents", "like")
+_KEYS = ("about", "recipe", "material", "temperature", "mass", "friction", "contents", "parts", "like")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +57,34 @@ class Contents:
 
 
 @dataclass(frozen=True)
+class PartPreset:
+    """A part of another material. material: a name. recipe and parameters: how its shape is made. position: m, of its
+    recipe's origin in the object's. Raises UnknownNameError and InvalidValueError."""
+
+    material: str
+    recipe: str
+    parameters: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    position: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        material(self.material)
+
+    def part(self, origin: np.ndarray) -> Part:
+        """As an ObjectSpec takes it. origin: (3,) m, where the object's recipe has its origin in the object's frame."""
+        solid = make(self.recipe, self.parameters)
+        if solid.surface is None:
+            x, y, z = (np.array(self.position, float) + origin).tolist()
+            return Part(self.material, solid.size, solid.shape, position=(x, y, z))  # pyright: ignore
+        x, y, z = self.position
+        return Part(self.material, mesh=str(_file(solid.surface)), position=(x, y, z))
+
+
+@dataclass(frozen=True)
 class ObjectPreset:
     """An object of the library. about: one line. recipe and parameters: how its shape is made, see recipes.py.
     material: a name. temperature: °C at first. mass: kg, None for what solid and contents weigh. friction: None for the
-    material's. contents: what it holds. Raises UnknownNameError and InvalidValueError."""
+    material's. contents: what it holds. parts: what of it is of other materials. Raises UnknownNameError and
+    InvalidValueError."""
 
     name: str
     about: str
@@ -68,6 +95,7 @@ class ObjectPreset:
     mass: float | None = None
     friction: float | None = None
     contents: Contents | None = None
+    parts: tuple[PartPreset, ...] = ()
 
     def __post_init__(self) -> None:
         material(self.material)
@@ -83,27 +111,32 @@ class ObjectPreset:
     def spec(self) -> ObjectSpec:
         """As the scene takes it; a mesh is written to the cache where it is not there yet. Contents count as mass
         spread evenly and as a well mixed reservoir behind a film on the wetted wall."""
-        solid, mass, inside = self.solid, self.mass, None
+        spec, mass, inside = self._empty(), self.mass, None
         if self.contents is not None:
             holds = material(self.contents.material)
-            weight = holds.density * solid.room(self.contents.level)
-            film = FILM * solid.wetted(self.contents.level)
+            weight = holds.density * self.solid.room(self.contents.level)
+            film = FILM * self.solid.wetted(self.contents.level)
             inside = Reservoir(weight * holds.specific_heat, film)
             if mass is None:
-                mass = _volume(solid) * material(self.material).density + weight
+                mass = spec.weight + weight
+        return replace(spec, mass=mass, reservoir=inside)
+
+    def _empty(self) -> ObjectSpec:
+        """Without contents, of its own weight."""
+        surface = self.solid.surface
         common: dict[str, Any] = {
-            "mass": mass,
             "friction": self.friction,
             "material": self.material,
             "temperature": self.temperature,
-            "reservoir": inside,
         }
-        if solid.surface is None:
-            return ObjectSpec(shape=solid.shape, size=solid.size, **common)
+        if surface is None:
+            parts = tuple(each.part(np.zeros(3)) for each in self.parts)
+            return ObjectSpec(shape=self.solid.shape, size=self.solid.size, parts=parts, **common)
         # the recipe's origin, where the fingers close, is not the middle of a cup with a handle
-        x, y = (solid.surface.vertices.max(axis=0) + solid.surface.vertices.min(axis=0))[:2] / 2
-        mesh = str(_file(solid.surface))
-        return ObjectSpec(shape="mesh", mesh=mesh, position=(_zero(x), _zero(y)), **common)
+        middle = (surface.vertices.max(axis=0) + surface.vertices.min(axis=0)) / 2
+        mesh, (x, y, _) = str(_file(surface)), middle.tolist()
+        parts = tuple(each.part(-middle) for each in self.parts)
+        return ObjectSpec(shape="mesh", mesh=mesh, position=(_zero(x), _zero(y)), parts=parts, **common)
 
     @property
     def grip_force(self) -> float:
@@ -160,10 +193,17 @@ def _preset(name: str, table: Mapping[str, Any]) -> ObjectPreset:
             entry.get("mass"),
             entry.get("friction"),
             Contents(**contents) if contents else None,
+            tuple(_part(**part) for part in entry.get("parts", ())),
         )
     except (ThermograspError, TypeError) as error:
         raise InvalidValueError(f"{name}: {error}") from None
     return preset
+
+
+def _part(
+    *, material: str, recipe: str, position: Sequence[float] = (0.0, 0.0, 0.0), **shape: Any
+) -> PartPreset:
+    return PartPreset(material, recipe, MappingProxyType(shape), tuple(position))
 
 
 def _resolved(name: str, table: Mapping[str, Any], seen: tuple[str, ...]) -> dict[str, Any]:
@@ -174,12 +214,6 @@ def _resolved(name: str, table: Mapping[str, Any], seen: tuple[str, ...]) -> dic
     if "like" not in entry:
         return entry
     return _resolved(entry["like"], table, (*seen, name)) | entry
-
-
-def _volume(solid: Solid) -> float:
-    if solid.surface is not None:
-        return solid.surface.volume
-    return ObjectSpec(shape=solid.shape, size=solid.size).volume
 
 
 def _zero(value: float) -> float:

@@ -22,7 +22,8 @@ _UNITS = ((0.001, "millimetres"), (0.01, "centimetres"), (0.0254, "inches"))
 class MeshShape:
     """A solid read from a file, scaled to metres, its bounding box centred on the origin.
 
-    extents: m, (x, y, z); x is the thickness between the fingers at yaw 0. volume: m3. centre_of_mass: m.
+    origin: m, that of the file's coordinates in the shape's frame. extents: m, (x, y, z); x is the thickness between
+    the fingers at yaw 0. volume: m3. centre_of_mass: m.
     unit_inertia: m2, (3, 3) about the centre of mass, for a mass of 1 kg of uniform density.
     hulls: (vertices (n, 3) m, triangles (m, 3)) of the convex pieces that collide. surface: the same of the solid
     itself, outward, its cavities included.
@@ -32,6 +33,7 @@ class MeshShape:
     path: str
     scale: float
     pieces: int
+    origin: tuple[float, float, float] = field(compare=False)
     extents: tuple[float, float, float] = field(compare=False)
     volume: float = field(compare=False)
     centre_of_mass: tuple[float, float, float] = field(compare=False)
@@ -63,11 +65,13 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
     surface = read_surface(str(path))
     mesh = trimesh.Trimesh(surface.vertices * scale, surface.faces, process=False)
     _check_size(path, mesh.extents, scale)
-    mesh.apply_translation(-mesh.bounds.mean(axis=0))
+    origin = -mesh.bounds.mean(axis=0)
+    mesh.apply_translation(origin)
     return MeshShape(
         path=str(path),
         scale=float(scale),
         pieces=int(pieces),
+        origin=_triple(origin),
         extents=_triple(mesh.extents),
         volume=float(mesh.volume),
         centre_of_mass=_triple(mesh.center_mass),

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import mujoco
 import numpy as np
@@ -22,8 +22,12 @@ from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 from ..thermal import Material, material
 from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .meshes import MeshShape, load_mesh
+from .parts import Part, checked_size
 from .reservoir import Reservoir
 from .solver_settings import SHIPPED, SolverSettings
+
+if TYPE_CHECKING:
+    from .assembly import Assembly
 
 TIPS = ("left", "right")
 MAX_OPENING = 0.085  # m, between the pads
@@ -56,6 +60,8 @@ class ObjectSpec:
     thickness) m of square plates without mass glued on where the pads meet it, None for none. temperature: °C at first,
     None for the scene's. reservoir: what keeps it hot or cold, None for nothing. material: a name or a Material whose
     density and friction hold where nothing else is said; environments take it where they are not told another one.
+    parts: what of it is of other materials (T mode); it has a material of its own then and no density, its mass and
+    inertia are those of all, and its friction is that of what the pads meet.
     Raises InvalidValueError, UnknownNameError (shape, material), or MeshError (file).
     """
 
@@ -75,6 +81,7 @@ class ObjectSpec:
     temperature: float | None = None
     reservoir: Reservoir | None = None
     material: str | Material | None = None
+    parts: tuple[Part, ...] = ()
 
     def __post_init__(self) -> None:
         if self.shape not in _SHAPES:
@@ -94,20 +101,20 @@ class ObjectSpec:
         for value in self.position:
             finite("position", value)
         set_ = object.__setattr__
-        set_(self, "size", tuple(float(s) for s in (self.geometry.extents if self.mesh else self.size)))
-        if len(self.size) != 3:
-            raise InvalidValueError(f"size {self.size}: give full extents (x, y, z) in m")
-        for value in self.size:
-            positive("size", value)
-        x, y, z = self.size
-        if (self.shape == "sphere" and not x == y == z) or (self.shape == "cylinder" and x != y):
-            raise InvalidValueError(
-                f"size {self.size} of a {self.shape}: extents across its axis must be equal"
-            )
+        extents = self.geometry.extents if self.mesh else self.size
+        set_(self, "size", checked_size(self.shape, extents))
         if self.temperature is not None:
             finite("temperature (°C)", self.temperature)
         if self.material is not None:
             material(self.material)
+        set_(self, "parts", tuple(self.parts))
+        if self.parts:
+            if self.material is None or self.density is not None or self.elements:
+                raise InvalidValueError(
+                    f"parts in an object of material {self.material!r}, density {self.density} kg/m3 and elements "
+                    f"{self.elements}: give the material that is around them, no density, and no elements"
+                )
+            _ = self.assembly  # checks them
         for value in self.elements or ():
             positive("elements (side, thickness)", value)
         if self.width > MAX_OPENING - CLEARANCE:
@@ -122,6 +129,29 @@ class ObjectSpec:
         if self.mesh is None:
             raise InvalidValueError(f"object {self.name!r} is a {self.shape}, not a mesh")
         return load_mesh(self.mesh, self.scale, self.pieces)
+
+    @property
+    def assembly(self) -> Assembly:
+        """Its parts together, itself the first (cached)."""
+        from .assembly import assembly  # nothing that parts need is loaded without them
+
+        return assembly(self.shape, self.size, self.mesh, self.scale, self.pieces, self.parts)
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Its own, where it has one, and its parts'."""
+        own = () if self.material is None else (material(self.material),)
+        return (*own, *(part.made_of for part in self.parts))
+
+    @property
+    def touched(self) -> Material | None:
+        """What pads meet that close on it: its own material, or the part's that most of both faces meet."""
+        if not self.parts:
+            return None if self.material is None else material(self.material)
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        x, y = self.position
+        middle = np.array([-x * cos - y * sin, x * sin - y * cos, self.grasp_height - self.size[2] / 2])
+        return self.materials[self.assembly.touched(middle, np.array([cos, -sin, 0.0]), sum(self.size))]
 
     @property
     def hulls(self) -> int:
@@ -153,35 +183,34 @@ class ObjectSpec:
 
     @property
     def weight(self) -> float:
-        """kg, the mass given or that of the density, given or the material's; else 0.1."""
+        """kg, the mass given or that of the density, given or the materials'; else 0.1."""
         if self.mass is not None:
             return self.mass
+        if self.parts:
+            return self.assembly.weight(self.materials)
         if self.density is not None:
             return self.density * self.volume
         return DEFAULT_MASS if self.material is None else material(self.material).density * self.volume
 
     @property
     def sliding_friction(self) -> float:
-        """Of every contact: what is given, else the material's, else 0.8."""
+        """Of every contact: what is given, else that of the material that is touched, else 0.8."""
         if self.friction is not None:
             return self.friction
-        known = None if self.material is None else material(self.material).friction
-        return DEFAULT_FRICTION if known is None else known
+        touched = self.touched
+        return DEFAULT_FRICTION if touched is None or touched.friction is None else touched.friction
 
     @property
     def inertia(self) -> tuple[np.ndarray, np.ndarray]:
-        """Centre of mass (3,) m and inertia matrix about it (3, 3) kg m2, in the object's frame, uniform density."""
+        """Centre of mass (3,) m and inertia matrix about it (3, 3) kg m2, in the object's frame, of uniform
+        materials."""
+        if self.parts:
+            centre, inertia = self.assembly.inertia(self.materials)
+            return centre, self.weight / self.assembly.weight(self.materials) * inertia
         if self.shape == "mesh":
             shape = self.geometry
             return np.array(shape.centre_of_mass), self.weight * np.array(shape.unit_inertia)
-        x, y, z = (s * s for s in self.size)
-        across, along = {
-            "box": ((y + z) / 12, (x + y) / 12),
-            "cylinder": (x / 16 + z / 12, x / 8),
-            "sphere": (x / 10, x / 10),
-        }[self.shape]
-        second = (x + z) / 12 if self.shape == "box" else across
-        return np.zeros(3), self.weight * np.diag((across, second, along))
+        return np.zeros(3), self.weight * unit_inertia(self.shape, self.size)
 
     @property
     def pose(self) -> np.ndarray:
@@ -199,9 +228,21 @@ class ObjectSpec:
         return max(self.size[2] / 2, lowest, self.size[2] + CLEARANCE - REACH)
 
 
+def unit_inertia(shape: str, size: tuple[float, float, float]) -> np.ndarray:
+    """(3, 3) m2 about its centre of a uniform kilogram: a box, cylinder or sphere of that size m."""
+    x, y, z = (s * s for s in size)
+    across, along = {
+        "box": ((y + z) / 12, (x + y) / 12),
+        "cylinder": (x / 16 + z / 12, x / 8),
+        "sphere": (x / 10, x / 10),
+    }[shape]
+    second = (x + z) / 12 if shape == "box" else across
+    return np.diag((across, second, along))
+
+
 def scaled(spec: ObjectSpec, size: float = 1.0, *, mass: float = 1.0, friction: float = 1.0) -> ObjectSpec:
-    """The object with its size, mass and friction times these factors. A larger one of given density is heavier; one of
-    given mass is not."""
+    """The object with its size, mass and friction times these factors. A larger one of given density or materials is
+    heavier; one of given mass is not."""
     if size == mass == friction == 1.0:
         return spec
     extents = (
@@ -209,6 +250,9 @@ def scaled(spec: ObjectSpec, size: float = 1.0, *, mass: float = 1.0, friction: 
     )
     heavier = {"density": spec.density * mass} if spec.density is not None else {"mass": spec.weight * mass}
     rougher = {"friction": spec.sliding_friction * friction}
+    if spec.parts:
+        extents |= {"scale": spec.scale * size, "parts": tuple(part.scaled(size) for part in spec.parts)}
+        heavier = {"mass": spec.weight * mass * (1.0 if spec.mass is not None else size**3)}
     return replace(spec, **extents, **heavier, **rougher)
 
 

@@ -263,7 +263,7 @@ class SimulatedPlant:
             chosen = choices[int(rng.integers(len(choices)))]
             if spec.material is not None:
                 chosen = material(spec.material)
-            things.append(config.thing(self._stack, chosen, replace(spec, material=None), drawn))
+            things.append(config.thing(self._stack, chosen, spec, drawn))
         return tuple(things)
 
     def _truth(

@@ -227,11 +227,17 @@ class SimulationConfig:
         self, stack: SensorStack, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]
     ) -> Thing:
         """The object, of that material or, where none was asked for, of its own: the material's density and friction
-        where the shape gives none."""
+        where the shape gives none. Raises InvalidValueError for parts in mode O."""
         if spec.material is not None:
             chosen = material(spec.material) if self.material is None else chosen
-            spec = replace(spec, material=None)
-        if spec.mass is None and spec.density is None:
+            spec = replace(spec, material=chosen if spec.parts else None)
+        if spec.parts:
+            if self.mode == "O":
+                raise InvalidValueError(
+                    f"object {spec.name!r} has parts of other materials, which mode 'O' cannot tell: use mode 'T'"
+                )
+            spec = replace(spec, friction=spec.sliding_friction)
+        elif spec.mass is None and spec.density is None:
             spec = replace(spec, density=chosen.density)
         if spec.friction is None and chosen.friction is not None:
             spec = replace(spec, friction=chosen.friction)

@@ -82,11 +82,16 @@ class Thing:
         return width, max(area / width, side), x
 
     @cached_property
+    def touched(self) -> Material:
+        """What the pads meet: its material, or a part's."""
+        return self.spec.touched or self.material if self.spec.parts else self.material
+
+    @cached_property
     def joint(self) -> Joint:
         """The opening contact's faces: the lapped element on the object (T) or on the thermostat (O)."""
         if self.mode == "O":
             return joint(LAPPED_ALUMINA, THERMOSTAT_FACE)
-        surface = Surface.of(self.material)
+        surface = Surface.of(self.touched)
         return joint(LAPPED_ALUMINA, replace(surface, roughness=surface.roughness * self.roughness_factor))
 
     @cached_property
@@ -140,7 +145,7 @@ class Thing:
     @cached_property
     def solid(self) -> Solid | None:
         """What its heat flows in, where that is no plate."""
-        if self.mode == "O" or not (self.anywhere or self.spec.mesh):
+        if self.mode == "O" or not (self.anywhere or self.spec.mesh or self.spec.parts):
             return None
         from .object_solids import object_solid
 
@@ -148,6 +153,8 @@ class Thing:
         shape = ObjectSpec(
             shape=spec.shape, size=spec.size, mesh=spec.mesh, scale=spec.scale, pieces=spec.pieces
         )
+        if spec.parts:
+            shape = replace(shape, material=self.material, parts=spec.parts)
         return object_solid(shape, self.material)
 
     @property
@@ -163,6 +170,6 @@ class Thing:
     @cached_property
     def crushing_force(self) -> float:
         """N on one pad at which the object breaks, by the pad's mean pressure; inf for what does not."""
-        if self.material.crushing_stress is None:
+        if self.touched.crushing_stress is None:
             return np.inf
-        return self.material.crushing_stress * float(self.contact(np.array(NOMINAL_FORCE)).pad)
+        return self.touched.crushing_stress * float(self.contact(np.array(NOMINAL_FORCE)).pad)

@@ -86,13 +86,16 @@ class Touches:
 
 def first_touches(thing: Thing, demand: Demand, cache: bool) -> Touches | None:
     """With a patch where each fingertip is to meet the object; None where a line through the grasp's middle meets no
-    surface (a ring's hole), so that a plate stands for the object."""
+    surface (a ring's hole), so that a plate stands for the object. Raises MeshError there for one with parts, which no
+    plate can stand for."""
     contacts = tuple(range(thing.fingertips))
     patches = tuple(_grasped(thing, side) for side in (-1, 1)[: thing.fingertips])
     film = thing.spec.reservoir.conductance if thing.spec.reservoir else 0.0
     try:
         body = _body(_solid(thing), patches, thing.stack, demand, thing.fingertips, film, cache)
     except MeshError:
+        if thing.spec.parts:
+            raise
         return None
     return Touches(thing, body, contacts, demand, film, cache)
 

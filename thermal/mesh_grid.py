@@ -115,10 +115,11 @@ def grid_axes(
     half_widths: np.ndarray,
     aligned: np.ndarray,
     sags: np.ndarray,
+    layers: np.ndarray,
     gridding: MeshGridding,
 ) -> tuple[GridAxis, GridAxis, GridAxis]:
     """The axes around triangles (F, 3, 3) m and fine at the patches, all in the grid's frame. sags: m, of the patches'
-    surfaces below their centres."""
+    surfaces below their centres. layers: m, thickness of what lies on another material there."""
     corners = triangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     largest = max(gridding.largest, float((high - low).max()) / 40)
@@ -126,15 +127,15 @@ def grid_axes(
     for axis in range(3):
         fine: dict[float, float] = {}
         breaks = [low[axis], high[axis], *_planes(triangles, axis)]
-        for centre, normal, half, along, sag in zip(
-            centres, normals, half_widths, aligned, sags, strict=True
+        for centre, normal, half, along, sag, layer in zip(
+            centres, normals, half_widths, aligned, sags, layers, strict=True
         ):
             at = float(np.clip(centre[axis], low[axis], high[axis]))
             if along and abs(normal[axis]) > 0.5:
                 fine[at] = gridding.depth
                 breaks.append(at)
-                layers = np.arange(1, _SAG_CELLS // 2 + 1) * (2 * sag / _SAG_CELLS)
-                for below in layers[: len(layers) * (sag > _FLAT)]:
+                steps = round(_SAG_CELLS / 2 * (1 + layer / sag)) if sag > _FLAT else 0
+                for below in np.arange(1, steps + 1) * (2 * sag / _SAG_CELLS):
                     place = float(np.clip(at - np.sign(normal[axis]) * below, low[axis], high[axis]))
                     fine[place] = max(sag / _SAG_CELLS, gridding.depth)
                 continue
@@ -172,7 +173,8 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
     edges = (axes[0].edges, axes[1].edges, axes[2].edges)
     parts = [snapped(part.triangles @ frame.T, edges) for part in solid.parts]
     volumes, areas = zip(*(cut_mesh(part, edges) for part in parts), strict=True)
-    joints = _joints(parts, edges)
+    outer = [n for n, host in enumerate(solid.hosts or (None,) * len(parts)) if host is None]
+    joints = _joints([parts[n] for n in outer], edges)
     conductivities = [part.material.conductivity for part in solid.parts]
     capacities = [part.material.volumetric_heat_capacity for part in solid.parts]
     cell = np.multiply.outer(np.multiply.outer(*(np.diff(e) for e in edges[:2])), np.diff(edges[2]))
@@ -186,7 +188,7 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
     for axis in range(3):
         lower = index[_cut(axis, slice(None, -1))]
         upper = index[_cut(axis, slice(1, None))]
-        within = np.sum([area[axis] for area in areas], axis=0) + joints[axis]
+        within = np.sum([areas[n][axis] for n in outer], axis=0) + joints[axis]
         open_area = np.minimum(within, _full(edges, axis))[_cut(axis, slice(1, -1))]
         joined = (lower >= 0) & (upper >= 0) & (open_area > 0)
         a, b = lower[joined], upper[joined]

@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 
 _PLACES = 512  # on each surface
-_BENEATH = 20e-6  # m, at most: faces that nearly coincide are as good as one
-_NEARLY_ALL = 0.99  # of the places
+BENEATH = 20e-6  # m, at most: faces that nearly coincide are as good as one
+NEARLY_ALL = 0.99  # of the places
 _TURN = np.linalg.qr(np.array([[0.9, 0.3, 0.1], [-0.2, 0.8, 0.5], [0.4, -0.6, 0.7]]))[0]
 """A turn that no object's edges are along."""
 _STEPS = 0.7548776662466927, 0.5698402909980532
@@ -39,8 +39,8 @@ def hosts(within: np.ndarray) -> tuple[int | None, ...] | None:
     none. None in all where one lies partly in an earlier one, or encloses it."""
     found: list[int | None] = []
     for i in range(len(within)):
-        inside = within[i, :i] >= _NEARLY_ALL
-        apart = (within[i, :i] <= 1 - _NEARLY_ALL) & (within[:i, i] <= 1 - _NEARLY_ALL)
+        inside = within[i, :i] >= NEARLY_ALL
+        apart = (within[i, :i] <= 1 - NEARLY_ALL) & (within[:i, i] <= 1 - NEARLY_ALL)
         if not np.all(inside | apart):
             return None
         found.append(int(np.flatnonzero(inside)[-1]) if inside.any() else None)
@@ -64,7 +64,7 @@ def _places(triangles: np.ndarray) -> np.ndarray:
     twice = np.linalg.norm(normals, axis=1)
     volume = float(np.einsum("fi,fi->", a - a.mean(axis=0), normals)) / 6
     # a quarter of a sheet's thickness at most
-    beneath = min(_BENEATH, volume / twice.sum())
+    beneath = min(BENEATH, volume / twice.sum())
     upto = np.cumsum(twice)
     face = np.searchsorted(upto, (np.arange(_PLACES) + 0.5) / _PLACES * upto[-1])
     u, v = (np.mod(0.5 + step * np.arange(_PLACES), 1.0) for step in _STEPS)

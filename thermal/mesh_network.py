@@ -20,7 +20,7 @@ from thermograsp.files import cached_arrays
 
 from .mesh_cut import enclosed
 from .mesh_grid import MeshGrid, MeshGridding, grid_axes, grid_frame, mesh_grid, snapped
-from .mesh_patch import PatchOnGrid, patch_on_grid, place_patch
+from .mesh_patch import PatchOnGrid, layer_beneath, patch_on_grid, place_patch
 from .mesh_patterns import PatchPatterns, uniform_pattern
 from .mesh_solid import Solid, SurfacePatch, checked, surface_patches
 from .mesh_solve import conduct, solve_shifted
@@ -109,6 +109,7 @@ def _gridded(
         np.array([p.half_width for p in placed]),
         np.array([p.aligned for p in placed]),
         np.array([p.sag for p in placed]),
+        np.array([layer_beneath(triangles, p) for p in placed]),
         gridding,
     )
     grid = mesh_grid(body, frame, axes)

@@ -60,7 +60,7 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
     sides = np.stack((first, np.cross(normal, first)))
     # where the very middle is a hole, the surface beside it
     for middle in half * np.array([[0, 0], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]]):
-        depth = _crossings(triangles, centre + middle @ sides, normal)
+        depth = crossings(triangles, centre + middle @ sides, normal)
         if len(depth):
             placed = centre + depth[np.argmin(np.abs(depth))] * normal
             return PlacedPatch(
@@ -71,6 +71,14 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
         f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.normal)} does not meet the "
         "surface: give a point on it and the outward normal there"
     )
+
+
+def layer_beneath(triangles: np.ndarray, patch: PlacedPatch) -> float:
+    """m from the patch's middle down to the first boundary of materials, 0 where there is none within half a side.
+    triangles: (F, 3, 3) m of all parts in the grid's frame."""
+    below = -crossings(triangles, patch.centre, patch.normal)
+    below = below[(below > _ABOVE) & (below < patch.half_width)]
+    return float(below.min()) if len(below) else 0.0
 
 
 def patch_on_grid(
@@ -122,13 +130,13 @@ def _sag(triangles: np.ndarray, centre: np.ndarray, normal: np.ndarray, sides: n
     """m from the centre down to the lowest surface at the corners and the edges' middles, at most half a side."""
     lowest = 0.0
     for place in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-        below = -_crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
+        below = -crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
         nearest = float(below[np.argmin(np.abs(below))]) if len(below) else 0.0
         lowest = max(lowest, nearest if nearest < np.linalg.norm(sides[0]) else 0.0)
     return lowest
 
 
-def _crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
+def crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Distances m along a line at which it leaves through faces that look its way (Moller & Trumbore, J. Graph. Tools
     2, 1997)."""
     a = triangles[:, 0]

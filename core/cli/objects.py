@@ -42,7 +42,7 @@ def _row(preset: ObjectPreset, row: Mapping[str, Any]) -> tuple[str, ...]:
     return (
         preset.name,
         preset.about,
-        preset.material,
+        " + ".join((preset.material, *(part.material for part in preset.parts))),
         f"{1e3 * row['width_m']:.1f}",
         f"{1e3 * row['mass_kg']:.0f}",
         f"{preset.temperature:.0f}",
@@ -63,5 +63,6 @@ def _document(preset: ObjectPreset) -> dict[str, Any]:
         "temperature_degC": preset.temperature,
         "grip_force_N": preset.grip_force,
         "contents": preset.contents.material if preset.contents else None,
+        "parts": [part.material for part in preset.parts],
         "mesh": spec.mesh,
     }

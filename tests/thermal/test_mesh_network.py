@@ -124,6 +124,7 @@ def test_a_linear_field_along_a_sheet_thinner_than_its_cells_is_met_exactly():
         np.array([0.0045]),
         np.array([False]),
         np.zeros(1),
+        np.zeros(1),
         coarse,
     )
     grid = mesh_grid(sheet, np.eye(3), axes)

@@ -4,11 +4,14 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.errors import InvalidValueError
+from thermograsp.thermal.column import Column, element_slabs
+from thermograsp.thermal.laplace import invert
 from thermograsp.thermal.mesh_press import press_body
-from thermograsp.thermal.mesh_solid import SurfacePatch, solid
+from thermograsp.thermal.mesh_solid import Solid, SolidPart, SurfacePatch, solid
 
 CUBE = (0.04, 0.04, 0.04)
 TOP = SurfacePatch((0, 0, 0.02), (0, 0, 1))
+NAMES = "rubber", "stainless_steel"
 
 
 def of(mesh, material):
@@ -52,6 +55,43 @@ def test_a_cup_s_wall_is_a_layer_at_first_and_a_shell_later():
     late = felt.t >= 0.05
     assert np.abs(felt.temperature_drop - plate.temperature_drop)[late].max() < 0.05  # 1 %, and it is curved
     assert np.abs(felt.temperature_drop - layer.temperature_drop)[late].max() > 0.3
+
+
+def layered_drop(t: np.ndarray, layers) -> np.ndarray:
+    """K of 12 K at t (n,) s, of one dimension: layers of (m, material), the touched one first, adiabatic behind."""
+    stack = thermal.sensor("seed")
+
+    def impedance(s: np.ndarray) -> np.ndarray:
+        admittance = np.zeros_like(s)
+        for depth, material in reversed(layers):
+            root = np.sqrt(s / material.diffusivity)
+            own, along = material.conductivity * root, np.tanh(root * depth)
+            admittance = own * (admittance + own * along) / (own + admittance * along)
+        return 1 / admittance
+
+    contact = 1 / (1e4 * 81e-6)
+    column = Column("T", element_slabs(stack), stack.sensed, stack.face_area, contact, impedance, 81e-6)
+    return 12.0 * invert(column.transform, t)[:, 0]
+
+
+@pytest.mark.parametrize("sleeve", [0.0005, 0.0002])
+def test_a_steel_core_in_a_sleeve_of_rubber_is_layered_at_first(sleeve):
+    """While rubber's diffusivity * time is below 1/4000 of the contact's area (.28 s), in which heat passes .2 mm of it
+    but not .5 mm; after that heat spreads sideways."""
+    rubber, steel = thermal.material("rubber"), thermal.material("stainless_steel")
+    outer, inner = (trimesh.creation.box(np.array(CUBE) - 2 * depth) for depth in (0.0, sleeve))
+    parts = SolidPart(outer.vertices, outer.faces, rubber), SolidPart(inner.vertices, inner.faces, steel)
+    felt = press_body(Solid(parts), TOP, tolerance=0.025, cache=False, seconds=4.0)
+    layers = [(sleeve, rubber), (CUBE[2] - 2 * sleeve, steel), (sleeve, rubber)]
+    first = (felt.t >= 0.05) & (rubber.diffusivity * felt.t < 81e-6 / 4000)
+    assert first.sum() > 10
+    assert np.abs(felt.temperature_drop[first] - layered_drop(felt.t[first], layers)).max() < 0.03
+    plain = [press_body(of(outer, name), TOP, tolerance=0.025, cache=False, seconds=4.0) for name in NAMES]
+    between = felt.t > 1.0
+    rubbery, steely = (curve.temperature_drop[between] for curve in plain)
+    assert np.all(felt.temperature_drop[between] > rubbery) and np.all(
+        felt.temperature_drop[between] < steely
+    )
 
 
 def test_air_cools_by_the_true_surface():
