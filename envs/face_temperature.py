@@ -125,7 +125,7 @@ class FaceTemperature:
         mine.owner[chosen] = state.owner
 
     def _field(self, thing: Thing) -> FaceField:
-        made_of, thickness = thing.material, thing.plate[2] / thing.fingertips
+        made_of, thickness = thing.touched, thing.plate[2] / thing.fingertips
         behind = Slab(thickness, made_of.conductivity, made_of.volumetric_heat_capacity)
         return _field_of(self._stack, behind, self._dt)
 

@@ -40,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.report.demo_page import demo_page
     from thermograsp.report.demo_runs import run_mode
     from thermograsp.report.demo_tables import Settings, versions
+    from thermograsp.report.face_maps import touches
     from thermograsp.report.pressure_maps import presses
 
     if args.seed < 0:
@@ -55,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         files.append(out / f"{grasp.recording.material}_{grasp.mode}.csv")
         write_csv(files[-1], grasp.recording.columns)
     page = out / "index.html"
-    write_text(page, demo_page(runs, presses(), Settings(seconds, args.seed, _command(args))))
+    write_text(page, demo_page(runs, presses(), touches(), Settings(seconds, args.seed, _command(args))))
     _print(output, runs)
     if runs[0].no_picture:
         output.warn(f"no pictures: {runs[0].no_picture}")

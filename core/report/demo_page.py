@@ -17,6 +17,7 @@ from thermograsp.envs.grasp_task import LIFTED
 from thermograsp.report.curves import Curve, Mark, chart
 from thermograsp.report.demo_runs import COLOURS, FILMED, Grasp, ModeRun
 from thermograsp.report.demo_tables import ABOUT, Settings, details, numbers
+from thermograsp.report.face_maps import Touch, face_section
 from thermograsp.report.page_style import style_sheet
 from thermograsp.report.pressure_maps import Press, pressure_section
 from thermograsp.report.style import readable
@@ -24,7 +25,9 @@ from thermograsp.report.style import readable
 _STILL_WIDTH = 380  # pixels
 
 
-def demo_page(runs: Sequence[ModeRun], pressed: Sequence[Press], settings: Settings) -> str:
+def demo_page(
+    runs: Sequence[ModeRun], pressed: Sequence[Press], touched: Sequence[Touch], settings: Settings
+) -> str:
     """The page's HTML."""
     order = np.argsort([grasp.effusivity for grasp in runs[0].grasps], kind="stable").tolist()
     stills = next((run.stills for run in runs if run.stills), ())
@@ -39,6 +42,7 @@ def demo_page(runs: Sequence[ModeRun], pressed: Sequence[Press], settings: Setti
         _charts(runs, order, settings),
         _film(stills, next((run.no_picture for run in runs), "")),
         pressure_section(pressed),
+        face_section(touched),
         numbers(runs, order),
         details(runs, settings),
         "</main></body></html>",
