@@ -13,6 +13,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import trimesh
 from matplotlib.colors import to_rgb
 from PIL import Image, ImageDraw, ImageFont
 
@@ -48,6 +49,7 @@ _OF_FOOD = {
     "cheese": "#ecbf55",
 }
 _OTHER = "#c8ccd2"
+_STANDING_OUT = 2e-4  # m
 
 
 def main() -> int:
@@ -74,7 +76,7 @@ def main() -> int:
 
 def picture(preset: ObjectPreset) -> Image.Image:
     """One object on white, from a corner."""
-    body = object_solid(preset.spec(), material(preset.material)).parts[0]
+    parts = object_solid(preset.spec(), material(preset.material)).parts
     spec = mujoco.MjSpec()
     spec.visual.global_.offwidth = spec.visual.global_.offheight = CELL * FINER
     spec.visual.headlight.ambient, spec.visual.headlight.diffuse = (0.35,) * 3, (0.35,) * 3
@@ -83,11 +85,15 @@ def picture(preset: ObjectPreset) -> Image.Image:
         name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
         rgb1=(1, 1, 1), rgb2=(1, 1, 1), width=16, height=16,
     )  # fmt: skip
-    spec.add_mesh(name="object", uservert=body.vertices.ravel(), userface=body.faces.ravel())
-    geom = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, contype=0, conaffinity=0)
-    geom.meshname = "object"
-    family = material(preset.material).family
-    geom.rgba = (*to_rgb(_OF_FOOD.get(preset.material, _COLOURS.get(family, _OTHER))), 1.0)
+    for number, part in enumerate(parts):
+        surface = trimesh.Trimesh(part.vertices, part.faces, process=False)
+        # parts that come to the surface stand out of it a little, so as to be seen
+        vertices = part.vertices + number * _STANDING_OUT * surface.vertex_normals
+        spec.add_mesh(name=f"part {number}", uservert=vertices.ravel(), userface=part.faces.ravel())
+        geom = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, contype=0, conaffinity=0)
+        geom.meshname = f"part {number}"
+        colour = _OF_FOOD.get(part.material.name, _COLOURS.get(part.material.family, _OTHER))
+        geom.rgba = (*to_rgb(colour), 1.0)
     spec.worldbody.add_light(
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
         dir=(-1.0, -0.3, -0.9),
@@ -100,7 +106,7 @@ def picture(preset: ObjectPreset) -> Image.Image:
     camera = mujoco.MjvCamera()
     camera.lookat[:] = 0.0
     camera.azimuth, camera.elevation = 212.0, -26.0
-    camera.distance = 1.55 * float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
+    camera.distance = 1.55 * float(np.linalg.norm(np.ptp(parts[0].vertices, axis=0)))
     with mujoco.Renderer(model, CELL * FINER, CELL * FINER) as renderer:
         renderer.update_scene(data, camera)
         return Image.fromarray(renderer.render()).resize((CELL, CELL), Image.Resampling.LANCZOS)
