@@ -118,7 +118,7 @@ def _set_node(tables, network, x, above):
         x[i] += change * tables.rows[network, RESERVOIR, i]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _mean_contact(law, normal, one, f):
     """Writes conductance W/(m2 K) and area m2, whose product is the mean of their products over the substeps; the area
     is the mean over those that press. Returns whether any does."""

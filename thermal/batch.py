@@ -242,7 +242,7 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
             advance_row(tables, network[b], state[b], conductance[b], difference[b], 0.0, room, reading, b)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def advance_row(tables, i, x, conductance, difference, around, room, reading, b):
     """advance_heat of one row for compiled callers: network i, state x (K,) in place, conductance and difference (F,),
     into row b of the reading. around: K, the surroundings above the object's first temperature; air_loss stays what

@@ -92,7 +92,7 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
     return law[0]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def contact(law, force):
     """(area m2 on the face, its force N) at a normal force N > 0 on the pad."""
     if law.shape == FLAT:
@@ -110,7 +110,7 @@ def contact(law, force):
     return half_face * half_face * _square_area(u), stiffness * half_face**4 * _square_load(u)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def conductance(law, pressure):
     """W/(m2 K) at a pressure Pa > 0, solid spots and gas together."""
     log_pressure = math.log(pressure)
@@ -123,7 +123,7 @@ def conductance(law, pressure):
     return solid + law.gas / (law.roughness * separation + law.jump)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _separation(log_share):
     y = math.sqrt(-min(max(log_share, _LOG_LEAST), _LOG_MOST))
     z = (2 * y - LOW - HIGH) / (HIGH - LOW)
@@ -133,7 +133,7 @@ def _separation(log_share):
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _square_area(u):
     if u <= 1.0:
         return math.pi * u
@@ -142,7 +142,7 @@ def _square_area(u):
     return math.pi * u - 4 * (u * math.acos(1 / math.sqrt(u)) - math.sqrt(u - 1))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _square_load(u):
     if u <= 1.0:
         return math.pi / 2 * u * u
@@ -153,7 +153,7 @@ def _square_load(u):
     return math.pi / 2 * u * u - 2 * u * u * turned + 2 * root * u + 4 / 3 * root**3
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _square_inverse(load):
     narrow = math.sqrt(2 * load / math.pi)
     if load <= math.pi / 2:

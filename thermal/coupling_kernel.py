@@ -1,7 +1,9 @@
 """The step of coupling.py compiled row by row: a row's result does not depend on how many rows there are.
 
 States of the object come first and see every contact port; then each fingertip's own, which see only its own ports.
-Sums may be reassociated by the compiler (fastmath "reassoc"), the same way for every row.
+Sums may be reassociated by the compiler (fastmath "reassoc"), the same way for every row. What does so and is called by
+compiled code is inlined there (forceinline): of a function of its own there would be two versions, one beside its
+caller and one alone, rounded differently, and which of them ran would depend on what the process has just compiled.
 
 n: states, M: contact ports, Q: pole pairs.
 """
@@ -104,7 +106,7 @@ def workspace(states: int, ports: int) -> Workspace:
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def advance(
     system: StepArrays,
     state: np.ndarray,
@@ -209,7 +211,7 @@ def _push(ports, j, amount, real, imag, shared, start, own):
         imag[i] += ports[j, i] * b
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _solve(matrix: np.ndarray, vector: np.ndarray, m: int) -> None:
     """Solves matrix x = vector, the leading m of each, in place by elimination with row pivoting."""
     for c in range(m):
