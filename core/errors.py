@@ -11,6 +11,8 @@ import math
 from collections.abc import Iterable
 from numbers import Real
 
+_ABSOLUTE_ZERO = -273.15  # °C
+
 
 class ThermograspError(Exception):
     """Base of everything that the package raises on purpose."""
@@ -74,6 +76,16 @@ def non_negative(name: str, value: object) -> float:
     number = _number(name, value)
     if not (math.isfinite(number) and number >= 0):
         raise InvalidValueError(f"{name} must be a finite number, 0 or above, got {value!r}")
+    return number
+
+
+def celsius(name: str, value: object) -> float:
+    """The value as a float. Raises InvalidValueError unless it is a temperature in °C that something can have."""
+    number = _number(name, value)
+    if not (math.isfinite(number) and number >= _ABSOLUTE_ZERO):
+        raise InvalidValueError(
+            f"{name} must be a temperature in °C, {_ABSOLUTE_ZERO} or above, got {value!r}"
+        )
     return number
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Literal
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, non_negative, positive, unknown_name
+from thermograsp.errors import InvalidValueError, celsius, finite, non_negative, positive, unknown_name
 
 from ..thermal import Material, material
 from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
@@ -104,7 +104,7 @@ class ObjectSpec:
         extents = self.geometry.extents if self.mesh else self.size
         set_(self, "size", checked_size(self.shape, extents))
         if self.temperature is not None:
-            finite("temperature (°C)", self.temperature)
+            celsius("temperature", self.temperature)
         if self.material is not None:
             material(self.material)
         set_(self, "parts", tuple(self.parts))

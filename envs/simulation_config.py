@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, non_negative, positive
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
 
 from ..thermal import (
     SEED_MATERIALS,
@@ -23,6 +23,7 @@ from ..thermal import (
 )
 from .gripper_shipped import SHIPPED_GRIPPER, GripperModel
 from .mechanics import SUBSTEPS
+from .observation import THERMOSTAT
 from .randomization import Cause, Delay, Size, checked, draw
 from .scene import ObjectSpec, scaled
 from .solver_settings import SHIPPED, SolverSettings
@@ -86,15 +87,18 @@ class SimulationConfig:
         positive("tolerance (K)", self.tolerance)
         non_negative("air (W/(m2 K))", self.air)
         for value in self.sensor_temperatures:
-            finite("sensor_temperature (°C)", value)
+            if not THERMOSTAT[0] <= celsius("sensor_temperature", value) <= THERMOSTAT[1]:
+                raise InvalidValueError(
+                    f"sensor_temperature {value:g} °C: a fingertip reads {THERMOSTAT[0]:g} to {THERMOSTAT[1]:g} °C"
+                )
         if self.thermostat is not None and len(set(self.sensor_temperatures)) > 1:
             raise InvalidValueError(
                 f"sensor_temperature {self.sensor_temperature!r} °C: a thermostat of finite power has one setpoint; "
                 "give one temperature, or thermostat=None"
             )
-        finite("object_temperature (°C)", self.object_temperature)
+        celsius("object_temperature", self.object_temperature)
         if self.ambient_temperature is not None:
-            finite("ambient_temperature (°C)", self.ambient_temperature)
+            celsius("ambient_temperature", self.ambient_temperature)
         for value in self.placement:
             non_negative("placement (m, degree)", value)
         checked(self.randomize)

@@ -12,6 +12,7 @@ from thermograsp.errors import (
     SimulationError,
     ThermograspError,
     UnknownNameError,
+    celsius,
     finite,
     non_negative,
     positive,
@@ -34,7 +35,7 @@ def test_errors_share_a_base_and_derive_from_a_builtin(ours: type, builtin: type
     assert issubclass(ours, builtin)
 
 
-@pytest.mark.parametrize("check", [finite, positive, non_negative])
+@pytest.mark.parametrize("check", [finite, positive, non_negative, celsius])
 @pytest.mark.parametrize("value", [2, 2.0, np.float32(2), np.int64(2)])
 def test_numbers_pass_as_floats(check, value) -> None:
     result = check("width", value)
@@ -42,7 +43,7 @@ def test_numbers_pass_as_floats(check, value) -> None:
     assert result == 2.0
 
 
-@pytest.mark.parametrize("check", [finite, positive, non_negative])
+@pytest.mark.parametrize("check", [finite, positive, non_negative, celsius])
 @pytest.mark.parametrize(
     "value", [math.nan, math.inf, -math.inf, True, np.True_, "2", None, [2], 2j, 10**400]
 )
@@ -54,7 +55,8 @@ def test_what_is_no_finite_number_is_refused_by_name(check, value) -> None:
 def test_zero_and_below() -> None:
     assert non_negative("width", 0) == 0.0
     assert finite("width", -1) == -1.0
-    for check, value in ((positive, 0.0), (positive, -1), (non_negative, -1e-300)):
+    assert celsius("width", -196) == -196.0
+    for check, value in ((positive, 0.0), (positive, -1), (non_negative, -1e-300), (celsius, -274)):
         with pytest.raises(InvalidValueError, match=f"width must be .*, got {value!r}"):
             check("width", value)
 
