@@ -36,7 +36,8 @@ from .randomization import (
 from .render import Renderer, Window
 from .reservoir import Reservoir, ice, water
 from .scene import ObjectSpec, build_scene
-from .simulated_plant import PlantState, SimulatedPlant
+from .simulated_batch import PlantState
+from .simulated_plant import SimulatedPlant
 from .simulation_config import SimulationConfig
 from .solver_settings import SolverSettings
 from .sort_env import SortEnv, SortVectorEnv

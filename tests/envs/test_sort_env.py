@@ -251,7 +251,7 @@ def test_press_with_the_recorded_conductance_gives_the_same_drop(name):
     conductance = np.array([info["conductance"][0] for info in told])
     drop = np.array([info["temperature_drop"][0] for info in told])
     first = int(np.argmax(conductance > 0))
-    held, touched = conductance[first:], plant.things[0][0]  # pyright: ignore[reportAttributeAccessIssue]
+    held, touched = conductance[first:], plant.scenes[0][0]  # pyright: ignore[reportAttributeAccessIssue]
     press = thermal.press(
         name,
         conductance=lambda t: float(held[min(int(t / env.dt), len(held) - 1)]),
