@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import logging
 from collections.abc import Callable
@@ -105,8 +106,9 @@ class Studio:
         self._visitors.add(socket)
         worker = await asyncio.to_thread(self.make, self.stock, self.choices)
         inbox: list[dict[str, Any]] = []
-        reading = asyncio.create_task(_read(socket, inbox))
-        playing = asyncio.create_task(_play(socket, worker, inbox))
+        came = asyncio.Event()
+        reading = asyncio.create_task(_read(socket, inbox, came))
+        playing = asyncio.create_task(_play(socket, worker, inbox, came))
         try:
             done, _ = await asyncio.wait({reading, playing}, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
@@ -130,26 +132,33 @@ def port_of(server: Server) -> int:
     return next(iter(server.sockets)).getsockname()[1]
 
 
-async def _read(socket: ServerConnection, inbox: list[dict[str, Any]]) -> None:
-    """Puts a client's messages into the inbox until it leaves. Raises InvalidValueError for one too many, or a bad
-    one."""
+async def _read(socket: ServerConnection, inbox: list[dict[str, Any]], came: asyncio.Event) -> None:
+    """Puts a client's messages into the inbox until it leaves, and sets `came`. Raises InvalidValueError for one too
+    many, or a bad one."""
     allowance = Allowance(asyncio.get_running_loop().time)
     async for text in socket:
         if not allowance.take() or len(inbox) >= _PENDING:
             raise InvalidValueError("too many messages")
         inbox.append(parsed(text))
+        came.set()
 
 
-async def _play(socket: ServerConnection, worker: Worker, inbox: list[dict[str, Any]]) -> None:
-    """Sends frames, as many as the client takes, FRAMES a second at most."""
-    loop = asyncio.get_running_loop()
+async def _play(
+    socket: ServerConnection, worker: Worker, inbox: list[dict[str, Any]], came: asyncio.Event
+) -> None:
+    """Sends frames, as many as the client takes: FRAMES a second at most, and one when a message came."""
+    loop, period = asyncio.get_running_loop(), 1 / FRAMES
     due = loop.time()
     while True:
+        came.clear()
         messages, inbox[:] = list(inbox), []
         for text in await asyncio.to_thread(worker.exchange, messages):
             await socket.send(text)
-        due = max(due + 1 / FRAMES, loop.time() - 1 / FRAMES)
-        await asyncio.sleep(due - loop.time())
+        now = loop.time()
+        due = min(max(due + period, now - period), now + period)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout_at(due):
+                await came.wait()
 
 
 async def _end(socket: ServerConnection, code: int, why: str) -> None:

@@ -26,7 +26,6 @@ if CHROMIUM is None:
 
 ARGUMENTS = [
     "--no-sandbox",  # as root in a container
-    "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",  # WebGL without a graphics card
     "--disable-background-networking",
     "--disable-component-update",
@@ -201,6 +200,7 @@ def test_pause_step_speed_and_again(visit: Any, url: str) -> None:
 def test_the_gripper_by_hand(visit: Any, url: str) -> None:
     page = visit(url)
     page.get_by_text("Hand", exact=True).click()
+    page.locator("#range-opening").wait_for()  # shown when the server has agreed
     page.locator("#range-opening").focus()
     page.keyboard.press("End")
     page.locator("#range-height").focus()

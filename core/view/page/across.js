@@ -1,6 +1,7 @@
 // Temperatures from thermostat to thermostat through both contacts, as a band of colours with its figures.
 
 import { css, inkOn, temperatureColour } from "./colours.js";
+import { say } from "./say.js";
 
 const NAMES = {
   T: ["thermostat", "sensor’s face", "object’s face", "object"],
@@ -17,12 +18,14 @@ export function showAcross(holder, rows, mode) {
     const { children } = holder.children[row];
     across?.forEach((celsius, at) => {
       const colour = temperatureColour(celsius);
-      children[at].textContent = celsius.toFixed(1);
+      say(children[at], celsius.toFixed(1));
+      if (children[at].dataset.colour === css(colour)) return;
+      children[at].dataset.colour = css(colour);
       children[at].style.background = css(colour);
       children[at].style.color = inkOn(colour);
     });
   });
-  names.forEach((name, at) => { holder.lastChild.children[at].textContent = name; });
+  names.forEach((name, at) => say(holder.lastChild.children[at], name));
   holder.lastChild.hidden = !rows[0]?.across;
 }
 

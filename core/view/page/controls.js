@@ -11,7 +11,7 @@ const element = (id) => document.getElementById(id);
 export class Controls {
   #sliders = {};
   #choices = {};
-  #timers = {};
+  #resting = new Map(); // sliders that sent something less than PERIOD ago -> what to send then, or null
 
   constructor(send) {
     this.send = send;
@@ -75,7 +75,7 @@ export class Controls {
     for (const holder of document.querySelectorAll("[data-hand]")) holder.hidden = controls.driver !== "sliders";
     this.#sliders.force.holder.hidden = !["scripted", "sliders"].includes(controls.driver);
     for (const [name, slider] of Object.entries(this.#sliders)) {
-      if (name in controls && !slider.held) slider.set(controls[name]);
+      if (name in controls && !slider.held && !this.#resting.get(name)) slider.set(controls[name]);
     }
   }
 
@@ -103,28 +103,36 @@ export class Controls {
       output.textContent = `${Number((number * range.scale).toPrecision(3))} ${range.unit}`;
       input.setAttribute("aria-valuetext", output.textContent);
     };
-    const slider = { holder, held: false, set: (number) => {
+    const slider = { holder, held: false, releasing: 0, set: (number) => {
       input.value = place(number);
       show(number);
     } };
-    const send = () => this.send(kind, { [name]: Math.min(Math.max(value(), range.low), range.high) });
-    input.addEventListener("input", () => {
+    const send = (when) => this.send(kind, { [name]: Math.min(Math.max(value(), range.low), range.high) }, when);
+    input.addEventListener("input", (event) => {
       show(value());
+      clearTimeout(slider.releasing);
       slider.held = true;
-      if (kind === "control") this.#seldom(name, send);
+      if (kind === "control") this.#seldom(name, () => send(event.timeStamp));
     });
-    input.addEventListener("change", () => {
-      if (kind === "choose") send();
-      setTimeout(() => { slider.held = false; }, 300);
+    input.addEventListener("change", (event) => {
+      if (kind === "choose") send(event.timeStamp);
+      slider.releasing = setTimeout(() => { slider.held = false; }, 300);
     });
     return slider;
   }
 
+  // At once, or where that was done a moment ago, what came last when PERIOD has passed.
   #seldom(name, send) {
-    if (this.#timers[name]) return;
-    this.#timers[name] = setTimeout(() => {
-      this.#timers[name] = 0;
-      send();
+    if (this.#resting.has(name)) {
+      this.#resting.set(name, send);
+      return;
+    }
+    send();
+    this.#resting.set(name, null);
+    setTimeout(() => {
+      const next = this.#resting.get(name);
+      this.#resting.delete(name);
+      if (next) this.#seldom(name, next);
     }, PERIOD);
   }
 

@@ -11,7 +11,7 @@ export class Link {
 
   constructor(on) {
     this.on = on;
-    this.latencies = []; // ms from input to the frame that has seen it, the newest ones
+    this.latencies = []; // ms from an input until what it did was handed to the screen, the newest ones
   }
 
   open() {
@@ -33,17 +33,20 @@ export class Link {
     return seen >= this.#number;
   }
 
-  send(what, content = {}) {
+  // when: ms, of the input that asks for it.
+  send(what, content = {}, when = performance.now()) {
     if (this.#socket?.readyState !== WebSocket.OPEN) return;
     const id = ++this.#number;
-    this.#sent.set(id, performance.now());
+    this.#sent.set(id, when);
     this.#socket.send(JSON.stringify({ do: what, id, ...content }));
   }
 
   #hear(message) {
     if (message.kind === "ended") this.#why = message.text;
     else this.on[message.kind]?.(message);
-    if (message.kind === "frame" && this.#sent.size) requestAnimationFrame(() => this.#answered(message.seen));
+    if (message.kind !== "frame" || !this.#sent.size) return;
+    // The picture after the one that shows it begins when that one has been handed on.
+    requestAnimationFrame(() => requestAnimationFrame(() => this.#answered(message.seen)));
   }
 
   #answered(seen) {

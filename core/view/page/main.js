@@ -4,6 +4,7 @@ import { showAcross } from "./across.js";
 import { showBelief } from "./belief.js";
 import { drawBar, rowColour, temperatureColour, useRange, useTable } from "./colours.js";
 import { Controls, readable } from "./controls.js";
+import { say } from "./say.js";
 import { Link } from "./link.js";
 import { Plot } from "./plot.js";
 import { Scene } from "./scene.js";
@@ -13,17 +14,13 @@ const SHOWN = 8000; // ms that a problem stays on the screen
 
 const element = (id) => document.getElementById(id);
 const CURVES = ["voltage", "drop", "force"]; // a pair each, left and right, in the order of a frame's rows
-const plots = {
-  voltage: new Plot(element("voltage"), { scale: 1e3, least: 0.5 }),
-  drop: new Plot(element("drop"), { least: 0.5 }),
-  force: new Plot(element("force"), { least: 2 }),
-};
 const memory = { time: [], rows: [] };
 const pace = { wall: 0, time: 0 };
 let materials = [];
 let mode = "T";
 let posteriors = [];
 let again = null; // what to set up once more after the connection was lost
+let newest = null; // the frame that is to be shown next: those that came before it are not
 
 let scene = null;
 try {
@@ -32,15 +29,22 @@ try {
   element("flat").hidden = false;
 }
 
+const slow = scene?.slow ?? true;
+const plots = {
+  voltage: new Plot(element("voltage"), { scale: 1e3, least: 0.5, slow }),
+  drop: new Plot(element("drop"), { least: 0.5, slow }),
+  force: new Plot(element("force"), { least: 2, slow }),
+};
+
 const link = new Link({ hello, scene: sceneCame, begin, frame, posterior, chosen, csv, problem, lost });
-const controls = new Controls((what, content) => link.send(what, content));
+const controls = new Controls((...what) => link.send(...what));
 element("retry").addEventListener("click", () => {
   again = controls.choices;
   element("lost").hidden = true;
   document.body.dataset.state = "connecting";
   link.open();
 });
-window.studio = { link, frames: 0, memory };
+window.studio = { link, memory, frames: 0, shown: 0, scene };
 link.open();
 
 function hello(message) {
@@ -57,6 +61,7 @@ function sceneCame(message) {
   element("low").textContent = `${Math.round(message.colours[0])} °C`;
   element("high").textContent = `${Math.round(message.colours[1])} °C`;
   materials = message.rows;
+  showBelief(element("belief"), posteriors, materials);
   scene?.show(message.shapes);
   mode = message.choices.mode;
   chosen(message);
@@ -76,6 +81,7 @@ function begin() {
   memory.time = [];
   memory.rows = [];
   posteriors = [];
+  showBelief(element("belief"), posteriors, materials);
   pace.wall = 0;
   for (const plot of Object.values(plots)) plot.reset();
 }
@@ -86,29 +92,32 @@ function frame(message) {
   element("busy").hidden = !message.busy;
   if (link.answered(message.seen)) controls.controlled(message.controls);
   if (!message.rows) return;
-  element("time").textContent = `${message.time.toFixed(2)} s`;
+  say(element("time"), `${message.time.toFixed(2)} s`);
   showPace(message);
   remember(message.curves);
-  requestAnimationFrame(() => show(message));
+  if (!newest) requestAnimationFrame(show);
+  newest = message;
 }
 
-function show({ rows }) {
+function show(now) {
+  const { rows } = newest;
+  newest = null;
+  window.studio.shown++;
   controls.now = rows[0];
   scene?.update(rows.map(({ poses, celsius }) => ({
     poses,
     colours: Object.fromEntries(Object.entries(celsius).map(([part, value]) => [part, temperatureColour(value)])),
-  })));
+  })), now);
   CURVES.forEach((name, at) => {
     plots[name].draw(memory.time, memory.rows.flatMap((row, number) => row.slice(2 * at, 2 * at + 2).map((values, side) => (
       { values, colour: rowColour(number), dashed: side === 1 }))).filter(({ values }) => values.length));
   });
   showAcross(element("across"), rows, mode);
-  showBelief(element("belief"), posteriors, materials);
   rows.forEach(({ ending, state }, row) => {
     const note = element("names").children[row]?.lastChild;
-    if (note) note.textContent = ending || state;
+    if (note) say(note, ending || state);
   });
-  element("cost").textContent = described(rows.map(({ cost }) => cost).filter(Boolean));
+  say(element("cost"), described(rows.map(({ cost }) => cost).filter(Boolean)));
 }
 
 function described(costs) {
@@ -138,7 +147,7 @@ function showPace({ time, controls: { playing, speed } }) {
   const now = performance.now();
   if (!playing || time < pace.time || !pace.wall) Object.assign(pace, { wall: now, time });
   if (now - pace.wall < 1000) {
-    if (!playing) element("pace").textContent = "paused";
+    if (!playing) say(element("pace"), "paused");
     return;
   }
   const rate = (1000 * (time - pace.time)) / (now - pace.wall);
@@ -148,6 +157,7 @@ function showPace({ time, controls: { playing, speed } }) {
 
 function posterior({ row, ...found }) {
   posteriors[row] = found;
+  showBelief(element("belief"), posteriors, materials);
 }
 
 function csv({ name, text }) {

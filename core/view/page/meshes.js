@@ -28,7 +28,7 @@ export function turned([w, x, y, z], v) {
 // A box with rounded edges: a point of a face's grid is carried to the nearest point of the rounded surface.
 function box({ size }, add) {
   const bevel = Math.min(BEVEL, 0.3 * Math.min(...size));
-  const along = size.map((half) => [-half, -half + bevel * 0.35, -half + bevel, half - bevel, half - bevel * 0.35, half]);
+  const along = size.map((half) => [-half, -half + bevel, half - bevel, half]);
   const corner = (p) => {
     const inner = p.map((value, k) => Math.min(Math.max(value, bevel - size[k]), size[k] - bevel));
     const out = p.map((value, k) => value - inner[k]);
@@ -42,12 +42,12 @@ function box({ size }, add) {
       const point = (i, j) => {
         const p = [0, 0, 0];
         p[axis] = side * size[axis];
-        p[u] = along[u][side > 0 ? i : 5 - i];
+        p[u] = along[u][side > 0 ? i : 3 - i];
         p[v] = along[v][j];
         return p;
       };
-      for (let i = 0; i < 5; i++) {
-        for (let j = 0; j < 5; j++) {
+      for (let i = 0; i < 3; i++) {
+        for (let j = 0; j < 3; j++) {
           for (const [a, b] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]]) corner(point(i + a, j + b));
         }
       }

@@ -10,9 +10,10 @@ export class Plot {
   #shown = [0, 1]; // the value axis
 
   // scale: shown units in one of what is given. least: the smallest range of the value axis.
-  constructor(canvas, { scale = 1, least = 1 } = {}) {
+  // slow: whether a graphics card is only played by the processor, which draws lines better itself.
+  constructor(canvas, { scale = 1, least = 1, slow = false } = {}) {
     Object.assign(this, { canvas, scale, least });
-    this.context = canvas.getContext("2d");
+    this.context = canvas.getContext("2d", { willReadFrequently: slow });
   }
 
   // time: s. curves: {values, colour, dashed}.

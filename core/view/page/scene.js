@@ -2,27 +2,27 @@
 
 import { Camera, lookAt, multiplied, orthographic, unit } from "./camera.js";
 import { triangles } from "./meshes.js";
-import { FRAGMENT, SHADOW, VERTEX } from "./shaders.js";
+import { Pace } from "./pace.js";
+import { fragment, SHADOW, VERTEX } from "./shaders.js";
 
 const LIGHT = unit([0.35, -0.55, 1]);
 const LAMP = multiplied(orthographic(0.26, 0.05, 1.2), lookAt(LIGHT.map((value, k) => 0.6 * value + [0, 0, 0.06][k]), [0, 0, 0.06]));
-const SHADOW_SIDE = 1024; // pixels
-const SLOW = 45; // ms a frame, above which the picture becomes coarser
-const COARSEST = 0.5; // of the screen's pixels
+const FINE = { antialias: true, shadow: 1024, taps: 4 }; // shadow: pixels a side
+const PLAIN = { antialias: false, shadow: 512, taps: 1 }; // without a graphics card, where the processor plays one
+const PLAYED = /swiftshader|llvmpipe|softpipe|software|basic render/i; // by these
 
 export class Scene {
   #shapes = [];
   #rows = [];
   #waiting = false;
-  #detail = 1;
-  #late = 0;
-  #last = 0;
 
-  // Throws where there is no WebGL 2.
+  // Throws where there is no WebGL 2. slow: whether there is no graphics card.
   constructor(canvas) {
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: false });
+    this.slow = played();
+    this.quality = this.slow ? PLAIN : FINE;
+    const gl = canvas.getContext("webgl2", { antialias: this.quality.antialias });
     if (!gl) throw new Error("no WebGL 2");
-    Object.assign(this, { canvas, gl });
+    Object.assign(this, { canvas, gl, pace: new Pace(gl) });
     this.#start();
     this.camera = new Camera(canvas, () => this.redraw());
     new ResizeObserver(() => this.redraw()).observe(canvas);
@@ -37,9 +37,9 @@ export class Scene {
 
   #start() {
     const { gl } = this;
-    this.surface = program(gl, VERTEX, FRAGMENT);
+    this.surface = program(gl, VERTEX, fragment(this.quality.taps));
     this.shadow = program(gl, VERTEX, SHADOW);
-    this.dark = shadowMap(gl);
+    this.dark = shadowMap(gl, this.quality.shadow);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.CULL_FACE);
     gl.enable(gl.BLEND);
@@ -57,10 +57,10 @@ export class Scene {
     this.redraw();
   }
 
-  // rows: {poses, colours}, colours: part -> sRGB in 0..1.
-  update(rows) {
+  // rows: {poses, colours}, colours: part -> sRGB in 0..1. now: of the picture of the page that is being made.
+  update(rows, now) {
     this.#rows = rows;
-    this.redraw();
+    if (!this.#waiting) this.#draw(now);
   }
 
   redraw() {
@@ -73,12 +73,13 @@ export class Scene {
   }
 
   #draw(now) {
-    const { gl, canvas } = this;
-    this.#adapt(now);
-    const ratio = Math.min(window.devicePixelRatio || 1, 2) * this.#detail;
+    const { gl, canvas, pace, quality } = this;
+    if (!pace.may(now)) return this.redraw();
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * pace.detail;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) => Math.round(side * ratio));
     if (!width || !height) return;
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    pace.begin(now);
     gl.clearColor(0, 0, 0, 0);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, width, height);
@@ -86,7 +87,7 @@ export class Scene {
     const share = Math.floor(width / Math.max(this.#rows.length, 1));
     this.#rows.forEach((row, at) => {
       gl.bindFramebuffer(gl.FRAMEBUFFER, this.dark.frame);
-      gl.viewport(0, 0, SHADOW_SIDE, SHADOW_SIDE);
+      gl.viewport(0, 0, quality.shadow, quality.shadow);
       gl.clear(gl.DEPTH_BUFFER_BIT);
       gl.useProgram(this.shadow.program);
       gl.uniformMatrix4fv(this.shadow.at.camera, false, LAMP);
@@ -102,7 +103,7 @@ export class Scene {
       gl.bindTexture(gl.TEXTURE_2D, this.dark.texture);
       for (const one of this.#shapes) {
         const celsius = row.colours[one.shape.part];
-        gl.uniform3fv(uniform.colour, celsius ?? one.shape.colour);
+        gl.uniform3fv(uniform.colour, (celsius ?? one.shape.colour).map((value) => value ** 2.2));
         gl.uniform1f(uniform.gloss, celsius ? 0.15 : one.shape.gloss);
         gl.uniform1f(uniform.flatness, celsius ? 0.7 : 0);
         gl.uniform1f(uniform.alpha, one.shape.alpha);
@@ -111,6 +112,7 @@ export class Scene {
       }
       gl.depthMask(true);
     });
+    pace.end();
   }
 
   #place({ at }, { shape, array, count }, { poses }) {
@@ -121,18 +123,15 @@ export class Scene {
     gl.bindVertexArray(array);
     gl.drawArrays(gl.TRIANGLES, 0, count);
   }
+}
 
-  // Without a graphics card the picture is what keeps the page from being quick.
-  #adapt(now) {
-    const spent = now - this.#last;
-    this.#last = now;
-    if (spent > 400) return; // nothing was to be drawn
-    this.#late = spent > SLOW ? this.#late + 1 : Math.max(this.#late - 1, 0);
-    if (this.#late > 20 && this.#detail > COARSEST) {
-      this.#detail = Math.max(this.#detail - 0.25, COARSEST);
-      this.#late = 0;
-    }
-  }
+// Asked of a canvas that is thrown away, for what a canvas is drawn with is settled when it is made.
+function played() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const names = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl?.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER) ?? "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return PLAYED.test(name);
 }
 
 function program(gl, vertex, fragment) {
@@ -155,10 +154,10 @@ function program(gl, vertex, fragment) {
   return { program: made, at };
 }
 
-function shadowMap(gl) {
+function shadowMap(gl, side) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, SHADOW_SIDE, SHADOW_SIDE);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, side, side);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);

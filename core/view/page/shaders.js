@@ -17,12 +17,13 @@ void main() {
   gl_Position = camera * vec4(at, 1.0);
 }`;
 
-export const FRAGMENT = `#version 300 es
+// taps: of the shadow's edge, 4 for a soft one or 1.
+export const fragment = (taps) => `#version 300 es
 precision highp float;
 precision highp sampler2DShadow;
 in vec3 at, facing;
 in vec4 inLamp;
-uniform vec3 colour, eye, light;
+uniform vec3 colour, eye, light;  // colour: linear
 uniform float gloss, flatness, alpha;
 uniform sampler2DShadow dark;
 out vec4 result;
@@ -30,20 +31,19 @@ float lit() {
   vec3 p = inLamp.xyz / inLamp.w * 0.5 + 0.5;
   if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
   float sum = 0.0;
-  for (int i = 0; i < 4; i++) {
-    vec2 off = vec2(float(i % 2) - 0.5, float(i / 2) - 0.5) * 1.6 / 1024.0;
+  for (int i = 0; i < ${taps}; i++) {
+    vec2 off = ${taps === 1 ? "vec2(0.0)" : "vec2(float(i % 2) - 0.5, float(i / 2) - 0.5) * 1.6 / 1024.0"};
     sum += texture(dark, vec3(p.xy + off, p.z - 0.0015));
   }
-  return sum / 4.0;
+  return sum / ${taps.toFixed(1)};
 }
 void main() {
   vec3 n = normalize(facing), to = normalize(eye - at), half_ = normalize(light + to);
-  vec3 base = pow(colour, vec3(2.2));
   float shade = lit() * max(dot(n, light), 0.0);
   vec3 sky = mix(vec3(0.30, 0.29, 0.28), vec3(0.62, 0.64, 0.68), n.z * 0.5 + 0.5);
   float fill = 0.16 * max(dot(n, normalize(vec3(-0.7, 0.5, 0.2))), 0.0);
-  vec3 shaded = base * (sky + fill + 0.85 * shade) + gloss * 0.35 * shade * pow(max(dot(n, half_), 0.0), 42.0);
-  vec3 plain = base * (0.72 + 0.28 * shade);
+  vec3 shaded = colour * (sky + fill + 0.85 * shade) + gloss * 0.35 * shade * pow(max(dot(n, half_), 0.0), 42.0);
+  vec3 plain = colour * (0.72 + 0.28 * shade);
   result = vec4(pow(mix(shaded, plain, flatness), vec3(1.0 / 2.2)), alpha);
 }`;
 
