@@ -82,9 +82,11 @@ def measure(
 
 
 def _plan(num_envs: int, quick: bool) -> tuple[int, int]:
-    """Blocks, and control steps of each: fewer where there are many environments."""
+    """Blocks, and control steps of each: fewer where there are many environments. One alone takes more of them, since
+    the first few after going back to a block's beginning find nothing in the processor's caches."""
     if quick:
         return 2, 10
-    return (
-        (40, 25) if num_envs <= 16 else (24, 10) if num_envs <= 64 else (10, 6) if num_envs <= 256 else (5, 4)
-    )
+    for most, plan in ((1, (40, 100)), (16, (40, 25)), (64, (24, 10)), (256, (10, 6))):
+        if num_envs <= most:
+            return plan
+    return 5, 4
