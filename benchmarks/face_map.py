@@ -236,7 +236,9 @@ def modelled(case: Case, flow: np.ndarray, contact: np.ndarray) -> np.ndarray:
     for step, each in enumerate(flow):
         step_face(field, conductance, each / STACK.face_area, *state)
         if step in ends:
-            found.append(face_means(state, parts, parts) + contact[len(found)])
+            found.append(
+                face_means(field.waves, state.surface, state.contact, parts, parts) + contact[len(found)]
+            )
     return np.array(found)
 
 

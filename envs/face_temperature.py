@@ -20,7 +20,6 @@ from ..thermal.contact_law import conductance
 from ..thermal.face_field import (
     CELLS,
     FaceField,
-    FaceState,
     cosine_means,
     face_field,
     face_means,
@@ -68,11 +67,14 @@ class FaceTemperature:
             fields, surface, contact, np.zeros(each, bool), np.zeros(each, int)
         )
         self._things: list[tuple[Thing, ...]] = [()] * num_envs
+        self._fields: dict[tuple[int, int], FaceField] = {}  # by row and object, once it is touched
 
     def reset(self, rows: Sequence[int], scenes: Sequence[Sequence[Thing]]) -> None:
         """The rows start with new objects, every face as warm as its thermostat."""
         for row, things in zip(rows, scenes, strict=True):
             self._things[row] = tuple(things)
+            for number in range(len(things)):
+                self._fields.pop((row, number), None)
             state = self._state
             state.fields[row] = state.surface[row] = state.owner[row] = 0
             state.contact[row], state.begun[row] = 1.0, False
@@ -93,14 +95,18 @@ class FaceTemperature:
         renewed = (owners != state.owner) | ((told["events"] & NEW_PATCH) > 0)
         state.fields[renewed, 1] = 0.0  # the object's side
         state.begun[:], state.owner[:] = begun, owners
-        cells = np.zeros((CELLS, CELLS))
         for row, tip in np.argwhere(begun).tolist():
-            thing = self._things[row][owners[row, tip]]
-            conducted = np.ascontiguousarray(self._on_face @ pressure[row, tip] @ self._on_face.T)
-            _cell_conductance(thing.law, conducted, cells)
-            face = FaceState(state.fields[row, tip], state.surface[row, tip], state.contact[row, tip])
-            step_face(self._field(thing), cells, float(flux[row, tip]), *face)
-            maps[row, tip] += face_means(face, *self._parts)
+            number = owners[row, tip]
+            thing = self._things[row][number]
+            field = self._fields.get((row, number))
+            if field is None:
+                field = self._fields[row, number] = self._field(thing)
+            maps[row, tip] += _advance(
+                *(thing.law, pressure[row, tip], self._on_face, flux[row, tip]),
+                *(state.fields[row, tip], state.surface[row, tip], state.contact[row, tip]),
+                *self._parts,
+                *field,
+            )
         return maps
 
     def state(self, rows: Sequence[int]) -> FaceTemperatureState:
@@ -146,9 +152,26 @@ def _shares(width: float) -> np.ndarray:
 
 
 @njit(cache=True, error_model="numpy")
-def _cell_conductance(law, pressure, out):
-    """Writes W/(m2 K) at pressures (N, N) Pa, 0 where there is nearly none: gas would conduct there as well."""
-    least = _LEAST_PRESSURE * pressure.max()
-    for i in range(pressure.shape[0]):
-        for j in range(pressure.shape[1]):
-            out[i, j] = conductance(law, pressure[i, j]) if pressure[i, j] > least else 0.0
+def _advance(law, pressure, on_face, flux, fields, surface, contact, rows, columns, *numbers):
+    """One step of a face: (n, m) K above the mean over its contact. law: CONTACT_LAW. pressure: Pa at the pad's points.
+    on_face: of _shares. flux: W/m2. numbers: a FaceField's, which cost less to hand over one by one."""
+    field = FaceField(*numbers)
+    cells, half = np.zeros((CELLS, CELLS)), np.zeros((CELLS, PAD_POINTS))
+    for i in range(CELLS):
+        for k in range(PAD_POINTS):
+            if on_face[i, k] > 0.0:
+                for j in range(PAD_POINTS):
+                    half[i, j] += on_face[i, k] * pressure[k, j]
+    highest = 0.0
+    for i in range(CELLS):
+        for j in range(CELLS):
+            for k in range(PAD_POINTS):
+                cells[i, j] += on_face[j, k] * half[i, k]
+            highest = max(highest, cells[i, j])
+    for i in range(CELLS):
+        for j in range(CELLS):
+            # where there is nearly none gas alone would conduct
+            touches = cells[i, j] > _LEAST_PRESSURE * highest
+            cells[i, j] = conductance(law, cells[i, j]) if touches else 0.0
+    step_face(field, cells, flux, fields, surface, contact)
+    return face_means(field.waves, surface, contact, rows, columns)

@@ -39,12 +39,11 @@ _RESIDUAL = 1e-6  # of the flux
 
 
 class FaceField(NamedTuple):
-    """The two sides of a face for steps of dt s: first the element, then the object. waves: (P, N) means over the cells
-    of the cosines, of mean square 1. decay, gain: (2, P, P, K) of the states over a step, and their K per W/m2 of flux
-    during it. at_once: (2, P, P) K m2/W, what the flux of a step has done at its end. own: K m2/W, of a cell's
+    """The two sides of a face for steps of one length: first the element, then the object. waves: (P, N) means over the
+    cells of the cosines, of mean square 1. decay, gain: (2, P, P, K) of the states over a step, and their K per W/m2 of
+    flux during it. at_once: (2, P, P) K m2/W, what the flux of a step has done at its end. own: K m2/W, of a cell's
     flux on its own temperature, both sides together, the mean over the cells."""
 
-    dt: float
     waves: np.ndarray
     decay: np.ndarray
     gain: np.ndarray
@@ -77,7 +76,7 @@ def face_field(stack: SensorStack, behind: Slab, dt: float) -> FaceField:
     waves = cosine_means(CELLS)
     squares = waves**2
     own = float((squares.T @ at_once.sum(axis=0) @ squares).mean()) / CELLS**2
-    return FaceField(dt, waves, decay, gain, at_once, own)
+    return FaceField(waves, decay, gain, at_once, own)
 
 
 def face_state() -> FaceState:
@@ -127,19 +126,11 @@ def _reduced(slabs: tuple[Slab, ...], far: Far, kappa2: float) -> tuple[np.ndarr
     return np.append(rates, np.ones(missing)), np.append(weights, np.zeros(missing)), left
 
 
-def face_means(state: FaceState, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """(n, m) K above the mean over the contact, of equal parts of the face. rows: (P, n) along the fields' first axis
-    and columns: (P, m) along the second, both of cosine_means."""
-    cells = cosine_means(CELLS)
-    touched = (state.contact * (cells.T @ state.surface @ cells)).sum() / state.contact.sum()
-    return rows.T @ state.surface @ columns - touched
-
-
 @njit(cache=True, error_model="numpy")
 def step_face(field, conductance, flux, fields, surface, contact):
     """One step of a face, in place in a FaceState's arrays. conductance: (N, N) W/(m2 K) of the cells, 0 where apart.
     flux: W/m2 out of the face, its mean over the face and the step."""
-    _, waves, decay, gain, at_once, own = field
+    waves, decay, gain, at_once, own = field
     cosines, cells = waves.shape
     through = np.zeros((cells, cells))
     difference = np.zeros((cosines, cosines))
@@ -157,7 +148,7 @@ def step_face(field, conductance, flux, fields, surface, contact):
             touching += conductance[i, j] > 0.0
     if touching > 0:
         drive = np.zeros((cells, cells))
-        _back(waves, difference, drive)
+        _back(waves, waves, difference, drive)
         one, other = np.zeros((cells, cells)), np.zeros((cells, cells))
         _flux_of(conductance, waves, at_once, own, np.ones((cells, cells)), one)
         _flux_of(conductance, waves, at_once, own, drive, other)
@@ -182,6 +173,22 @@ def step_face(field, conductance, flux, fields, surface, contact):
 
 
 @njit(cache=True, error_model="numpy")
+def face_means(waves, surface, contact, rows, columns):
+    """(n, m) K above the mean over the contact, of equal parts of the face. waves: FaceField's. surface and contact: a
+    FaceState's. rows: (P, n) along the first axis and columns: (P, m) along the second, both of cosine_means."""
+    cells = np.zeros(contact.shape)
+    _back(waves, waves, surface, cells)
+    total, touched = 0.0, 0.0
+    for i in range(contact.shape[0]):
+        for j in range(contact.shape[1]):
+            total += contact[i, j] * cells[i, j]
+            touched += contact[i, j]
+    means = np.zeros((rows.shape[1], columns.shape[1]))
+    _back(rows, columns, surface, means)
+    return means - total / touched
+
+
+@njit(cache=True, error_model="numpy")
 def _flux_of(conductance, waves, at_once, own, drive, flux):
     """Solves flux / conductance + (what flux does at once) = drive in the cells that touch, by conjugate gradients."""
     cells = len(drive)
@@ -203,7 +210,7 @@ def _flux_of(conductance, waves, at_once, own, drive, flux):
         for p in range(len(cosine_flux)):
             for q in range(len(cosine_flux)):
                 cosine_flux[p, q] *= at_once[0, p, q] + at_once[1, p, q]
-        _back(waves, cosine_flux, warmed)
+        _back(waves, waves, cosine_flux, warmed)
         curvature = 0.0
         for i in range(cells):
             for j in range(cells):
@@ -244,16 +251,16 @@ def _forth(waves, cells, cosines):
 
 
 @njit(cache=True, error_model="numpy")
-def _back(waves, cosines, cells):
-    """Writes the means over cells (N, N) of a sum of cosines (P, P)."""
-    count, parts = waves.shape
-    half = np.zeros((count, parts))
+def _back(rows, columns, cosines, parts):
+    """Writes the means over parts (n, m) of a sum of cosines (P, P), from those of the cosines along either axis."""
+    count, across = columns.shape
+    half = np.zeros((count, across))
     for p in range(count):
         for q in range(count):
-            for j in range(parts):
-                half[p, j] += cosines[p, q] * waves[q, j]
-    cells[:] = 0.0
+            for j in range(across):
+                half[p, j] += cosines[p, q] * columns[q, j]
+    parts[:] = 0.0
     for p in range(count):
-        for i in range(parts):
-            for j in range(parts):
-                cells[i, j] += waves[p, i] * half[p, j]
+        for i in range(rows.shape[1]):
+            for j in range(across):
+                parts[i, j] += rows[p, i] * half[p, j]

@@ -10,6 +10,7 @@ from thermograsp.thermal import material, sensor
 from thermograsp.thermal.face_field import (
     CELLS,
     COSINES,
+    FaceState,
     cosine_means,
     face_field,
     face_means,
@@ -25,6 +26,10 @@ CELL_MEANS = cosine_means(CELLS)
 def field_of(name: str):
     body = material(name)
     return face_field(STACK, Slab(DEPTH, body.conductivity, body.volumetric_heat_capacity), DT)
+
+
+def means(state: FaceState, rows: np.ndarray = CELL_MEANS, columns: np.ndarray = CELL_MEANS) -> np.ndarray:
+    return face_means(CELL_MEANS, state.surface, state.contact, rows, columns)
 
 
 def half_covered() -> np.ndarray:
@@ -104,7 +109,7 @@ def test_a_half_covered_face_is_that_of_a_grid(name: str) -> None:
     found = []
     for each in flux:
         step_face(field, conductance, each, *state)
-        found.append(face_means(state, CELL_MEANS, CELL_MEANS))
+        found.append(means(state))
     found = np.array(found)
     assert np.ptp(found, axis=1).max() < 1e-9 * found.max()  # the same along the border
     expected = faces - faces[:, CELLS // 2 :].mean(axis=1)[:, None]
@@ -117,13 +122,13 @@ def test_evenly_touched_it_is_even_and_its_mean_over_the_contact_is_0() -> None:
     field, state = field_of("glass"), face_state()
     for flux in (4000.0, -300.0, 1e4):
         step_face(field, np.full((CELLS, CELLS), 2e3), flux, *state)
-    assert np.abs(face_means(state, CELL_MEANS, CELL_MEANS)).max() < 1e-9
+    assert np.abs(means(state)).max() < 1e-9
     rng = np.random.default_rng(3)
     spots = np.where(rng.random((CELLS, CELLS)) < 0.4, rng.uniform(10, 1e5, (CELLS, CELLS)), 0.0)
     step_face(field, spots, 5000.0, *state)
-    above = face_means(state, CELL_MEANS, CELL_MEANS)
+    above = means(state)
     assert np.ptp(above) > 0.1 and abs(above[spots > 0].mean()) < 1e-12
-    parts = face_means(state, cosine_means(2), cosine_means(3))
+    parts = means(state, cosine_means(2), cosine_means(3))
     assert parts == pytest.approx(above.reshape(2, 9, 3, 6).mean(axis=(1, 3)), abs=1e-12)
 
 
@@ -131,13 +136,13 @@ def test_two_levels_where_half_is_touched_and_none_after_a_while_apart() -> None
     field, state = field_of("aluminium"), face_state()
     for _ in range(100):
         step_face(field, half_covered(), 4000.0, *state)
-    above = face_means(state, CELL_MEANS, CELL_MEANS)
+    above = means(state)
     free, touched = above[:, : CELLS // 2], above[:, CELLS // 2 :]
     assert free.min() > touched.max() and free.mean() - touched.mean() > 1.5
     assert np.diff(above[0]).max() <= 1e-9  # cooler and cooler from the free side on
     for _ in range(1000):
         step_face(field, np.zeros((CELLS, CELLS)), 0.0, *state)
-    assert np.abs(face_means(state, CELL_MEANS, CELL_MEANS)).max() < 1e-3
+    assert np.abs(means(state)).max() < 1e-3
 
 
 def test_it_is_as_symmetric_as_the_contact_and_linear_in_the_flow() -> None:
@@ -153,7 +158,7 @@ def test_it_is_as_symmetric_as_the_contact_and_linear_in_the_flow() -> None:
         field, state = field_of("glass"), face_state()
         for _ in range(20):
             step_face(field, np.ascontiguousarray(each), 2000.0 * factor, *state)
-        found.append(face_means(state, CELL_MEANS, CELL_MEANS))
+        found.append(means(state))
     plain, turned, mirrored, thrice = found
     assert turned.T == pytest.approx(plain, abs=1e-4)
     assert mirrored[::-1] == pytest.approx(plain, abs=1e-4)
