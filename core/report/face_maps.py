@@ -82,7 +82,7 @@ def _map(touch: Touch) -> str:
     label = f"Temperature over the sensor's face on the {readable(touch.name)}"
     return (
         f'<figure><svg viewBox="-0.5 -0.5 {columns + 1} {rows + 1}" role="img" aria-label="{escape(label)}">'
-        f'{squares}<rect class="pad" width="{columns}" height="{rows}"/></svg>'
+        f'<g shape-rendering="crispEdges">{squares}</g><rect class="pad" width="{columns}" height="{rows}"/></svg>'
         f'<figcaption class="reads"><span>{escape(readable(touch.name))}</span>'
         f"<span>{upright.min():.1f} to {upright.max():.1f} °C</span></figcaption></figure>"
     )
