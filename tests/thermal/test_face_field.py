@@ -187,3 +187,47 @@ def test_steady_it_is_the_impedances_sum() -> None:
 def test_a_step_that_is_none() -> None:
     with pytest.raises(InvalidValueError, match="dt"):
         face_field(STACK, Slab(DEPTH, 1.0, 2e6), 0.0)
+
+
+@pytest.mark.parametrize("name", ["cotton", "glass", "copper"])
+@pytest.mark.parametrize("highest", [1e2, 1e4, 1e7])
+def test_the_cells_flux_is_the_coupled_problem_s(name: str, highest: float) -> None:
+    """Against the dense matrix of all cells: flux over conductance plus what flux does, constant over what touches."""
+    field, state = field_of(name), face_state()
+    at_once = field.at_once.sum(axis=0)
+    pairs = np.einsum("pi,qj->pqij", CELL_MEANS, CELL_MEANS).reshape(COSINES**2, -1)
+    does = pairs.T @ (at_once.ravel()[:, None] * pairs) / CELLS**2
+    rng = np.random.default_rng(5)
+    for touching in (half_covered() > 0, rng.random((CELLS, CELLS)) < 0.5, rng.random((CELLS, CELLS)) < 0.02):
+        conductance = np.where(touching, highest * 10 ** rng.uniform(-2, 0, touching.shape), 0.0)
+        for part in state:
+            part[:] = 0.0
+        step_face(field, conductance, 1000.0, *state)
+        on = touching.ravel()
+        flux = np.zeros(on.size)
+        flux[on] = np.linalg.solve(
+            np.diag(1 / conductance.ravel()[on]) + does[np.ix_(on, on)], np.ones(on.sum())
+        )
+        flux *= 1000.0 / flux.mean()
+        expected = -field.at_once[0] * (pairs @ flux).reshape(COSINES, COSINES) / CELLS**2
+        assert state.surface == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("dt", [1e-3, 0.02, 10.0])
+def test_no_contact_blows_it_up(dt: float) -> None:
+    """Contacts that change at random in every step: never beyond what the whole flow through one cell would do."""
+    rng = np.random.default_rng(6)
+    body = material("copper")
+    field = face_field(STACK, Slab(DEPTH, body.conductivity, body.volumetric_heat_capacity), dt)
+    spot, state = face_state(), face_state()
+    one = np.zeros((CELLS, CELLS))
+    one[0, 0] = 1e9
+    for _ in range(30 if dt == 10.0 else 2000):
+        step_face(field, one, 1000.0, *spot)
+    most = np.ptp(means(spot))
+    for _ in range(300):
+        share, highest = rng.uniform(0.005, 1.0), 10 ** rng.uniform(0, 9)
+        touching = rng.random((CELLS, CELLS)) < share
+        conductance = np.where(touching, highest * rng.random(touching.shape), 0.0)
+        step_face(field, conductance, 1000.0 * rng.uniform(-1, 1) * touching.any(), *state)
+        assert np.ptp(means(state)) < most
