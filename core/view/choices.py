@@ -109,6 +109,11 @@ class Choices:
         return replace(self, **new)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Of what is grasped, one or two side by side."""
+        return (self.shape,) if self.everyday else self.materials
+
+    @property
     def everyday(self) -> bool:
         """Whether it is an object of the library, with a material and a temperature of its own."""
         return self.shape in objects()

@@ -222,11 +222,17 @@ class Session:
             "colours": self._grasp.colours,
         }
 
+    def _preparing(self) -> str:
+        """What is to be there next; empty where that has come."""
+        if self._wanted is None:
+            return ""
+        return "the grasp" if "material" in self._stock.fixed else " and ".join(self._wanted.names)
+
     def _frame(self) -> Message:
         frame: Message = {
             "kind": "frame",
             "seen": self._seen,
-            "busy": self._wanted is not None,
+            "busy": self._preparing(),
             "controls": self.controls.told(),
         }
         grasp = self._grasp

@@ -52,7 +52,7 @@ class SimulatedGrasp:
 
     def __init__(self, choices: Choices, stock: Stock) -> None:
         self._choices, self._stock = choices, stock
-        self.names = (choices.shape,) if choices.everyday else choices.materials
+        self.names = choices.names
         self.rows = len(self.names)
         roughness = () if choices.roughness == 1.0 else (Roughness(choices.roughness, choices.roughness),)
         self._env = GraspVectorEnv(

@@ -197,6 +197,18 @@ def test_pause_step_speed_and_again(visit: Any, url: str) -> None:
     wait(page, f"({TIME}) < 1")
 
 
+def test_a_thing_that_has_its_own_material_and_temperature(visit: Any, url: str) -> None:
+    page = visit(url)
+    page.select_option("#shape", "toy_block")
+    wait(page, "document.querySelector('#names p').textContent.startsWith('toy block')")
+    wait(page, "document.querySelector('#busy').hidden")
+    until(page, 0.3)
+    assert not page.locator("#material").is_visible() and page.locator("#shape").is_visible()
+    for name in ("#shape", "#range-roughness", "#range-ambient"):  # laid out below their headings
+        box = page.locator(name).bounding_box()
+        assert box["x"] + box["width"] < 262, name
+
+
 def test_the_gripper_by_hand(visit: Any, url: str) -> None:
     page = visit(url)
     page.get_by_text("Hand", exact=True).click()

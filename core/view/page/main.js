@@ -2,6 +2,7 @@
 
 import { showAcross } from "./across.js";
 import { showBelief } from "./belief.js";
+import { Busy } from "./busy.js";
 import { drawBar, rowColour, temperatureColour, useRange, useTable } from "./colours.js";
 import { Controls, readable } from "./controls.js";
 import { say } from "./say.js";
@@ -15,6 +16,7 @@ const SHOWN = 8000; // ms that a problem stays on the screen
 const element = (id) => document.getElementById(id);
 const CURVES = ["voltage", "drop", "force"]; // a pair each, left and right, in the order of a frame's rows
 const memory = { time: [], rows: [] };
+const busy = new Busy(element("busy"));
 const pace = { wall: 0, time: 0 };
 let materials = [];
 let mode = "T";
@@ -78,6 +80,7 @@ function chosen({ choices, seen }) {
 }
 
 function begin() {
+  newest = null;
   memory.time = [];
   memory.rows = [];
   posteriors = [];
@@ -89,7 +92,7 @@ function begin() {
 function frame(message) {
   window.studio.frames++;
   document.body.dataset.state = message.busy ? "busy" : "live";
-  element("busy").hidden = !message.busy;
+  busy.show(message.busy && readable(message.busy));
   if (link.answered(message.seen)) controls.controlled(message.controls);
   if (!message.rows) return;
   say(element("time"), `${message.time.toFixed(2)} s`);
@@ -100,6 +103,7 @@ function frame(message) {
 }
 
 function show(now) {
+  if (!newest) return; // another grasp has begun since
   const { rows } = newest;
   newest = null;
   window.studio.shown++;
@@ -178,6 +182,7 @@ function problem({ text }) {
 
 function lost(title, text) {
   document.body.dataset.state = "lost";
+  busy.show("");
   element("lost-title").textContent = title;
   element("lost-text").textContent = text;
   element("lost").hidden = false;

@@ -54,7 +54,7 @@ export class Scene {
     }
     const ordered = [...shapes].sort((a, b) => b.alpha - a.alpha); // what can be seen through comes last
     this.#shapes = ordered.map((shape) => ({ shape, ...upload(gl, triangles(shape)) }));
-    this.redraw();
+    this.#rows = []; // the last ones were of other shapes
   }
 
   // rows: {poses, colours}, colours: part -> sRGB in 0..1. now: of the picture of the page that is being made.
