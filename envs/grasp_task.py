@@ -6,6 +6,7 @@ B: environments.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -23,7 +24,6 @@ GRASP_STATE = np.dtype(
 )
 """s; s at 5 cm without a break; m, how high the object was above the arm when both pads came to press; has been at
 5 cm; both pads pressed at the last step."""
-_REASONS: tuple[str, ...] = ("dropped", "crushed", "slipped")
 LIFTED = 0.05  # m
 TOUCHING = 0.2  # N on each pad that counts as holding
 
@@ -37,6 +37,8 @@ class GraspTask:
     Reward per second: .2 while both fingertips press, .3 times the height reached (as a share of 5 cm), .5 while it is
     held there; 1 once on success, -1 on dropping, crushing or slipping.
     """
+
+    reasons: ClassVar[tuple[str, ...]] = ("dropped", "crushed", "slipped")
 
     hold_seconds: float = 2.0
     seconds: float = 10.0
@@ -85,7 +87,7 @@ class GraspTask:
             reward,
             flags,
         )
-        reasons = dict(zip(_REASONS, flags[3:], strict=True)) if failed else {}
+        reasons = dict(zip(self.reasons, flags[3:], strict=True)) if failed else {}
         return after, Outcome(reward, flags[0], flags[1], flags[2], reasons, {})
 
 
@@ -104,7 +106,7 @@ def _judge_rows(
     rewards,
     flags,
 ):
-    """Fills after (B,) GRASP_STATE, rewards (B,) and flags (success, terminated, truncated, and _REASONS). Returns
+    """Fills after (B,) GRASP_STATE, rewards (B,) and flags (success, terminated, truncated, and the reasons). Returns
     whether any has failed."""
     any_failed = False
     for b in range(len(lift)):

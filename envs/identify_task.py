@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -39,6 +40,8 @@ class IdentifyTask:
     Success is a declaration whose largest share is the true class's.
     Raises InvalidValueError for fewer than two classes, a repeated one, or numbers that make no sense.
     """
+
+    reasons: ClassVar[tuple[str, ...]] = ()
 
     classes: tuple[str, ...]
     seconds: float = 4.0

@@ -6,6 +6,7 @@ B: environments, O = 2 objects.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -35,6 +36,8 @@ class SortTask:
     and .5 while it is held there; 1 once on success, -1 on lifting the other one by 2.5 cm, dropping the right one, or
     crushing either. Touching alone gives nothing.
     """
+
+    reasons: ClassVar[tuple[str, ...]] = ("wrong", "dropped", "crushed")
 
     hold_seconds: float = 1.0
     seconds: float = 10.0
@@ -87,7 +90,7 @@ class SortTask:
             success=success,
             terminated=ended,
             truncated=~ended & (elapsed >= self.seconds - dt / 2),
-            reasons={"wrong": wrong, "dropped": dropped, "crushed": crushed},
+            reasons=dict(zip(self.reasons, (wrong, dropped, crushed), strict=True)),
             told={},
         )
         return after, outcome

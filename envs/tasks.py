@@ -6,7 +6,7 @@ B: environments.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import gymnasium
 import numpy as np
@@ -15,9 +15,9 @@ from thermograsp.plant import Command, Reading
 
 
 class Outcome(NamedTuple):
-    """After a control step, all (B,): reward, success, terminated, truncated. reasons: name -> (B,) bool of how an
-    episode can terminate that is no success, empty where none did; info names those that did. told: name -> (B, ...)
-    that info always has."""
+    """After a control step, all (B,): reward, success, terminated, truncated. reasons: name -> (B,) bool, the task's
+    reasons, or nothing where no episode ended for one; info names those that did. told: name -> (B, ...) that info
+    always has."""
 
     reward: np.ndarray
     success: np.ndarray
@@ -28,7 +28,10 @@ class Outcome(NamedTuple):
 
 
 class Task(Protocol):
-    """Pure functions of arrays; a state is an array (B,) of records, all 0 before the first step."""
+    """Pure functions of arrays; a state is an array (B,) of records, all 0 before the first step. reasons: how an
+    episode can terminate that is no success."""
+
+    reasons: ClassVar[tuple[str, ...]]
 
     def action_space(self) -> gymnasium.spaces.Box:
         """Of one environment."""

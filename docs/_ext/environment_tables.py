@@ -120,8 +120,8 @@ def info_keys(env: TouchEnv) -> tuple[Mapping[str, Any], Iterable[str]]:
     """What info always has, with values of a step, and the reasons that can end an episode."""
     env.reset(seed=0)
     step = env.batch.step(_still(env))
-    always = {key: value for key, value in step.info(0).items() if key not in step.outcome.reasons}
-    return always, tuple(step.outcome.reasons)
+    reasons = env.batch.task.reasons
+    return {key: value for key, value in step.info(0).items() if key not in reasons}, reasons
 
 
 def _still(env: TouchEnv) -> np.ndarray:
