@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from ..thermal.batch import RESERVOIR, HeatReading, HeatTables, advance_row, fingertips_of, forget_row
-from ..thermal.contact_law import conductance, contact
+from ..thermal.contact_law import FLAT, conductance, contact, flat_overlap
 from ..thermal.coupling_kernel import FAST, workspace
 from ..thermal.system import NODE
 from .heat_rows import NEW_PATCH, OFF_ELEMENT, RELEASE, TOUCH
@@ -36,7 +36,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, *nu
         row, one, x = rows[b], told[b], state[b]
         renewed = one.over_temperature = False
         for f in range(2):
-            touching = _mean_contact(laws[b], normal[b, :, f], one, f)
+            touching = _mean_contact(laws[b], normal[b, :, f], one, f, place[b, f])
             renewed |= _follow(row, one, f, touching, place[b, f])
             row.begun |= touching
         if renewed and row.lasting == 0:
@@ -119,13 +119,14 @@ def _set_node(tables, network, x, above):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _mean_contact(law, normal, one, f):
+def _mean_contact(law, normal, one, f, place):
     """Writes conductance W/(m2 K) and area m2, whose product is the mean of their products over the substeps; the area
-    is the mean over those that press. Returns whether any does."""
+    is the mean over those that press. place: see flat_overlap. Returns whether any does."""
     total, area, pressing = 0.0, 0.0, 0
+    overlap, share = flat_overlap(law, place) if law.shape == FLAT else (0.0, 0.0)
     for s in range(len(normal)):
         if normal[s] > 0:
-            face, load = contact(law, normal[s])
+            face, load = (overlap, share * normal[s]) if law.shape == FLAT else contact(law, normal[s])
             if face > 0:
                 total += conductance(law, load / face) * face
                 area += face

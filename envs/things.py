@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -75,7 +76,7 @@ class Thing:
     def plate(self) -> tuple[float, float, float]:
         """(width, depth, thickness) m of the plate that stands for the object: as thick as it is between the fingers,
         of the same volume, and as wide to high as its bounding box; never narrower than the sensor's face."""
-        x, y, z = self.spec.size
+        x, (y, z) = self._thickness, self._sides
         area = self.spec.volume / x
         side = self.stack.width
         width = max(float(np.sqrt(area * y / z)), side)
@@ -118,7 +119,26 @@ class Thing:
         """m, the flat face that the pads meet."""
         if self.mode == "O":
             return self.stack.width, self.stack.width
-        return self._met.size if self.spec.shape == "mesh" else self.spec.size[1:]
+        return self._met.size if self.spec.shape == "mesh" else self._sides
+
+    @property
+    def _across(self) -> tuple[int, int]:
+        """The axes of the object's frame along the pads: a box that is turned is held by its other sides."""
+        turned = (
+            self.spec.shape == "box" and self.mode == "T" and abs(math.sin(self.spec.yaw)) > math.sqrt(0.5)
+        )
+        return (0, 2) if turned else (1, 2)
+
+    @property
+    def _sides(self) -> tuple[float, float]:
+        """m, the size along those."""
+        first, second = self._across
+        return self.spec.size[first], self.spec.size[second]
+
+    @property
+    def _thickness(self) -> float:
+        """m, between the pads."""
+        return self.spec.size[1 - self._across[0]]
 
     @property
     def _round(self) -> tuple[float, float]:
@@ -134,7 +154,8 @@ class Thing:
             return cylinder_law(PAD, self.joint, *self._round)
         if self.contact_shape == "sphere":
             return sphere_law(PAD, self.joint, self._round[0])
-        return flat_law(PAD, self.joint, self._face)
+        followed = self.mode == "T" and self.spec.shape == "box"
+        return flat_law(PAD, self.joint, self._face, self._across if followed else None)
 
     @cached_property
     def heat_capacity(self) -> float:

@@ -20,9 +20,12 @@ FLAT, CYLINDER, SPHERE = range(3)
 
 CONTACT_LAW = np.dtype(
     [
-        # flat: m2 of the face in contact and its share of the force
+        # flat: m2 of the face in contact and its share of the force while the pad is at the middle; sizes m of the
+        # object's face along two axes of its frame, 0 where the pad is always taken to be there
         ("area", "f8"),
         ("share", "f8"),
+        ("size", "f8", (2,)),
+        ("across", "i8", (2,)),
         # curved: Pa/m2 of a pad under a body of that radius, half widths m and, of a cylinder, lengths m in contact
         ("stiffness", "f8"),
         ("half_pad", "f8"),
@@ -51,10 +54,17 @@ _SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
 _NEWTON_STEPS = 8
 
 
-def flat_law(pad: Pad, joint: Joint, size: tuple[float, float]) -> np.void:
-    """The law of a flat object whose face is of that size m; see area.flat_contact."""
+def flat_law(
+    pad: Pad, joint: Joint, size: tuple[float, float], across: tuple[int, int] | None = None
+) -> np.void:
+    """The law of a flat object whose face is of that size m; see area.flat_contact. across: the axes of the object's
+    frame along which the sizes lie, for flat_overlap to follow a pad that leaves the face's middle; None for one that
+    does not."""
     newton = flat_contact(pad, 1.0, size)
-    return _law(pad, joint, shape=FLAT, area=float(newton.face), share=float(newton.face_force))
+    law = _law(pad, joint, shape=FLAT, area=float(newton.face), share=float(newton.face_force))
+    if across is not None:
+        law["size"], law["across"] = size, across
+    return law
 
 
 def cylinder_law(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
@@ -90,6 +100,21 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
     for name, value in numbers.items():
         law[name] = value
     return law[0]
+
+
+@njit(cache=True, error_model="numpy")
+def flat_overlap(law, place):
+    """(area m2 on the face, its share of the force) of a flat object. place: (3,) m, the pad's middle from the object's
+    in the object's frame."""
+    if law.size[0] == 0:
+        return law.area, law.share
+    on_pad, on_face = 1.0, 1.0
+    for side in range(2):
+        axis = law.across[side]
+        apart, half = abs(place[axis]), law.size[side] / 2
+        on_pad *= max(min(law.half_pad, half - apart) + min(law.half_pad, half + apart), 0.0)
+        on_face *= max(min(law.half_face, half - apart) + min(law.half_face, half + apart), 0.0)
+    return on_face, on_face / on_pad if on_pad > 0 else 0.0
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)

@@ -7,6 +7,7 @@ import pytest
 
 from thermograsp import thermal
 from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, action_of
+from thermograsp.envs.things import PAD
 from thermograsp.thermal import SEED_MATERIALS
 
 from .scripted import grasp_action
@@ -223,3 +224,32 @@ def test_a_grasp_elsewhere_is_a_new_patch_and_keeps_the_heat():
     assert kinds.count("new patch") == 2
     truth = batch.reading.truth
     assert abs(truth["heat_imbalance"][0]) <= 1e-6 * truth["heat_exchanged"][0]
+
+
+@pytest.mark.parametrize("lift", [0.0, 0.016, 0.019])
+def test_a_pad_that_hangs_over_an_edge_feels_by_what_lies_under_it(lift):
+    """The arm rises before it closes: of a box of 30 mm the face's upper edge is 15 mm above its middle."""
+    batch = GraspBatch(1, task=ENDLESS, material="aluminium", objects=ObjectSpec(size=(0.04, 0.04, 0.03)))
+    batch.reset([0], [np.random.default_rng(0)])
+    steps = int(lift / (0.05 * batch.dt))
+    for action in [action_of(0.085, 10.0, 0.05)] * steps + [action_of(0.0, 10.0, 0.0)] * 60:
+        batch.step(action[None])
+    mechanics = batch.plant.mechanics  # pyright: ignore[reportAttributeAccessIssue]
+    ones = np.ones(1)
+    motion = mechanics.advance(0 * ones, 10 * ones, 0 * ones)
+    above = motion.place[0, :, 2]
+    step = batch.plant.heat.advance(motion.normal, motion.place)  # pyright: ignore[reportAttributeAccessIssue]
+    expected = thermal.flat_contact(PAD, 10.0, (0.04, 0.03), (motion.place[0, :, 1], above)).face
+    assert step.told["area"][0] == pytest.approx(expected, rel=1e-12)
+    assert np.all(expected < 80e-6) == (lift > 0) and np.all(expected > 0)
+
+
+def test_a_box_that_lies_across_is_held_by_its_other_sides():
+    """A sheet of 30 x 10 mm, 6 mm thick, turned by 90 degrees is one of 6 x 10 mm, 30 mm thick."""
+    felt = []
+    for spec in (ObjectSpec(size=(0.03, 0.006, 0.01)), ObjectSpec(size=(0.006, 0.03, 0.01), yaw=np.pi / 2)):
+        batch = GraspBatch(1, task=ENDLESS, material="glass", objects=spec, placement=(0.0, 0.0))
+        truth = grasped(batch, 100)[-1].truth
+        felt.append((truth["contact_area"][0], truth["temperature_drop"][0]))
+    assert felt[0][0] == pytest.approx(felt[1][0], rel=1e-3)
+    assert felt[0][1] == pytest.approx(felt[1][1], rel=1e-3)

@@ -20,7 +20,7 @@ from thermograsp.thermal import (
     sphere_contact,
     sphere_law,
 )
-from thermograsp.thermal.contact_law import conductance, contact
+from thermograsp.thermal.contact_law import conductance, contact, flat_overlap
 
 FORCES = np.logspace(-6, 3.5, 200)
 PAD = Pad()
@@ -55,3 +55,16 @@ def test_it_is_the_area_and_conductance_law_over_nine_decades_of_force(shape, na
     assert np.allclose(load, expected.face_force, rtol=1e-12, atol=0)
     found = [conductance(law, pressure) for pressure in expected.face_pressure]
     assert np.allclose(found, contact_conductance(pair, expected.face_pressure), rtol=1e-10, atol=0)
+
+
+def test_a_pad_off_the_middle_meets_what_lies_under_it() -> None:
+    rng, pair = np.random.default_rng(0), joint(LAPPED_ALUMINA, Surface.of(material("glass")))
+    for size in ((0.04, 0.03), (0.006, 0.05), (0.015, 0.004)):
+        law, fixed = flat_law(PAD, pair, size, (2, 0)), flat_law(PAD, pair, size)
+        for place in rng.uniform(-0.03, 0.03, (200, 3)):
+            expected = flat_contact(PAD, 1.0, size, (place[2], place[0]))
+            area, share = flat_overlap(law, place)
+            assert area == pytest.approx(float(expected.face), rel=1e-12, abs=1e-18)
+            assert share == pytest.approx(float(expected.face_force), rel=1e-12, abs=1e-15)
+            assert flat_overlap(fixed, place) == (fixed["area"], fixed["share"])
+        assert flat_overlap(law, np.zeros(3)) == (law["area"], law["share"])
