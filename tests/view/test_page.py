@@ -212,7 +212,6 @@ def test_a_thing_that_has_its_own_material_and_temperature(visit: Any, url: str)
 def test_the_gripper_by_hand(visit: Any, url: str) -> None:
     page = visit(url)
     page.get_by_text("Hand", exact=True).click()
-    page.locator("#range-opening").wait_for()  # shown when the server has agreed
     page.locator("#range-opening").focus()
     page.keyboard.press("End")
     page.locator("#range-height").focus()

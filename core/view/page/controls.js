@@ -72,17 +72,26 @@ export class Controls {
     play.setAttribute("aria-pressed", controls.playing);
     element("speed").value = controls.speed;
     check("driver", controls.driver);
-    for (const holder of document.querySelectorAll("[data-hand]")) holder.hidden = controls.driver !== "sliders";
-    this.#sliders.force.holder.hidden = !["scripted", "sliders"].includes(controls.driver);
+    this.#suit(controls.driver);
     for (const [name, slider] of Object.entries(this.#sliders)) {
       if (name in controls && !slider.held && !this.#resting.get(name)) slider.set(controls[name]);
     }
   }
 
-  // By hand it goes on from where the gripper is.
+  // Shows the sliders that a driver heeds.
+  #suit(driver) {
+    for (const holder of document.querySelectorAll("[data-hand]")) holder.hidden = driver !== "sliders";
+    this.#sliders.force.holder.hidden = !["scripted", "sliders"].includes(driver);
+  }
+
+  // By hand it goes on from where the gripper is, which may be a hair beyond what can be set.
   #drive(driver) {
-    const { opening, height } = this.now ?? {};
-    this.send("control", driver === "sliders" && opening !== undefined ? { driver, opening, height } : { driver });
+    this.#suit(driver);
+    const content = { driver };
+    for (const name of driver === "sliders" && this.now ? ["opening", "height"] : []) {
+      content[name] = this.#sliders[name].within(this.now[name]);
+    }
+    this.send("control", content);
   }
 
   #slider(holder, range) {
@@ -103,11 +112,12 @@ export class Controls {
       output.textContent = `${Number((number * range.scale).toPrecision(3))} ${range.unit}`;
       input.setAttribute("aria-valuetext", output.textContent);
     };
-    const slider = { holder, held: false, releasing: 0, set: (number) => {
+    const within = (number) => Math.min(Math.max(number, range.low), range.high);
+    const slider = { holder, within, held: false, releasing: 0, set: (number) => {
       input.value = place(number);
       show(number);
     } };
-    const send = (when) => this.send(kind, { [name]: Math.min(Math.max(value(), range.low), range.high) }, when);
+    const send = (when) => this.send(kind, { [name]: within(value()) }, when);
     input.addEventListener("input", (event) => {
       show(value());
       clearTimeout(slider.releasing);
