@@ -33,7 +33,7 @@ from .system import NODE, ContactSystem, sample_geometry, with_sensors
 
 PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
 PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
-_VERSION = 3  # of the arrays' meaning and of how they are computed
+_VERSION = 4  # of the arrays' meaning and of how they are computed
 _COARSE = (
     0.08  # K of tolerance per 12 K of difference from which on two patterns of flux serve in place of three
 )

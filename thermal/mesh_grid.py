@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -25,10 +26,14 @@ from .mesh_cut import Edges, cut_mesh, in_planes
 from .mesh_nesting import own_volumes
 from .mesh_solid import Solid, SurfacePatch
 
+if TYPE_CHECKING:
+    from .mesh_patch import PlacedPatch
+
 _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
+ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
 _EMPTY = 1e-7  # of a cell, less than which is nothing
-_FLAT = 20e-6  # m that the surface of a patch may sag and be flat to the grid
-_SAG_CELLS = 12  # down the sag of a curved patch
+_FLAT = 20e-6  # m that the surface of a patch may rise or fall and be flat to the grid
+_RELIEF_CELLS = 12  # between the middle of a patch that is not flat and its lowest or highest place
 _CRUMB = 1e-3  # of the solid's volume, less than which a piece of its own is left out
 
 
@@ -40,13 +45,14 @@ order in the length of its cells, where 1/2 makes it err by (length/penetration)
 @dataclass(frozen=True, slots=True)
 class MeshGridding:
     """How fine a grid is. depth: m, first cell under a patch. side: m, cells at a patch's edge. growth:
-    length of a cell per distance from there. largest: m, longest cell. oblique: m, cells at a patch that is not along
-    the grid's axes."""
+    length of a cell per distance from there. largest: m, longest cell. slanted: m, cells at a patch of which one side
+    is along the grid's axes. oblique: m, at one of which none is."""
 
     depth: float = 20e-6
     side: float = 0.05e-3
     growth: float = 0.5
     largest: float = 4e-3
+    slanted: float = 0.2e-3
     oblique: float = 0.4e-3
 
 
@@ -109,17 +115,10 @@ def grid_frame(solid: Solid, patches: Sequence[SurfacePatch]) -> np.ndarray:
 
 
 def grid_axes(
-    triangles: np.ndarray,
-    centres: np.ndarray,
-    normals: np.ndarray,
-    half_widths: np.ndarray,
-    aligned: np.ndarray,
-    sags: np.ndarray,
-    layers: np.ndarray,
-    gridding: MeshGridding,
+    triangles: np.ndarray, patches: Sequence[PlacedPatch], layers: Sequence[float], gridding: MeshGridding
 ) -> tuple[GridAxis, GridAxis, GridAxis]:
-    """The axes around triangles (F, 3, 3) m and fine at the patches, all in the grid's frame. sags: m, of the patches'
-    surfaces below their centres. layers: m, thickness of what lies on another material there."""
+    """The axes around triangles (F, 3, 3) m and fine at the patches, all in the grid's frame. layers: m, thickness of
+    what lies on another material there, 0 for none."""
     corners = triangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     largest = max(gridding.largest, float((high - low).max()) / 40)
@@ -127,27 +126,55 @@ def grid_axes(
     for axis in range(3):
         fine: dict[float, float] = {}
         breaks = [low[axis], high[axis], *_planes(triangles, axis)]
-        for centre, normal, half, along, sag, layer in zip(
-            centres, normals, half_widths, aligned, sags, layers, strict=True
-        ):
-            at = float(np.clip(centre[axis], low[axis], high[axis]))
-            if along and abs(normal[axis]) > 0.5:
-                fine[at] = gridding.depth
+        for patch, layer in zip(patches, layers, strict=True):
+            at = float(np.clip(patch.centre[axis], low[axis], high[axis]))
+            if not patch.aligned and np.abs(patch.sides[:, axis]).max() < ALONG:
+                places, length = _along_oblique(patch, axis, gridding)
+            elif abs(patch.normal[axis]) > 0.5:
                 breaks.append(at)
-                steps = round(_SAG_CELLS / 2 * (1 + layer / sag)) if sag > _FLAT else 0
-                for below in np.arange(1, steps + 1) * (2 * sag / _SAG_CELLS):
-                    place = float(np.clip(at - np.sign(normal[axis]) * below, low[axis], high[axis]))
-                    fine[place] = max(sag / _SAG_CELLS, gridding.depth)
-                continue
-            if along:
-                ends, length = (-half, half), gridding.side
+                fine[at] = gridding.depth
+                places, length = _across_relief(patch, layer, gridding)
+                places = np.sign(patch.normal[axis]) * places
             else:
-                reach = half * np.sqrt(2 * max(1 - normal[axis] ** 2, 0.0)) + gridding.oblique
-                ends, length = np.arange(-reach, reach + 1e-9, 2 * gridding.oblique), gridding.oblique
-            for end in ends:
-                fine[float(np.clip(at + end, low[axis], high[axis]))] = length
+                for end in (-patch.half_width, patch.half_width):
+                    fine[float(np.clip(at + end, low[axis], high[axis]))] = gridding.side
+                places, length = _along_relief(patch, axis)
+            for place in np.clip(at + places, low[axis], high[axis]).tolist():
+                fine[place] = min(length, fine.get(place, length))
         axes.append(_staggered(_apart(breaks), fine, gridding.growth, largest))
     return axes[0], axes[1], axes[2]
+
+
+def _across_relief(patch: PlacedPatch, layer: float, gridding: MeshGridding) -> tuple[np.ndarray, float]:
+    """Places m above a patch's centre where its surface goes up and down, and to the bottom of a layer there, and the
+    cells' length."""
+    below, above = patch.relief
+    relief = max(patch.relief)
+    if relief <= _FLAT:
+        return np.zeros(0), gridding.depth
+    step = 2 * relief / _RELIEF_CELLS
+    places = np.arange(-round((below + layer) / step), round(above / step) + 1)
+    return step * places[places != 0], max(step / 2, gridding.depth)
+
+
+def _along_relief(patch: PlacedPatch, axis: int) -> tuple[np.ndarray, float]:
+    """Places m from a patch's centre along one of its sides, so near that the surface goes up or down by no more than
+    the length of the cells across it, and the cells' length."""
+    relief = max(patch.relief)
+    slope = patch.slopes[int(np.argmax(np.abs(patch.sides[:, axis])))]
+    if min(relief, slope) <= _FLAT:
+        return np.zeros(0), patch.half_width
+    count = int(np.ceil(_RELIEF_CELLS / 2 * slope / relief))
+    return patch.half_width * np.arange(1 - count, count) / count, patch.half_width / (2 * count)
+
+
+def _along_oblique(patch: PlacedPatch, axis: int, gridding: MeshGridding) -> tuple[np.ndarray, float]:
+    """Places m from the centre of a patch that is not along the axes, as far as it reaches, and the cells' length."""
+    slanted = np.abs(patch.sides).max() >= ALONG
+    length = gridding.slanted if slanted else gridding.oblique
+    reach = patch.half_width * np.abs(patch.sides[:, axis]).sum() + length
+    reach += max(patch.relief) * abs(patch.normal[axis])
+    return np.arange(-reach, reach + 1e-9, 2 * length), length
 
 
 def _staggered(breaks: np.ndarray, fine: dict[float, float], growth: float, largest: float) -> GridAxis:

@@ -10,12 +10,11 @@ from numba import njit
 from thermograsp.errors import MeshError
 
 from .mesh_cut import cell_range, clip, slab
-from .mesh_grid import MeshGrid, snapped
+from .mesh_grid import ALONG, MeshGrid, snapped
 from .mesh_patterns import PatchPatterns
 from .mesh_solid import SurfacePatch
 
 _FACING = 0.2  # cosine of the angle to the patch's normal, below which a face is not touched
-_ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
 _ABOVE = 5e-6  # m, more than which above a surface lies something else
 _CORNERS = 24  # of a triangle clipped by twelve planes: 15
 
@@ -23,15 +22,17 @@ _CORNERS = 24  # of a triangle clipped by twelve planes: 15
 @dataclass(frozen=True, slots=True)
 class PlacedPatch:
     """A patch on the surface, in the grid's frame. centre, normal: (3,). half_width: m. sides: (2, 3) directions of
-    the square's sides. aligned: whether they and the normal are along the grid's axes. sag: m, how far below the centre
-    the surface reaches at the square's edges and corners."""
+    the square's sides. aligned: whether they and the normal are along the grid's axes. relief: (2,) m, how far below
+    and above the centre the surface reaches at the square's edges and corners. slopes: (2,) m, how far at the ends of
+    each of the sides."""
 
     centre: np.ndarray
     normal: np.ndarray
     half_width: float
     sides: np.ndarray
     aligned: bool
-    sag: float
+    relief: tuple[float, float]
+    slopes: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
     centre, normal = frame @ np.array(patch.centre), frame @ patch.direction
     half = patch.half_width
     axis = int(np.argmax(np.abs(normal)))
-    aligned = bool(np.abs(normal[axis]) > _ALONG)
+    aligned = bool(np.abs(normal[axis]) > ALONG)
     if aligned:
         normal = np.sign(normal[axis]) * np.eye(3)[axis]
     first = np.cross(normal, np.eye(3)[(axis + 1) % 3])
@@ -63,9 +64,8 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
         depth = crossings(triangles, centre + middle @ sides, normal)
         if len(depth):
             placed = centre + depth[np.argmin(np.abs(depth))] * normal
-            return PlacedPatch(
-                placed, normal, half, sides, aligned, _sag(triangles, placed, normal, half * sides)
-            )
+            relief, slopes = _relief(triangles, placed, normal, half * sides)
+            return PlacedPatch(placed, normal, half, sides, aligned, relief, slopes)
     at = ", ".join(f"{1e3 * x:.4g}" for x in patch.centre)
     raise MeshError(
         f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.normal)} does not meet the "
@@ -126,14 +126,18 @@ def patch_on_grid(
     return PatchOnGrid(shares, (turn * np.maximum(levels, 0.0)) @ turn.T, total)
 
 
-def _sag(triangles: np.ndarray, centre: np.ndarray, normal: np.ndarray, sides: np.ndarray) -> float:
-    """m from the centre down to the lowest surface at the corners and the edges' middles, at most half a side."""
-    lowest = 0.0
+def _relief(
+    triangles: np.ndarray, centre: np.ndarray, normal: np.ndarray, sides: np.ndarray
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """See PlacedPatch. sides: (2, 3) m, from the middle to the edges' middles; farther away is another surface."""
+    heights = []
     for place in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-        below = -crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
-        nearest = float(below[np.argmin(np.abs(below))]) if len(below) else 0.0
-        lowest = max(lowest, nearest if nearest < np.linalg.norm(sides[0]) else 0.0)
-    return lowest
+        above = crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
+        nearest = float(above[np.argmin(np.abs(above))]) if len(above) else 0.0
+        heights.append(nearest if abs(nearest) < np.linalg.norm(sides[0]) else 0.0)
+    steep = np.abs(heights[:4])
+    relief = max(-min(heights), 0.0), max(max(heights), 0.0)
+    return relief, (float(steep[:2].max()), float(steep[2:].max()))
 
 
 def crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:

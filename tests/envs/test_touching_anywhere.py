@@ -140,8 +140,8 @@ def test_heat_taken_is_the_rise_times_the_heat_capacity(name, meshes):
     assert taken > 1.0 and len(heat._touches[0].body.patches) == 2
 
 
-def test_a_second_touch_finds_the_warm_spot_and_one_3_cm_away_does_not():
-    first, away = LEFT, LEFT + [0, 0.030, 0]
+def test_a_second_touch_finds_the_warm_spot_and_one_well_away_does_not():
+    first, away = LEFT, LEFT + [0, 0.024, 0]  # the whole pad on the bar
     heat = heat_of(*(thing() for _ in range(4)))
     press(heat, 5.0, first, first, first, first)
     press(heat, 5.0, None, None, None, None)
@@ -152,7 +152,7 @@ def test_a_second_touch_finds_the_warm_spot_and_one_3_cm_away_does_not():
     drop = np.array([step.drop[:, -1, 0] for step in told])[10:]
     warm, elsewhere, beside, fresh = drop.T
     assert np.all(fresh - warm > 0.1)
-    assert np.abs(elsewhere - fresh).max() < 0.01
+    assert np.abs(elsewhere - fresh).max() < 0.02  # a fifth of the tolerance
     assert np.all(fresh - beside > 0.02) and np.all(beside - warm > 0.05)
     kinds = [[kind for step in told for kind, _ in step.events[row]] for row in range(3)]
     assert kinds == [["touch"], ["touch", "new patch"], ["touch", "new patch"]]

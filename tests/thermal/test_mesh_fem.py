@@ -69,7 +69,7 @@ def test_a_tube_s_wall_is_that_of_the_finite_elements(name):
     body = solid(mesh.vertices, mesh.faces, material)
     net = body_network(body, [SurfacePatch((OUTER, 0, 0), (1, 0, 0))], cache=False)
     expected = tube_by_elements(material)
-    assert net.impedance(MOMENTS)[:, 0, 0] == pytest.approx(expected, rel=0.01)
+    assert net.impedance(MOMENTS)[:, 0, 0] == pytest.approx(expected, rel=0.005)
 
 
 @pytest.mark.parametrize("core", ["glass", "stainless_steel"])
@@ -82,5 +82,7 @@ def test_a_tube_in_a_sleeve_is_that_of_the_finite_elements(core):
         SolidPart(mesh.vertices, mesh.faces, of) for mesh, of in zip(meshes, (sleeve, within), strict=True)
     )
     net = body_network(Solid(tuple(parts)), [SurfacePatch((OUTER, 0, 0), (1, 0, 0))], cache=False)
-    expected = tube_by_elements(within, sleeve)[:3]
-    assert net.impedance(MOMENTS[:3])[:, 0, 0] == pytest.approx(expected, rel=0.015)
+    expected = tube_by_elements(within, sleeve)
+    found = net.impedance(MOMENTS)[:, 0, 0] / expected
+    # at 8 1/s heat is within 0.1 mm of the surface, as deep as cells are there
+    assert np.all(np.abs(found - 1) < [0.01, 0.01, 0.01, 0.02])

@@ -3,6 +3,7 @@ from typing import Literal
 import numpy as np
 import pytest
 import trimesh
+from scipy.special import erf
 
 from thermograsp import thermal
 from thermograsp.errors import InvalidValueError, MeshError
@@ -10,6 +11,7 @@ from thermograsp.thermal.bodies import Geometry
 from thermograsp.thermal.impedance import Slab, layered_impedance
 from thermograsp.thermal.mesh_grid import MeshGridding, grid_axes, grid_frame, mesh_grid
 from thermograsp.thermal.mesh_network import body_network
+from thermograsp.thermal.mesh_patch import place_patch
 from thermograsp.thermal.mesh_patterns import learned_patterns
 from thermograsp.thermal.mesh_solid import Solid, SolidPart, SurfacePatch, solid
 from thermograsp.thermal.mesh_solve import conduct
@@ -101,6 +103,50 @@ def test_a_turned_box_is_the_same_box():
         assert network(turned, patch).impedance(MOMENTS) == pytest.approx(expected, rel=1e-6)
 
 
+def half_space_rise(material, area: float, t: np.ndarray) -> np.ndarray:
+    """Mean rise (n,) K at t (n,) s of a square that takes a watt, spread evenly, on a half-space (Carslaw & Jaeger,
+    section 10.5: sources spread over squares, their means over the same square)."""
+    rise = []
+    for end in t:
+        root = (
+            (np.arange(4000) + 0.5) / 4000 * np.sqrt(end)
+        )  # of the time since; the integrand is smooth in it
+        width = np.sqrt(area) / np.sqrt(4 * material.diffusivity) / root
+        stays = erf(width) + np.expm1(-(width**2)) / (width * np.sqrt(np.pi))
+        rise.append(np.sqrt(end) * np.mean(stays**2) * 2 / np.sqrt(np.pi) / (material.effusivity * area))
+    return np.array(rise)
+
+
+@pytest.mark.parametrize(
+    ("name", "degree", "early"),
+    [("glass", 0, 0.01), ("plastic", 6, 0.015), ("glass", 10, 0.015), ("aluminium", 20, 0.015)],
+)
+def test_a_face_inclined_to_its_patch_warms_as_a_half_space_does(name, degree, early):
+    """The pads close along an axis that the face is not across, as on a cone."""
+    material, turn = thermal.material(name), np.deg2rad(degree)
+    mesh = box(0.04, 0.04, 0.04).apply_transform(trimesh.transformations.rotation_matrix(turn, [0, 0, 1]))
+    patch = SurfacePatch((0.02 / np.cos(turn), 0, 0), (1, 0, 0))
+    t = np.array([0.05, 0.1, 0.3, 1.0]) * min(1.0, 1e-5 / material.diffusivity)  # before the block ends
+    found = network(of(mesh, name), patch).step_response(t)[:, 0, 0]
+    assert found == pytest.approx(half_space_rise(material, 81e-6 / np.cos(turn), t), rel=early)
+
+
+def test_a_face_that_is_slanted_to_the_grid_warms_as_a_half_space_does():
+    """The next but one of a hexagon's: coarser, since it is not the last."""
+    glass = thermal.material("glass")
+    mesh = trimesh.creation.cylinder(0.02, 0.04, sections=6)
+    across = 0.02 * np.cos(np.pi / 6)
+    slanted, last = (
+        SurfacePatch((across * np.cos(a), across * np.sin(a), 0), (np.cos(a), np.sin(a), 0))
+        for a in np.deg2rad([90, 30])
+    )
+    t = np.array([0.05, 0.2, 0.5])
+    found = network(of(mesh), slanted, last).step_response(t)
+    exact = half_space_rise(glass, 81e-6, t)
+    assert found[:, 1, 1] == pytest.approx(exact, rel=3e-3)
+    assert np.all(np.abs(found[:, 0, 0] / exact - 1) < [0.06, 0.015, 0.006])
+
+
 def test_heat_that_flows_in_is_the_object_s_rise():
     mesh = cup()
     net = network(of(mesh), SurfacePatch((0.02, 0, 0), (1, 0, 0), 25e-6))
@@ -117,16 +163,9 @@ def test_a_linear_field_along_a_sheet_thinner_than_its_cells_is_met_exactly():
     sheet = of(box(0.06, 0.05, 0.001).apply_transform(turn))
     triangles = sheet.parts[0].triangles
     coarse = MeshGridding(oblique=3e-3, largest=3e-3)
-    axes = grid_axes(
-        triangles,
-        np.zeros((1, 3)),
-        turn[None, :3, 2],
-        np.array([0.0045]),
-        np.array([False]),
-        np.zeros(1),
-        np.zeros(1),
-        coarse,
-    )
+    patch = place_patch(triangles, SurfacePatch((0, 0, 0), tuple(turn[:3, 2].tolist())), np.eye(3))
+    assert not patch.aligned
+    axes = grid_axes(triangles, [patch], [0.0], coarse)
     grid = mesh_grid(sheet, np.eye(3), axes)
     along = turn[:3, 0]
     field = grid.nodes @ along
