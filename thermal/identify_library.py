@@ -73,7 +73,7 @@ class CurveLibrary:
 def curve_library(
     setup: TouchSetup, materials: Sequence[str | Material], *, cache: bool = True
 ) -> CurveLibrary:
-    """The curves of a setup and the named materials. The first call for a setup takes seconds (O mode: half a minute)."""
+    """The curves of a setup and the named materials. The first call for a setup takes seconds (O mode: 30)."""
     chosen = [named_material(one) for one in materials]
     geometry = setup.geometry(chosen[0])
     knots = _FIRST * np.sinh(np.linspace(0, np.arcsinh(setup.horizon / _FIRST), _KNOTS))

@@ -26,8 +26,8 @@ class TouchSetup:
     conductance: (lowest, highest) W/(m2 K), log-uniform between. object_temperature, sensor_temperature: (mean,
     standard deviation) °C at the touch, normal. model_error: rms of slow deviations of real curves from the model, as
     a share of the curve's largest value. tolerance: K that the network which simulated a curve may be off, however
-    small the curve is: a quarter of it, the rms of such networks' errors, is added; 0 where no network did. touch_error:
-    s, standard deviation of a touch time that is given.
+    small the curve is: a quarter of it, the rms of such networks' errors, is added; 0 where no network did.
+    touch_error: s, standard deviation of a touch time that is given.
     horizon: s after the touch; later samples are not used.
     Raises InvalidValueError.
     """
