@@ -70,11 +70,13 @@ def pair_config(*, goal: Goal = "material", **simulation: Any) -> PairConfig:
         raise InvalidValueError(f"object_temperature must be one °C or two, got {given}")
     settings = SimulationConfig(object_temperature=given[0], **simulation)
     alike = [_of_one_weight(shape) for shape in settings.shapes]
-    return PairConfig(goal, (given[0], given[-1]), replace(settings, objects=alike))
+    return PairConfig(
+        goal, (given[0], given[-1]), replace(settings, objects=alike, material=settings.choices)
+    )
 
 
 def _of_one_weight(spec: ObjectSpec) -> ObjectSpec:
     """Mass and friction do not follow from the material."""
     mass = DEFAULT_MASS if spec.mass is None and spec.density is None else spec.mass
     friction = DEFAULT_FRICTION if spec.friction is None else spec.friction
-    return replace(spec, mass=mass, friction=friction, material=None)
+    return replace(spec, mass=mass, friction=friction, material=spec.material if spec.parts else None)

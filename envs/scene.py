@@ -144,14 +144,19 @@ class ObjectSpec:
         return (*own, *(part.made_of for part in self.parts))
 
     @property
-    def touched(self) -> Material | None:
-        """What pads meet that close on it: its own material, or the part's that most of both faces meet."""
+    def touched_part(self) -> int:
+        """What most of both pads' faces meet that close on it: 0 for its own material, else the number of a part."""
         if not self.parts:
-            return None if self.material is None else material(self.material)
+            return 0
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         x, y = self.position
         middle = np.array([-x * cos - y * sin, x * sin - y * cos, self.grasp_height - self.size[2] / 2])
-        return self.materials[self.assembly.touched(middle, np.array([cos, -sin, 0.0]), sum(self.size))]
+        return self.assembly.touched(middle, np.array([cos, -sin, 0.0]), sum(self.size))
+
+    @property
+    def touched(self) -> Material | None:
+        """The material of that, None where it has none."""
+        return self.materials[self.touched_part] if self.material is not None else None
 
     @property
     def hulls(self) -> int:

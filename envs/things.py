@@ -85,7 +85,8 @@ class Thing:
     @cached_property
     def touched(self) -> Material:
         """What the pads meet: its material, or a part's."""
-        return self.spec.touched or self.material if self.spec.parts else self.material
+        number = self.spec.touched_part
+        return self.spec.parts[number - 1].made_of if number else self.material
 
     @cached_property
     def joint(self) -> Joint:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +11,13 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.envs import (
+    EVERYTHING,
     GraspBatch,
     GraspTask,
     ObjectSpec,
     Part,
     SimulationConfig,
+    SortEnv,
     action_of,
     objects,
     touches,
@@ -253,3 +256,28 @@ def test_parts_that_cannot_be_are_refused(files):
         GraspBatch(1, objects=COATED, mode="O")
     core = Part("stainless_steel", size=(0.029, 0.039, 0.049))
     assert hash(replace(COATED, parts=[core])) == hash(COATED)
+
+
+def test_pairs_to_sort_have_parts_too():
+    """Around which the two are of the materials that are to be told apart."""
+    env = SortEnv(objects=COATED, material=["rubber", "cork"], tolerance=0.5)
+    _, info = env.reset(seed=0)
+    assert set(info["material"]) == {"rubber", "cork"}
+    things = env.batch.plant.scenes[0]  # pyright: ignore[reportAttributeAccessIssue]
+    assert {thing.touched.name for thing in things} == {"rubber", "cork"}
+    assert {thing.spec.weight for thing in things} == {0.1}
+    env.close()
+
+
+def test_a_state_goes_on_bit_for_bit_in_an_environment_of_others_sizes():
+    batch = GraspBatch(2, objects="screwdriver", randomize=EVERYTHING, tolerance=0.5)
+    batch.reset([0, 1], [np.random.default_rng(row) for row in range(2)])
+    for _ in range(45):
+        batch.step(np.tile(action_of(0.0, 5.0, 0.0), (2, 1)))
+    kept = pickle.loads(pickle.dumps(batch.state()))
+    first, second = [], []
+    for told in (first, second):
+        for _ in range(3):
+            told.append(batch.step(np.tile(action_of(0.0, 5.0, 0.0), (2, 1))).observation["voltage"].copy())
+        batch.set_state(kept)
+    assert np.array_equal(first, second) and np.abs(first).max() > 0
