@@ -91,15 +91,17 @@ def _parts(axes: Axes, speeds: Sequence[Speed]) -> None:
             begun += width
     axes.set_yticks(rows, [f"{each.num_envs:,}" for each in speeds])
     axes.set(xlabel="time of a control step over bare MuJoCo's", ylabel="environments")
+    axes.set_xlim(0, 1.2 * axes.get_xlim()[1])  # room for the names
     axes.axvline(1.0, color=INK, lw=0.8)
     for i, (name, color) in enumerate(zip(PARTS, _COLORS, strict=True)):
         axes.text(
-            0.97,
+            0.99,
             0.42 - 0.075 * i,
             name,
             color=color if i else FAINT,
             transform=axes.transAxes,
             ha="right",
+            size=9,
             weight="semibold",
         )
 
