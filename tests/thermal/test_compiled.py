@@ -6,6 +6,7 @@ import pkgutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
@@ -13,6 +14,7 @@ from numba.core.dispatcher import Dispatcher
 
 import thermograsp.envs
 import thermograsp.thermal
+from thermograsp.errors import MissingDependencyError
 
 STEPS = """
 import hashlib
@@ -38,7 +40,8 @@ print(digest.hexdigest())
 def modules() -> Iterator[ModuleType]:
     for package in (thermograsp.thermal, thermograsp.envs):
         for each in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
-            yield importlib.import_module(each.name)
+            with suppress(MissingDependencyError):  # an adapter of what is not installed
+                yield importlib.import_module(each.name)
 
 
 def compiled() -> dict[str, Dispatcher]:
