@@ -54,9 +54,10 @@ test-hardware-long: build/.test
 test-firmware: build/.test
 	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
 
-# Every benchmark, coarsely, and what they must show; the physics beside elements in 3-D.
+# Every benchmark, coarsely, and what they must show; the physics beside elements in 3-D; the demo and the paper's figures.
 test-bench: build/.test
-	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench tests/benchmarks
+	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench tests/benchmarks tests/thermal/test_mesh_fem.py \
+	  tests/cli/test_demo.py tests/cli/test_reproduce.py
 
 # What is published: a wheel and an sdist, installed where nothing else is, and the first page of docs/ done literally.
 test-release: build/.release

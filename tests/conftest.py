@@ -11,6 +11,12 @@ import pytest
 TIERS = {
     "bench": ("THERMOGRASP_BENCH", "runs all benchmarks for minutes: make test-bench"),
     "benchmarks": ("THERMOGRASP_BENCH", "compares with elements in 3-D for minutes: make test-bench"),
+    "thermal/test_mesh_fem.py": (
+        "THERMOGRASP_BENCH",
+        "compares with elements in 3-D for minutes: make test-bench",
+    ),
+    "cli/test_demo.py": ("THERMOGRASP_BENCH", "runs the whole demo: make test-bench"),
+    "cli/test_reproduce.py": ("THERMOGRASP_BENCH", "redraws the paper's figures: make test-bench"),
     "docs/test_code.py": ("THERMOGRASP_SITE", "runs the code of every page: make docs"),
     "release": ("THERMOGRASP_RELEASE", "builds and installs for minutes: make test-release"),
 }
