@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +40,9 @@ HEADER = "time_s,voltage_left_V,voltage_right_V,temperature_drop_left_K"
 @contextmanager
 def serving(port: int = 0) -> Iterator[tuple[subprocess.Popen[str], str]]:
     command = [sys.executable, "-m", "thermograsp", "view", "--json", "--port", str(port)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    # What is started in the background ignores SIGINT, and so would its children.
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=heed)
     try:
         assert process.stdout is not None
         yield process, json.loads("".join(iter(process.stdout.readline, "}\n")) + "}")["url"]
