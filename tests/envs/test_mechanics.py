@@ -8,7 +8,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from thermograsp.envs.mechanics import ContactRecord, Mechanics
+from thermograsp.envs.contact_record import ContactRecord
+from thermograsp.envs.mechanics import Mechanics
 from thermograsp.envs.scene import MAX_OPENING, TIPS, ObjectSpec
 from thermograsp.errors import InvalidValueError
 
