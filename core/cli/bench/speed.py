@@ -87,7 +87,7 @@ def _plan(num_envs: int, quick: bool) -> tuple[int, int]:
     the first few after going back to a block's beginning find nothing in the processor's caches."""
     if quick:
         return 2, 10
-    for most, plan in ((1, (40, 100)), (16, (40, 25)), (64, (24, 10)), (256, (20, 6))):
+    for most, plan in ((1, (40, 100)), (16, (40, 25)), (64, (24, 10)), (256, (14, 6))):
         if num_envs <= most:
             return plan
-    return 9, 4
+    return 5, 4
