@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from ..thermal.batch import RESERVOIR, HeatReading, HeatTables, advance_row, fingertips_of, forget_row
-from ..thermal.contact_law import FLAT, conductance, contact, flat_overlap
+from ..thermal.contact_law import conductance, contact
 from ..thermal.coupling_kernel import FAST, workspace
 from ..thermal.system import NODE
 from .heat_rows import NEW_PATCH, OFF_ELEMENT, RELEASE, TOUCH
@@ -121,12 +121,11 @@ def _set_node(tables, network, x, above):
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _mean_contact(law, normal, one, f, place):
     """Writes conductance W/(m2 K) and area m2, whose product is the mean of their products over the substeps; the area
-    is the mean over those that press. place: see flat_overlap. Returns whether any does."""
+    is the mean over those that press. place: see contact. Returns whether any does."""
     total, area, pressing = 0.0, 0.0, 0
-    overlap, share = flat_overlap(law, place) if law.shape == FLAT else (0.0, 0.0)
     for s in range(len(normal)):
         if normal[s] > 0:
-            face, load = (overlap, share * normal[s]) if law.shape == FLAT else contact(law, normal[s])
+            face, load = contact(law, normal[s], place)
             if face > 0:
                 total += conductance(law, load / face) * face
                 area += face

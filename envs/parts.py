@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, get_args
 
-from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.errors import InvalidValueError, finite, positive, unknown_name
 
 from ..thermal import Material, material
 
@@ -20,7 +20,7 @@ class Part:
     material: a name or a Material. size: m, full extents (x, y, z); shape: box, cylinder (standing) or sphere of that
     size, None for the object's own shape. mesh: a file of a closed surface in place of these, in the lengths and the
     coordinates of the object's file where that is a mesh. position: m, of the centre of a size in the object's frame;
-    of a mesh, how far it is moved. Raises InvalidValueError and UnknownNameError (material).
+    of a mesh, how far it is moved. Raises InvalidValueError and UnknownNameError (material, shape).
     """
 
     material: str | Material
@@ -37,6 +37,8 @@ class Part:
             raise InvalidValueError(
                 f"part of shape {self.shape!r} with mesh {self.mesh!r}: leave out the shape"
             )
+        if self.shape is not None and self.shape not in get_args(RoundShape):
+            raise unknown_name("shape of a part", self.shape, get_args(RoundShape))
         if self.size is not None:
             object.__setattr__(self, "size", checked_size(self.shape or "box", self.size))
         place = tuple(finite("part: position (m)", value) for value in self.position)

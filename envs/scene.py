@@ -107,7 +107,10 @@ class ObjectSpec:
             celsius("temperature", self.temperature)
         if self.material is not None:
             material(self.material)
-        set_(self, "parts", tuple(self.parts))
+        parts = tuple(self.parts) if isinstance(self.parts, Iterable) else (None,)
+        if not all(isinstance(each, Part) for each in parts):
+            raise InvalidValueError(f"parts {self.parts!r}: give a list of envs.Part(material, size=...)")
+        set_(self, "parts", parts)
         if self.parts:
             if self.material is None or self.density is not None or self.elements:
                 raise InvalidValueError(

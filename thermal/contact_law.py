@@ -58,8 +58,7 @@ def flat_law(
     pad: Pad, joint: Joint, size: tuple[float, float], across: tuple[int, int] | None = None
 ) -> np.void:
     """The law of a flat object whose face is of that size m; see area.flat_contact. across: the axes of the object's
-    frame along which the sizes lie, for flat_overlap to follow a pad that leaves the face's middle; None for one that
-    does not."""
+    frame along which the sizes lie, to follow a pad that leaves the face's middle; None for one that does not."""
     newton = flat_contact(pad, 1.0, size)
     law = _law(pad, joint, shape=FLAT, area=float(newton.face), share=float(newton.face_force))
     if across is not None:
@@ -103,9 +102,8 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
 
 
 @njit(cache=True, error_model="numpy")
-def flat_overlap(law, place):
-    """(area m2 on the face, its share of the force) of a flat object. place: (3,) m, the pad's middle from the object's
-    in the object's frame."""
+def _overlap(law, place):
+    """(area m2 on the face, its share of the force) of a flat object. place: see contact."""
     if law.size[0] == 0:
         return law.area, law.share
     on_pad, on_face = 1.0, 1.0
@@ -118,10 +116,12 @@ def flat_overlap(law, place):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def contact(law, force):
-    """(area m2 on the face, its force N) at a normal force N > 0 on the pad."""
+def contact(law, force, place):
+    """(area m2 on the face, its force N) at a normal force N > 0 on the pad. place: (3,) m, the pad's middle from the
+    object's in the object's frame, which laws of a fixed place leave aside."""
     if law.shape == FLAT:
-        return law.area, force * law.share
+        area, share = _overlap(law, place)
+        return area, force * share
     half, half_face, stiffness = law.half_pad, law.half_face, law.stiffness
     if law.shape == CYLINDER:
         load = force / (stiffness * law.pad_length)

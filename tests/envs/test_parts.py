@@ -237,6 +237,11 @@ def test_objects_that_cannot_be_are_refused(changed, error, message):
 
 
 def test_parts_that_cannot_be_are_refused(files):
+    with pytest.raises(UnknownNameError, match="shape of a part 'cone'"):
+        Part("rubber", size=(0.01, 0.01, 0.01), shape="cone")  # pyright: ignore[reportArgumentType]
+    for wrong in (Part("rubber", size=(0.01, 0.01, 0.01)), ["rubber"], 3):
+        with pytest.raises(InvalidValueError, match="give a list of envs.Part"):
+            ObjectSpec(material="glass", parts=wrong)  # pyright: ignore[reportArgumentType]
     with pytest.raises(UnknownNameError, match="did you mean 'rubber'"):
         Part("ruber", size=(0.01, 0.01, 0.01))
     with pytest.raises(InvalidValueError, match="one of the two"):

@@ -20,7 +20,7 @@ from thermograsp.thermal import (
     sphere_contact,
     sphere_law,
 )
-from thermograsp.thermal.contact_law import conductance, contact, flat_overlap
+from thermograsp.thermal.contact_law import conductance, contact
 
 FORCES = np.logspace(-6, 3.5, 200)
 PAD = Pad()
@@ -50,7 +50,7 @@ def test_it_is_the_area_and_conductance_law_over_nine_decades_of_force(shape, na
     pair = mixed(0.4) if name == "mixed" else joint(LAPPED_ALUMINA, Surface.of(material(name)))
     compiled, reference = SHAPES[shape]
     law, expected = compiled(pair), reference()
-    area, load = np.array([contact(law, force) for force in FORCES]).T
+    area, load = np.array([contact(law, force, np.zeros(3)) for force in FORCES]).T
     assert np.allclose(area, expected.face, rtol=1e-12, atol=0)
     assert np.allclose(load, expected.face_force, rtol=1e-12, atol=0)
     found = [conductance(law, pressure) for pressure in expected.face_pressure]
@@ -63,8 +63,8 @@ def test_a_pad_off_the_middle_meets_what_lies_under_it() -> None:
         law, fixed = flat_law(PAD, pair, size, (2, 0)), flat_law(PAD, pair, size)
         for place in rng.uniform(-0.03, 0.03, (200, 3)):
             expected = flat_contact(PAD, 1.0, size, (place[2], place[0]))
-            area, share = flat_overlap(law, place)
+            area, load = contact(law, 1.0, place)
             assert area == pytest.approx(float(expected.face), rel=1e-12, abs=1e-18)
-            assert share == pytest.approx(float(expected.face_force), rel=1e-12, abs=1e-15)
-            assert flat_overlap(fixed, place) == (fixed["area"], fixed["share"])
-        assert flat_overlap(law, np.zeros(3)) == (law["area"], law["share"])
+            assert load == pytest.approx(float(expected.face_force), rel=1e-12, abs=1e-15)
+            assert contact(fixed, 1.0, place) == (fixed["area"], fixed["share"])
+        assert contact(law, 1.0, np.zeros(3)) == (law["area"], law["share"])
