@@ -71,7 +71,7 @@ def by_networks(name: str, tolerance: float, anywhere: bool = True) -> np.ndarra
 def by_elements(name: str, refine: float) -> tuple[np.ndarray, int]:
     """The same by finite elements, and the number of nodes."""
     each = thing(name)
-    area, load = contact(each.law, FORCE)
+    area, load = contact(each.law, FORCE, np.zeros(3))
     through = float(conductance(each.law, load / area))
 
     def cells(count: int) -> int:

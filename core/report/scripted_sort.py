@@ -100,7 +100,7 @@ def expected_voltages(plant: Any) -> np.ndarray:
     volts = []
     config = plant.config
     for thing in plant.one_of_each:
-        face, load = contact(thing.law, FORCE)
+        face, load = contact(thing.law, FORCE, np.zeros(3))
         felt = press(
             thing.material,
             sensor=thing.stack,
