@@ -7,20 +7,26 @@ INSTALL ?= $(PY) -m pip install --disable-pip-version-check -q
 
 DEMO_FLAGS  ?=
 TEST_FLAGS  ?=
+WORKERS     ?= 2
 BENCH_FLAGS ?=
 
-FOLDERS := core envs thermal assets hardware
+FOLDERS := core envs touch thermal assets hardware agents figures dataset studio twin reports benchmarks
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-ray test-backends test-rl test-grippers test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs lint install clean distclean FORCE
+.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engines test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 demo: build/.run
 	$(PY) -m thermograsp demo $(DEMO_FLAGS)
 
+# Side by side in as many processes as WORKERS says; each takes half of the tests in their order, then what is left.
 test: build/.test
-	$(PY) -m pytest $(TEST_FLAGS)
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(TEST_FLAGS)
+
+# Proofs that take long: tests marked slow, which `make test` skips.
+test-slow: build/.test
+	THERMOGRASP_SLOW=1 $(PY) -m pytest -n $(WORKERS) --dist worksteal -m slow $(TEST_FLAGS)
 
 # What needs Ray and Minari; without them `make test` skips it.
 test-ray: build/.ray
@@ -38,13 +44,40 @@ test-rl: build/.rl
 test-grippers: build/.grippers
 	$(PY) -m pytest $(TEST_FLAGS) tests/grippers
 
+# Environments of other packages, in an environment of their own with the MuJoCo that all of them run on. A package that
+# cannot be installed says so, and its tests are skipped. Of robosuite what it needs comes by hand: its list holds numpy back.
+ENGINES := build/engines
+ENGINE_MUJOCO := mujoco==3.3.7
+ENGINE_INSTALL := $(ENGINES)/bin/python -m pip install --disable-pip-version-check -q
+test-engines: build/.files
+	$(MAKE) --no-print-directory $(ENGINES)/.created VENV=$(ENGINES)
+	$(ENGINE_INSTALL) --no-build-isolation -e . $(ENGINE_MUJOCO) pytest
+	for packages in gymnasium-robotics==1.4.2 dm_control==1.0.34 "h5py opencv-python-headless termcolor tqdm pynput"; do \
+	  $(ENGINE_INSTALL) $$packages $(ENGINE_MUJOCO) || echo "test-engines: $$packages cannot be installed here"; done
+	$(ENGINE_INSTALL) --no-deps robosuite==1.5.2 || echo "test-engines: robosuite cannot be installed here"
+	THERMOGRASP_ENGINES=1 MUJOCO_GL=egl $(ENGINES)/bin/python -m pytest -rs $(TEST_FLAGS) tests/engines
+
+# The oldest packages that setup.cfg allows, in an environment of their own: touch on the oldest MuJoCo, and the
+# environments on the oldest that they run on.
+OLDEST := build/oldest
+test-oldest: build/.files
+	rm -rf $(OLDEST)
+	$(MAKE) --no-print-directory $(OLDEST)/.created VENV=$(OLDEST)
+	$(PYTHON) .ci/oldest.py > $(OLDEST)/pins.txt
+	$(OLDEST)/bin/python -m pip install --disable-pip-version-check -q -r $(OLDEST)/pins.txt pytest hypothesis pyserial pyyaml
+	$(OLDEST)/bin/python -m pip install --disable-pip-version-check -q --no-deps --no-build-isolation -e .
+	$(OLDEST)/bin/python -m pytest $(TEST_FLAGS) tests/touch tests/thermal/contact tests/thermal/numerics
+	$(OLDEST)/bin/python -m pip uninstall -q -y mujoco
+	$(OLDEST)/bin/python -m pip install --disable-pip-version-check -q mujoco==4.0
+	$(OLDEST)/bin/python -m pytest $(TEST_FLAGS) tests/envs/mechanics tests/envs/gym/test_gymnasium_protocol.py tests/thermal/batch
+
 # The studio's page in Debian's chromium; without it and playwright `make test` skips these.
 test-view: build/.view
-	$(PY) -m pytest -rs $(TEST_FLAGS) tests/view
+	$(PY) -m pytest -rs $(TEST_FLAGS) tests/studio
 
 # An hour of grasps in the studio, in minutes, and dozens of visits: they leave nothing behind.
 test-view-long: build/.view
-	THERMOGRASP_LONG=1 $(PY) -m pytest -s $(TEST_FLAGS) tests/view/test_long.py tests/view/test_feeling.py
+	THERMOGRASP_LONG=1 $(PY) -m pytest -s $(TEST_FLAGS) tests/studio/test_long.py tests/studio/test_feeling.py
 
 # The serial link for minutes: a kilohertz for one, a million corrupted frames, ten million random bytes.
 test-hardware-long: build/.test
@@ -56,7 +89,7 @@ test-firmware: build/.test
 
 # Every benchmark, coarsely, and what they must show; the physics beside elements in 3-D; the demo and the paper's figures.
 test-bench: build/.test
-	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench tests/benchmarks tests/thermal/test_mesh_fem.py \
+	THERMOGRASP_BENCH=1 $(PY) -m pytest $(TEST_FLAGS) tests/bench tests/studies tests/thermal/meshes/test_mesh_fem.py \
 	  tests/cli/test_demo.py tests/cli/test_reproduce.py
 
 # What is published: a wheel and an sdist, installed where nothing else is, and the first page of docs/ done literally.
@@ -65,6 +98,10 @@ test-release: build/.release
 
 bench: build/.run
 	$(PY) -m thermograsp bench $(BENCH_FLAGS)
+
+# The tables of docs/ that are made of the code, written again into their pages.
+reference: build/.dev
+	$(PY) docs/_ext/write_tables.py
 
 # The site in build/site, where a warning is an error, and the code of its pages.
 docs: build/.dev

@@ -1,13 +1,29 @@
-"""Thermal touch for robot grasping: a MuJoCo gripper whose fingertips feel heat, and the same interface on hardware.
+"""Thermal touch for robot grasping: fingertips of any MuJoCo scene feel heat, and the same interface on hardware.
 
 Importing the package registers its Gymnasium environments by string and loads neither MuJoCo nor a compiler, so
 `gymnasium.make("thermograsp:thermograsp/Grasp-v0")` works and the import stays cheap. The environments come without
 Gymnasium's wrappers: they refuse a step before a reset themselves, and what the checker sees is seen by the tests.
 """
 
+import logging
+from typing import TYPE_CHECKING
+
 from gymnasium.envs.registration import register
 
+from thermograsp.doors import opened
+
+if TYPE_CHECKING:
+    from thermograsp.touch import Fingertip, ThermalBody, ThermalTouch, wrappers
+
+__all__ = ["Fingertip", "ThermalBody", "ThermalTouch", "wrappers"]
+
+__getattr__ = opened(
+    __name__, {"touch": ("Fingertip", "ThermalBody", "ThermalTouch"), "touch.wrappers": ("wrappers",)}
+)
+
 __version__ = "0.1.0"
+
+logging.getLogger(__name__).addHandler(logging.NullHandler())  # quiet until an application listens
 
 register(
     id="thermograsp/Grasp-v0",

@@ -26,8 +26,16 @@ class UnknownNameError(ThermograspError, LookupError):
     """A name that is not among the known ones. Made by unknown_name."""
 
 
+class UnknownKeywordError(InvalidValueError, TypeError):
+    """A keyword that nothing takes; a TypeError, as Python's own. Made by unknown_keyword."""
+
+
 class MissingDependencyError(ThermograspError, ImportError):
     """An optional package is needed and not installed; the message names the extra that brings it."""
+
+
+class WriteError(ThermograspError, OSError):
+    """A file cannot be written, for example on a full disk. Under its name there is what was there before."""
 
 
 class MeshError(InvalidValueError):
@@ -53,6 +61,14 @@ def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameEr
     else:
         hint = "none is known"
     return UnknownNameError(f"unknown {kind} {name!r}; {hint}")
+
+
+def unknown_keyword(owner: str, name: str, known: Iterable[str]) -> UnknownKeywordError:
+    """The error for the keyword `name`, which `owner` does not take: with near names, or all of them."""
+    names = sorted(known)
+    near = _near(name, names)
+    hint = f"did you mean {_either(near)}?" if near else f"known: {', '.join(names)}"
+    return UnknownKeywordError(f"{owner} got an unexpected keyword argument {name!r}; {hint}")
 
 
 def finite(name: str, value: object) -> float:

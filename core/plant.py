@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping, Sequence
+from importlib.metadata import entry_points
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 
@@ -65,7 +66,7 @@ def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
             return type(a)(b[i] if i in chosen else value for i, value in enumerate(a))
         return b
 
-    both = Reading(*(merge(mine, theirs) for mine, theirs in zip(old, new, strict=True)))
+    both = Reading(*(merge(before, after) for before, after in zip(old, new, strict=True)))
     truth = {name: merge(value, new.truth[name]) for name, value in old.truth.items()}
     return both._replace(truth=truth, told=new.told)
 
@@ -93,20 +94,28 @@ class Plant(Protocol):
         ...
 
 
+ENTRY_POINTS = "thermograsp.plants"  # where another package names its own: scheme = module:function
 _SCHEMES: Mapping[str, str] = MappingProxyType(
     {
-        "simulated": "thermograsp.envs.simulated_plant:simulated_plant",
-        "simulated-pair": "thermograsp.envs.pair_plant:pair_plant",
-        "serial": "thermograsp.hardware.serial_plant:serial_plant",
+        "simulated": "thermograsp.envs.plant.simulated:simulated_plant",
+        "simulated-pair": "thermograsp.envs.plant.pair:pair_plant",
+        "serial": "thermograsp.hardware.plant.serial:serial_plant",
     }
 )
 
 
 def plant_factory(url: str) -> Callable[..., Plant]:
-    """What makes a plant for a URL such as "simulated" or "serial:///dev/ttyACM0": called with the URL and the
-    environment's keywords. Modules are loaded on demand. Raises UnknownNameError with the known schemes."""
+    """What makes a plant for a URL such as "simulated" or "serial:///dev/ttyACM0": called with the URL, the number of
+    environments and the environment's keywords. Modules are loaded on demand.
+
+    Other packages add theirs as an entry point of the group `thermograsp.plants`, the scheme its name. Raises
+    UnknownNameError with the known schemes.
+    """
     scheme = url.partition(":")[0]
-    if scheme not in _SCHEMES:
-        raise unknown_name("plant", scheme, _SCHEMES)
-    module, _, name = _SCHEMES[scheme].partition(":")
-    return getattr(importlib.import_module(module), name)
+    if scheme in _SCHEMES:
+        module, _, name = _SCHEMES[scheme].partition(":")
+        return getattr(importlib.import_module(module), name)
+    added = entry_points(group=ENTRY_POINTS)
+    if scheme not in added.names:
+        raise unknown_name("plant", scheme, {*_SCHEMES, *added.names})
+    return added[scheme].load()

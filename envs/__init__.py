@@ -5,22 +5,40 @@ What reads other grippers is imported when it is first asked for; the shipped on
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .actions import action_of, action_space, command_of, sliding_action_of
-from .contact_record import ContactRecord
-from .grasp import BatchState, GraspBatch
-from .grasp_env import GraspEnv, GraspVectorEnv
-from .grasp_task import GraspTask
-from .identify_env import IdentifyEnv, IdentifyVectorEnv
-from .identify_task import IdentifyTask
-from .library import ObjectPreset, library_object, load_objects, objects
-from .mechanics import Mechanics, MechanicsState
-from .meshes import MeshShape, load_mesh
-from .observation import observation_space
-from .parts import Part
-from .randomization import (
+from thermograsp.doors import opened
+
+from .bodies import (
+    MeshShape,
+    ObjectPreset,
+    ObjectSpec,
+    Part,
+    Reservoir,
+    ice,
+    library_object,
+    load_mesh,
+    load_objects,
+    objects,
+    water,
+)
+from .footprint import GraspBody
+from .gym import (
+    BatchState,
+    GraspBatch,
+    GraspEnv,
+    GraspVectorEnv,
+    IdentifyEnv,
+    IdentifyVectorEnv,
+    SortEnv,
+    SortVectorEnv,
+    TouchEnv,
+    TouchVectorEnv,
+    VectorState,
+)
+from .mechanics import ContactRecord, Mechanics, MechanicsState, SolverSettings, build_scene
+from .pictures import Renderer, Window
+from .plant import (
     EVERYTHING,
     Delay,
     Friction,
@@ -29,42 +47,26 @@ from .randomization import (
     Noise,
     ObjectTemperature,
     Offset,
+    PlantState,
     Roughness,
+    SimulatedPlant,
+    SimulationConfig,
     Size,
     ThermostatError,
 )
-from .render import Renderer, Window
-from .reservoir import Reservoir, ice, water
-from .scene import ObjectSpec, build_scene
-from .simulated_batch import PlantState
-from .simulated_plant import SimulatedPlant
-from .simulation_config import SimulationConfig
-from .solver_settings import SolverSettings
-from .sort_env import SortEnv, SortVectorEnv
-from .sort_task import SortTask
-from .stakes import STAKES, force_window
-from .things import Thing
+from .spaces import (
+    Observer,
+    action_of,
+    action_space,
+    command_of,
+    observation_space,
+    sliding_action_of,
+)
+from .tasks import STAKES, GraspTask, IdentifyTask, Outcome, SortTask, Task, force_window
 
 if TYPE_CHECKING:
-    from .fingertip import FingertipReport, fit_fingertip
-    from .gripper import Gripper
-    from .gripper_load import load_gripper
-
-_LATER = {
-    "FingertipReport": "fingertip",
-    "fit_fingertip": "fingertip",
-    "Gripper": "gripper",
-    "load_gripper": "gripper_load",
-}
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _LATER:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f".{_LATER[name]}", __name__), name)
-    globals()[name] = value
-    return value
-
+    from .footprint import Taxels
+    from .grippers import FingertipReport, Gripper, GripperModel, fit_fingertip, load_gripper
 
 __all__ = [
     "EVERYTHING",
@@ -80,6 +82,7 @@ __all__ = [
     "GraspTask",
     "GraspVectorEnv",
     "Gripper",
+    "GripperModel",
     "IdentifyEnv",
     "IdentifyTask",
     "IdentifyVectorEnv",
@@ -91,7 +94,9 @@ __all__ = [
     "ObjectPreset",
     "ObjectSpec",
     "ObjectTemperature",
+    "Observer",
     "Offset",
+    "Outcome",
     "Part",
     "PlantState",
     "Renderer",
@@ -104,8 +109,13 @@ __all__ = [
     "SortEnv",
     "SortTask",
     "SortVectorEnv",
+    "Task",
+    "Taxels",
     "ThermostatError",
-    "Thing",
+    "GraspBody",
+    "TouchEnv",
+    "TouchVectorEnv",
+    "VectorState",
     "Window",
     "action_of",
     "action_space",
@@ -123,3 +133,12 @@ __all__ = [
     "sliding_action_of",
     "water",
 ]
+
+__getattr__ = opened(
+    __name__,
+    {
+        "footprint": ("Taxels",),
+        "grippers": ("FingertipReport", "Gripper", "GripperModel", "fit_fingertip", "load_gripper"),
+    },
+    renamed={"Thing": "GraspBody"},  # until 0.3
+)

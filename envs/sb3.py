@@ -10,12 +10,12 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.vector import AutoresetMode
 
 from thermograsp.errors import InvalidValueError, MissingDependencyError
 
-from .observation import Observation
-from .senses import SIZE, Senses
-from .touch_vector import TouchVectorEnv
+from .gym import TouchVectorEnv
+from .spaces import SIZE, Observation, Senses
 
 try:
     from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
@@ -53,6 +53,10 @@ class StableBaselinesVecEnv(VecEnv):
             raise InvalidValueError(
                 f"{type(inner).__name__} is none of thermograsp's vector environments: make it with "
                 "vectorization_mode='vector_entry_point'"
+            )
+        if inner.autoreset_mode is not AutoresetMode.NEXT_STEP:
+            raise InvalidValueError(
+                f"autoreset_mode {inner.autoreset_mode.value!r}: leave it out, this wrapper resets what ends by itself"
             )
         if repeat < 1:
             raise InvalidValueError(f"repeat must be at least 1, got {repeat}")

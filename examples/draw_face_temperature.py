@@ -15,10 +15,16 @@ mpl.use("agg")
 import matplotlib.pyplot as plt
 from matplotlib.patches import Rectangle
 
-from thermograsp.envs.things import PAD
+from thermograsp.envs.footprint import PAD
+from thermograsp.figures import (
+    FAINT,
+    RANGE,
+    TEMPERATURE_MAP,
+    readable,
+    style,
+    touches,
+)
 from thermograsp.files import atomic_write
-from thermograsp.report.face_maps import RANGE, touches
-from thermograsp.report.style import FAINT, TEMPERATURE_MAP, readable, style
 
 
 def main() -> int:

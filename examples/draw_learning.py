@@ -19,8 +19,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
+from thermograsp.figures import FAINT, label_ends, style
 from thermograsp.files import atomic_write
-from thermograsp.report.style import FAINT, label_ends, style
 
 GRIPPERS = {"load": "gripper with load cells", "no-load": "gripper without load cells"}
 AGENTS = {"heat": ("with heat", "#1d4f91"), "no-heat": ("without heat", "#c8571b")}

@@ -18,7 +18,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image, ImageDraw, ImageFont
 
 from thermograsp.envs import ObjectPreset, objects
-from thermograsp.envs.object_solids import object_solid
+from thermograsp.envs.bodies import object_solid
 from thermograsp.files import atomic_write
 from thermograsp.thermal import material
 
@@ -66,9 +66,9 @@ def main() -> int:
         x, y = number % COLUMNS * CELL, number // COLUMNS * (CELL + LABEL)
         sheet.paste(picture(preset), (x, y))
         spec = preset.spec()
-        told = f"{1e3 * spec.width:.0f} mm, {1e3 * spec.weight:.0f} g, {preset.temperature:.0f} °C"
+        label = f"{1e3 * spec.width:.0f} mm, {1e3 * spec.weight:.0f} g, {preset.temperature:.0f} °C"
         draw.text((x + CELL / 2, y + CELL), preset.name, _INK, bold, anchor="ma")
-        draw.text((x + CELL / 2, y + CELL + 14), told, _SOFT, small, anchor="ma")
+        draw.text((x + CELL / 2, y + CELL + 14), label, _SOFT, small, anchor="ma")
     with atomic_write(Path(sys.argv[1])) as temporary:
         sheet.quantize(256).save(temporary, "PNG", optimize=True)
     return 0

@@ -15,10 +15,9 @@ mpl.use("agg")
 import matplotlib.pyplot as plt
 from matplotlib.patches import Rectangle
 
-from thermograsp.envs.things import PAD
+from thermograsp.envs.footprint import PAD
+from thermograsp.figures import FAINT, presses, readable, style
 from thermograsp.files import atomic_write
-from thermograsp.report.pressure_maps import presses
-from thermograsp.report.style import FAINT, readable, style
 
 
 def main() -> int:

@@ -20,12 +20,11 @@ from stable_baselines3.common.callbacks import BaseCallback, CallbackList  # pyr
 from stable_baselines3.common.utils import LinearSchedule  # pyright: ignore[reportMissingImports]
 
 import thermograsp  # noqa: F401  registers the environments
+from thermograsp.agents import Network, rollout
 from thermograsp.envs import STAKES, action_of
 from thermograsp.envs.sb3 import StableBaselinesVecEnv
-from thermograsp.envs.senses import Senses, arm_waits
+from thermograsp.envs.spaces import Senses, arm_waits
 from thermograsp.files import write_text
-from thermograsp.report.rollout import rollout
-from thermograsp.report.trained import Network
 
 ENV = "thermograsp/Grasp-v0"
 NUM_ENVS = 32

@@ -1,7 +1,34 @@
 """Wire formats, drivers, emulators and the serial plant."""
 
-from .emulated import Emulated
-from .emulator import DeviceModel, EmulatedFingertips
+from .drivers import (
+    Contact,
+    Fault,
+    Fingertips,
+    Gripper,
+    GripperStatus,
+    LinkSettings,
+    LinkStatistics,
+    ModbusSettings,
+    RobotiqGripper,
+    RobotiqUnits,
+    Tap,
+    open_gripper,
+)
+from .emulators import (
+    INSTANT,
+    DeviceModel,
+    EmulatedFingertips,
+    EmulatedGripper,
+    Feel,
+    Fingers,
+    GripperModel,
+    LinePacing,
+    Source,
+    SpringFingers,
+    press_source,
+    samples_source,
+    untouched,
+)
 from .errors import (
     CommandRefusedError,
     DeviceError,
@@ -14,37 +41,44 @@ from .errors import (
     PortForbiddenError,
     PortMissingError,
     ProtocolVersionError,
+    RecordingError,
     SensorFaultError,
     StaleSensorError,
+    StoppedError,
     WrongDeviceError,
 )
-from .feel import Feel, Source, press_source, samples_source, untouched
-from .fingers import Fingers, SpringFingers
-from .fingertips import Fingertips, LinkStatistics
-from .gripper import Contact, Gripper, GripperStatus, open_gripper
-from .known_touches import known_touch
-from .line_faults import LineFaults
-from .link import LinkSettings, Tap
-from .messages import Calibration, Flag, Identity, SelfTest, Status, ThermostatReport
-from .modbus_line import ModbusSettings
-from .modbus_slave import INSTANT, LinePacing
-from .pty_device import PtyDevice
-from .recording import Recorder, Recording, read_recording
-from .replay import Replay, replay
-from .robotiq import RobotiqGripper
-from .robotiq_emulator import EmulatedGripper, GripperModel
-from .robotiq_registers import Fault
-from .robotiq_units import RobotiqUnits
-from .samples import Samples
-from .serial_plant import SerialConfig, SerialPlant
-from .serial_port import PortInfo, SerialPort, ports
-from .transport import Opener, Transport
-from .virtual_line import VirtualLine
+from .lines import (
+    Emulated,
+    LineFaults,
+    Opener,
+    PortInfo,
+    PtyDevice,
+    SerialPort,
+    Transport,
+    VirtualLine,
+    ports,
+)
+from .plant import SerialConfig, SerialPlant
+from .protocol import (
+    Calibration,
+    Condition,
+    Flag,
+    HeatersOff,
+    Identity,
+    Reset,
+    Samples,
+    SelfTest,
+    Status,
+    ThermostatReport,
+)
+from .recordings import Damage, Recorder, Recording, Replay, known_touch, read_recording, replay
 
 __all__ = [
     "Calibration",
     "CommandRefusedError",
+    "Condition",
     "Contact",
+    "Damage",
     "DeviceError",
     "DeviceModel",
     "Emulated",
@@ -60,6 +94,7 @@ __all__ = [
     "GripperModel",
     "GripperStatus",
     "GripperTimeoutError",
+    "HeatersOff",
     "INSTANT",
     "Identity",
     "LineFaults",
@@ -79,7 +114,9 @@ __all__ = [
     "PtyDevice",
     "Recorder",
     "Recording",
+    "RecordingError",
     "Replay",
+    "Reset",
     "RobotiqGripper",
     "RobotiqUnits",
     "Samples",
@@ -92,6 +129,7 @@ __all__ = [
     "SpringFingers",
     "StaleSensorError",
     "Status",
+    "StoppedError",
     "Tap",
     "ThermostatReport",
     "Transport",

@@ -59,3 +59,11 @@ class GripperFaultError(DeviceError):
 
 class GripperTimeoutError(DeviceError, TimeoutError):
     """The gripper answers, and has not done in time what it was told."""
+
+
+class RecordingError(ThermograspError, OSError):
+    """A recording could not be written to its end, as on a full disk; the file has what came before."""
+
+
+class StoppedError(DeviceError):
+    """A stop came from elsewhere while the device was being told to do something; the rest of that was not done."""

@@ -1,17 +1,21 @@
-"""Every run of the tests builds its own thermal networks: none are read that an older version left on this machine."""
+"""What a run of the tests shares, in however many processes it goes, and which tests run only where they are asked for.
+
+Every run builds its own thermal networks, once for all of its processes: none are read that an older version left on
+this machine. Compiled code lies beside its source and serves the next run too (see thermograsp.compiled).
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import tempfile
 from pathlib import Path
 
 import pytest
 
 TIERS = {
     "bench": ("THERMOGRASP_BENCH", "runs all benchmarks for minutes: make test-bench"),
-    "benchmarks": ("THERMOGRASP_BENCH", "compares with elements in 3-D for minutes: make test-bench"),
-    "thermal/test_mesh_fem.py": (
+    "studies": ("THERMOGRASP_BENCH", "compares with elements in 3-D for minutes: make test-bench"),
+    "thermal/meshes/test_mesh_fem.py": (
         "THERMOGRASP_BENCH",
         "compares with elements in 3-D for minutes: make test-bench",
     ),
@@ -23,21 +27,32 @@ TIERS = {
 """Tests that run only where a variable of the environment asks for them, which their targets in the Makefile set."""
 
 
+SLOW = "THERMOGRASP_SLOW"
+"""The variable that asks for tests marked slow."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """A cache for the run, made before the workers start: they inherit the variable."""
+    if not hasattr(config, "workerinput"):
+        cache = tempfile.TemporaryDirectory(prefix="thermograsp-tests-")
+        config.add_cleanup(cache.cleanup)
+        patch = pytest.MonkeyPatch()
+        patch.setenv("THERMOGRASP_CACHE", cache.name)
+        config.add_cleanup(patch.undo)
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     here = Path(__file__).parent
-    for place, (variable, reason) in TIERS.items():
-        for item in items:
+    for item in items:
+        for place, (variable, reason) in TIERS.items():
             if not os.environ.get(variable) and item.path.is_relative_to(here / place):
                 item.add_marker(pytest.mark.skip(reason=reason))
+        if item.get_closest_marker("slow") and not os.environ.get(SLOW):
+            item.add_marker(pytest.mark.skip(reason="takes long: make test-slow"))
 
 
-@pytest.fixture(scope="session", autouse=True)
-def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    folder = tmp_path_factory.mktemp("cache")
-    before = os.environ.get("THERMOGRASP_CACHE")
-    os.environ["THERMOGRASP_CACHE"] = str(folder)
-    yield folder
-    if before is None:
-        del os.environ["THERMOGRASP_CACHE"]
-    else:
-        os.environ["THERMOGRASP_CACHE"] = before
+@pytest.fixture(scope="session")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that all processes of the run share."""
+    own = tmp_path_factory.getbasetemp()
+    return own.parent if "PYTEST_XDIST_WORKER" in os.environ else own

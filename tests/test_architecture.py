@@ -1,129 +1,308 @@
-"""Which folder may import which, read from the source, and what an import loads, read from a fresh interpreter."""
+"""The house: which room may import which, that rooms are entered by their doors, and that nothing runs in a circle.
+
+A folder is a top-level folder of the repository; a room is a package in one. The door of a room is its `__init__`.
+"""
 
 import ast
+import graphlib
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
-FOLDERS = ("assets", "thermal", "envs", "hardware")
-LEAVES = ("errors", "files", "plant")
-ALL = {"root", "bench", "cli", "dataset", "report", "twin", "view", *LEAVES, *FOLDERS}
-MAY_IMPORT = {
-    "root": set(),
-    "errors": set(),
-    "files": {"errors"},
-    "plant": {"errors"},
-    "assets": set(),
-    "thermal": {*LEAVES, "assets"},
-    "envs": {*LEAVES, "assets", "thermal"},
-    "hardware": {*LEAVES, "assets", "thermal"},
-    "__main__": ALL,
-    "bench": ALL,
-    "cli": ALL,
-    "dataset": ALL,
-    "report": ALL,
-    "twin": ALL,
-    "view": ALL,
+
+LEAVES = ("errors", "notice", "sources", "files", "columns", "plant", "doors", "compiled", "opengl")
+"""Modules of the root package that everybody may import; each may import those before it."""
+
+FOLDERS = {
+    "assets": "assets",
+    "thermal": "thermal",
+    "touch": "touch",
+    "envs": "envs",
+    "hardware": "hardware",
+    "figures": "figures",
+    "agents": "agents",
+    "dataset": "dataset",
+    "twin": "twin",
+    "reports": "reports",
+    "bench": "benchmarks",
+    "studio": "studio",
+    "cli": "core/cli",
 }
+"""Folder of each package below the root."""
+
+MAY_IMPORT = {
+    "assets": (),
+    "thermal": ("assets",),
+    "touch": ("assets", "thermal"),
+    "envs": ("assets", "thermal", "touch"),
+    "hardware": ("assets", "thermal"),
+    "figures": ("assets", "thermal", "touch", "envs"),
+    "agents": ("assets", "thermal", "touch", "envs", "figures"),
+    "dataset": ("assets", "thermal", "touch", "envs", "agents"),
+    "twin": ("assets", "thermal", "touch", "envs", "hardware", "agents"),
+    "reports": ("assets", "thermal", "touch", "envs", "figures", "agents"),
+    "bench": ("assets", "thermal", "touch", "envs", "figures", "agents"),
+    "studio": ("assets", "thermal", "touch", "envs", "hardware", "figures", "agents", "twin"),
+    "cli": tuple(folder for folder in FOLDERS if folder != "cli"),
+}
+"""Folder -> the other folders that it may import; all may import the leaves."""
+
+ROOMS = {
+    "thermal": (
+        "numerics",
+        "matter",
+        "contact",
+        "plates",
+        "kernels",
+        "readout",
+        "network",
+        "stack",
+        "batch",
+        "rungs",
+        "meshes",
+        "fitting",
+        "identification",
+        "measured",
+    ),
+    "envs": (
+        "limits",
+        "bodies",
+        "grippers",
+        "mechanics",
+        "footprint",
+        "sensing",
+        "spaces",
+        "plant",
+        "tasks",
+        "pictures",
+        "gym",
+        "sb3",
+        "senses",
+        "taxels",
+    ),
+    "touch": ("scene", "contacts", "heat", "draw", "thermal_touch", "wrappers"),
+    "hardware": ("errors", "protocol", "lines", "drivers", "recordings", "emulators", "plant"),
+    "studio": ("control", "sources", "session", "web"),
+    "reports": ("demo", "paper"),
+    "bench": (
+        "kinds",
+        "measured_on",
+        "accuracy",
+        "stability",
+        "grasp",
+        "speed",
+        "episode",
+        "identify",
+        "peer",
+    ),
+}
+"""Rooms (and single files) of a folder, from the ground up: each may import those before it."""
+
+COMMON = ("thermograsp.envs.limits", "thermograsp.hardware.errors")
+"""Files of a folder that belong to no room; other folders may import them."""
+
+LENT_BY_THE_ROOT = ("thermograsp.touch", "thermograsp.touch.wrappers")
+"""Modules whose names the root package lends when they are asked for; its own import stays light."""
+
+MOST_FILES = 14  # of a room, its door not counted
 
 
-def sources() -> list[Path]:
-    return [path for folder in ("core", *FOLDERS) for path in sorted((ROOT / folder).rglob("*.py"))]
+def package_of(path: Path) -> str:
+    """Dotted name of a source file's module."""
+    relative = path.relative_to(ROOT).with_suffix("")
+    for package, folder in (*FOLDERS.items(), ("", "core")):
+        if relative.is_relative_to(folder):
+            parts = ["thermograsp", *([package] if package else []), *relative.relative_to(folder).parts]
+            return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+    raise AssertionError(path)
 
 
-def module_of(path: Path) -> tuple[str, str]:
-    """Dotted name of a source file's module, and of the package that its relative imports start from."""
-    parts = list(path.relative_to(ROOT).with_suffix("").parts)
-    parts = ["thermograsp", *parts[1:]] if parts[0] == "core" else ["thermograsp", *parts]
-    if parts[-1] == "__init__":
-        return ".".join(parts[:-1]), ".".join(parts[:-1])
-    return ".".join(parts), ".".join(parts[:-1])
+SOURCES = {
+    package_of(path): path
+    for folder in dict.fromkeys((*FOLDERS.values(), "core"))
+    for path in sorted((ROOT / folder).rglob("*.py"))
+}
+PACKAGES = {module for module, path in SOURCES.items() if path.name == "__init__.py"}
 
 
-def room(module: str) -> str | None:
-    """The row of the table that a module belongs to; None for other people's modules."""
-    parts = module.split(".")
-    if parts[0] != "thermograsp":
-        return None
-    return parts[1] if len(parts) > 1 and parts[1] in MAY_IMPORT else "root"
-
-
-def imports(source: str, package: str) -> Iterator[tuple[str, bool, int]]:
-    """(module, relative, line) of each import anywhere in the source."""
+def imports(module: str, source: str) -> Iterator[tuple[str, bool, int]]:
+    """(module, relative, line) of each import anywhere in the source of one of our modules."""
+    package = module if module in PACKAGES else module.rpartition(".")[0]
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name, False, node.lineno
         elif isinstance(node, ast.ImportFrom):
             base = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
-            module = ".".join([*base, *([node.module] if node.module else [])])
+            target = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
-                yield (
-                    f"{module}.{alias.name}" if module == "thermograsp" else module,
-                    node.level > 0,
-                    node.lineno,
-                )
+                whole = f"{target}.{alias.name}"
+                yield whole if whole in SOURCES else target, node.level > 0, node.lineno
 
 
-def breaches(source: str, module: str, package: str) -> list[str]:
-    here = room(module)
-    assert here is not None
-    found = []
-    for target, relative, line in imports(source, package):
-        there = room(target)
-        if there is None or there == here:
+def place(module: str) -> tuple[str, str]:
+    """Folder and room of one of our modules; ("", leaf) for a leaf, ("", "") for the root itself."""
+    parts = module.split(".")[1:]
+    if not parts or parts[0] not in FOLDERS:
+        return "", parts[0] if parts else ""
+    return parts[0], parts[1] if len(parts) > 1 else ""
+
+
+def open_to_others(module: str) -> bool:
+    """Whether others may import a module itself: a door, a file of no room, or one that its door names."""
+    package, _, name = module.rpartition(".")
+    return module in PACKAGES or module in COMMON or name in lent(package)
+
+
+@cache
+def lent(package: str) -> frozenset[str]:
+    """The names in a door's `__all__`."""
+    for node in ast.parse(SOURCES[package].read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.List):
+            return frozenset(ast.literal_eval(node.value))
+    return frozenset()
+
+
+def breaches(module: str, source: str) -> list[str]:
+    """What is wrong with the imports of a module, a sentence each."""
+    (folder, room), found = place(module), []
+    for target, relative, line in imports(module, source):
+        if target.split(".")[0] != "thermograsp":
             continue
-        if there not in MAY_IMPORT[here]:
-            found.append(f"{module}, line {line}: {here} must not import {target}")
-        elif here in FOLDERS and relative != (there in FOLDERS):
-            found.append(
-                f"{module}, line {line}: import {target} {'absolutely' if relative else 'relatively'}"
-            )
-        elif here not in FOLDERS and relative:
-            found.append(f"{module}, line {line}: import {target} absolutely")
+        at = f"{module}, line {line}: "
+        to_folder, to_room = place(target)
+        if not to_folder:
+            if not folder and room in LEAVES:
+                if to_room not in LEAVES[: LEAVES.index(room)]:
+                    found.append(f"{at}leaf {room} must not import {target}")
+            elif to_room and to_room not in LEAVES and folder != "cli" and room != "__main__":
+                found.append(f"{at}{target} is no leaf")
+            elif folder and relative:
+                found.append(f"{at}import {target} absolutely")
+        elif not folder:
+            if room != "__main__" and not (module == "thermograsp" and target in LENT_BY_THE_ROOT):
+                found.append(f"{at}{room or 'the root'} must not import {target}")
+        elif folder != to_folder:
+            if to_folder not in MAY_IMPORT[folder]:
+                found.append(f"{at}{folder} must not import {target}")
+            elif not open_to_others(target):
+                found.append(f"{at}{target} lies behind the door of its room")
+            elif relative != (folder in INNER):
+                found.append(f"{at}import {target} {'absolutely' if relative else 'relatively'}")
+        elif folder in ROOMS and room and room != to_room:
+            order = ROOMS[folder]
+            if not to_room:
+                found.append(f"{at}a room must not import its folder's own door")
+            elif order.index(to_room) > order.index(room):
+                found.append(f"{at}{room} stands below {to_room}")
+            elif not open_to_others(target) and (ROOT / FOLDERS[folder] / to_room).is_dir():
+                found.append(f"{at}{target} lies behind the door of its room")
     return found
 
 
-@pytest.mark.parametrize("path", sources(), ids=lambda path: str(path.relative_to(ROOT)))
-def test_a_file_imports_only_what_its_folder_may(path: Path) -> None:
-    assert not breaches(path.read_text(encoding="utf-8"), *module_of(path))
+INNER = ("thermal", "touch", "envs", "hardware")
+"""Folders that import each other relatively, so that type checkers see one file once."""
+
+
+@pytest.mark.parametrize("module", sorted(SOURCES))
+def test_a_file_imports_only_what_its_room_may(module: str) -> None:
+    assert not breaches(module, SOURCES[module].read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize(
-    ("line", "module", "package"),
+    ("module", "line"),
     [
-        ("from ..envs import scene", "thermograsp.thermal.press", "thermograsp.thermal"),
-        ("from .. import envs", "thermograsp.thermal.press", "thermograsp.thermal"),
-        ("from ..envs.scene import x", "thermograsp.hardware", "thermograsp.hardware"),
-        ("from thermograsp.thermal import material", "thermograsp.envs.scene", "thermograsp.envs"),
-        ("import thermograsp.thermal", "thermograsp.envs.scene", "thermograsp.envs"),
-        ("from ..errors import positive", "thermograsp.thermal.press", "thermograsp.thermal"),
-        ("from thermograsp.cli import main", "thermograsp.hardware.wire", "thermograsp.hardware"),
-        ("def f():\n    from thermograsp import files", "thermograsp.errors", "thermograsp"),
-        ("from thermograsp import thermal", "thermograsp", "thermograsp"),
-        ("from ..thermal import press", "thermograsp.cli.press", "thermograsp.cli"),
+        ("thermograsp.thermal.rungs.press", "from ...envs import ObjectSpec"),
+        ("thermograsp.thermal.matter.sensors", "from ..rungs import press"),
+        ("thermograsp.thermal.rungs.press", "from ..matter.mounting import Mode"),
+        ("thermograsp.thermal.rungs.press", "from .. import material"),
+        ("thermograsp.envs.mechanics.scene", "from thermograsp.thermal import material"),
+        ("thermograsp.envs.mechanics.scene", "from ...thermal.matter.mounting import Mode"),
+        ("thermograsp.thermal.rungs.press", "from ...errors import positive"),
+        ("thermograsp.hardware.drivers.link", "from thermograsp.cli import main"),
+        ("thermograsp.errors", "def f():\n    from thermograsp import files"),
+        ("thermograsp", "from thermograsp import thermal"),
+        ("thermograsp.figures.look", "from thermograsp.agents import rollout"),
+        ("thermograsp.cli.press", "from thermograsp.thermal.rungs.problem import PressProblem"),
     ],
 )
-def test_a_wrong_arrow_is_seen(line: str, module: str, package: str) -> None:
-    assert len(breaches(line, module, package)) == 1
+def test_a_wrong_arrow_is_seen(module: str, line: str) -> None:
+    assert len(breaches(module, line)) == 1
 
 
 @pytest.mark.parametrize(
-    ("line", "module", "package"),
+    ("module", "line"),
     [
-        ("from ..thermal import press", "thermograsp.envs.scene", "thermograsp.envs"),
-        ("from ...assets import asset", "thermograsp.thermal.solvers.grid", "thermograsp.thermal.solvers"),
-        ("from .layers import Layer\nimport numpy", "thermograsp.thermal.press", "thermograsp.thermal"),
-        ("from thermograsp.errors import positive", "thermograsp.thermal.press", "thermograsp.thermal"),
-        ("from thermograsp import envs, hardware", "thermograsp.cli.press", "thermograsp.cli"),
+        ("thermograsp.envs.mechanics.scene", "from ...thermal import material"),
+        ("thermograsp.envs.mechanics.scene", "from ...thermal.contact import contact"),
+        ("thermograsp.envs.mechanics.scene", "from ..limits import TIPS\nfrom ..bodies import ObjectSpec"),
+        ("thermograsp.thermal.rungs.press", "from .problem import PressProblem\nimport numpy"),
+        ("thermograsp.thermal.rungs.press", "from thermograsp.errors import positive"),
+        ("thermograsp.cli.press", "from thermograsp.thermal.rungs import press"),
     ],
 )
-def test_a_right_arrow_passes(line: str, module: str, package: str) -> None:
-    assert not breaches(line, module, package)
+def test_a_right_arrow_passes(module: str, line: str) -> None:
+    assert not breaches(module, line)
+
+
+def test_no_imports_run_in_a_circle() -> None:
+    graph = {
+        module: {
+            target
+            for target, _, _ in imports(module, path.read_text(encoding="utf-8"))
+            if target in SOURCES and target != module
+        }
+        for module, path in SOURCES.items()
+    }
+    list(graphlib.TopologicalSorter(graph).static_order())  # raises CycleError, which names the circle
+
+
+def test_no_room_is_crowded() -> None:
+    crowded = {
+        module: count
+        for module in PACKAGES
+        if (count := sum(path.name != "__init__.py" for path in SOURCES[module].parent.glob("*.py")))
+        > MOST_FILES
+    }
+    assert crowded == {}
+
+
+def doors() -> list[str]:
+    return sorted(name for name in PACKAGES if "opened(" in SOURCES[name].read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("module", doors())
+def test_a_door_that_opens_late_lists_its_names_alike(module: str) -> None:
+    """Under TYPE_CHECKING for readers and type checkers, in the call of `opened` for the interpreter."""
+    body = ast.parse(SOURCES[module].read_text(encoding="utf-8")).body
+    (block,) = [node for node in body if isinstance(node, ast.If)]
+    typed: dict[str, set[str]] = {}
+    modules: set[str] = set()
+    for node in block.body:
+        assert isinstance(node, ast.ImportFrom) and node.module
+        if node.module == module:
+            modules.update(alias.name for alias in node.names)
+            continue
+        typed.setdefault(node.module.rpartition(".")[2], set()).update(alias.name for alias in node.names)
+    (call,) = [
+        node.value
+        for node in body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and node.value.args
+    ]
+    opened: dict[str, set[str]] = {}
+    for key, names in ast.literal_eval(call.args[1]).items():
+        opened.setdefault(key.split(".")[0], set()).update(names)
+    assert opened == typed
+    everything = lent(module)
+    assert modules | set().union(*typed.values()) <= everything
+    files = {path.stem for path in SOURCES[module].parent.glob("*.py")}
+    assert everything & files == modules, "a name that is also a file's would be the file once that is loaded"
 
 
 @pytest.mark.parametrize(
@@ -138,3 +317,19 @@ def test_an_import_stays_light(module: str, unwanted: tuple[str, ...]) -> None:
     code = f"import sys, {module}; print([name for name in {unwanted!r} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_contributing_names_every_room() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    for folder, rooms in ROOMS.items():
+        (row,) = re.findall(rf"^\| {FOLDERS[folder]}/ .*$", text, re.MULTILINE)
+        for room in rooms:
+            assert f"`{room}`" in row, f"the row of {folder}/ in CONTRIBUTING.md lacks `{room}`"
+
+
+@pytest.mark.parametrize("module", sorted(SOURCES))
+def test_numba_compiles_through_our_decorator(module: str) -> None:
+    """Which keeps compiled code only as long as nothing in it has changed."""
+    if module != "thermograsp.compiled":
+        names = re.findall(r"^from numba import (.*)$", SOURCES[module].read_text(), re.MULTILINE)
+        assert not any("jit" in name for name in names), "from thermograsp.compiled import njit"

@@ -12,6 +12,7 @@ from thermograsp.errors import (
     SimulationError,
     ThermograspError,
     UnknownNameError,
+    WriteError,
     celsius,
     finite,
     non_negative,
@@ -28,6 +29,7 @@ from thermograsp.errors import (
         (MissingDependencyError, ImportError),
         (MeshError, ValueError),
         (SimulationError, RuntimeError),
+        (WriteError, OSError),
     ],
 )
 def test_errors_share_a_base_and_derive_from_a_builtin(ours: type, builtin: type) -> None:

@@ -3,14 +3,22 @@
 import os
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.files import atomic_write, cache_dir, cached_arrays, write_text
+from thermograsp.files import (
+    atomic_write,
+    cache_dir,
+    cached_arrays,
+    cached_file,
+    write_text,
+)
 
 
 @pytest.fixture
@@ -189,3 +197,80 @@ for version in range(20):
         process.stdin.close()
     assert [process.wait(timeout=60) for process in processes] == [0] * 4
     assert len(list(cache.iterdir())) == 20
+
+
+def test_code_that_changed_does_not_read_what_the_old_code_built(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    build = Builder()
+    cached_arrays({"h": 1.0}, build)
+    monkeypatch.setattr("thermograsp.files.source_hash", lambda module: "another version's")
+    cached_arrays({"h": 1.0}, build)
+    assert build.calls == 2
+
+
+def _age(path: Path, seconds: float) -> None:
+    """As if nobody had used a file for so long."""
+    used = time.time() - seconds
+    os.utime(path, (used, used))
+
+
+def _write(path: Path) -> None:
+    path.write_text("mesh" * 1000)
+
+
+def _fill(count: int) -> list[np.ndarray]:
+    """Arrays of 10 kB under the keys 0 .. count - 1."""
+    return [cached_arrays({"n": n}, lambda n=n: {"a": np.full(1250, float(n))})["a"] for n in range(count)]
+
+
+def test_the_cache_keeps_to_its_size_and_drops_what_was_used_longest_ago(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("THERMOGRASP_CACHE_SIZE", "60e3")  # five of them and a file
+    handed_out = cached_file({"n": 0}, ".ply", _write)
+    _fill(5)
+    for n, path in enumerate(sorted(cache.glob("*.npz"), key=lambda path: path.stat().st_mtime_ns)):
+        _age(path, 1e6 - n)
+    _age(handed_out, 3600)
+    _fill(1)  # reads the oldest of them, which makes it the newest
+    build = Builder()
+    cached_arrays({"n": "new"}, build)
+    cached_arrays({"n": "big"}, lambda: {"a": np.zeros(2500)})
+    assert sum(path.stat().st_size for path in cache.iterdir()) <= 60e3
+    cached_arrays({"n": "new"}, build)
+    assert build.calls == 1
+    assert cached_arrays({"n": 0}, Builder())["a"].shape == (1250,)  # kept: it was used last
+    assert cached_arrays({"n": 1}, Builder())["a"].shape == (2, 3)  # built again: it had gone
+    assert handed_out.is_file()  # somebody may be reading it
+
+
+def test_a_file_handed_out_goes_a_day_after_its_last_use(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("THERMOGRASP_CACHE_SIZE", "11e3")
+    path = cached_file({"n": 0}, ".ply", _write)
+    _age(path, 90_000)
+    cached_file({"n": 0}, ".ply", _write)
+    _fill(1)
+    assert path.is_file()
+    _age(path, 90_000)
+    _fill(2)
+    assert not path.exists()
+
+
+def test_a_size_that_is_none_is_refused(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for size in ("much", "0", "-1", "nan"):
+        monkeypatch.setenv("THERMOGRASP_CACHE_SIZE", size)
+        with pytest.raises(InvalidValueError, match="set it to a number of bytes"):
+            cached_arrays({"size": size}, Builder())
+
+
+def test_a_build_has_one_blas_thread(cache: Path) -> None:
+    def build() -> dict[str, np.ndarray]:
+        pools = [one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"]
+        return {"threads": np.array(pools)}
+
+    for enabled in (True, False):
+        threads = cached_arrays({"n": 0}, build, enabled=enabled)["threads"]
+        assert len(threads) and (threads == 1).all()

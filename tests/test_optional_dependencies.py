@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from thermograsp.cli import main
-from thermograsp.cli.versions import OWN_WORK
+from thermograsp.cli.shared.versions import OWN_WORK
 from thermograsp.errors import MissingDependencyError
 
 ROOT = Path(__file__).parents[1]
@@ -30,12 +30,12 @@ MODULES = {
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Without the module, what `do` does in an empty folder raises in `file`, and names `extra`. do: a function, or the
-    words of a command."""
+    """Without the module, what `do` does in an empty folder raises in `file`, and names `extra`, or the package itself
+    where it is of an ecosystem that we only wrap (None). do: a function, or the words of a command."""
 
     file: str
     module: str
-    extra: str
+    extra: str | None
     do: Callable[[], object] | str
 
 
@@ -60,25 +60,47 @@ def cup() -> object:
 
 
 CASES = (
-    Case("hardware/serial_port.py", "serial", "hardware", "device list"),
-    Case("hardware/serial_port.py", "serial", "hardware", "device monitor /dev/null"),
-    Case("hardware/modbus_line.py", "pymodbus", "hardware", "device gripper robotiq:///dev/null"),
-    Case("core/dataset/schema.py", "pyarrow", "dataset", "dataset --episodes 1 --out made"),
-    Case("core/dataset/on_ray.py", "ray", "ray", "dataset --episodes 1 --workers 1 --out made"),
-    Case("core/dataset/minari_export.py", "minari", "minari", "dataset --export minari --out made"),
-    Case("core/dataset/minari_export.py", "h5py", "minari", "dataset --export minari --out made"),
-    Case("core/dataset/reading.py", "torch", "torch", call("dataset:load", ".", library="torch")),
-    Case("core/bench/elements.py", "skfem", "bench", call("bench.elements:element_press", None, 4)),
+    Case("hardware/lines/serial_port.py", "serial", "hardware", "device list"),
+    Case("hardware/lines/serial_port.py", "serial", "hardware", "device monitor /dev/null"),
+    Case("hardware/drivers/modbus_line.py", "pymodbus", "hardware", "device gripper robotiq:///dev/null"),
+    Case("dataset/schema.py", "pyarrow", "dataset", "dataset --episodes 1 --out made"),
     Case(
-        "core/bench/fipy_press.py", "fipy", "bench", call("bench.fipy_press:fipy_press", None, 0.02, 9, 1e-3)
+        "dataset/on_ray.py", "ray", "ray", "dataset --episodes 1 --workers 1 --ray-address local --out made"
     ),
-    Case("core/bench/rivals.py", "sklearn", "bench", call("bench.rivals:support_vectors", None, None, 1.0)),
-    Case("core/bench/rivals.py", "torch", "torch", call("bench.rivals:recurrent_net", None, None, (), 2, 0)),
-    Case("envs/meshes.py", "vhacdx", "mesh", cup),
+    Case("dataset/minari_export.py", "minari", "minari", "dataset --export minari --out made"),
+    Case("dataset/minari_export.py", "h5py", "minari", "dataset --export minari --out made"),
+    Case("dataset/reading.py", "torch", "torch", call("dataset:load", ".", library="torch")),
+    Case(
+        "benchmarks/accuracy/elements.py",
+        "skfem",
+        "bench",
+        call("bench.accuracy.elements:element_press", None, 4),
+    ),
+    Case(
+        "benchmarks/accuracy/fipy_press.py",
+        "fipy",
+        "bench",
+        call("bench.accuracy.fipy_press:fipy_press", None, 0.02, 9, 1e-3),
+    ),
+    Case(
+        "benchmarks/identify/rivals.py",
+        "sklearn",
+        "bench",
+        call("bench.identify.rivals:support_vectors", None, None, 1.0),
+    ),
+    Case(
+        "benchmarks/identify/rivals.py",
+        "torch",
+        "torch",
+        call("bench.identify.rivals:recurrent_net", None, None, (), 2, 0),
+    ),
+    Case("envs/bodies/meshes.py", "vhacdx", "mesh", cup),
     Case("envs/sb3.py", "stable_baselines3", "rl", call("envs.sb3:StableBaselinesVecEnv")),
-    Case("core/view/server.py", "websockets", "view", "view --port 0"),
+    Case("studio/web/server.py", "websockets", "view", "view --port 0"),
+    Case("touch/wrappers/dm_control.py", "dm_env", None, call("touch.wrappers:DmControlThermalWrapper")),
+    Case("touch/wrappers/robosuite.py", "robosuite", None, call("touch.wrappers:RobosuiteThermalWrapper")),
 )
-INDIRECT = {("envs/meshes.py", "vhacdx")}
+INDIRECT = {("envs/bodies/meshes.py", "vhacdx")}
 """Imported by another package for us: trimesh."""
 NEVER_NAMED = {"jax", "fem"}
 """thermal.array_fingertips takes its functions from the arrays that it is given; fem is a part of bench."""
@@ -101,7 +123,8 @@ def brought(extra: str) -> set[str]:
 def imported() -> Iterator[tuple[str, str]]:
     """(file, module) of every import in the source, by statement or by function, that the package may lack."""
     always = packages(SETUP["options"]["install_requires"]) | {"thermograsp"} | set(sys.stdlib_module_names)
-    for folder in ("core", "thermal", "envs", "hardware", "assets"):
+    folders = (line.split("=")[1].strip() for line in SETUP["options"]["package_dir"].split("\n") if line)
+    for folder in folders:
         for path in sorted((ROOT / folder).rglob("*.py")):
             for name in names_imported(ast.parse(path.read_text(encoding="utf-8"))):
                 if name.split(".")[0] not in always:
@@ -123,6 +146,11 @@ def names_imported(tree: ast.AST) -> Iterator[str]:
 Hide = Callable[[str, str], None]
 
 
+def packaged(file: str) -> str:
+    """A file's path below the root package."""
+    return re.sub("^benchmarks/", "bench/", file.removeprefix("core/"))
+
+
 @pytest.fixture
 def without(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Hide:
     """Hides a module, and the modules of ours that have it already."""
@@ -131,7 +159,7 @@ def without(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Hide:
         for name in list(sys.modules):
             if name.split(".")[0] == module:
                 monkeypatch.delitem(sys.modules, name)
-        ours = file.removesuffix(".py").removeprefix("core/").replace("/", ".")
+        ours = packaged(file).removesuffix(".py").replace("/", ".")
         monkeypatch.delitem(sys.modules, f"thermograsp.{ours}", raising=False)
         monkeypatch.setitem(sys.modules, module, None)
 
@@ -164,10 +192,12 @@ def test_a_missing_package_is_one_line_with_its_extra(
         with pytest.raises(MissingDependencyError):
             case.do()
     ((file, message),) = raised
-    assert file.endswith(case.file.removeprefix("core/"))
+    assert file.endswith(packaged(case.file))
     assert "\n" not in message
-    (extra,) = re.findall(r"pip install 'thermograsp\[(\w+)\]'", message)
-    assert extra == case.extra and case.module in brought(extra)
+    if case.extra:
+        assert f"pip install 'thermograsp[{case.extra}]'" in message and case.module in brought(case.extra)
+    else:
+        assert re.search(r"pip install (dm-control|robosuite)$", message)
     assert not list(Path().glob("made*"))
 
 
@@ -177,9 +207,9 @@ def test_every_optional_import_is_among_the_cases() -> None:
 
 def test_every_extra_is_named_by_a_case() -> None:
     extras = set(SETUP["options.extras_require"]) - OWN_WORK - NEVER_NAMED
-    assert {case.extra for case in CASES} == extras
+    assert {case.extra for case in CASES if case.extra} == extras
     modules = set[str]().union(*(brought(extra) for extra in extras))
-    assert {case.module for case in CASES} == modules
+    assert {case.module for case in CASES if case.extra} == modules
 
 
 def test_an_import_by_function_is_seen() -> None:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import logging
 import os
 import sys
 from collections.abc import Sequence
 from types import ModuleType
-from typing import NoReturn
+from typing import Any, NoReturn
 
-from thermograsp.cli.versions import ShowVersion
+from thermograsp.cli.shared import Help, Output, ShowVersion
 from thermograsp.errors import InvalidValueError, ThermograspError, unknown_name
 
 COMMANDS = (
@@ -25,13 +26,18 @@ COMMANDS = (
     "materials",
     "objects",
     "reproduce",
+    "validate",
     "rollout",
     "dataset",
     "device",
     "gripper",
     "bench",
     "view",
+    "warmup",
 )
+
+JSON, VERBOSE = "--json", "--verbose"
+"""What every command takes, anywhere on its line."""
 
 _BAD_INPUT = 2
 _INTERRUPTED = 130
@@ -39,16 +45,25 @@ _BROKEN_PIPE = 141
 
 
 class _Parser(argparse.ArgumentParser):
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(**{"formatter_class": Help, **keywords})
+
     def error(self, message: str) -> NoReturn:
         raise InvalidValueError(f"{message}; see {self.prog} --help")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command and returns its exit status: 0 only where it did what it was asked, 2 for bad input (one line on
-    stderr), 130 for an interrupt."""
-    given = list(sys.argv[1:] if argv is None else argv)
+    stderr, and with --json, which may stand anywhere, a document of it on stdout), 130 for an interrupt."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    given = [word for word in words if word not in (JSON, VERBOSE)]
+    as_json = JSON in words
     try:
-        args = command_parser(given).parse_args(given or ["--help"])
+        args = command_parser(given, as_json).parse_args(given or ["--help"])
+        args.json = as_json
+        if VERBOSE in words:
+            logging.basicConfig(format="%(name)s: %(message)s")
+            logging.getLogger("thermograsp").setLevel(logging.INFO)
         status = args.run(args)
         sys.stdout.flush()  # a reader that has gone shows here, not at exit
         return status
@@ -60,17 +75,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         _forget_stdout()
         return _BROKEN_PIPE
     except (ThermograspError, OSError) as error:
-        print(f"thermograsp: {' '.join(str(error).split())}", file=sys.stderr)
+        message = " ".join(str(error).split())
+        print(f"thermograsp: {message}", file=sys.stderr)
+        try:
+            Output(as_json).record(  # of one line, for readers of a stream
+                {"error": {"kind": type(error).__name__, "message": message}, "status": _BAD_INPUT}
+            )
+            sys.stdout.flush()
+        except OSError:  # stdout is what cannot be written
+            _forget_stdout()
         return _BAD_INPUT
 
 
-def command_parser(given: Sequence[str]) -> argparse.ArgumentParser:
+def command_parser(given: Sequence[str], as_json: bool = False) -> argparse.ArgumentParser:
     """The parser of the command that is named, or of all of them where none is, for --help."""
     parser = _Parser(prog="thermograsp", description="Thermal touch for robot grasping.", allow_abbrev=False)
     parser.add_argument(
         "--version",
         action=ShowVersion,
-        as_json="--json" in given,
+        as_json=as_json,
         help="show the version and exit; with --json, those of everything it runs on",
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -81,7 +104,10 @@ def command_parser(given: Sequence[str]) -> argparse.ArgumentParser:
         module = _command(name)
         sub = commands.add_parser(name, help=module.HELP, description=module.HELP, allow_abbrev=False)
         module.add_arguments(sub)
-        sub.add_argument("--json", action="store_true", help="print one JSON document and nothing else")
+        sub.add_argument(VERBOSE, action="store_true", help="tell on stderr what goes on beside the result")
+        sub.add_argument(
+            JSON, action="store_true", help="print one JSON document and nothing else, errors too"
+        )
         sub.set_defaults(run=module.run)
     return parser
 

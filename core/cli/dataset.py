@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import json
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.arguments import add_materials_file, chosen_material
-from thermograsp.cli.opengl import load_mujoco
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, add_materials_file, chosen_material, load_mujoco
 from thermograsp.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -22,11 +21,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
     add("--episodes", type=int, help="how many; without it --export takes the folder as it is")
-    add("--out", metavar="DIR", default="dataset", help="folder of the dataset (default dataset)")
-    add("--id", default="thermograsp/Grasp-v0", help="environment (default thermograsp/Grasp-v0)")
-    add("--policy", default="scripted", help="scripted (default), feeling, trained, random or zero")
-    add("--seed", type=int, default=0, help="episode k is that of seed + k (default 0)")
-    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
+    add("--out", metavar="DIR", default="dataset", help="folder of the dataset")
+    add("--id", default="thermograsp/Grasp-v0", help="environment")
+    add("--policy", default="scripted", help="scripted, feeling, trained, random or zero")
+    add("--seed", type=int, default=0, help="episode k is that of seed + k")
+    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
     add(
         "--material",
         nargs="+",
@@ -34,13 +33,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="materials that episodes draw from (default: the paper's ten)",
     )
     add_materials_file(parser)
-    add("--shard", type=int, default=128, metavar="N", help="episodes a file (default 128)")
-    add("--workers", type=int, default=0, help="Ray tasks at a time; 0 (default): this process, without Ray")
+    add("--shard", type=int, default=128, metavar="N", help="episodes a file")
     add(
-        "--ray-address", metavar="ADDRESS", help="of a running Ray cluster, or auto (default: one of its own)"
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="other keywords of the environment, values as JSON or text: tolerance=0.02 objects=mug_of_coffee",
+    )
+    add("--workers", type=int, default=0, help="processes, or Ray's tasks at a time; 0: this process")
+    add(
+        "--ray-address",
+        metavar="ADDRESS",
+        help="run the workers on Ray: of a running cluster, auto, or local for a Ray of its own",
     )
     add("--export", choices=("minari",), help="when the folder is complete, write a Minari dataset")
-    add("--name", help="of the Minari dataset (default such as thermograsp/Grasp/scripted-v0)")
+    add("--name", help="of the Minari dataset (default: such as thermograsp/Grasp/scripted-v0)")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -76,14 +84,29 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+def _keyword(given: str) -> tuple[str, Any]:
+    """NAME=VALUE, where what is no JSON is text."""
+    from thermograsp.dataset import decoded
+
+    name, equals, text = given.partition("=")
+    if not equals or not name.isidentifier():
+        raise InvalidValueError(f"--set takes NAME=VALUE, got {given!r}")
+    try:
+        return name, decoded(json.loads(text))
+    except json.JSONDecodeError:
+        return name, text
+
+
 def _plan(args: argparse.Namespace) -> Plan:
     from thermograsp.dataset import Plan
 
-    drawn = {}
+    drawn: dict[str, Any] = {"keywords": dict(map(_keyword, args.set))}
     if args.material:
         drawn["materials"] = tuple(chosen_material(name, args.materials) for name in args.material)
     elif args.materials:
         raise InvalidValueError(
             "--materials needs --material: name those of the file that episodes draw from"
         )
+    elif drawn["keywords"].keys() & {"objects", "scene"}:
+        drawn["materials"] = ()
     return Plan(args.id, args.episodes, args.seed, args.policy, args.mode, shard_size=args.shard, **drawn)

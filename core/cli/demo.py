@@ -5,16 +5,14 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.opengl import load_mujoco
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, load_mujoco
 from thermograsp.errors import InvalidValueError
-from thermograsp.files import write_text
+from thermograsp.files import made_folder, write_text
 
 if TYPE_CHECKING:
-    from thermograsp.report.demo_runs import ModeRun
+    from thermograsp.reports.demo import ModeRun
 
 NAME = "demo"
 HELP = "Grasp all ten seed materials in both modes; write a page, one CSV file a run, and a table."
@@ -27,8 +25,8 @@ _FAILED = 1
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("--out", default="out/demo", metavar="DIR", help="where to write (default out/demo)")
-    add("--seed", type=int, default=0, help="of the objects' places and the noise (default 0)")
+    add("--out", default="out/demo", metavar="DIR", help="where to write")
+    add("--seed", type=int, default=0, help="of the objects' places and the noise")
     add("--quick", action="store_true", help=f"grasps of {_QUICK:g} s instead of {_SECONDS:g}")
 
 
@@ -36,18 +34,14 @@ def run(args: argparse.Namespace) -> int:
     """Runs, writes and prints. 1 where an object was not lifted and held."""
     output = Output(args.json)
     load_mujoco(output)
-    from thermograsp.report.columns import write_csv
-    from thermograsp.report.demo_page import demo_page
-    from thermograsp.report.demo_runs import run_mode
-    from thermograsp.report.demo_tables import Settings, versions
-    from thermograsp.report.face_maps import touches
-    from thermograsp.report.pressure_maps import presses
+    from thermograsp.columns import write_csv
+    from thermograsp.figures import presses, touches
+    from thermograsp.reports.demo import Settings, demo_page, run_mode, versions
 
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     begun = time.perf_counter()
-    out = Path(args.out)
-    out.mkdir(parents=True, exist_ok=True)
+    out = made_folder(args.out)
     seconds = _QUICK if args.quick else _SECONDS
     with output.progress(20.0 * len(_MODES)) as advance:
         runs = [run_mode(mode, seconds, args.seed, mode == "T", advance) for mode in _MODES]

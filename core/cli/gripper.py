@@ -6,9 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.arguments import target
-from thermograsp.cli.opengl import load_mujoco
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, add_old_name, load_mujoco, target
 from thermograsp.errors import MissingDependencyError
 
 if TYPE_CHECKING:
@@ -35,24 +33,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="bodies that carry the fingertips, or parts of two digits' names (default: found)",
     )
     add("--actuators", nargs="+", metavar="NAME", help="those that close it (default: all)")
-    add("--parallel-at", type=float, default=0.04, help="opening with parallel pads, m (default 0.04)")
-    add("--shape", choices=("box", "cylinder", "sphere"), default="box", help="of the objects (default box)")
-    add("--force", type=float, help="the limit, N (default: 10, or what the gripper can)")
-    add("--png", metavar="OUT", help="draw it, open and closed")
-    add(
-        "--json",
-        action="store_true",
-        default=argparse.SUPPRESS,
-        help="print one JSON document and nothing else",
-    )
+    add("--parallel-at", type=float, default=0.04, help="opening with parallel pads, m")
+    add("--shape", choices=("box", "cylinder", "sphere"), default="box", help="of the objects")
+    add("--force", type=float, help="the limit, N (default: that of a usual grasp, or what the gripper can)")
+    render = add("--render", metavar="FILE", help="draw it, open and closed: .png")
+    add_old_name(check, "--png", render)
 
 
 def run(args: argparse.Namespace) -> int:
     """Checks, draws and prints; 1 where the gripper is not fit."""
-    output, picture = Output(args.json), target(args.png, (".png",))
+    output, picture = Output(args.json), target(args.render, (".png",))
     load_mujoco(output)
+    from thermograsp.agents import FELT_AFTER, check_gripper
     from thermograsp.envs import load_gripper
-    from thermograsp.report.gripper_check import FELT_AFTER, check_gripper
 
     gripper = load_gripper(
         args.file, fingertips=args.fingertips, actuators=args.actuators, parallel_at=args.parallel_at
@@ -86,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _draw(output: Output, gripper: Gripper, file: Path, width: float) -> bool:
     """Whether the picture could be drawn, which needs OpenGL."""
-    from thermograsp.report.gripper_picture import draw_gripper
+    from thermograsp.figures import draw_gripper
 
     try:
         draw_gripper(file, gripper, width, *_PICTURE)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from thermograsp.cli.arguments import target
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, add_old_name, target
 from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:
@@ -21,6 +19,7 @@ HELP = "Identify the material and effusivity of a touched object from a recorded
 
 _TIME, _VOLTAGES = "time_s", ("voltage_left_V", "voltage_right_V")
 _NOT_TOLD = 1
+_SIZES = {1: (0.04, 0.04, 0.01), 2: (0.04, 0.04, 0.04)}  # m, by the number of fingertips
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,8 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--among", nargs="+", metavar="NAME", help="materials it may be (default: the whole table)")
     add("--materials", metavar="FILE", help="your own TOML table in place of the package's")
-    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
-    add("--sensor", default="seed", help="a sensor's name (default seed)")
+    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add("--sensor", default="seed", help="a sensor's name")
     add(
         "--fingertips",
         type=int,
@@ -45,32 +44,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         nargs=3,
         metavar=("X", "Y", "THICKNESS"),
-        help="m (default 0.04 0.04 0.01, between two fingertips 0.04 0.04 0.04)",
+        help="m (default: "
+        + ", between two fingertips ".join(" ".join(map(str, size)) for size in _SIZES.values())
+        + ")",
     )
     spread = ("MEAN", "DEVIATION")
-    add("--object-temperature", type=float, nargs=2, metavar=spread, help="degC and K (default 24 3)")
-    add("--sensor-temperature", type=float, nargs=2, metavar=spread, help="degC and K (default 36 0.1)")
+    for name, usual in (("object", (24.0, 3.0)), ("sensor", (36.0, 0.1))):
+        option = f"--{name}-temperature"
+        add(option, type=float, nargs=2, default=usual, metavar=spread, help="degC and K")
     add(
         "--conductance",
         type=float,
         nargs=2,
+        default=(1e3, 2e4),
         metavar=("LOW", "HIGH"),
-        help="of the contact, W/(m2 K) (default 1e3 2e4)",
+        help="of the contact, W/(m2 K)",
     )
     add("--touch", type=float, help="time of the touch, s (default: found in the voltage)")
     add("--until", type=float, help="use samples up to this time, s (default: all)")
-    add("--bandwidth", type=float, help="of the amplifier, Hz, inf for none (default 30)")
-    add("--model-error", type=float, help="of the curves, rms, share of the largest value (default 0.005)")
-    add("--tolerance", type=float, help="K that the network of a simulated curve may be off (default 0.05)")
+    add("--bandwidth", type=float, default=30.0, help="of the amplifier, Hz, inf for none")
+    add("--model-error", type=float, default=0.005, help="of the curves, rms, share of the largest value")
+    add("--tolerance", type=float, default=0.05, help="K that the network of a simulated curve may be off")
     add("--no-cache", action="store_true", help="do not keep curves on disk")
-    add("--out", metavar="FILE", help="draw voltage and posteriors: .svg, .png or .pdf")
+    plot = add("--plot", metavar="FILE", help="draw voltage and posteriors: .svg, .png or .pdf")
+    add_old_name(parser, "--out", plot)
 
 
 def run(args: argparse.Namespace) -> int:
     """Identifies and prints. 1 where the curve does not tell; the reason is printed."""
     from thermograsp import thermal
 
-    picture = target(args.out, (".svg", ".png", ".pdf"))
+    picture = target(args.plot, (".svg", ".png", ".pdf"))
     t, voltage = _samples(args)
     setup = _setup(args, voltage.shape[1])
     candidates = _candidates(args)
@@ -78,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
         t, voltage, setup=setup, candidates=candidates, touch=args.touch, cache=not args.no_cache
     )
     if picture is not None:
-        from thermograsp.report.identify_plot import plot_identification
+        from thermograsp.figures import plot_identification
 
         plot_identification(picture, t, voltage, setup, candidates, args.touch)
     _print(Output(args.json), args, result)
@@ -89,7 +93,7 @@ def _samples(args: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
     """Times (n,) and voltages (n, F); rows without a number, of lost frames, are left out."""
     import numpy as np
 
-    from thermograsp.report.columns import read_csv
+    from thermograsp.columns import read_csv
 
     columns = read_csv(args.csv)
     found = [name for name in _VOLTAGES if name in columns] or ["voltage_V"]
@@ -107,27 +111,22 @@ def _samples(args: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
 
 def _setup(args: argparse.Namespace, columns: int) -> TouchSetup:
     from thermograsp import thermal
+    from thermograsp.thermal.stack import any_sensor
 
-    setup = thermal.TouchSetup()
     fingertips = columns if args.fingertips is None else args.fingertips
-    thick = (0.04, 0.04, 0.04) if fingertips == 2 else setup.object_size
-    given: Mapping[str, Any] = {
-        "object_temperature": args.object_temperature,
-        "sensor_temperature": args.sensor_temperature,
-        "conductance": args.conductance,
-        "object_size": args.object_size or thick,
-    }
-    if args.bandwidth is not None:
-        setup = replace(setup, chain=replace(setup.chain, bandwidth=args.bandwidth))
-    for name in ("model_error", "tolerance"):
-        if (value := getattr(args, name)) is not None:
-            setup = replace(setup, **{name: value})
+    usual = thermal.TouchSetup()
     return replace(
-        setup,
-        stack=thermal.sensor(args.sensor),
+        usual,
+        stack=any_sensor(args.sensor),
         mode=args.mode,
         fingertips=fingertips,
-        **{name: tuple(value) for name, value in given.items() if value is not None},
+        object_size=tuple(args.object_size or _SIZES.get(fingertips, usual.object_size)),
+        chain=replace(usual.chain, bandwidth=args.bandwidth),
+        object_temperature=tuple(args.object_temperature),
+        sensor_temperature=tuple(args.sensor_temperature),
+        conductance=tuple(args.conductance),
+        model_error=args.model_error,
+        tolerance=args.tolerance,
     )
 
 
@@ -157,8 +156,8 @@ def _print(output: Output, args: argparse.Namespace, result: Identification) -> 
         output.line(f"contact {result.conductance:.0f} W/(m2 K) with {result.best.replace('_', ' ')}")
         touches = ", ".join(f"{touch:.3f} s" for touch in result.touch)
         output.line(f"touch at {touches}; {result.samples} samples, noise {1e6 * result.noise:.1f} uV")
-    if args.out:
-        output.line(f"wrote {args.out}")
+    if args.plot:
+        output.line(f"wrote {args.plot}")
     output.document(
         {
             "verdict": result.verdict,
@@ -174,6 +173,6 @@ def _print(output: Output, args: argparse.Namespace, result: Identification) -> 
             "touch_s": result.touch,
             "noise_V": result.noise,
             "samples": result.samples,
-            "out": args.out,
+            "out": args.plot,
         }
     )

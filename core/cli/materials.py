@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, add_old_name
 from thermograsp.errors import unknown_name
 
 if TYPE_CHECKING:
@@ -41,7 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "names", nargs="*", metavar="NAME", help="materials to compare; all where none is named"
     )
-    parser.add_argument("--file", metavar="TOML", help="a table of your own instead of the package's")
+    table = parser.add_argument(
+        "--materials", metavar="FILE", help="a TOML table of your own instead of the package's"
+    )
+    add_old_name(parser, "--file", table)
     parser.add_argument(
         "--sort", default="effusivity", metavar="PROPERTY", help=f"one of {', '.join(_SORTS)}"
     )
@@ -51,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     """Prints the table."""
     from thermograsp import thermal
 
-    known = thermal.load_materials(args.file) if args.file else thermal.materials()
+    known = thermal.load_materials(args.materials) if args.materials else thermal.materials()
     for name in args.names:
         if name not in known:
             raise unknown_name("material", name, known)

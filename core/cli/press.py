@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.arguments import add_materials_file, chosen_material, target
-from thermograsp.cli.output import Output
 from thermograsp.cli.pressed_mesh import add_mesh_arguments, press_mesh
+from thermograsp.cli.shared import Output, add_materials_file, chosen_material, target
 
 if TYPE_CHECKING:
     from thermograsp.thermal import Press
@@ -19,6 +18,7 @@ _KEYWORDS = (
     "mode",
     "sensor",
     "conductance",
+    "force",
     "area",
     "shape",
     "object_size",
@@ -38,11 +38,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("material", help="a name of `thermograsp materials`")
     add_materials_file(parser)
-    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
-    add("--sensor", default="seed", help="a sensor's name (default seed)")
-    add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K) (default 1e4)")
-    add("--area", type=float, default=81e-6, help="of the contact, m2 (default 81e-6)")
-    add("--shape", default="square", help="of the contact: square (default) or round")
+    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add("--sensor", default="seed", help="a sensor's name")
+    add(
+        "--conductance",
+        type=float,
+        help="of the contact, W/(m2 K) (default: 1e4, and of a heated sensor what its contact conducts at --force)",
+    )
+    add("--force", type=float, help="on a heated sensor, N (default: the one its contact is stated at)")
+    add(
+        "--area",
+        type=float,
+        help="of the contact, m2 (default: 81e-6, or the sensor's face where it is smaller)",
+    )
+    add("--shape", default="square", help="of the contact: square or round")
     size = (0.04, 0.04, 0.01)
     add(
         "--object-size",
@@ -50,19 +59,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         default=size,
         metavar=("X", "Y", "THICKNESS"),
-        help=f"m (default {size})",
+        help="m",
     )
-    add("--air", type=float, default=0.0, help="heat transfer to the air, W/(m2 K) (default 0)")
-    add("--sensor-temperature", type=float, default=36.0, help="of the thermostat, degC (default 36)")
-    add("--object-temperature", type=float, default=24.0, help="at first, degC (default 24)")
-    add("--seconds", type=float, default=10.0, help="s (default 10)")
-    add("--dt", type=float, default=0.02, help="spacing of the samples, s (default 0.02)")
-    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K (default 0.05)")
-    add("--rung", default="auto", help="model: auto (default), or a name such as layered or network")
+    add("--air", type=float, default=0.0, help="heat transfer to the air, W/(m2 K)")
+    add("--sensor-temperature", type=float, default=36.0, help="of the thermostat, degC")
+    add("--object-temperature", type=float, default=24.0, help="at first, degC")
+    add("--seconds", type=float, default=10.0, help="s")
+    add("--dt", type=float, default=0.02, help="spacing of the samples, s")
+    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K")
+    add("--rung", default="auto", help="model: auto, or a name such as layered or network")
     add(
         "--opposite",
         type=float,
-        help="conductance of a fingertip on the opposite face, W/(m2 K) (default none)",
+        help="conductance of a fingertip on the opposite face, W/(m2 K) (default: none)",
     )
     add(
         "--thermostat-power",
@@ -79,7 +88,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Presses and prints."""
     from thermograsp import thermal
-    from thermograsp.report.columns import write_csv
+    from thermograsp.columns import write_csv
 
     csv, plot = target(args.csv, ()), target(args.plot, (".svg", ".png", ".pdf"))
     material = chosen_material(args.material, args.materials)
@@ -102,10 +111,12 @@ def run(args: argparse.Namespace) -> int:
         "stored_heat_sensor_J": result.stored_heat[:, 0],
         "stored_heat_object_J": result.stored_heat[:, 1],
     }
+    if result.reading is not None:
+        columns["reading_degC"] = result.reading
     if csv is not None:
         write_csv(csv, columns)
     if plot is not None:
-        from thermograsp.report.press_plot import plot_press
+        from thermograsp.figures import plot_press
 
         plot_press(plot, result, f"{material.name}, {args.mode} mode")
     _print(Output(args.json), material.name, args, result)
@@ -121,6 +132,9 @@ def _print(output: Output, name: str, args: argparse.Namespace, result: Press) -
         f"peak   {drop[peak]:8.3f} K  {1e3 * result.voltage[peak]:8.3f} mV  at {result.t[peak]:.2f} s"
     )
     output.line(f"final  {drop[-1]:8.3f} K  {1e3 * result.voltage[-1]:8.3f} mV  at {result.t[-1]:.2f} s")
+    if result.reading is not None:
+        first, last = result.reading[[0, -1]]
+        output.line(f"reads  {first:8.3f} degC at first, {last:.3f} degC at {result.t[-1]:.2f} s")
     for file in (args.csv, args.plot):
         if file:
             output.line(f"wrote {file}")
@@ -135,6 +149,7 @@ def _print(output: Output, name: str, args: argparse.Namespace, result: Press) -
             "peak_time_s": result.t[peak],
             "final_temperature_drop_K": drop[-1],
             "final_voltage_V": result.voltage[-1],
+            "final_reading_degC": None if result.reading is None else result.reading[-1],
             "csv": args.csv,
             "plot": args.plot,
         }

@@ -20,6 +20,7 @@ SIDES = {
 }
 """Name -> outward direction, in the file's frame."""
 
+_AREA = 81e-6  # m2
 _PLATES = {
     "mode": "T",
     "shape": "square",
@@ -30,6 +31,7 @@ _PLATES = {
 _KEYWORDS = (
     "sensor",
     "conductance",
+    "force",
     "air",
     "sensor_temperature",
     "object_temperature",
@@ -47,12 +49,12 @@ def add_mesh_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="press an object from a mesh file (.stl, .obj, .ply, .glb), not a plate",
     )
-    add("--scale", type=float, default=1.0, help="m per unit of length in that file (default 1)")
+    add("--scale", type=float, default=1.0, help="m per unit of length in that file")
     add(
         "--side",
         choices=tuple(SIDES),
         default="top",
-        help="of the mesh, in whose middle it is pressed (default top)",
+        help="of the mesh, in whose middle it is pressed",
     )
 
 
@@ -61,7 +63,7 @@ def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermos
     import numpy as np
 
     from thermograsp import thermal
-    from thermograsp.envs.mesh_files import read_surface
+    from thermograsp.envs.bodies import read_surface
     from thermograsp.errors import positive
 
     for name, default in _PLATES.items():
@@ -75,7 +77,7 @@ def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermos
     x, y, z = ((low + high + outward * (high - low)) / 2).tolist()
     return thermal.press_body(
         thermal.solid(vertices, surface.faces, material),
-        thermal.SurfacePatch((x, y, z), SIDES[args.side], args.area),
+        thermal.SurfacePatch((x, y, z), SIDES[args.side], _AREA if args.area is None else args.area),
         thermostat=thermostat,
         cache=not args.no_cache,
         **{name: getattr(args, name) for name in _KEYWORDS},

@@ -7,21 +7,24 @@ import textwrap
 import time
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Literal
 
-from thermograsp.cli.output import Output
-from thermograsp.errors import InvalidValueError
-from thermograsp.files import write_text
+from thermograsp.cli.shared import Output
+from thermograsp.files import made_folder, write_text
 
 if TYPE_CHECKING:
-    from thermograsp.report.claim import Claim
-    from thermograsp.report.paper_runs import Task
+    from thermograsp.reports.paper import Claim, Support, Task
 
 NAME = "reproduce"
 HELP = "Recompute the heat flux sensor paper (Wu et al. 2012): its figures, and which of its statements hold."
 
 _MARKS = {"holds": "holds  ", "partly": "partly ", "fails": "FAILS  ", "open": "open   "}
+_ON_RIGS: dict[Literal["holds", "partly", "fails"], str] = {
+    "holds": "holds on",
+    "partly": "holds in part on",
+    "fails": "fails on",
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,13 +37,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Computes, draws and prints. A statement that fails is a result: the status is 0 all the same."""
-    from thermograsp.report.paper import draw_paper
-    from thermograsp.report.paper_claims import paper_claims
-    from thermograsp.report.paper_runs import FULL, MATERIALS, QUICK, run_paper
+    from thermograsp.reports.paper import (
+        FULL,
+        MATERIALS,
+        QUICK,
+        draw_paper,
+        paper_claims,
+        run_paper,
+    )
 
-    begun, output, folder = time.perf_counter(), Output(args.json), _folder(args.out)
+    begun, output, folder = time.perf_counter(), Output(args.json), made_folder(args.out)
     effort = QUICK if args.quick else FULL
-    with output.progress(7) as advance:
+    with output.progress(9) as advance:
 
         def shown(tasks: list[Task]) -> Iterator[Task]:
             for task in tasks:
@@ -50,23 +58,24 @@ def run(args: argparse.Namespace) -> int:
 
         runs = run_paper(effort, shown)
         advance("figures", 0)
-        figures = draw_paper(folder, runs, MATERIALS)
+        claims = paper_claims(runs)
+        figures = draw_paper(folder, runs, claims, MATERIALS)
         advance("figures", 1)
-    claims = paper_claims(runs)
     lines = [line for claim in claims for line in _lines(claim)]
-    counts = Counter(claim.verdict for claim in claims)
+    counts = Counter(claim.finding.verdict for claim in claims)
     total = ", ".join(f"{counts[verdict]} {verdict}" for verdict in _MARKS)
     report = folder / "claims.txt"
-    write_text(report, "\n".join([*lines, f"{len(claims)} statements: {total}", ""]))
+    lines += [f"{len(claims)} statements: {total}", "", *runs.bands.lines()]
+    write_text(report, "\n".join([*lines, ""]))
     for line in lines:
         output.line(line)
-    output.line(f"{len(claims)} statements: {total}")
     for file in [*figures, report]:
         output.line(f"wrote {file}")
     output.document(
         {
             "claims": [_fields(claim) for claim in claims],
             "verdicts": {verdict: counts[verdict] for verdict in _MARKS},
+            "bands": runs.bands.document(),
             "figures": [str(file) for file in figures],
             "report": str(report),
             "tolerance_K": effort.tolerance,
@@ -76,27 +85,38 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _folder(path: str) -> Path:
-    folder = Path(path)
-    if folder.exists() and not folder.is_dir():
-        raise InvalidValueError(f"cannot write into {path}: it is not a folder; name another with --out")
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
-
-
 def _lines(claim: Claim) -> list[str]:
-    """Two paragraphs: what the paper says, and what comes out."""
+    """What the paper says, what comes out, and for a statement on the experiment on how many rigs it does."""
     indent = " " * 9
     said = textwrap.fill(
         f"{claim.statement} (section {claim.section})",
         110,
-        initial_indent=f"{_MARKS[claim.verdict]}  ",
+        initial_indent=f"{_MARKS[claim.finding.verdict]}  ",
         subsequent_indent=indent,
     )
     found = textwrap.fill(
-        claim.computed, 110, initial_indent=indent + "-> ", subsequent_indent=indent + "   "
+        claim.finding.computed, 110, initial_indent=indent + "-> ", subsequent_indent=indent + "   "
     )
-    return [said, found, ""]
+    if claim.support is None:
+        return [said, found, ""]
+    on_rigs = textwrap.fill(
+        _supported(claim.support), 110, initial_indent=indent + "   ", subsequent_indent=indent + "   "
+    )
+    return [said, found, on_rigs, ""]
+
+
+def _supported(support: Support) -> str:
+    counts = support.counts
+    counted = ", ".join(
+        f"{words} {counts[verdict]}" for verdict, words in _ON_RIGS.items() if counts[verdict]
+    )
+    text = f"Of the {sum(counts.values())} rigs drawn the statement {counted}."
+    if support.deciding is not None:
+        name, there, elsewhere = support.deciding
+        text += (
+            f" Mostly {name} decides: its median is {there:.2g} where it holds, {elsewhere:.2g} elsewhere."
+        )
+    return text
 
 
 def _fields(claim: Claim) -> dict[str, object]:
@@ -104,7 +124,8 @@ def _fields(claim: Claim) -> dict[str, object]:
         "key": claim.key,
         "section": claim.section,
         "statement": claim.statement,
-        "computed": claim.computed,
-        "verdict": claim.verdict,
-        "numbers": claim.numbers,
+        "computed": claim.finding.computed,
+        "verdict": claim.finding.verdict,
+        "numbers": claim.finding.numbers,
+        "support": None if claim.support is None else asdict(claim.support),
     }

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from contextlib import closing
 
-from thermograsp.cli.opengl import load_mujoco
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, load_mujoco
 from thermograsp.errors import InvalidValueError, ThermograspError
 
 NAME = "rollout"
@@ -20,14 +19,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
     add("env_id", metavar="ENV_ID", help="such as thermograsp/Grasp-v0")
-    add("--episodes", type=int, default=20, help="how many (default 20)")
-    add("--num-envs", type=int, default=4, help="how many at once; it changes the speed only (default 4)")
-    add("--seed", type=int, default=0, help="episode k starts from seed + k (default 0)")
+    add("--episodes", type=int, default=20, help="how many")
+    add("--num-envs", type=int, default=4, help="how many at once; it changes the speed only")
+    add("--seed", type=int, default=0, help="episode k starts from seed + k")
     add("--stakes", action="store_true", help="materials of which each needs its own force (envs.STAKES)")
     add(
         "--policy",
         default="scripted",
-        help="scripted (default), feeling, trained, random, zero, or a trained policy's .npz file",
+        help="scripted, feeling, trained, random, zero, or a trained policy's .npz file",
     )
     add("--max-steps", type=int, help="end episodes after so many control steps")
     add(
@@ -51,8 +50,8 @@ def run(args: argparse.Namespace) -> int:
     load_mujoco(output)
     import gymnasium
 
+    from thermograsp.agents import rollout
     from thermograsp.envs import STAKES
-    from thermograsp.report.rollout import rollout
 
     at_once = min(args.num_envs, args.episodes)
     try:

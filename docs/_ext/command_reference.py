@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator
 
 from thermograsp.cli import command_parser
+from thermograsp.cli.shared import described
 
 
 def command_reference() -> str:
@@ -23,9 +24,14 @@ def _leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser
 
 
 def _section(parser: argparse.ArgumentParser) -> str:
-    rows = [_row(action) for action in parser._actions if not isinstance(action, argparse._HelpAction)]
+    rows = [_row(action) for action in parser._actions if _shown(action)]
     given = "".join(f"| {names} | {text} |\n" for names, text in rows)
     return f"## {parser.prog}\n\n{_cell(parser.description or '')}\n\n| argument | what |\n|---|---|\n{given}"
+
+
+def _shown(action: argparse.Action) -> bool:
+    """Old names of options are not."""
+    return not isinstance(action, argparse._HelpAction) and action.help != argparse.SUPPRESS
 
 
 def _row(action: argparse.Action) -> tuple[str, str]:
@@ -34,10 +40,7 @@ def _row(action: argparse.Action) -> tuple[str, str]:
         names = ", ".join(f"`{name}{' ' + value if value else ''}`" for name in action.option_strings)
     else:
         names = f"`{value}`"
-    text = (action.help or "") % {**vars(action), "prog": ""}
-    known = action.default not in (None, False, argparse.SUPPRESS, [])
-    if known and "default" not in text:
-        text += f"; {action.default} by default"
+    text = described(action) % {**vars(action), "prog": ""}
     return names.replace("|", "\\|"), _cell(text)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any
 
 import gymnasium
 import numpy as np
 from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, OPTIONS, SOMETIMES
 
-from thermograsp.envs.touch_env import TouchEnv
+from thermograsp.envs.gym import TouchEnv
 from thermograsp.plant import Command
 
 
@@ -19,6 +20,7 @@ def registered() -> list[str]:
     return [name for name in gymnasium.registry if name.startswith("thermograsp/")]
 
 
+@cache
 def environment_tables() -> str:
     """A section for each. Raises KeyError where environment_words.py lacks a word."""
     return "\n".join(_section(name) for name in registered())
@@ -56,19 +58,19 @@ def action_table(name: str, env: TouchEnv) -> str:
 
 def _changed(env: TouchEnv, component: int, value: float) -> str:
     """What a component changes of the command, against its other end."""
-    here, there = _still(env), _still(env)
-    here[0, component], there[0, component] = value, -value
-    commands = [env.batch.task.command(action) for action in (here, there)]
-    told = []
+    forward, reverse = _still(env), _still(env)
+    forward[0, component], reverse[0, component] = value, -value
+    commands = [env.batch.task.command(action) for action in (forward, reverse)]
+    changes = []
     for name in Command._fields:
-        mine, other = (getattr(command, name) for command in commands)
-        if mine is not None and mine[0] != other[0]:
+        value_here, other = (getattr(command, name) for command in commands)
+        if value_here is not None and value_here[0] != other[0]:
             unit = COMMANDS[name]
-            number = mine[0] * (1e3 if unit.startswith("mm") else 1.0)
-            told.append((name.replace("_", " "), f"{number:.4g} {unit}"))
-    if len(told) == 1:
-        return told[0][1]
-    return ", ".join(f"{name} {number}" for name, number in told)
+            number = value_here[0] * (1e3 if unit.startswith("mm") else 1.0)
+            changes.append((name.replace("_", " "), f"{number:.4g} {unit}"))
+    if len(changes) == 1:
+        return changes[0][1]
+    return ", ".join(f"{name} {number}" for name, number in changes)
 
 
 def observation_table(name: str, env: TouchEnv) -> str:

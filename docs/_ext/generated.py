@@ -1,5 +1,7 @@
-"""What a page has on the site and not in its file: tables where it says `<!-- generated: NAME -->`, made from the code
-that the site is built of, and the titles of pages in place of their files' names."""
+"""What is made of the code: tables between `<!-- generated: NAME -->` and `<!-- generated: end -->`, which stand in the
+pages' files so that a forge shows them too, and the titles of pages in place of their files' names.
+
+`make reference` writes the tables again; a test fails while they are not those of the code."""
 
 from __future__ import annotations
 
@@ -9,23 +11,46 @@ from typing import Any
 
 from command_reference import command_reference
 from environment_tables import environment_tables
-from public_names import public_names
+from public_names import name_tables, public_names
 from sphinx.application import Sphinx
 
-MARK = re.compile(r"^<!-- generated: (\w+)(?: ([\w.]+))? -->$", re.MULTILINE)
+BLOCK = re.compile(
+    r"^<!-- generated: (?P<name>\w+)(?: (?P<of>[\w.]+))? -->\n(?P<tables>.*?)^<!-- generated: end -->$",
+    re.MULTILINE | re.DOTALL,
+)
 FILE = re.compile(r"\[[\w/-]+\.md\](?=\([\w/-]+\.md(?:#[\w-]+)?\))")
 
 GENERATORS: dict[str, Callable[..., str]] = {
     "commands": command_reference,
     "environments": environment_tables,
-    "names": public_names,
+    "names": name_tables,
 }
+
+
+def with_tables(page: str) -> str:
+    """The page's text with the tables that the code gives today."""
+    return BLOCK.sub(
+        lambda block: "\n".join(
+            (
+                block[0].split("\n", 1)[0],
+                "",
+                GENERATORS[block["name"]](*filter(None, [block["of"]])).strip("\n"),
+                "",
+                "<!-- generated: end -->",
+            )
+        ),
+        page,
+    )
+
+
+def _on_the_site(block: re.Match[str]) -> str:
+    """Names with their whole docstrings, and other tables as they stand."""
+    return public_names(block["of"]) if block["name"] == "names" else block["tables"]
 
 
 def _fill(app: Sphinx, page: str, source: list[str]) -> None:
     del app, page
-    filled = MARK.sub(lambda mark: GENERATORS[mark[1]](*filter(None, [mark[2]])), source[0])
-    source[0] = FILE.sub("[]", filled)
+    source[0] = FILE.sub("[]", BLOCK.sub(_on_the_site, source[0]))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -11,18 +11,24 @@
 #include "memory.h"
 #include "plates.h"
 #include "protocol.h"
+#include "start.h"
 
 #ifndef SERIAL_NUMBER
 #define SERIAL_NUMBER 1
 #endif
 
-enum { FIRMWARE_MAJOR = 0, FIRMWARE_MINOR = 1 };
+enum { FIRMWARE_MAJOR = 0, FIRMWARE_MINOR = 2 };
 enum { STEP_PV = 7812500, LIMIT_NV = 256000000 };
 enum { SECOND_US = 1000000, TESTED = 64, REMEMBERED = 8 };
-enum { CHECKS = CHECK_CONVERTER | 3 * CHECK_LEFT_THERMISTOR | CHECK_LOAD_CELLS | CHECK_MEMORY };
+enum { SILENCE_US = 10 * SECOND_US }; // without a sign of the host, after which the setpoints end
+enum {
+  CHECKS = CHECK_CONVERTER | 3 * CHECK_LEFT_THERMISTOR | CHECK_LOAD_CELLS | CHECK_MEMORY | CHECK_BROWN_OUT
+};
 
 static struct measured measured = {.supply = 5.0f};
 static bool unidentified = true, memory_good;
+static uint32_t host_seen; // when, last
+static bool host_silent;
 
 static uint16_t rate, phase, session, boots;
 static bool has_session;
@@ -35,6 +41,7 @@ static struct {
 } executed[REMEMBERED];
 static uint8_t executed_next, executed_count;
 static struct header storing; // the command that set the constants being stored
+static bool told_to_store;    // else they are being mended
 
 static struct {
   uint16_t checks;
@@ -55,7 +62,7 @@ static uint8_t flags(void) {
   return (uint8_t)(each(SATURATED_LEFT, saturated(0), saturated(1)) |
                    each(OPEN_LEFT, plate_broken(0), plate_broken(1)) |
                    each(OFF_SETPOINT_LEFT, plate_off_setpoint(0), plate_off_setpoint(1)) |
-                   (plates_too_hot() ? OVER_TEMPERATURE : 0) | (unidentified ? UNIDENTIFIED : 0));
+                   (plates_latched() ? LATCHED_OFF : 0) | (unidentified ? UNIDENTIFIED : 0));
 }
 
 static bool send(uint8_t code, const void *payload, uint8_t length, uint32_t us) {
@@ -95,6 +102,14 @@ static void send_status(void) {
   send(STATUS, &status, sizeof status, clock_us());
 }
 
+static void send_condition(void) {
+  struct condition condition = {
+      .reset = start_cause(),
+      .heaters_off = (uint8_t)(plates_latched() | (host_silent ? HOST_SILENT : 0)),
+  };
+  send(CONDITION, &condition, sizeof condition, clock_us());
+}
+
 static void send_sample(void) {
   struct sample sample;
   for (uint8_t side = 0; side < SIDES; ++side) {
@@ -115,7 +130,8 @@ static void send_self_test(void) {
   int16_t force[SIDES][AXES];
   bool converter = measured.element_known[0] && measured.element_known[1] && !saturated(0) && !saturated(1);
   uint16_t failed = (converter ? 0 : CHECK_CONVERTER) | each(CHECK_LEFT_THERMISTOR, plate_broken(0), plate_broken(1)) |
-                    (load_cells_read(force) ? 0 : CHECK_LOAD_CELLS) | (memory_good ? 0 : CHECK_MEMORY);
+                    (load_cells_read(force) ? 0 : CHECK_LOAD_CELLS) | (memory_good ? 0 : CHECK_MEMORY) |
+                    (start_guarded() ? 0 : CHECK_BROWN_OUT);
   result.failed = failed & test.checks;
   for (uint8_t side = 0; side < SIDES; ++side)
     result.voltage_noise[side] = (uint32_t)(sqrtf(test.squares[side] / TESTED) * (STEP_PV / 1000.0f));
@@ -146,7 +162,16 @@ static uint8_t set_rate(const uint8_t *payload) {
 static uint8_t set_setpoint(const uint8_t *payload) {
   int16_t wanted[SIDES];
   memcpy(wanted, payload, sizeof wanted);
-  return plates_set(wanted) ? DONE : BAD_VALUE;
+  if (!plates_set(wanted)) return BAD_VALUE;
+  host_seen = clock_us();
+  host_silent = false;
+  return DONE;
+}
+
+static void keep_alive(const uint8_t *payload) {
+  uint16_t of;
+  memcpy(&of, payload, sizeof of);
+  if (has_session && of == session) host_seen = clock_us();
 }
 
 static uint8_t run_self_test(const uint8_t *payload) {
@@ -170,6 +195,9 @@ static uint8_t request(uint8_t wanted) {
   case CALIBRATION:
     memory_constants(constants);
     send(CALIBRATION, constants, CONSTANTS, clock_us());
+    return DONE;
+  case CONDITION:
+    send_condition();
     return DONE;
   default:
     return BAD_VALUE;
@@ -201,6 +229,10 @@ static void remember(uint16_t command, uint8_t result) {
 
 static void execute(const struct header *command, const uint8_t *payload) {
   uint8_t result;
+  if (command->code == KEEP_ALIVE) {
+    keep_alive(payload);
+    return;
+  }
   if (command->code == IDENTIFY || command->code == REQUEST) { // they only read
     result = command->code == IDENTIFY ? identify(payload) : request(payload[0]);
     acknowledge(command, result);
@@ -215,7 +247,7 @@ static void execute(const struct header *command, const uint8_t *payload) {
   }
   if (command->code == SET_CALIBRATION) {
     if (memory_storing()) {
-      if (storing.sequence == command->sequence) {
+      if (told_to_store && storing.sequence == command->sequence) {
         ++repeats; // acknowledged at the end
       } else {
         acknowledge(command, BUSY);
@@ -224,10 +256,12 @@ static void execute(const struct header *command, const uint8_t *payload) {
     }
     memory_store(payload);
     storing = *command;
+    told_to_store = true;
     return;
   }
   result = command->code == SET_RATE       ? set_rate(payload)
            : command->code == SET_SETPOINT ? set_setpoint(payload)
+           : command->code == CLEAR_FAULTS ? (plates_clear(payload[0]) ? DONE : FAILED)
                                            : run_self_test(payload);
   if (result != BUSY) remember(command->sequence, result);
   acknowledge(command, result);
@@ -245,13 +279,19 @@ void device_poll(void) {
   struct header command;
   const uint8_t *payload;
   while ((payload = link_receive(&command))) execute(&command, payload);
-  if (memory_poll()) {
+  if (plates_on() && reached(host_seen + SILENCE_US)) {
+    plates_off();
+    host_silent = true;
+  }
+  if (memory_poll() && told_to_store) {
+    told_to_store = false;
     memory_good = true;
     remember(storing.sequence, DONE);
     acknowledge(&storing, DONE);
   }
   if (!measure_poll(&measured)) return;
   plates_cycle(&measured);
+  memory_latch(plates_latched()); // before the next start, whatever causes it
   test_cycle();
   phase += rate;
   if (phase >= CYCLE_HZ) {
@@ -264,6 +304,7 @@ void device_poll(void) {
     if (rate) {
       send_thermostats();
       send_status();
+      send_condition();
     }
   }
 }

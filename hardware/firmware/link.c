@@ -37,9 +37,11 @@ static uint8_t payload_length(uint8_t code) { // 0: not a command
   case SET_SETPOINT:
     return 4;
   case REQUEST:
+  case CLEAR_FAULTS:
     return 1;
   case SET_RATE:
   case RUN_SELF_TEST:
+  case KEEP_ALIVE:
     return 2;
   case SET_CALIBRATION:
     return CONSTANTS;

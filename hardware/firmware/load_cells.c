@@ -43,8 +43,9 @@ bool load_cells_read(int16_t force[SIDES][AXES]) {
   bool inside = true;
   for (uint8_t cell = 0; cell < CELLS; ++cell) {
     int32_t steps = (int32_t)last[cell] - MIDDLE; // of 5 V / 1024 / REPEATS, of which each is 0.12207 N / REPEATS
-    force[cell / AXES][cell % AXES] = (int16_t)(steps * 12207 / (1000 * REPEATS));
-    inside &= last[cell] > 0 && last[cell] < TOP;
+    bool known = last[cell] > 0 && last[cell] < TOP;
+    force[cell / AXES][cell % AXES] = known ? (int16_t)(steps * 12207 / (1000 * REPEATS)) : MISSING16;
+    inside &= known;
   }
   return inside;
 }

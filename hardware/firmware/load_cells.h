@@ -9,4 +9,6 @@
 void load_cells_begin(void);
 void load_cells_start(void); // a round of conversions, 2.6 ms in the background
 void load_cells_poll(void);
-bool load_cells_read(int16_t force[SIDES][AXES]); // 0.01 N of the last round; false: one is at an end of its range
+
+// 0.01 N of the last round, MISSING16 of a cell at an end of its range. False: there is one.
+bool load_cells_read(int16_t force[SIDES][AXES]);

@@ -7,13 +7,13 @@
 #include "clock.h"
 #include "device.h"
 #include "measure.h"
+#include "memory.h"
 #include "plates.h"
 #include "serial.h"
 
 int main(void) {
-  MCUSR = 0; // else a reset by the watchdog keeps it running, at 16 ms
   wdt_enable(WDTO_250MS);
-  plates_begin();
+  plates_begin(memory_latched());
   clock_begin();
   serial_begin();
   sei();

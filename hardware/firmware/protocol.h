@@ -11,21 +11,27 @@ enum {
   CALIBRATION = 0x05,
   SELF_TEST = 0x06,
   ACKNOWLEDGEMENT = 0x07,
+  CONDITION = 0x08,
   IDENTIFY = 0x81,
   REQUEST = 0x82,
   SET_RATE = 0x83,
   SET_SETPOINT = 0x84,
   SET_CALIBRATION = 0x85,
   RUN_SELF_TEST = 0x86,
+  CLEAR_FAULTS = 0x87,
+  KEEP_ALIVE = 0x88,
 };
 
 enum {
   SATURATED_LEFT = 0x01,
   OPEN_LEFT = 0x04,
   OFF_SETPOINT_LEFT = 0x10,
-  OVER_TEMPERATURE = 0x40,
+  LATCHED_OFF = 0x40,
   UNIDENTIFIED = 0x80,
 };
+
+enum { RESET_ANY = 0x0F };                                          // as the processor has them
+enum { TOO_HOT_LEFT = 0x01, RUNAWAY_LEFT = 0x04, LATCHING = 0x0F, HOST_SILENT = 0x10 }; // why heaters are off
 
 enum { DONE, BAD_VALUE, BUSY, FAILED };
 
@@ -34,9 +40,10 @@ enum {
   CHECK_LEFT_THERMISTOR = 0x02,
   CHECK_LOAD_CELLS = 0x20,
   CHECK_MEMORY = 0x40,
+  CHECK_BROWN_OUT = 0x80,
 };
 
-enum { MODEL = 0x5447, PROTOCOL_MAJOR = 1, PROTOCOL_MINOR = 0 };
+enum { MODEL = 0x5447, PROTOCOL_MAJOR = 2, PROTOCOL_MINOR = 0 };
 enum { SIDES = 2, AXES = 3, CONSTANTS = 48 };
 
 #define MISSING16 INT16_MIN
@@ -83,6 +90,10 @@ struct __attribute__((packed)) acknowledgement {
   uint8_t code, result;
 };
 
+struct __attribute__((packed)) condition {
+  uint8_t reset, heaters_off;
+};
+
 struct __attribute__((packed)) identify {
   uint8_t oldest, newest;
   uint16_t session;
@@ -92,3 +103,4 @@ _Static_assert(sizeof(struct header) == 8 && sizeof(struct sample) == 24, "proto
 _Static_assert(sizeof(struct thermostat_report) == 12 && sizeof(struct status) == 18, "protocol.md");
 _Static_assert(sizeof(struct identity) == 26 && sizeof(struct self_test) == 16, "protocol.md");
 _Static_assert(sizeof(struct acknowledgement) == 4 && sizeof(struct identify) == 4, "protocol.md");
+_Static_assert(sizeof(struct condition) == 2, "protocol.md");

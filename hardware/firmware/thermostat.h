@@ -1,4 +1,4 @@
-// The law of thermal/thermostat.py: PID on the measured temperature, heater limits, no windup. Runs on any processor.
+// The law of thermal/readout/thermostat.py: PID on the measured temperature, heater limits, no windup. Runs on any processor.
 #pragma once
 
 #include <stdbool.h>

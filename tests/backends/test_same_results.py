@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.thermal.conductance import LAPPED_ALUMINA, Joint, Surface
-from thermograsp.thermal.erfc_inverse import FARTHEST, NEAREST, erfc_inverse
+from thermograsp.thermal.contact.rough_faces import LAPPED_ALUMINA, Joint, Surface
+from thermograsp.thermal.numerics.erfc_inverse import FARTHEST, NEAREST, erfc_inverse
 
 from ..thermal.heat_cases import CASES, Batch, Case, difference_between
 from .conftest import Kind
@@ -86,13 +86,20 @@ def test_forces_to_voltages(kind: Kind, mode: thermal.Mode) -> None:
     )
     conductance, step = kind.compiled(theirs.conductance), kind.compiled(theirs.step)
     state, other = ours.start(rows), theirs.start(rows)
+    force = np.zeros((rows, 10, 2))
     for k in range(20):
         force = rng.uniform(-5.0, 20.0, (rows, 10, 2))
         noise = rng.standard_normal((rows, 2))
         if k == 10:
             state, other = ours.restart(state, restarted), theirs.restart(other, kind.of(restarted))
+        if k == 15:  # some rows go on to another object
+            which = np.roll(which, 1)
         state, expected, _ = ours.step(state, ours.conductance(force, which).mean(1), which, noise)
         felt = conductance(kind.of(force), kind.of(which)).mean(1)
         other, voltage, _ = step(other, felt, kind.of(which), kind.of(noise))
         np.testing.assert_allclose(np.asarray(voltage), expected, rtol=0, atol=1e-12)
-    assert np.isnan(np.asarray(theirs.conductance(kind.of([[np.nan, 1.0]]), 0))).tolist() == [[True, False]]
+    force[3, 0, 1] = np.nan
+    felt = conductance(kind.of(force), kind.of(which)).mean(1)
+    _, voltage, _ = step(other, felt, kind.of(which), 0.0)
+    spoilt = np.isnan(np.asarray(voltage)).any(axis=1)
+    assert np.flatnonzero(spoilt).tolist() == [3]

@@ -7,9 +7,19 @@ import pytest
 from scipy.linalg import expm
 
 from thermograsp import cli
-from thermograsp.bench import accuracy, atlas, bars, elements, fipy_press, steppers
-from thermograsp.bench.accuracy import press_problem
-from thermograsp.bench.semi_discrete import disc_press
+from thermograsp.bench.accuracy import (
+    elements,
+    fipy_press,
+    steppers,
+)
+from thermograsp.bench.accuracy import (
+    measure as accuracy,
+)
+from thermograsp.bench.accuracy.measure import press_problem
+from thermograsp.bench.accuracy.semi_discrete import disc_press
+from thermograsp.bench.stability import bars
+from thermograsp.bench.stability import measure as atlas
+from thermograsp.cli.bench import BENCHMARKS
 from thermograsp.thermal import RUNGS
 
 STEPS = 200
@@ -215,6 +225,16 @@ def test_quick_run_writes_figures_and_a_complete_document(written: tuple[Path, d
     assert {m["scheme"] for m in document["stability"]["maps"]} >= {"ours", "ftcs", "series"}
     assert "Genesis World 1.4.5" in document["peer"]["published_by"]
     assert len(document["peer"]["plates"]) == 5
+
+
+@pytest.mark.parametrize("name", BENCHMARKS)
+def test_a_saved_record_is_drawn_again_to_the_same_bytes(
+    written: tuple[Path, dict], name: str, tmp_path: Path
+) -> None:
+    folder = written[0]
+    assert cli.main(["bench", "--from", str(folder / f"{name}.json"), "--out", str(tmp_path)]) == 0
+    drawn = list(tmp_path.iterdir())
+    assert drawn and all(file.read_bytes() == (folder / file.name).read_bytes() for file in drawn)
 
 
 def test_accuracy_points_are_complete_and_auto_keeps_its_tolerance(written: tuple[Path, dict]) -> None:

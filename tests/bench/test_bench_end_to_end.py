@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermograsp.bench import end_to_end
-from thermograsp.bench.end_to_end import REFERENCE, SHIPPED, Setting
+from thermograsp.bench.episode import measure as end_to_end
+from thermograsp.bench.episode.measure import REFERENCE, SHIPPED, Setting
 
 
 @pytest.fixture(scope="module")

@@ -15,13 +15,25 @@ import numpy as np
 import pytest
 
 from thermograsp import cli
-from thermograsp.bench import grasp as bench
-from thermograsp.bench import grasp_course as course
-from thermograsp.bench import grasp_errors as judged
-from thermograsp.bench.grasp_course import Grasp, grasp, placements, shapes
-from thermograsp.bench.grasp_errors import Errors, HeatOfGrasps, errors, fates, worst
+from thermograsp.bench.grasp import course as course
+from thermograsp.bench.grasp import errors as judged
+from thermograsp.bench.grasp import measure as bench
+from thermograsp.bench.grasp.course import (
+    Grasp,
+    grasp,
+    placements,
+    shapes,
+)
+from thermograsp.bench.grasp.errors import (
+    Errors,
+    HeatOfGrasps,
+    errors,
+    fates,
+    worst,
+)
+from thermograsp.bench.grasp.figure import front
 from thermograsp.envs import ObjectSpec, SolverSettings
-from thermograsp.envs.solver_settings import SHIPPED
+from thermograsp.envs.mechanics.solver_settings import SHIPPED
 from thermograsp.errors import InvalidValueError
 
 MUJOCO = next(v.settings for v in bench.variants(quick=True) if v.family == "MuJoCo's defaults")
@@ -174,7 +186,11 @@ def test_front_and_beaten_by_exhaustive_search() -> None:
         )
         for i in range(60)
     ]
-    best = bench.front(points, lambda p: p.worst.slip)
+    slips = [
+        {"ratio": p.ratio, "slip": p.worst.slip if p.worst.fate == judged.HELD else np.nan, "of": p}
+        for p in points
+    ]
+    best = [record["of"] for record in front(slips, lambda record: record["slip"])]
     held = [p for p in points if p.worst.fate == judged.HELD]
     expected = [
         p

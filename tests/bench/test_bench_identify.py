@@ -1,14 +1,17 @@
 """The comparison of identifiers, from the quick run of all benchmarks."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.bench import identification_run as run
-from thermograsp.bench.identification import SETUP, Identified
-from thermograsp.bench.rivals import support_vectors
+from thermograsp.bench.identify import measure as run
+from thermograsp.bench.identify import measured
+from thermograsp.bench.identify.rivals import support_vectors
+from thermograsp.bench.identify.touches import SETUP, WINDOWS, Identified, Touches
 
 
 def test_the_identifier_is_beside_the_limit(written: tuple[Path, dict]) -> None:
@@ -42,11 +45,35 @@ def test_confusion_counts_rows_by_truth() -> None:
 
 def test_support_vectors_learn_what_is_plain() -> None:
     pytest.importorskip("sklearn")
-    from thermograsp.bench.identification import Touches
-
     rng = np.random.default_rng(0)
     label = np.arange(120) % 3
     voltage = (1 + label[:, None]) * np.linspace(0, 1e-3, 400) + 1e-5 * rng.standard_normal((120, 400))
     touches = Touches(SETUP, voltage, label, np.ones(120), np.ones(120), np.ones(120))
     assert np.mean(support_vectors(touches, touches, 1.0) == label) == 1.0
     assert set(run.ELEVEN) <= set(thermal.materials()) and len(set(run.ELEVEN)) == 11
+
+
+def test_progress_moves_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stage by stage; what is measured is left out here."""
+    few = np.zeros((1, 4))
+    nothing = Touches(SETUP, few, np.zeros(1, int), np.ones(1), np.ones(1), np.ones(1))
+    found = Identified(np.ones((1, 4)), np.ones((1, 2)), np.zeros(1), np.array([""]))
+    for name, value in {
+        "pressed": few[0],
+        "draw": nothing,
+        "draw_objects": nothing,
+        "identify_all": found,
+        "exact_posterior": np.ones((1, 4)),
+        "support_vectors": np.zeros(1, int),
+        "recurrent_net": {window: np.zeros(1, int) for window in WINDOWS},
+    }.items():
+        monkeypatch.setattr(run, name, lambda *given, value=value, **keywords: value)
+    moved, totals = [], []
+
+    @contextmanager
+    def progress(total: float | None) -> Iterator[Callable[[str, float], None]]:
+        totals.append(total)
+        yield lambda doing, advance: moved.append(advance)
+
+    measured(True, 0, progress)
+    assert totals == [sum(moved)] and max(moved) == 1

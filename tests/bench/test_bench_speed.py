@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermograsp.bench import endurance, processes, speed
-from thermograsp.bench.bare import BareBatch, inputs_of
+from thermograsp.bench.speed import endurance, processes
+from thermograsp.bench.speed import measure as speed
+from thermograsp.bench.speed.bare import BareBatch, inputs_of
 from thermograsp.envs import GraspBatch, action_of
-from thermograsp.envs.mechanics import SUBSTEPS
+from thermograsp.envs.limits import SUBSTEPS
 from thermograsp.errors import ThermograspError
 
 

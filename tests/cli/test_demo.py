@@ -14,7 +14,7 @@ import pytest
 
 from thermograsp.cli import main
 from thermograsp.errors import MissingDependencyError
-from thermograsp.report.curves import Curve, Mark, chart
+from thermograsp.figures.curves import Curve, Mark, chart
 from thermograsp.thermal import SEED_MATERIALS
 
 
@@ -41,7 +41,7 @@ def test_the_quick_demo_without_opengl(
     def no_opengl(*args: object, **keywords: object) -> None:
         raise MissingDependencyError("no OpenGL; apt-get install libegl1")
 
-    monkeypatch.setattr("thermograsp.report.film.Renderer", no_opengl)
+    monkeypatch.setattr("thermograsp.figures.film.Renderer", no_opengl)
     out = tmp_path / "new" / "demo"
     assert main(["demo", "--quick", "--out", str(out), "--json"]) == 0
     printed = capsys.readouterr()

@@ -7,10 +7,10 @@ import gymnasium
 import numpy as np
 import pytest
 
+from thermograsp.agents.recording import record
 from thermograsp.cli import main
 from thermograsp.envs import GraspBatch
 from thermograsp.errors import MissingDependencyError
-from thermograsp.report.recording import record
 
 COLUMNS = """
 time_s voltage_left_V voltage_right_V temperature_drop_left_K temperature_drop_right_K force_left_N force_right_N
@@ -86,7 +86,7 @@ def test_without_opengl_a_picture_is_refused_with_the_packages(
     def no_opengl(*args: object, **keywords: object) -> None:
         raise MissingDependencyError("no OpenGL; apt-get install libegl1")
 
-    monkeypatch.setattr("thermograsp.report.film.Renderer", no_opengl)
+    monkeypatch.setattr("thermograsp.figures.film.Renderer", no_opengl)
     assert main(["grasp", "--seconds", "1", "--render", str(tmp_path / "grasp.png")]) == 2
     assert "apt-get install" in capsys.readouterr().err
 
@@ -96,7 +96,7 @@ def test_the_recording_is_what_the_environment_gives() -> None:
     (grasp,) = record(GraspBatch(1, material="glass"), [4], 1.5)
     env = gymnasium.make("thermograsp/Grasp-v0", material="glass")
     observation, _ = env.reset(seed=4)
-    from thermograsp.report.scripted import ScriptedGrasp
+    from thermograsp.agents.scripted import ScriptedGrasp
 
     policy, drops, volts = ScriptedGrasp(1, 0.02), [], []
     for _ in range(75):

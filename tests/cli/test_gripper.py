@@ -43,7 +43,7 @@ def strong(tmp_path: Path) -> Path:
 
 def test_one_that_is_fit(strong: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "strong.png"
-    assert main(["gripper", "check", str(strong), "--png", str(picture)]) == 0
+    assert main(["gripper", "check", str(strong), "--render", str(picture)]) == 0
     told = capsys.readouterr().out
     for part in ("fingertips on 'one' and 'two'", "geom 'face_two'", "glass", "aluminium", "fit: it grasps"):
         assert part in told
@@ -76,8 +76,8 @@ def test_without_opengl_the_rest_goes_on(
     def nothing(*args: object) -> NoReturn:
         raise MissingDependencyError("no OpenGL to render with")
 
-    monkeypatch.setattr("thermograsp.report.gripper_picture.draw_gripper", nothing)
-    assert main(["gripper", "check", str(strong), "--png", str(tmp_path / "no.png")]) == 0
+    monkeypatch.setattr("thermograsp.figures.draw_gripper", nothing)
+    assert main(["gripper", "check", str(strong), "--render", str(tmp_path / "no.png")]) == 0
     told = capsys.readouterr()
     assert "no picture: no OpenGL" in told.err and "fit:" in told.out and "wrote" not in told.out
 
@@ -103,7 +103,7 @@ def test_one_that_opens_little_is_tried_with_less(tmp_path: Path, capsys: pytest
         (["none.xml"], "no file"),
         (["{strong}", "--fingertips", "one", "three"], "unknown finger"),
         (["{strong}", "--actuators", "pull"], "unknown actuator"),
-        (["{strong}", "--png", "picture.gif"], "must end with .png"),
+        (["{strong}", "--render", "picture.gif"], "must end with .png"),
         (["{strong}", "--force", "-1"], "force"),
     ],
 )

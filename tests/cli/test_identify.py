@@ -1,5 +1,6 @@
 """`thermograsp identify`."""
 
+import argparse
 import json
 from pathlib import Path
 
@@ -7,8 +8,8 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.cli import main
-from thermograsp.report.columns import read_csv, write_csv
+from thermograsp.cli import identify, main
+from thermograsp.columns import read_csv, write_csv
 
 AMONG = "--among cotton plastic glass aluminium"
 
@@ -103,3 +104,11 @@ def test_csv_files_come_back(tmp_path: Path) -> None:
     assert list(read) == list(columns)
     for name, values in columns.items():
         np.testing.assert_array_equal(read[name], values)
+
+
+def test_defaults_are_those_of_the_setup() -> None:
+    parser = argparse.ArgumentParser()
+    identify.add_arguments(parser)
+    setup = identify._setup(parser.parse_args(["touch.csv"]), 1)
+    assert setup == thermal.TouchSetup()
+    assert identify._setup(parser.parse_args(["touch.csv"]), 2).object_size == (0.04, 0.04, 0.04)

@@ -1,10 +1,14 @@
 """The frame of the command line: version, help, exit statuses, and what is loaded when."""
 
+import argparse
 import configparser
+import io
 import json
+import logging
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from types import ModuleType
@@ -17,7 +21,8 @@ import pytest
 import thermograsp
 from thermograsp import cli
 from thermograsp.cli import main
-from thermograsp.cli.versions import OWN_WORK, versions
+from thermograsp.cli.shared import Output, described
+from thermograsp.cli.shared.versions import OWN_WORK, versions
 from thermograsp.errors import ThermograspError
 
 
@@ -126,7 +131,7 @@ BAD = {
     "press glass --materials none.toml": "cannot read none.toml",
     "materials unobtainium": "unknown material 'unobtainium'",
     "materials --sort weight": "unknown property 'weight'",
-    "materials --file none.toml": "cannot read none.toml",
+    "materials --materials none.toml": "cannot read none.toml",
     "grasp --material glas": "did you mean 'glass'",
     "grasp --force nan": "force (N) must be a finite number above 0, got nan",
     "grasp --force 1000": "force (N) must be at most 40",
@@ -148,6 +153,84 @@ BAD = {
 }
 
 
+@pytest.mark.parametrize("line", ["--json materials glas", "materials --json glas", "materials glas --json"])
+def test_an_error_is_a_document_too(line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(line.split()) == 2
+    out, err = capsys.readouterr()
+    told = json.loads(out)
+    assert told["status"] == 2 and told["error"]["kind"] == "UnknownNameError"
+    assert "did you mean 'glass'" in told["error"]["message"] and err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "line", ["--json materials glass", "materials --json glass", "materials glass --json"]
+)
+def test_json_may_stand_anywhere(line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(line.split()) == 0
+    assert json.loads(capsys.readouterr().out)["materials"][0]["name"] == "glass"
+
+
+@pytest.mark.parametrize("line", ["--verbose device list", "device --verbose list", "device list --verbose"])
+def test_verbose_may_stand_anywhere(line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    logger = logging.getLogger("thermograsp")
+    before = logger.level
+    try:
+        assert main(line.split()) == 0
+        assert logger.level == logging.INFO
+    finally:
+        logger.setLevel(before)
+
+
+OLD = {
+    "materials --file none.toml": ("--materials", "cannot read none.toml"),
+    "view --record x.mp4": ("--render", "must end with"),
+    "gripper check none.xml --png x.gif": ("--render", "must end with"),
+    "identify none.csv --out x.doc": ("--plot", "must end with"),
+    "grasp --temperature -300": ("--object-temperature", "must be a temperature"),
+    "device fit glass=FILE --out sensor.txt": ("--save", ".toml"),
+    "device fit glass=FILE --temperature 20 --save sensor.txt": ("--object-temperature", ".toml"),
+}
+
+
+@pytest.mark.parametrize(("line", "told"), OLD.items(), ids=OLD)
+def test_old_names_of_options_go_on_and_say_so(
+    line: str, told: tuple[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(line.split()) == 2
+    first, second = capsys.readouterr().err.splitlines()
+    assert first.endswith(f"is an old name of {told[0]}")
+    assert told[1] in second
+
+
+def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    if not below:
+        yield parser
+    for action in below:
+        for sub in action.choices.values():
+            yield from leaves(sub)
+
+
+def test_one_name_for_one_thing() -> None:
+    """Folders, tables, plots, pictures and temperatures have the same option in all commands."""
+    meant = {
+        "--out": "DIR",
+        "--csv": "FILE",
+        "--plot": "FILE",
+        "--render": "FILE",
+        "--save": "FILE",
+        "--materials": "FILE",
+    }
+    gone = {"--png", "--file", "--record", "--temperature"}
+    for parser in leaves(cli.command_parser([])):
+        for action in parser._actions:
+            if action.help == argparse.SUPPRESS:
+                continue
+            for name in action.option_strings:
+                assert action.metavar == meant.get(name, action.metavar), (parser.prog, name)
+                assert name not in gone, (parser.prog, name)
+
+
 @pytest.mark.parametrize(("line", "told"), BAD.items(), ids=BAD)
 def test_bad_input_is_one_line_and_2(
     line: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -158,3 +241,50 @@ def test_bad_input_is_one_line_and_2(
     assert out == ""
     assert err.count("\n") == 1 and told in err
     assert not list(tmp_path.iterdir())
+
+
+def arguments(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.Action]]:
+    """Those that --help shows, of all commands, with the command's name."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for sub in action.choices.values():
+                yield from arguments(sub)
+        elif action.help != argparse.SUPPRESS:
+            yield parser.prog, action
+
+
+def test_help_shows_the_parser_s_own_defaults() -> None:
+    """Once each, and none is typed into the text: of a changed default --help tells at once."""
+    every = list(arguments(cli.command_parser([])))
+    with_default = 0
+    for command, action in every:
+        text = described(action)
+        given = action.default not in (None, False, argparse.SUPPRESS, "", [])
+        with_default += given and action.nargs != 0
+        said = [part for part in re.findall(r"\(default[^)]*\)", text) if part != "(default)"]
+        assert len(said) == (1 if given and action.nargs != 0 else len(said)), (command, action.dest)
+        assert not re.search(r"\(default [^:]", action.help or ""), (command, action.dest)
+    assert with_default > 60
+    by_name = {(command, action.dest): described(action) for command, action in every}
+    assert by_name["thermograsp press", "object_size"] == "m (default 0.04 0.04 0.01)"
+    assert by_name["thermograsp press", "area"].endswith(
+        "(default: 81e-6, or the sensor's face where it is smaller)"
+    )
+
+
+def test_help_follows_a_changed_default(capsys: pytest.CaptureFixture[str]) -> None:
+    parser = cli.command_parser(["press"])
+    (commands,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
+    commands.choices["press"].set_defaults(air=7.5)
+    assert "W/(m2 K) (default 7.5)" in " ".join(commands.choices["press"].format_help().split())
+
+
+def test_progress_moves_where_the_end_is_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = io.StringIO()
+    monkeypatch.setattr(screen, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stderr", screen)
+    monkeypatch.setenv("TERM", "xterm")
+    with Output(as_json=False).progress(None) as advance:
+        advance("recording, 1 samples", 0.1)
+        advance("recording, 2 samples", 0.1)
+    assert "recording, 2 samples" in screen.getvalue() and "left" not in screen.getvalue()

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from thermograsp.cli import COMMANDS, main
-from thermograsp.cli.versions import OWN_WORK
+from thermograsp.cli.shared.versions import OWN_WORK
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

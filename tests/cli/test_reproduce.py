@@ -1,15 +1,22 @@
 """`thermograsp reproduce`: the paper's statements against numbers known by other means."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from thermograsp import thermal
+from thermograsp.assets import asset
 from thermograsp.cli import main
-from thermograsp.report.paper_runs import MATERIALS
-from thermograsp.report.paper_theory import exact_drop, printed_equation_1, printed_equation_2
+from thermograsp.reports.paper.claims import FINDINGS
+from thermograsp.reports.paper.sweeps import MATERIALS
+from thermograsp.reports.paper.theory import (
+    exact_drop,
+    printed_equation_1,
+    printed_equation_2,
+)
 
 KEYS = {
     "equation_2",
@@ -44,6 +51,12 @@ KEYS = {
     "widest_at_4_s",
     "tells_apart",
 }
+
+
+def test_every_statement_has_one_function_that_computes_it() -> None:
+    statements = tomllib.loads(asset("paper.toml").read_text(encoding="utf-8"))
+    assert set(statements) == set(FINDINGS) == KEYS
+    assert all(set(words) == {"section", "statement"} for words in statements.values())
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +95,7 @@ def test_every_statement_is_there_with_a_verdict(document: dict) -> None:
 
 
 def test_figures_are_written(document: dict, folder: Path) -> None:
-    names = {f"figure_{n}.{kind}" for n in (3, 5, 6) for kind in ("svg", "png")}
+    names = {f"figure_{n}.{kind}" for n in ("3", "5", "6", "6_bands") for kind in ("svg", "png")}
     assert {Path(file).name for file in document["figures"]} == names
     for name in names:
         content = (folder / name).read_bytes()
@@ -146,6 +159,30 @@ def test_the_difference_moves_into_the_object(numbers: dict) -> None:
         assert ((inside + element) < 1).all() and ((inside + element) > 0.85).all()
 
 
+def test_the_experiment_is_judged_on_every_rig(document: dict, folder: Path) -> None:
+    """Plastic and rubber swap in O mode whatever the rig; a gap that is wide enough makes every experiment slow."""
+    found = {claim["key"]: claim["support"] for claim in document["claims"] if claim["support"]}
+    assert set(found) == {"measured_order", "measured_o", "measured_t", "slower_experiment", "later_end"}
+    rigs = document["bands"]["rigs"]
+    assert all(sum(support["counts"].values()) == rigs for support in found.values())
+    assert found["measured_order"]["counts"] == {"holds": 0, "partly": rigs, "fails": 0}
+    assert found["slower_experiment"]["counts"]["holds"] > 0.8 * rigs
+    name, there, elsewhere = found["slower_experiment"]["deciding"]
+    assert name == "roughness" and there > elsewhere
+    text = (folder / "claims.txt").read_text(encoding="utf-8")
+    assert text.count(f"Of the {rigs} rigs drawn the statement") == len(found)
+
+
+def test_bands_hold_the_assumed_rig(document: dict, numbers: dict) -> None:
+    bands = document["bands"]["drop_K"]
+    assert len(bands) == 2 * 3 * len(MATERIALS)
+    for band in bands:
+        assert 0 < band["low"] < band["high"] < 15
+        if band["t_s"] == 20:
+            row = MATERIALS.index(band["material"])
+            assert band["low"] < numbers["measured_order"][f"final_{band['mode']}_K"][row] < band["high"]
+
+
 def test_a_gap_makes_every_curve_slower(numbers: dict) -> None:
     rise = numbers["slower_experiment"]
     for mode in "OT":
@@ -167,7 +204,7 @@ def test_printed_equations(gamma: float) -> None:
 
 
 def test_rough_contact_is_the_worse_one() -> None:
-    from thermograsp.report.paper_runs import SMOOTH, rough_conductances
+    from thermograsp.reports.paper.sweeps import SMOOTH, rough_conductances
 
     for mode in ("O", "T"):
         rough = rough_conductances(mode)

@@ -8,8 +8,8 @@ import gymnasium
 import numpy as np
 import pytest
 
+from thermograsp.agents.checks import violations
 from thermograsp.cli import main
-from thermograsp.report.checks import violations
 
 ENV = "thermograsp/Grasp-v0"
 

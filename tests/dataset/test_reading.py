@@ -1,8 +1,10 @@
 """Batches hold every step once, paired with its neighbour, whatever their size and order."""
 
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -77,6 +79,28 @@ def test_shuffled_batches_hold_every_step_once(
         return rows[np.lexsort(rows.T)]
 
     assert np.array_equal(sorted_rows(mixed_up), sorted_rows(plain))
+
+
+def test_readers_share_the_shards(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Among processes, and among the workers of a DataLoader in each of them."""
+    rows = dataset.load(folder, ["seed", "steps"])
+    whole = sorted(np.repeat(rows["seed"], rows["steps"]).tolist())
+
+    def seeds(part: tuple[int, int], seed: int) -> list[int]:
+        batches = list(dataset.iterate(folder, 64, ["seed"], rng=np.random.default_rng(seed), part=part))
+        return [int(one) for batch in batches for one in batch["seed"]]
+
+    assert sorted(seeds((0, 2), 0) + seeds((1, 2), 7)) == whole  # each with a generator of its own
+    worker = SimpleNamespace(id=0, num_workers=3)
+    loading = SimpleNamespace(get_worker_info=lambda: worker)
+    monkeypatch.setitem(sys.modules, "torch.utils.data", loading)  # pyright: ignore[reportArgumentType]
+    found = []
+    for worker.id in range(3):
+        for k in range(2):
+            found += seeds((k, 2), worker.id)
+    assert sorted(found) == whole
+    with pytest.raises(InvalidValueError, match="part must be"):
+        seeds((2, 2), 0)
 
 
 def test_a_last_batch_can_be_left_out(folder: Path) -> None:

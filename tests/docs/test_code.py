@@ -17,7 +17,7 @@ JUDGED_ELSEWHERE = {
     "README.md": ("tests/cli/test_readme.py",),
     "docs/backends.md": ("tests/backends/test_docs.py",),
     "docs/datasets.md": ("tests/dataset/test_reading.py", "tests/ray/test_minari.py"),
-    "docs/identification.md": ("tests/thermal/test_identification_page.py",),
+    "docs/identification.md": ("tests/thermal/identification/test_identification_page.py",),
     "docs/learning.md": ("tests/cli/test_learning_page.py",),
 }
 """Pages whose code is run by tests that also judge what it prints."""
@@ -30,7 +30,9 @@ CODE = [
     for i in range(len(blocks(page, kind)))
 ]
 LINES = [(page, line) for page in PAGES for line in commands(page)]
-KNOWN = {"python", "python hardware", "sh", "math", "golden", "{toctree}", "{eval-rst}"}
+KNOWN = {"toml", "python", "python hardware", "sh", "math", "golden", "bibtex", "{toctree}", "{eval-rst}"}
+ELSEWHERE = {"docs/datasets.md": {"python torch", "python minari"}, "docs/howto.md": {"python rl"}}
+"""Kinds of blocks that tests of other folders run, by page."""
 PORTS = {"/dev/ttyACM0": "tips", "/dev/ttyUSB0": "gripper"}
 """What stands in a page for a real gripper's ports, and the emulated ones' names here."""
 
@@ -69,7 +71,7 @@ def test_a_command_parses(page: str, line: str) -> None:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_no_block_is_of_a_kind_that_nothing_runs(page: str) -> None:
-    known = KNOWN | ({"python torch", "python minari"} if page == "docs/datasets.md" else set())
+    known = KNOWN | ELSEWHERE.get(page, set())
     assert kinds(page) <= known
 
 

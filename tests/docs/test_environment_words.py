@@ -9,7 +9,7 @@ from environment_tables import environment_tables, info_keys, registered, varian
 from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, SOMETIMES
 
 from thermograsp.envs import EVERYTHING
-from thermograsp.hardware.serial_plant import UNKNOWN
+from thermograsp.hardware.plant.serial import UNKNOWN
 from thermograsp.plant import Command
 
 

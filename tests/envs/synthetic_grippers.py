@@ -176,3 +176,58 @@ ROUND = """
 def slides(rest: str = POSITIONS, pose: str = "", name: str = "slides") -> str:
     """The sliding gripper with that drive. pose: attributes of its base, such as pos and euler."""
     return SLIDE.format(name=name, pose=pose, rest=rest)
+
+
+_ARM = """
+      <body name="{side}_upper" pos="0 {y} 0">
+        <joint name="{side}_shoulder" type="hinge" axis="1 0 0" range="-60 60"/>
+        <geom type="capsule" size=".03" fromto="0 0 0 0 0 -{upper}" mass="1"/>
+        <body name="{side}_lower" pos="0 0 -{upper}">
+          <joint name="{side}_elbow" type="hinge" axis="1 0 0" range="-60 60"/>
+          <geom type="capsule" size=".03" fromto="0 0 0 0 0 -{lower}" mass="1"/>
+          <body name="{side}_hand" pos="0 0 -{lower}">
+            <geom type="box" size=".05 .02 .01" mass=".3"/>
+            <body name="{side}_one" pos="-.05 0 -.06">
+              <joint name="{side}_one" type="slide" axis="1 0 0" range="0 .045"/>
+              <geom type="box" size=".004 .012 .03" mass=".05"/>
+            </body>
+            <body name="{side}_two" pos=".05 0 -.06">
+              <joint name="{side}_two" type="slide" axis="-1 0 0" range="0 .045"/>
+              <geom type="box" size=".004 .012 .03" mass=".05"/>
+            </body>
+          </body>
+        </body>
+      </body>
+"""
+_JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder", "elbow", "one", "two")]
+
+
+def two_arms(upper: float = 0.3, lower: float = 0.35) -> str:
+    """A hand of two sliding fingers on each of two arms. upper, lower: m of their parts."""
+    arms = "".join(
+        _ARM.format(side=side, y=y, upper=upper, lower=lower) for side, y in (("left", -0.2), ("right", 0.2))
+    )
+    motors = " ".join(f'<motor name="{name}" joint="{name}" ctrlrange="-8 8"/>' for name in _JOINTS)
+    return f"""
+<mujoco model="arms">
+  <worldbody>
+    <body name="torso">
+      <geom type="box" size=".1 .15 .1" mass="9"/>
+{arms}
+    </body>
+  </worldbody>
+  <actuator>
+    {motors}
+  </actuator>
+</mujoco>
+"""
+
+
+TWO_ARMS = two_arms()
+
+MESH = """
+<mujoco>
+  <asset><mesh name="finger" file="finger.stl"/></asset>
+  <worldbody><geom type="mesh" mesh="finger"/></worldbody>
+</mujoco>
+"""

@@ -18,9 +18,16 @@ import numpy as np
 import pytest
 
 import thermograsp  # noqa: F401  registers the environments
+from thermograsp.agents.gripper_check import MOST_SLIP, check_gripper
 from thermograsp.cli import main
-from thermograsp.envs import Gripper, Mechanics, ObjectSpec, action_of, fit_fingertip, load_gripper
-from thermograsp.report.gripper_check import MOST_SLIP, check_gripper
+from thermograsp.envs import (
+    Gripper,
+    Mechanics,
+    ObjectSpec,
+    action_of,
+    fit_fingertip,
+    load_gripper,
+)
 
 
 @dataclass(frozen=True)
@@ -119,7 +126,8 @@ def test_it_grasps_holds_and_feels(name: str, shape: Literal["box", "cylinder"])
 @pytest.mark.parametrize("name", THEIRS)
 def test_the_opening_is_the_distance_of_the_pads(name: str):
     gripper = loaded(name)
-    away = ObjectSpec(size=(0.01, 0.01, 0.04), position=(0.0, 0.09))
+    thick = max(0.01, gripper.narrowest + 0.002)
+    away = ObjectSpec(size=(thick, 0.01, 0.04), position=(0.0, 0.09))
     mechanics = Mechanics((away,), gripper=gripper)
     model, data = mechanics.env_model(0), mechanics.env_data(0)
     for opening in np.linspace(max(gripper.narrowest, 0.005), gripper.widest, 4):

@@ -32,6 +32,9 @@ class Signals(ctypes.Structure):
         ("power", ctypes.c_double * 2),
         ("open", ctypes.c_int32 * 2),
         ("deaf", ctypes.c_int32 * 2),
+        ("loose", ctypes.c_int32 * 2),
+        ("cold", ctypes.c_int32 * 2),
+        ("fuses", ctypes.c_int32),
     ]
 
 
@@ -69,8 +72,9 @@ def library(folder: Path) -> ctypes.CDLL:
         [pointer, ctypes.c_char_p, ctypes.c_uint32],
     )
     lib.board_memory.restype, lib.board_memory.argtypes = ctypes.c_uint8, [pointer, ctypes.c_uint16]
-    for name in ("board_free", "board_reset"):
-        getattr(lib, name).argtypes = [pointer]
+    lib.board_free.argtypes, lib.board_reset.argtypes = [pointer], [pointer, ctypes.c_int]
+    lib.board_stored.restype, lib.board_stored.argtypes = ctypes.c_uint8, [pointer, ctypes.c_uint16]
+    lib.board_store.argtypes = [pointer, ctypes.c_uint16, ctypes.c_uint8]
     return lib
 
 
@@ -148,8 +152,16 @@ class Board:
     def memory(self, address: int) -> int:
         return self._lib.board_memory(self._board, address)
 
-    def reset(self) -> None:
-        self._lib.board_reset(self._board)
+    def stored(self, address: int) -> int:
+        """A byte of the EEPROM."""
+        return self._lib.board_stored(self._board, address)
+
+    def store(self, address: int, value: int) -> None:
+        self._lib.board_store(self._board, address, value)
+
+    def reset(self, cause: int = 0x02) -> None:
+        """cause: bits of MCUSR, the reset line's where not given."""
+        self._lib.board_reset(self._board, cause)
 
     def close(self) -> None:
         self._lib.board_free(self._board)

@@ -1,5 +1,6 @@
 """The firmware in a simulator, where its tools are installed."""
 
+import fcntl
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,9 +10,16 @@ from .board import Board, build, require_tools
 
 
 @pytest.fixture(scope="session")
-def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+def made(run_folder: Path) -> tuple[Path, str]:
+    """Built once in a run: the process that comes second waits for the first."""
     require_tools()
-    return build(tmp_path_factory.mktemp("firmware"))
+    folder, said = run_folder / "firmware", run_folder / "firmware.txt"
+    with open(run_folder / "firmware.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not said.exists():
+            folder.mkdir(exist_ok=True)
+            said.write_text(build(folder)[1])
+    return folder, said.read_text()
 
 
 @pytest.fixture

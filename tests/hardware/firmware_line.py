@@ -1,13 +1,9 @@
 """A simulated board under a driver, and what it sent."""
 
-from thermograsp.hardware import (
-    Fingertips,
-    Samples,
-    VirtualLine,
-)
-from thermograsp.hardware.decoder import Decoder
-from thermograsp.hardware.frame import Frame, encode_frame
-from thermograsp.hardware.messages import (
+from thermograsp.hardware import Fingertips, Samples, VirtualLine
+from thermograsp.hardware.protocol.decoder import Decoder
+from thermograsp.hardware.protocol.frame import Frame, encode_frame
+from thermograsp.hardware.protocol.messages import (
     Code,
     Message,
     code_of,
@@ -27,6 +23,15 @@ def after(tips: Fingertips, line: VirtualLine[Board], seconds: float) -> Samples
     """The samples of the next `seconds`."""
     tips.take()
     line.advance(seconds)
+    return tips.take()
+
+
+def attended(tips: Fingertips, line: VirtualLine[Board], seconds: float) -> Samples:
+    """The samples of the last second, taken every second, as a host does that is there."""
+    for _ in range(round(seconds) - 1):
+        line.advance(1.0)
+        tips.take()
+    line.advance(1.0)
     return tips.take()
 
 

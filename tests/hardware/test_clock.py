@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermograsp.hardware.clock import ClockFit
+from thermograsp.hardware.protocol.clock import ClockFit
 
 
 def fitted(

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thermograsp.hardware import cobs
-from thermograsp.hardware.decoder import Decoder
-from thermograsp.hardware.frame import LONGEST, Frame, encode_frame
-from thermograsp.hardware.messages import LENGTHS
+from thermograsp.hardware.protocol import cobs
+from thermograsp.hardware.protocol.decoder import Decoder
+from thermograsp.hardware.protocol.frame import LONGEST, Frame, encode_frame
+from thermograsp.hardware.protocol.messages import LENGTHS
 
 from .tiers import size
 

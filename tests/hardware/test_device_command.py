@@ -15,8 +15,17 @@ import pytest
 from thermograsp.cli import main
 from thermograsp.cli.device.live_plot import LivePlot, braille
 from thermograsp.errors import InvalidValueError, UnknownNameError
-from thermograsp.hardware import EmulatedFingertips, Flag, LineFaults, PtyDevice, replay
-from thermograsp.hardware.planned_faults import plan_fault
+from thermograsp.hardware import (
+    DeviceModel,
+    EmulatedFingertips,
+    Flag,
+    HeatersOff,
+    LineFaults,
+    PtyDevice,
+    replay,
+)
+from thermograsp.hardware.emulators.planned_faults import plan_fault
+from thermograsp.hardware.protocol import Check
 
 from .serving import serving
 from .test_fingertips import CONSTANTS, lockstep, ramp
@@ -79,8 +88,40 @@ def test_monitor_in_a_pipe(served: PtyDevice, capsys: pytest.CaptureFixture[str]
 
 def test_monitor_tells_a_line_that_breaks(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
     plan_fault(served, f"unplug=60@{served.now + 0.3}")
-    document = told(capsys, "device", "monitor", served.path, "--seconds", "0.6", status=1)
-    assert "plugged in" in document["broken"]
+    assert main(["device", "monitor", served.path, "--seconds", "0.6", "--json"]) == 1
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert "plugged in" in lines[-1]["end"]["broken"]
+    assert sum("broken" in line for line in lines) == 1  # said once, however long it lasts
+
+
+def test_monitor_streams_every_sample_as_json(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--json", "device", "monitor", served.path, "--seconds", "0.6"]) == 0
+    *samples, last = (json.loads(line) for line in capsys.readouterr().out.splitlines())
+    assert last["end"]["port"] == served.path and last["end"]["lost"] == 0
+    assert len(samples) >= 20
+    times = [sample["time_s"] for sample in samples]
+    assert times == sorted(times) and all(set(sample) == set(samples[0]) for sample in samples)
+    assert samples[0]["thermostat_degC"] == pytest.approx([36.0, 35.0], abs=0.1)
+
+
+def test_a_stream_is_lines_of_json_whatever_happens(
+    tmp_path: Path, served: PtyDevice, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also where it cannot begin; and a number that is missing says why."""
+    for line in (
+        [str(tmp_path / "nothing")],
+        [served.path, "--seconds", "nan"],
+        [served.path, "--seconds", "-1"],
+    ):
+        assert main(["device", "monitor", *line, "--json"]) == 2
+        (only,) = capsys.readouterr().out.splitlines()
+        assert json.loads(only)["status"] == 2
+    with served.paused():
+        served.device.broken_converters.add(1)
+    assert main(["device", "monitor", served.path, "--seconds", "0.4", "--json"]) == 0
+    *samples, _ = (json.loads(line) for line in capsys.readouterr().out.splitlines())
+    assert samples[-1]["voltage_V"][1] is None and samples[-1]["voltage_V"][0] is not None
+    assert "NO_VOLTAGE_RIGHT" in samples[-1]["faults"]
 
 
 def test_record_and_replay(served: PtyDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -119,10 +160,34 @@ def test_record_leaves_no_file_where_there_is_no_device(
 
 def test_selftest(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
     good = told(capsys, "device", "selftest", served.path)
-    assert good["good"] and good["protocol"] == "1.0" and good["samples"] >= 100
+    assert good["good"] and good["protocol"] == "2.0" and good["samples"] >= 100
     plan_fault(served, "open_thermistor=left")
     bad = told(capsys, "device", "selftest", served.path, status=1)
     assert bad["failed"] == ["LEFT_THERMISTOR"]
+    assert bad["reset"] == ["POWER_ON"] and bad["heaters_off"] == []
+
+
+def test_selftest_calls_good_only_what_was_checked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = DeviceModel(checks=Check.CONVERTER | Check.MEMORY)
+    with serving(tmp_path, EmulatedFingertips(model=model)) as served:
+        assert main(["device", "selftest", served.path]) == 0
+        lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines() if line.strip())
+        assert lines["converter"].strip() == "good" and lines["memory"].strip() == "good"
+        assert lines["left_heater"].strip() == "not checked" == lines["load_cells"].strip()
+        document = told(capsys, "device", "selftest", served.path)
+        assert document["checked"] == ["CONVERTER", "MEMORY"]
+        assert document["heater_current_A"] == [None, None]
+
+
+def test_clear_faults(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
+    with served.paused():
+        served.device._plates.latched = HeatersOff.RUNAWAY_LEFT
+    assert told(capsys, "device", "clear-faults", served.path) == {"cleared": ["RUNAWAY_LEFT"], "left": []}
+    assert not served.device._plates.latched
+    assert main(["device", "clear-faults", served.path]) == 0
+    assert "nothing was latched" in capsys.readouterr().out
 
 
 def test_calibrate(served: PtyDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -181,7 +246,8 @@ def test_emulate_serves_another_process(tmp_path: Path, capsys: pytest.CaptureFi
         assert process.stdout is not None
         printed = process.stdout.readline() + process.stdout.readline() + process.stdout.readline()
         assert json.loads(printed + process.stdout.readline() + process.stdout.readline())["port"] == link
-        assert told(capsys, "device", "monitor", link, "--seconds", "0.5")["lost"] == 0
+        assert main(["device", "monitor", link, "--seconds", "0.5", "--json"]) == 0
+        assert json.loads(capsys.readouterr().out.splitlines()[-1])["end"]["lost"] == 0
         process.terminate()
 
 

@@ -1,11 +1,14 @@
 """The driver on a device that behaves: samples, settings, reports, clocks, and a kilohertz without a loss."""
 
+import math
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from thermograsp.errors import InvalidValueError
 from thermograsp.hardware import (
     Calibration,
     CommandRefusedError,
@@ -15,12 +18,13 @@ from thermograsp.hardware import (
     Fingertips,
     LinkLostError,
     PtyDevice,
+    Samples,
     StaleSensorError,
     VirtualLine,
     press_source,
     samples_source,
 )
-from thermograsp.hardware.messages import RunSelfTest
+from thermograsp.hardware.protocol.messages import Flag, RunSelfTest
 from thermograsp.thermal import ADS1115, Thermostat
 
 from .serving import driver, nothing_left, serving
@@ -44,6 +48,15 @@ def ramp(time: float) -> Feel:
 def lockstep(device: EmulatedFingertips, **keywords: object) -> tuple[Fingertips, VirtualLine]:
     line = VirtualLine(device)
     return Fingertips(line.open, clock=line.clock, background=False, **keywords), line  # pyright: ignore[reportArgumentType]
+
+
+def attended(tips: Fingertips, line: VirtualLine, seconds: float) -> Samples:
+    """The samples of the last second, taken every second, as a host does that is there."""
+    for _ in range(round(seconds) - 1):
+        line.advance(1.0)
+        tips.take()
+    line.advance(1.0)
+    return tips.take()
 
 
 def test_a_kilohertz_without_a_loss(tmp_path: Path) -> None:
@@ -128,6 +141,35 @@ def test_calibration_is_kept_by_the_device_and_applied_by_the_host() -> None:
     np.testing.assert_allclose(samples.force[0], [[0.9 * 1.05, 2, 3], [4, 4.8, 6 * 1.1]], rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("voltage_gain", (math.nan, 0.0)),
+        ("voltage_gain", (0.0, -1.0)),
+        ("force_gain", ((-1.0, 0.0, 0.0), (0.0, 0.0, 0.0))),
+        ("force_gain", ((-3.0, 0.0, 0.0), (0.0, 0.0, 0.0))),
+        ("thermostat_offset", (math.nan, 0.0)),
+    ],
+)
+def test_constants_that_leave_nothing_of_a_measurement(name: str, value: Any) -> None:
+    """They are refused, for a force that is always 0 or below trips no guard; those that a device has are told."""
+    device = EmulatedFingertips(lambda time: Feel((1e-3, 2e-3), (0, 0), ((9, 0, 0), (9, 0, 0)), (36.0, 36.0)))
+    tips, line = lockstep(device)
+    with pytest.raises(InvalidValueError, match=f"{name} must be finite"):
+        tips.set_calibration(Calibration(**{name: value}))
+    assert tips.calibration == Calibration()
+    tips.calibration = Calibration(**{name: value})  # as if another program had stored them
+    line.advance(0.1)
+    samples = tips.take()
+    missing = {
+        "voltage": (Flag.NO_VOLTAGE_LEFT, samples.voltage),
+        "thermostat": (Flag.OPEN_LEFT, samples.thermostat),
+        "force": (Flag.NO_FORCE_LEFT, samples.force[:, :, 0]),
+    }
+    for flag, values in missing.values():
+        assert (flag in samples.faults) == bool(np.isnan(values[:, 0]).all())
+
+
 def test_a_setpoint_is_meant_as_calibrated() -> None:
     device = EmulatedFingertips()
     tips, line = lockstep(device)
@@ -137,8 +179,7 @@ def test_a_setpoint_is_meant_as_calibrated() -> None:
     report = tips.thermostats()
     assert report.setpoint[0] == 36.5
     assert report.setpoint[1] != report.setpoint[1]  # NaN: off
-    line.advance(20.0)
-    samples = tips.take()
+    samples = attended(tips, line, 20.0)
     assert samples.thermostat[-1, 0] == pytest.approx(36.0, abs=0.05)
     assert samples.thermostat[-1, 1] == pytest.approx(24.25, abs=0.05)
 
@@ -150,7 +191,7 @@ def test_the_thermostat_warms_up_with_the_power_it_has() -> None:
     line.advance(1.0)
     power = tips.thermostats().power[0]
     assert power == pytest.approx(plate.power_limit, abs=1e-3)
-    line.advance(30.0)
+    attended(tips, line, 30.0)
     report = tips.thermostats()
     assert report.temperature == pytest.approx((36.0, 36.0), abs=0.02)
     assert report.power[0] == pytest.approx(plate.loss * 12.0, rel=0.05)
@@ -231,8 +272,12 @@ def test_without_pyserial_the_extra_is_named(tmp_path: Path, monkeypatch: pytest
 
 
 def test_a_source_that_breaks_is_told(tmp_path: Path) -> None:
-    served = PtyDevice(EmulatedFingertips(lambda time: Feel(force=((1e3 * (time > 0.2), 0, 0), (0, 0, 0)))))
-    with pytest.raises(ValueError, match="force must be -327.67 to 327.67"), served, driver(served) as tips:
+    served = PtyDevice(EmulatedFingertips(lambda time: Feel(thermostat=(1e3 * (time > 0.2), 0.0))))
+    with (
+        pytest.raises(ValueError, match="thermostat must be -327.67 to 327.67"),
+        served,
+        driver(served) as tips,
+    ):
         time.sleep(0.4)
         with pytest.raises(LinkLostError):
             tips.take()

@@ -13,8 +13,8 @@ from thermograsp.hardware import (
     PtyDevice,
     VirtualLine,
 )
-from thermograsp.hardware.decoder import Decoder
-from thermograsp.hardware.messages import (
+from thermograsp.hardware.protocol.decoder import Decoder
+from thermograsp.hardware.protocol.messages import (
     Check,
     Code,
     Identify,
@@ -114,24 +114,6 @@ def test_a_voltage_beyond_the_range_is_told(board: Board) -> None:
     assert tips.self_test().failed & Check.CONVERTER
 
 
-def test_too_hot_is_off_until_the_next_setpoint(board: Board) -> None:
-    tips, line = driven(board, setpoint=50.0)
-    line.advance(1.0)
-    board.signals.plate[0] = board.signals.thermistor[0] = 75.0
-    samples = after(tips, line, 0.2)
-    assert samples.faults & Flag.OVER_TEMPERATURE
-    assert board.signals.power[:] == [0.0, 0.0]
-    board.signals.plate[0] = board.signals.thermistor[0] = 24.0
-    samples = after(tips, line, 0.2)
-    assert board.signals.power[:] == [0.0, 0.0] and samples.faults & Flag.OVER_TEMPERATURE
-    tips.set_setpoint(50.0, 50.0)
-    samples = after(tips, line, 0.2)
-    assert min(board.signals.power[:]) > 4.9
-    samples = after(tips, line, 0.2)
-    assert not samples.faults & Flag.OVER_TEMPERATURE
-    assert samples.faults & Flag.OFF_SETPOINT_LEFT
-
-
 def test_converters_that_do_not_answer(board: Board) -> None:
     """Samples go on without what is not known; nothing heats blindly."""
     tips, line = driven(board, setpoint=36.0)
@@ -139,6 +121,7 @@ def test_converters_that_do_not_answer(board: Board) -> None:
     board.signals.deaf[:] = (1, 0)
     samples = after(tips, line, 0.5)
     assert len(samples) >= 50 and np.isnan(samples.voltage[5:]).all()
+    assert samples.faults & (Flag.NO_VOLTAGE_LEFT | Flag.NO_VOLTAGE_RIGHT) == 0x300
     assert tips.self_test().failed == Check.CONVERTER
     board.signals.deaf[:] = (0, 1)
     samples = after(tips, line, 0.5)
@@ -188,7 +171,7 @@ def test_numbers_and_time_wrap(tmp_path: Path) -> None:
 
 
 def test_a_load_cell_at_its_end_fails_the_self_test(board: Board) -> None:
-    tips, _ = driven(board)
+    tips, line = driven(board)
     result = tips.self_test()
     assert not result.failed and not result.checks & (
         Check.LEFT_HEATER | Check.RIGHT_HEATER
@@ -196,6 +179,11 @@ def test_a_load_cell_at_its_end_fails_the_self_test(board: Board) -> None:
     assert result.voltage_noise == pytest.approx((8.1e-6, 8.1e-6), rel=0.3)
     board.signals.force[4] = 100.0
     assert tips.self_test().failed == Check.LOAD_CELLS
+    samples = after(tips, line, 0.2)
+    assert samples.faults == Flag.NO_FORCE_RIGHT
+    assert np.isnan(samples.force[-1, 1, 1]) and np.isfinite(samples.force[-1, 0]).all()
+    board.signals.force[4] = 61.0
+    assert abs(after(tips, line, 0.2).force[-1, 1, 1] - 61.0) < 0.5
 
 
 def test_on_a_pseudo_terminal_it_is_a_device(board: Board, tmp_path: Path) -> None:

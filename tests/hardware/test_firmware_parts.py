@@ -9,14 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thermograsp.hardware import (
-    cobs,
-)
-from thermograsp.hardware.decoder import Decoder
-from thermograsp.hardware.frame import encode_frame
-from thermograsp.hardware.messages import (
-    LENGTHS,
-)
+from thermograsp.hardware.protocol import cobs
+from thermograsp.hardware.protocol.decoder import Decoder
+from thermograsp.hardware.protocol.frame import encode_frame
+from thermograsp.hardware.protocol.messages import LENGTHS
 from thermograsp.thermal import Thermostat, ThermostatState, thermostat_step
 
 from .board import Controller, Receiver, portable

@@ -22,21 +22,25 @@ from thermograsp.hardware import (
     known_touch,
     press_source,
 )
-from thermograsp.hardware.samples import Samples
+from thermograsp.hardware.protocol.samples import Samples
 from thermograsp.thermal import ADS1115, press, sensor
-from thermograsp.thermal.sensor_model import UNITS, shared_of, with_shared
+from thermograsp.thermal.fitting.model import UNITS, shared_of, with_shared
 
 DELAY = 0.05  # s
 TRUE = {"seebeck": 0.9e-3, "conductivity": 1.3, "heat_capacity": 1.4e6, "offset": 0.0, "delay": 0.0}
 HELD = 2.5  # s
 
 
-def record(file: Path, material: str, conductance: float, rng: np.random.Generator) -> None:
-    """A touch of both fingertips after a second, on an ADS1115, in virtual time; voltages come late."""
+def record(
+    file: Path, material: str, conductance: float, rng: np.random.Generator, celsius: float = 24.0
+) -> None:
+    """A touch of both fingertips on an object of that temperature, °C, after a second, on an ADS1115, in virtual time;
+    voltages come late."""
     felt = press_source(
         material,
         sensor=with_shared(sensor("seed"), TRUE),
         conductance=conductance,
+        object_temperature=celsius,
         touch=1.0 + 1e-3 * int(rng.integers(20)),
         hold=HELD,
         apart=0.2,
@@ -72,7 +76,7 @@ def test_ten_recordings_tell_the_sensor_to_2_percent_and_the_simulation_loads_it
     recordings: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     preset = tmp_path / "left.toml"
-    assert main(["device", "fit", *recordings, "--out", str(preset), "--json"]) == 0
+    assert main(["device", "fit", *recordings, "--save", str(preset), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     true = {**TRUE, "offset": ADS1115.offset, "delay": DELAY}
     for name in UNITS:
@@ -95,11 +99,32 @@ def test_ten_recordings_tell_the_sensor_to_2_percent_and_the_simulation_loads_it
     env.close()
 
 
+def test_the_recipe_two_touches_tell_the_sensor_and_a_third_colder_one_agrees(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A metal, glass, and glass 10 K colder: what docs/hardware.md recommends and what it says of the accuracy."""
+    rng, files = np.random.default_rng(3), []
+    for material, celsius in (("aluminium", 24.0), ("glass", 24.0), ("glass", 14.0)):
+        files.append(tmp_path / f"{material}{celsius:g}.tgr")
+        record(files[-1], material, 8e3, rng, celsius)
+    metal, glass, cold = files
+    told = []
+    for words in ([f"aluminium={metal}", f"glass={glass}"], [f"glass@14={cold}"]):
+        preset = tmp_path / f"{len(words)}.toml"
+        start = [] if not told else ["--start", str(tmp_path / "2.toml"), "--hold", "conductivity"]
+        assert main(["device", "fit", *words, *start, "--save", str(preset), "--json"]) == 0
+        told.append(json.loads(capsys.readouterr().out)["shared"])
+    first, check = told
+    for name in ("seebeck", "conductivity", "heat_capacity"):
+        assert first[name]["value"] == pytest.approx(TRUE[name], rel=0.01), name
+    assert check["seebeck"]["value"] == pytest.approx(first["seebeck"]["value"], rel=0.005)
+
+
 def test_what_recordings_do_not_tell_is_no_success(
     recordings: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     preset = tmp_path / "sensor.toml"
-    words = ["device", "fit", recordings[2], "--fingertip", "right", "--out", str(preset)]
+    words = ["device", "fit", recordings[2], "--fingertip", "right", "--save", str(preset)]
     assert main(words) == 1
     out = capsys.readouterr().out
     assert "not told: seebeck and conductivity are told only together" in out and f"wrote {preset}" in out
@@ -120,7 +145,7 @@ def test_what_recordings_do_not_tell_is_no_success(
         (["glass=FILE", "--fingertip", "middle"], "known: left, right"),
         (["glass=FILE", "--chain", "ads"], "did you mean 'ads1115'"),
         (["glass=FILE", "--hold", "gain"], "unknown parameter 'gain'"),
-        (["glass=FILE", "--out", "sensor.txt"], ".toml"),
+        (["glass=FILE", "--save", "sensor.txt"], ".toml"),
         (["glass@35.9=FILE"], "heat the thermostat"),
         (["cotton=FILE"], "ends at a bound"),
     ],

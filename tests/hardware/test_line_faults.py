@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from thermograsp.hardware import (
@@ -29,7 +30,7 @@ from thermograsp.hardware import (
     StaleSensorError,
     WrongDeviceError,
 )
-from thermograsp.hardware.messages import SetRate, SetSetpoint
+from thermograsp.hardware.protocol.messages import SetRate, SetSetpoint
 
 from .serving import PATIENCE, QUICK, driver, error_within, healthy_within, nothing_left, serving
 
@@ -63,6 +64,27 @@ def test_port_forbidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
         with pytest.raises(PortForbiddenError, match="dialout"):
             SerialPort(served.path)
         monkeypatch.undo()
+
+
+def test_a_port_without_low_latency_is_used_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A pseudo-terminal refuses it, Windows has no such method, other systems no such mode; nothing else is hidden."""
+    with serving(tmp_path) as served:
+        with caplog.at_level("INFO", "thermograsp"):
+            SerialPort(served.path).close()
+        assert "no low latency mode" in caplog.text
+        for error in (NotImplementedError, TypeError):
+
+            def refuse(port: object, wanted: bool, error: type[Exception] = error) -> None:
+                raise error("no")
+
+            monkeypatch.setattr("serial.Serial.set_low_latency_mode", refuse)
+            if error is TypeError:
+                with pytest.raises(TypeError):
+                    SerialPort(served.path)
+            else:
+                SerialPort(served.path).close()
 
 
 def test_port_that_is_none(tmp_path: Path) -> None:
@@ -103,7 +125,7 @@ def test_wrong_model(tmp_path: Path) -> None:
         driver(served)
 
 
-@pytest.mark.parametrize("version", [(2, 0), (0, 9)])
+@pytest.mark.parametrize("version", [(3, 0), (1, 0)])
 def test_wrong_version(tmp_path: Path, version: tuple[int, int]) -> None:
     device = EmulatedFingertips(model=DeviceModel(protocol=version))
     with serving(tmp_path, device) as served, pytest.raises(ProtocolVersionError, match="update the older"):
@@ -116,7 +138,9 @@ def test_unplugged_while_reading_and_back_under_another_number(tmp_path: Path) -
         before = os.readlink(served.path)
         served.unplug()
         assert "plugged in" in str(error_within(tips.take, LinkLostError))
-        held = os.openpty()  # takes the old number
+        held = list(os.openpty())
+        while not os.path.exists(before):  # until somebody has the old number
+            held += os.openpty()
         served.plug()
         assert os.readlink(served.path) != before
         healthy_within(tips)
@@ -170,17 +194,18 @@ def test_a_hang_for_ever_stays_told(tmp_path: Path) -> None:
     "fault", ["corrupt", "drop_byte", "truncate", "drop_frame", "merge", "garbage", "duplicate"]
 )
 def test_a_bad_line(tmp_path: Path, fault: str) -> None:
-    """What arrives is right, what does not is counted."""
+    """What arrives is right, what does not is counted. At a rate that a busy machine keeps up with: a line that is full
+    loses samples too."""
 
     def constant(time: float) -> Feel:
         return Feel(voltage=(1e-3, -1e-3), thermostat=(36.0, 36.5))
 
     device = EmulatedFingertips(constant)
-    with serving(tmp_path, device) as served, driver(served, rate=1000) as tips:
+    with serving(tmp_path, device) as served, driver(served, rate=250) as tips:
         with served.paused():
             device.line = LineFaults(**{fault: 0.2})
             sent = device._samples
-        samples = tips.wait(300, 3.0)
+        samples = tips.wait(300, 6.0)
         with served.paused():
             device.line = LineFaults()
         tips.set_setpoint(30.0, None)  # through whatever is left of the bad line
@@ -334,9 +359,10 @@ def test_a_device_that_takes_no_bytes(tmp_path: Path) -> None:
         (lambda device: device.broken_thermistors.add(0), Flag.OPEN_LEFT, "left thermistor is open"),
         (lambda device: device.saturated.add(1), Flag.SATURATED_RIGHT, "end of the converter's range"),
         (lambda device: device.overheat(0), Flag.OVER_TEMPERATURE, "too hot"),
+        (lambda device: device.broken_converters.add(0), Flag.NO_VOLTAGE_LEFT, "left voltage is missing"),
         (lambda device: None, Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT, "off its setpoint"),
     ],
-    ids=["open", "saturated", "hot", "cold"],
+    ids=["open", "saturated", "hot", "deaf", "cold"],
 )
 def test_sensor_faults_are_told(tmp_path: Path, break_it, flag: Flag, told: str) -> None:  # noqa: ANN001
     with serving(tmp_path) as served, driver(served, setpoint=36.0) as tips:
@@ -346,6 +372,7 @@ def test_sensor_faults_are_told(tmp_path: Path, break_it, flag: Flag, told: str)
         tips.take()
         samples = tips.wait(5, 1.0)
     assert samples.faults & flag
+    assert np.isnan(samples.voltage[:, 0]).all() == (flag == Flag.NO_VOLTAGE_LEFT)
     with pytest.raises(SensorFaultError, match=told):
         samples.require_healthy()
     samples.require_healthy(but=samples.faults)

@@ -5,8 +5,14 @@ import random
 
 import pytest
 
-from thermograsp.hardware import EmulatedGripper, GripperModel, LineFaults, LinePacing, SpringFingers
-from thermograsp.hardware.modbus_slave import answer, crc16
+from thermograsp.hardware import (
+    EmulatedGripper,
+    GripperModel,
+    LineFaults,
+    LinePacing,
+    SpringFingers,
+)
+from thermograsp.hardware.emulators.modbus_slave import answer, crc16
 
 # Robotiq 2F-85 & 2F-140 Instruction Manual, Modbus RTU: request, registers read, answer.
 MANUAL = [

@@ -11,15 +11,16 @@ from typing import Any
 
 import pytest
 
-from thermograsp.hardware.decoder import Decoder
-from thermograsp.hardware.frame import Frame, encode_frame
-from thermograsp.hardware.messages import (
+from thermograsp.hardware.protocol.decoder import Decoder
+from thermograsp.hardware.protocol.frame import Frame, encode_frame
+from thermograsp.hardware.protocol.messages import (
     CODES,
     LAYOUTS,
     LENGTHS,
     MESSAGES,
     Code,
     Flag,
+    HeatersOff,
     decode_message,
     encode_message,
 )
@@ -111,7 +112,14 @@ def test_the_flags_are_the_code_s() -> None:
         for bits, names in listed
         for bit, name in zip(bits.split(","), names.split(", "), strict=True)
     }
-    assert written == {flag.name: flag.value for flag in Flag}
+    assert written == {flag.name: flag.value for flag in Flag if flag < 0x100}  # the others are the driver's
+
+
+def test_why_heaters_are_off_is_the_code_s() -> None:
+    text = PAGE.split("### 08 CONDITION")[1].split("\n## ")[0]
+    for off in HeatersOff:
+        assert off.name is not None and off.name in text
+    assert HeatersOff.HOST_SILENT == 1 << int(re.findall(r"(\d) HOST_SILENT", text)[0])
 
 
 @pytest.mark.parametrize(("name", "header", "wire", "values"), GOLDEN, ids=NAMES)

@@ -26,10 +26,12 @@ from thermograsp.hardware import (
     PortMissingError,
     PtyDevice,
     RobotiqGripper,
+    SerialPort,
     SpringFingers,
+    StoppedError,
     open_gripper,
 )
-from thermograsp.hardware.planned_gripper_faults import plan_gripper_fault
+from thermograsp.hardware.emulators.planned_gripper_faults import plan_gripper_fault
 
 from .serving import PATIENCE, nothing_left
 
@@ -138,6 +140,93 @@ def test_a_thread_may_stop_what_another_waits_for(tmp_path: Path) -> None:
         assert in_time(gripper.wait) < PATIENCE
         stopping.join()
         assert gripper.status().opening > 0.07
+
+
+class Listened:
+    """A transport that notes which thread writes."""
+
+    def __init__(self, path: str, writers: list[str]) -> None:
+        self._port, self._writers = SerialPort(path, 115_200), writers
+        self.read, self.close = self._port.read, self._port.close
+
+    def write(self, data: bytes) -> None:
+        self._writers.append(threading.current_thread().name)
+        self._port.write(data)
+
+
+def test_a_stop_waits_for_one_transaction_of_others_at_most(tmp_path: Path) -> None:
+    """However many threads ask again and again."""
+    writers: list[str] = []
+    with serving(tmp_path, width=None) as served:
+        with RobotiqGripper(lambda: Listened(served.path, writers)) as gripper:
+            gripper.activate()
+            gripper.move(0.0, 20.0, 0.02)
+            ended = threading.Event()
+
+            def poll() -> None:
+                while not ended.is_set():
+                    gripper.status()
+
+            threads = [threading.Thread(target=poll, name="poll") for _ in range(4)]
+            for thread in threads:
+                thread.start()
+            time.sleep(0.1)
+            for _ in range(10):
+                before = len(writers)
+                gripper.stop()
+                mine = writers.index("MainThread", before)
+                assert mine - before <= 1
+                assert (
+                    "MainThread" in writers[mine + 1 : mine + 3]
+                )  # one of the others' at most between its two
+            ended.set()
+            for thread in threads:
+                thread.join()
+            assert gripper.status().opening > 0.07
+
+
+def test_a_stop_ends_what_is_being_tried(tmp_path: Path) -> None:
+    """A move on its way through a line that gives no answers is not sent again after a stop."""
+    writers: list[str] = []
+    settings = ModbusSettings(tries=12)
+    with serving(tmp_path, width=None) as served:
+        with RobotiqGripper(lambda: Listened(served.path, writers), settings=settings) as gripper:
+            gripper.activate()
+            gripper.move(0.085, 20.0, 0.02)
+            with served.paused():
+                served.device.line = LineFaults(drop_answer=1.0)
+            raised: list[Exception] = []
+
+            def move() -> None:
+                try:
+                    gripper.move(0.0, 20.0, 0.02)
+                except Exception as error:  # noqa: BLE001
+                    raised.append(error)
+
+            moving = threading.Thread(target=move, name="move")
+            moving.start()
+            while "move" not in writers:
+                time.sleep(0.001)
+            before = len(writers)
+            with pytest.raises(NoAnswerError):
+                gripper.stop()
+            moving.join()
+            assert writers[before:].count("move") <= 1
+            assert isinstance(raised[0], StoppedError)
+
+
+def test_a_stop_breaks_an_activation_off(tmp_path: Path) -> None:
+    device = EmulatedGripper(GripperModel(activation_speed=0.02), SpringFingers(0.085))
+    with PtyDevice(device, tmp_path / "gripper") as served, RobotiqGripper(served.path) as gripper:
+        stopping = threading.Timer(0.3, gripper.stop)
+        stopping.start()
+        with pytest.raises(StoppedError, match="stopped meanwhile"):
+            gripper.activate()
+        stopping.join()
+        status = gripper.status()
+        assert not status.moving and not status.active and 0.06 < status.opening < 0.085
+        time.sleep(0.1)
+        assert gripper.status().opening == status.opening
 
 
 def test_port_missing(tmp_path: Path) -> None:

@@ -7,7 +7,14 @@ from hypothesis import strategies as st
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.hardware import RobotiqUnits
-from thermograsp.hardware.robotiq_registers import Action, ObjectSeen, State, action, fault_text, state
+from thermograsp.hardware.drivers.robotiq_registers import (
+    Action,
+    ObjectSeen,
+    State,
+    action,
+    fault_text,
+    state,
+)
 
 UNITS = RobotiqUnits()
 COUNTS = np.arange(256)
@@ -58,7 +65,9 @@ def test_what_it_cannot_do_is_refused(name: str, bad: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "bad", [{"stroke": 0.0}, {"open_count": 240}, {"closed_count": 256}, {"slowest": 0.2}, {"weakest": 0.0}]
+    "bad",
+    [{"stroke": 0.0}, {"open_count": 240}, {"closed_count": 256}, {"slowest": 0.2}, {"weakest": 0.0}]
+    + [{"stroke": 85.0}],  # in mm
 )
 def test_a_gripper_that_cannot_be(bad: dict) -> None:
     with pytest.raises(InvalidValueError):

@@ -3,10 +3,15 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thermograsp.hardware.frame import Frame, encode_frame
-from thermograsp.hardware.messages import Calibration, Code, Sample, encode_message
-from thermograsp.hardware.samples import samples_of
-from thermograsp.hardware.session import Session
+from thermograsp.hardware.protocol.frame import Frame, encode_frame
+from thermograsp.hardware.protocol.messages import (
+    Calibration,
+    Code,
+    Sample,
+    encode_message,
+)
+from thermograsp.hardware.protocol.samples import samples_of
+from thermograsp.hardware.protocol.session import Session
 
 from .test_decoder import frames
 

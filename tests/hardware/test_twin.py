@@ -9,10 +9,15 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from thermograsp.envs.simulated_plant import SimulatedPlant, simulated_plant
-from thermograsp.hardware import Fingertips, GripperModel, RobotiqGripper, VirtualLine
-from thermograsp.hardware.pacing import VirtualTime
-from thermograsp.hardware.serial_plant import SerialPlant
+from thermograsp.envs.plant.simulated import SimulatedPlant, simulated_plant
+from thermograsp.hardware import (
+    Fingertips,
+    GripperModel,
+    RobotiqGripper,
+    VirtualLine,
+)
+from thermograsp.hardware.plant.pacing import VirtualTime
+from thermograsp.hardware.plant.serial import SerialPlant
 from thermograsp.plant import Command
 from thermograsp.thermal import ADS1115
 from thermograsp.twin.simulated_hand import SimulatedHand

@@ -16,12 +16,18 @@ import numpy as np
 import pytest
 
 import thermograsp  # noqa: F401  (registers the environments)
+from thermograsp.agents.scripted import ScriptedGrasp
 from thermograsp.cli import main
-from thermograsp.envs.simulated_plant import simulated_plant
+from thermograsp.envs.plant.simulated import simulated_plant
 from thermograsp.errors import InvalidValueError
-from thermograsp.hardware import Feel, Fingertips, GripperModel, PtyDevice, RobotiqGripper
-from thermograsp.hardware.gripper import Contact
-from thermograsp.report.scripted import ScriptedGrasp
+from thermograsp.hardware import (
+    Feel,
+    Fingertips,
+    GripperModel,
+    PtyDevice,
+    RobotiqGripper,
+)
+from thermograsp.hardware.drivers.gripper import Contact
 from thermograsp.twin.beside import best_delay
 from thermograsp.twin.simulated_hand import SimulatedHand
 

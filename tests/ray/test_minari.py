@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import errno
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -12,7 +14,7 @@ import pytest
 
 from thermograsp import dataset
 from thermograsp.cli import main
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, WriteError
 from thermograsp.thermal import material
 
 minari: Any = pytest.importorskip("minari", reason="needs Minari: make test-ray")
@@ -120,3 +122,13 @@ def test_the_docs_run(
     )
     exec(compile(block, "docs/datasets.md", "exec"), {})
     assert capsys.readouterr().out.startswith("5 (")
+
+
+def test_a_full_disk_leaves_no_part(folder: Path, home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("thermograsp.dataset.minari_export._append", full)
+    with pytest.raises(WriteError, match="make room"):
+        dataset.export_minari(folder)
+    assert not [path for path in home.rglob("*") if path.is_file()] and not minari.list_local_datasets()

@@ -111,7 +111,7 @@ def test_a_node_that_dies_loses_and_doubles_nothing(
 def test_a_driver_that_is_killed_goes_on_where_it_was(plain: dict[str, bytes], tmp_path: Path) -> None:
     command = [sys.executable, "-m", "thermograsp", *COMMAND, "--out", str(tmp_path)]
     # A session of its own: what Ray leaves behind after such an end is found and ended by it.
-    driver = subprocess.Popen([*command, "--workers", "2"], start_new_session=True)
+    driver = subprocess.Popen([*command, "--workers", "2", "--ray-address", "local"], start_new_session=True)
     try:
         wait_for(lambda: len(list(tmp_path.glob("seeds-*.parquet"))) >= 2)
         driver.send_signal(signal.SIGKILL)
@@ -121,7 +121,9 @@ def test_a_driver_that_is_killed_goes_on_where_it_was(plain: dict[str, bytes], t
     before = contents(tmp_path)
     assert 2 <= len(before) - 1 < len(PLAN.shards)
     assert all(plain[name] == content for name, content in before.items())
-    again = subprocess.run([*command, "--workers", "1"], capture_output=True, text=True, check=True)
+    again = subprocess.run(
+        [*command, "--workers", "1", "--ray-address", "local"], capture_output=True, text=True, check=True
+    )
     assert f"{len(before) - 1} of them found done" in again.stdout and again.stderr == ""
     assert contents(tmp_path) == plain
 
@@ -129,7 +131,7 @@ def test_a_driver_that_is_killed_goes_on_where_it_was(plain: dict[str, bytes], t
 def test_errors_arrive_as_ours_and_ray_ends(tmp_path: Path) -> None:
     plan = dataset.Plan(env_id="thermograsp/Grasp-v9", episodes=2)
     with pytest.raises(ThermograspError, match="cannot run 'thermograsp/Grasp-v9'"):
-        dataset.make(plan, tmp_path / "a", workers=1)
+        dataset.make(plan, tmp_path / "a", workers=1, address="local")
     assert not ray.is_initialized()
     with pytest.raises(InvalidValueError, match="no Ray cluster at '127.0.0.1:1'"):
         dataset.make(PLAN, tmp_path / "b", workers=1, address="127.0.0.1:1")

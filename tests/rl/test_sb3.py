@@ -18,7 +18,7 @@ from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
 from stable_baselines3.common.env_checker import check_env  # pyright: ignore[reportMissingImports]
 
 from thermograsp.envs.sb3 import StableBaselinesVecEnv
-from thermograsp.envs.senses import SIZE, Senses
+from thermograsp.envs.spaces.senses import SIZE, Senses
 
 IDS = sorted(name for name in gymnasium.registry if name.startswith("thermograsp/"))
 SHORT: dict[str, Any] = {"material": "glass", "seconds": 0.2}  # 10 control steps

@@ -17,9 +17,9 @@ from thermograsp.thermal import (
     heat_tables,
     network_of,
 )
-from thermograsp.thermal.layers import sensor
-from thermograsp.thermal.materials import material
-from thermograsp.thermal.problem import Mode
+from thermograsp.thermal.matter.materials import material
+from thermograsp.thermal.matter.mounting import Mode
+from thermograsp.thermal.matter.sensors import sensor
 
 DT = 0.01  # s
 AREA = 6e-5  # m2

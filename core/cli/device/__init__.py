@@ -17,6 +17,7 @@ ACTIONS = (
     "record",
     "replay",
     "selftest",
+    "clear-faults",
     "calibrate",
     "fit",
     "emulate",
@@ -33,12 +34,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         module = importlib.import_module(f"{__name__}.{name.replace('-', '_')}")
         sub = actions.add_parser(name, help=module.HELP, description=module.HELP, allow_abbrev=False)
         module.add_arguments(sub)
-        sub.add_argument(
-            "--json",
-            action="store_true",
-            default=argparse.SUPPRESS,
-            help="print one JSON document and nothing else",
-        )
         sub.set_defaults(act=module.run)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermograsp.cli.device.connection import add_port, connect
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output
 from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:

@@ -20,12 +20,12 @@ def add_port(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "port", metavar="PORT", help="such as /dev/serial/by-id/..., see `thermograsp device list`"
     )
-    parser.add_argument("--baud", type=int, default=_BAUD, help=f"bits a second (default {_BAUD})")
+    parser.add_argument("--baud", type=int, default=_BAUD, help="bits a second")
 
 
 def add_sampling(parser: argparse.ArgumentParser) -> None:
     """--rate and --setpoint."""
-    parser.add_argument("--rate", type=int, default=_RATE, help=f"samples a second (default {_RATE})")
+    parser.add_argument("--rate", type=int, default=_RATE, help="samples a second")
     parser.add_argument(
         "--setpoint", type=float, help="of both thermostats, degC (default: leave the heaters as they are)"
     )

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output
 from thermograsp.errors import InvalidValueError, positive, unknown_name
 
 if TYPE_CHECKING:
@@ -22,16 +22,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--material",
         default="glass",
-        help="what they press: a name of `thermograsp materials` (default glass)",
+        help="what they press: a name of `thermograsp materials`",
     )
-    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
-    add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K) (default 1e4)")
-    add("--force", type=float, default=10.0, help="while touching, N (default 10)")
+    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K)")
+    add("--force", type=float, default=10.0, help="while touching, N")
     add("--replay", metavar="FILE", help="feel a recording again instead of a press")
-    add("--link", metavar="PATH", help="a stable name for the port (default none)")
-    add("--chain", default="ads1115", help="amplifier and converter: ads1115 (default) or ideal")
-    add("--drift", type=float, default=0.0, help="of the device's clock, ppm (default 0)")
-    add("--seed", type=int, default=0, help="of noise and faults (default 0)")
+    add("--link", metavar="PATH", help="a stable name for the port (default: none)")
+    add("--chain", default="ads1115", help="amplifier and converter: ads1115 or ideal")
+    add("--drift", type=float, default=0.0, help="of the device's clock, ppm")
+    add("--seed", type=int, default=0, help="of noise and faults")
     add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
     add(
         "--fault",
@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from thermograsp.hardware import DeviceModel, EmulatedFingertips, PtyDevice
-    from thermograsp.hardware.planned_faults import plan_fault
+    from thermograsp.hardware.emulators import plan_fault
     from thermograsp.thermal import SIGNAL_CHAINS
 
     if args.chain not in SIGNAL_CHAINS:

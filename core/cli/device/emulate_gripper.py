@@ -6,7 +6,7 @@ import argparse
 import sys
 import time
 
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output
 from thermograsp.errors import InvalidValueError, positive
 
 HELP = "Emulate a Robotiq 2F-85 with something between its fingers, on a pseudo-terminal."
@@ -17,9 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add = parser.add_argument
     add("--width", type=float, help="of what is between the fingers, m (default: nothing is)")
-    add("--stiffness", type=float, default=1e5, help="of it, N/m (default 1e5)")
-    add("--link", metavar="PATH", help="a stable name for the port (default none)")
-    add("--seed", type=int, default=0, help="of faults (default 0)")
+    add("--stiffness", type=float, default=1e5, help="of it, N/m")
+    add("--link", metavar="PATH", help="a stable name for the port (default: none)")
+    add("--seed", type=int, default=0, help="of faults")
     add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
     add(
         "--fault",
@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from thermograsp.hardware import EmulatedGripper, PtyDevice, SpringFingers
-    from thermograsp.hardware.planned_gripper_faults import plan_gripper_fault
+    from thermograsp.hardware.emulators import plan_gripper_fault
 
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")

@@ -6,9 +6,7 @@ import argparse
 import sys
 import time
 
-from thermograsp.cli.arguments import add_materials_file, chosen_material
-from thermograsp.cli.opengl import load_mujoco
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, add_materials_file, chosen_material, load_mujoco
 from thermograsp.errors import InvalidValueError, positive
 
 _FOREVER = 2**31 - 1.0  # s
@@ -19,19 +17,17 @@ HELP = "Emulate fingertips and a Robotiq 2F-85 that grasp a simulated object, on
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add = parser.add_argument
-    add(
-        "--material", default="glass", help="of the object: a name of `thermograsp materials` (default glass)"
-    )
+    add("--material", default="glass", help="of the object: a name of `thermograsp materials`")
     add_materials_file(parser)
-    add("--mode", default="T", help="T: element on the thermostat (default), O: on the object")
+    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
     add(
         "--sensor",
         default="seed",
-        help="a sensor's name, or a file of `thermograsp device fit` (default seed)",
+        help="a sensor's name, or a file of `thermograsp device fit`",
     )
-    add("--link", metavar="PATH", help="a stable name for the fingertips' port (default none)")
-    add("--gripper-link", metavar="PATH", help="a stable name for the gripper's port (default none)")
-    add("--seed", type=int, default=0, help="of the objects' places and the noise (default 0)")
+    add("--link", metavar="PATH", help="a stable name for the fingertips' port (default: none)")
+    add("--gripper-link", metavar="PATH", help="a stable name for the gripper's port (default: none)")
+    add("--seed", type=int, default=0, help="of the objects' places and the noise")
     add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
 
 
@@ -39,10 +35,9 @@ def run(args: argparse.Namespace) -> int:
     """Serves until the end of the time or an interrupt."""
     output = Output(args.json)
     load_mujoco(output)
-    from thermograsp.envs.simulated_plant import SimulatedPlant
-    from thermograsp.envs.simulation_config import SimulationConfig
+    from thermograsp.envs.plant import SimulatedPlant, SimulationConfig
     from thermograsp.hardware import PtyDevice
-    from thermograsp.twin.simulated_hand import SimulatedHand
+    from thermograsp.twin import SimulatedHand
 
     if args.seed < 0:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")

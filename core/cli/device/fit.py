@@ -6,8 +6,7 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.arguments import add_materials_file, chosen_material, target
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, add_materials_file, add_old_name, chosen_material, target
 from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:
@@ -31,9 +30,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "21.5 degC, glass@21.5=a.tgr",
     )
     add_materials_file(parser)
-    add("--out", metavar="FILE", help="the preset, .toml; load it with sensor=FILE or --sensor FILE")
-    add("--fingertip", default="left", help="left (default) or right")
-    add("--temperature", type=float, default=24.0, help="of objects where none is given, degC (default 24)")
+    preset = add(
+        "--save",
+        dest="out",
+        metavar="FILE",
+        help="the preset, .toml; load it with sensor=FILE or --sensor FILE",
+    )
+    add_old_name(parser, "--out", preset)
+    add("--fingertip", default="left", help="left or right")
+    warmth = add(
+        "--object-temperature",
+        dest="temperature",
+        type=float,
+        default=24.0,
+        help="of objects where none is given, degC",
+    )
+    add_old_name(parser, "--temperature", warmth)
     size = (0.04, 0.04, 0.01)
     add(
         "--object-size",
@@ -41,10 +53,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         default=size,
         metavar=("X", "Y", "THICKNESS"),
-        help=f"m (default {size})",
+        help="m",
     )
-    add("--start", default="seed", help="a sensor of the same make: a preset's name or file (default seed)")
-    add("--chain", default="ads1115", help="amplifier and converter (default ads1115)")
+    add("--start", default="seed", help="a sensor of the same make: a preset's name or file")
+    add("--chain", default="ads1115", help="amplifier and converter")
     add(
         "--hold",
         action="append",
@@ -57,15 +69,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Fits, writes and prints. 1 where the recordings cannot tell something; the preset is written all the same."""
     from thermograsp.thermal import SIGNAL_CHAINS, fit_sensor, write_sensor
-    from thermograsp.thermal.sensor_model import UNITS
+    from thermograsp.thermal.fitting import UNITS
+    from thermograsp.thermal.stack import HeatedStack, any_sensor
 
     out = target(args.out, (".toml",))
     if args.fingertip not in _SIDES:
         raise unknown_name("fingertip", args.fingertip, _SIDES)
     if args.chain not in SIGNAL_CHAINS:
         raise unknown_name("signal chain", args.chain, SIGNAL_CHAINS)
+    start = any_sensor(args.start)
+    if out is not None and isinstance(start, HeatedStack):
+        raise InvalidValueError(
+            f"--save writes sensors on a thermostat, and {start.name!r} has a heater of its own: leave --save out, and "
+            "put the numbers that are printed into its file"
+        )
     touches = [_touch(text, args) for text in args.recordings]
-    fit = fit_sensor(touches, start=args.start, chain=SIGNAL_CHAINS[args.chain], hold=args.hold)
+    fit = fit_sensor(touches, start=start, chain=SIGNAL_CHAINS[args.chain], hold=args.hold)
     output = Output(args.json)
     percent = f"{100 * fit.confidence:g} %"
     output.table(
@@ -81,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
     )
     for sentence in fit.untold:
         output.line(f"not told: {sentence}")
-    if out is not None:
+    if out is not None and not isinstance(fit.stack, HeatedStack):
         write_sensor(out, replace(fit.stack, name=out.stem), _notes(fit, touches, args.fingertip))
         output.line(f"wrote {args.out}")
     output.document(
@@ -125,7 +144,7 @@ def _touch(text: str, args: argparse.Namespace) -> KnownTouch:
 
 
 def _notes(fit: SensorFit, touches: list[KnownTouch], fingertip: str) -> list[str]:
-    from thermograsp.thermal.sensor_model import UNITS
+    from thermograsp.thermal.fitting import UNITS
 
     materials = ", ".join(sorted({touch.material.name for touch in touches}))
     return [

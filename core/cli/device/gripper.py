@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output
 
 HELP = "Tell how a gripper is; activate or move it first."
 
@@ -16,8 +16,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--activate", action="store_true", help="where it is not ready: its fingers travel their whole range")
     add("--clear-faults", action="store_true", help="reset and activate it; what it holds falls")
     add("--opening", type=float, metavar="M", help="move there, m, and wait for the end of the motion")
-    add("--force", type=float, default=20.0, help="limit, N (default 20)")
-    add("--speed", type=float, default=0.05, help="m/s (default 0.05)")
+    add("--force", type=float, default=20.0, help="limit, N")
+    add("--speed", type=float, default=0.05, help="m/s")
 
 
 def run(args: argparse.Namespace) -> int:

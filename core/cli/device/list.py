@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output
 
 HELP = "List serial ports, by names that stay when a device is plugged in again."
 

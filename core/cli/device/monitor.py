@@ -10,15 +10,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermograsp.cli.device.connection import add_port, add_sampling, connect, link_document, link_line
+from thermograsp.cli.device.connection import (
+    add_port,
+    add_sampling,
+    connect,
+    link_document,
+    link_line,
+)
 from thermograsp.cli.device.live_plot import LivePlot
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output
+from thermograsp.errors import positive
 from thermograsp.hardware.errors import DeviceError
 
 if TYPE_CHECKING:
     from thermograsp.hardware import Fingertips, Samples
 
-HELP = "Show voltages, temperatures and forces live: a plot on a terminal, a line a second in a pipe."
+HELP = (
+    "Show voltages, temperatures and forces live: a plot on a terminal, a line a second in a pipe, with --json a line "
+    "of JSON for each sample, and one of what came at the end."
+)
 
 _PERIOD = 0.1  # s between pictures
 _LINES = 1.0  # s between lines
@@ -34,10 +44,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Shows until the end of the time or an interrupt. 1 where the line was broken at the end."""
     output = Output(args.json)
+    if args.seconds is not None:
+        positive("seconds", args.seconds)
     with connect(args) as tips:
-        if args.json or not sys.stdout.isatty():
-            shown = _lines(output)
-            broken = _follow(tips, args.seconds, shown)
+        if args.json:
+            broken = _follow(tips, args.seconds, _records(output))
+        elif not sys.stdout.isatty():
+            broken = _follow(tips, args.seconds, _lines(output))
         else:
             with LivePlot(f"{args.port}  {tips.identity.serial:#x}") as plot:
                 broken = _follow(tips, args.seconds, plot.show)
@@ -45,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     if broken:
         output.warn(broken)
     output.line(link_line(statistics))
-    output.document({"port": args.port, "broken": broken, **link_document(statistics)})
+    output.record({"end": {"port": args.port, "broken": broken, **link_document(statistics)}})
     return 1 if broken else 0
 
 
@@ -64,6 +77,30 @@ def _follow(tips: Fingertips, seconds: float | None, show: Callable[[Samples | N
     except KeyboardInterrupt:
         pass
     return broken
+
+
+def _records(output: Output) -> Callable[[Samples | None, str], None]:
+    """Prints every sample as JSON, and what is wrong with the line when that changes."""
+    last = ""
+
+    def show(samples: Samples | None, broken: str) -> None:
+        nonlocal last
+        if broken != last:
+            output.record({"broken": broken})
+        last = broken
+        for k in range(0 if samples is None else len(samples)):
+            assert samples is not None
+            output.record(
+                {
+                    "time_s": samples.time[k],
+                    "voltage_V": samples.voltage[k],
+                    "thermostat_degC": samples.thermostat[k],
+                    "force_N": samples.force[k],
+                    "faults": samples[k : k + 1].faults.name or "",
+                }
+            )
+
+    return show
 
 
 def _lines(output: Output) -> Callable[[Samples | None, str], None]:

@@ -5,9 +5,14 @@ from __future__ import annotations
 import argparse
 import time
 
-from thermograsp.cli.arguments import target
-from thermograsp.cli.device.connection import add_port, add_sampling, connect, link_document, link_line
-from thermograsp.cli.output import Output
+from thermograsp.cli.device.connection import (
+    add_port,
+    add_sampling,
+    connect,
+    link_document,
+    link_line,
+)
+from thermograsp.cli.shared import Output, target
 from thermograsp.errors import InvalidValueError, positive
 
 HELP = "Record the line, raw, until the end of the time or Ctrl-C; replayed by `thermograsp device replay`."
@@ -25,7 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Records and prints. 1 where frames were lost or the line was broken; the file has what came."""
+    """Records and prints. 1 where frames were lost or the line was broken; the file has what came. Raises
+    RecordingError where the disk is full."""
     from thermograsp import __version__
     from thermograsp.hardware import Recorder
     from thermograsp.hardware.errors import DeviceError
@@ -49,11 +55,11 @@ def run(args: argparse.Namespace) -> int:
             recorder.close()
             file.unlink()
             raise
-        with tips, output.progress(seconds or 1.0) as advance:
+        with tips, output.progress(seconds) as advance:
             begun = last = time.monotonic()
             broken = ""
             try:
-                while seconds is None or last - begun < seconds:
+                while not recorder.failure and (seconds is None or last - begun < seconds):
                     time.sleep(min(_PERIOD, seconds or _PERIOD))
                     try:
                         tips.take()
@@ -63,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
                             output.warn(str(error))
                         broken = type(error).__name__
                     now = time.monotonic()
-                    advance("recording", now - last if seconds else 0.0)
+                    advance(f"recording, {tips.statistics().samples} samples", now - last)
                     last = now
             except KeyboardInterrupt:
                 pass

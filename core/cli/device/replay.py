@@ -6,8 +6,7 @@ import argparse
 
 import numpy as np
 
-from thermograsp.cli.arguments import target
-from thermograsp.cli.output import Output
+from thermograsp.cli.shared import Output, target
 
 HELP = "Decode a recording again: what came, what was lost, and a CSV file of it."
 
@@ -20,8 +19,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prints, and writes the CSV. 1 where the recording holds no sample."""
+    from thermograsp.columns import write_csv
     from thermograsp.hardware import replay
-    from thermograsp.report.columns import write_csv
 
     csv = target(args.csv, ())
     output, again = Output(args.json), replay(args.file)
@@ -41,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
         {
             "metadata": again.metadata,
             "complete": again.complete,
+            "damage": [{"at": damage.at, "bytes": damage.bytes} for damage in again.damage],
             "samples": counts.samples,
             "seconds": seconds,
             "lost": counts.lost,

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include <avr_adc.h>
+#include <avr_eeprom.h>
 #include <avr_twi.h>
 #include <avr_uart.h>
 #include <sim_avr.h>
@@ -16,7 +17,8 @@
 
 enum { FREQUENCY = 16000000, BYTE_CYCLES = FREQUENCY / 500000 * 10, PLANT_CYCLES = FREQUENCY / 1000 };
 enum { SIDES = 2, CELLS = 6, LINE = 1 << 20 };
-enum { OCR1A_ = 0x88, ICR1_ = 0x86 }; // in the processor's memory; OCR1B follows OCR1A
+enum { OCR1A_ = 0x88, ICR1_ = 0x86, MCUSR_ = 0x54, SPMCSR_ = 0x57 }; // in its memory; OCR1B follows OCR1A
+enum { POWER_ON = 0x01, READ_FUSES = 0x09, EXTENDED_FUSES = 2 };       // RFLB and SELFPRGEN; where LPM reads them
 
 // What a caller may read and write at any time; SI units and degC.
 struct signals {
@@ -33,6 +35,9 @@ struct signals {
   double power[SIDES];       // W of the heaters
   int32_t open[SIDES];       // a thermistor's wire is broken
   int32_t deaf[SIDES];       // the converters of the elements and of the plates do not answer
+  int32_t loose[SIDES];      // a thermistor has come off its plate
+  int32_t cold[SIDES];       // a heater's wire is broken
+  int32_t fuses;             // the extended byte
 };
 
 struct converter {
@@ -55,12 +60,14 @@ struct board {
 
 struct board *board_new(const char *elf);
 void board_free(struct board *board);
-void board_reset(struct board *board);
+void board_reset(struct board *board, int cause);
 int board_run(struct board *board, double until);
 double board_time(const struct board *board);
 void board_give(struct board *board, const uint8_t *bytes, uint32_t count);
 uint32_t board_take(struct board *board, uint8_t *bytes, uint32_t room);
 uint8_t board_memory(const struct board *board, uint16_t address);
+uint8_t board_stored(struct board *board, uint16_t address);
+void board_store(struct board *board, uint16_t address, uint8_t value);
 
 static double normal(struct board *board) { // by the central limit, of 12 uniform numbers
   double sum = -6.0;
@@ -154,10 +161,12 @@ static avr_cycle_count_t plant(avr_t *avr, avr_cycle_count_t when, void *param) 
   struct signals *s = &board->signals;
   double dt = (double)PLANT_CYCLES / FREQUENCY, top = fmax(1.0, word(board, ICR1_));
   for (int side = 0; side < SIDES; ++side) {
-    s->power[side] = s->supply * s->supply / 5.0 * fmin(1.0, word(board, OCR1A_ + 2 * side) / top);
+    double driven = s->supply * s->supply / 5.0 * fmin(1.0, word(board, OCR1A_ + 2 * side) / top);
+    s->power[side] = s->cold[side] ? 0.0 : driven;
     double gain = s->power[side] - s->heat[side] - s->loss * (s->plate[side] - s->ambient);
     s->plate[side] += dt * gain / s->heat_capacity;
-    s->thermistor[side] += (s->plate[side] - s->thermistor[side]) * (1.0 - exp(-dt / s->lag));
+    double around = s->loose[side] ? s->ambient : s->plate[side];
+    s->thermistor[side] += (around - s->thermistor[side]) * (1.0 - exp(-dt / s->lag));
   }
   for (int i = 0; i < CELLS; ++i) // simavr takes whole mV: noise keeps what lies between
     avr_raise_irq(board->cells[i],
@@ -191,6 +200,7 @@ struct board *board_new(const char *elf) {
                                     .lag = 0.2,
                                     .noise = 1.0,
                                     .conversion = 1.0 / 475.0,
+                                    .fuses = 0xFC, // brown-out at 4.3 V
                                     .plate = {24.0, 24.0},
                                     .thermistor = {24.0, 24.0}};
   avr_init(avr);
@@ -198,6 +208,7 @@ struct board *board_new(const char *elf) {
   avr->sleep = no_pause;
   avr->vcc = avr->avcc = avr->aref = 5000;
   avr_load_firmware(avr, &firmware);
+  avr->data[MCUSR_] = POWER_ON;
   board->twi_in = avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT);
   avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_OUTPUT), on_twi, board);
   uint32_t flags = 0;
@@ -215,10 +226,12 @@ void board_free(struct board *board) {
   free(board);
 }
 
-void board_reset(struct board *board) {
+// cause: what MCUSR says of it; of a loss of power the EEPROM is all that stays.
+void board_reset(struct board *board, int cause) {
   board->before += board->avr->cycle;
   avr_reset(board->avr);
   board->before -= board->avr->cycle; // 0 in some versions
+  board->avr->data[MCUSR_] = (uint8_t)cause;
   board->taken = board->given;
   board->next_byte = board->converters[0].ready = board->converters[1].ready = 0;
   avr_cycle_timer_register(board->avr, PLANT_CYCLES, plant, board);
@@ -233,7 +246,10 @@ int board_run(struct board *board, double until) {
       avr_raise_irq(board->uart_in, board->to_board[board->taken++ % LINE]);
       board->next_byte = avr->cycle + BYTE_CYCLES;
     }
+    uint8_t code = avr->flash[EXTENDED_FUSES]; // simavr reads the program where fuses were asked for
+    if ((avr->data[SPMCSR_] & READ_FUSES) == READ_FUSES) avr->flash[EXTENDED_FUSES] = (uint8_t)board->signals.fuses;
     int state = avr_run(avr);
+    avr->flash[EXTENDED_FUSES] = code;
     if (state == cpu_Done || state == cpu_Crashed) return 1;
   }
   return 0;
@@ -252,3 +268,14 @@ uint32_t board_take(struct board *board, uint8_t *bytes, uint32_t room) {
 }
 
 uint8_t board_memory(const struct board *board, uint16_t address) { return board->avr->data[address]; }
+
+uint8_t board_stored(struct board *board, uint16_t address) {
+  avr_eeprom_desc_t all = {.ee = NULL, .offset = 0, .size = 0};
+  avr_ioctl(board->avr, AVR_IOCTL_EEPROM_GET, &all);
+  return all.ee[address];
+}
+
+void board_store(struct board *board, uint16_t address, uint8_t value) {
+  avr_eeprom_desc_t byte = {.ee = &value, .offset = address, .size = 1};
+  avr_ioctl(board->avr, AVR_IOCTL_EEPROM_SET, &byte);
+}

@@ -1,0 +1,59 @@
+"""Policies of the environments, rollouts, and recordings of grasps."""
+
+from typing import TYPE_CHECKING
+
+from thermograsp.doors import opened
+
+if TYPE_CHECKING:
+    from thermograsp.agents.episodes import rollout
+    from thermograsp.agents.gripper_check import FELT_AFTER, check_gripper
+    from thermograsp.agents.policies import POLICIES, Policy, policy
+    from thermograsp.agents.recording import LONGEST, Recording, columns_of, record
+    from thermograsp.agents.scripted import ScriptedGrasp
+    from thermograsp.agents.stopwatch import Stopwatch
+    from thermograsp.agents.trained import Network, load_network
+
+__all__ = [
+    "FELT_AFTER",
+    "LONGEST",
+    "POLICIES",
+    "Network",
+    "Policy",
+    "Recording",
+    "ScriptedGrasp",
+    "Stopwatch",
+    "check_gripper",
+    "columns_of",
+    "load_network",
+    "policy",
+    "record",
+    "rollout",
+]
+
+__getattr__ = opened(
+    __name__,
+    {
+        "gripper_check": (
+            "FELT_AFTER",
+            "check_gripper",
+        ),
+        "policies": (
+            "POLICIES",
+            "Policy",
+            "policy",
+        ),
+        "recording": (
+            "LONGEST",
+            "Recording",
+            "columns_of",
+            "record",
+        ),
+        "episodes": ("rollout",),
+        "scripted": ("ScriptedGrasp",),
+        "stopwatch": ("Stopwatch",),
+        "trained": (
+            "Network",
+            "load_network",
+        ),
+    },
+)

@@ -1,0 +1,212 @@
+"""`thermograsp grasp`: one scripted grasp in simulation, or on a real gripper beside it, recorded."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from thermograsp.cli.grasp.beside import run_beside
+from thermograsp.cli.shared import (
+    Output,
+    add_materials_file,
+    add_old_name,
+    chosen_material,
+    load_mujoco,
+    target,
+)
+from thermograsp.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from thermograsp.agents import Recording
+    from thermograsp.envs import ObjectSpec
+
+NAME = "grasp"
+HELP = (
+    "Grasp one object in simulation, lift it by 5 cm and hold it; record what the fingertips feel. Or grasp with a "
+    "real gripper, and set the simulation beside it."
+)
+
+_FAILED = 1
+# Where neither the arguments nor an object of the library says otherwise.
+_MATERIAL, _SHAPE, _WIDTH, _SCALE = "glass", "box", 0.04, 1.0  # m
+_ROOM, _FORCE = 24.0, 10.0  # °C, N
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add = parser.add_argument
+    add("--material", help=f"a name of `thermograsp materials` (default: the object's own, else {_MATERIAL})")
+    add_materials_file(parser)
+    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add(
+        "--seconds",
+        type=float,
+        default=6.0,
+        help="of the whole episode; the touch is at about 0.5 s",
+    )
+    add("--hold", type=float, default=2.0, help="s at 5 cm, up to the end, that count as held")
+    add("--seed", type=int, default=0, help="of the object's place and the noise")
+    add(
+        "--force",
+        type=float,
+        help=f"the gripper's limit, N (default: what holds the object, else {_FORCE:g})",
+    )
+    add("--object", metavar="NAME", help="one of `thermograsp objects`, such as mug_of_coffee")
+    add("--shape", help=f"box, cylinder or sphere (default: the object's own, else {_SHAPE})")
+    add(
+        "--width",
+        type=float,
+        help=f"of the object between the fingers, m (default: its own, else {_WIDTH:g})",
+    )
+    add("--height", type=float, help="of the object, m (default: as its width)")
+    add("--mesh", metavar="FILE", help="an object from a mesh: .stl, .obj, .ply or .glb")
+    add("--scale", type=float, help=f"lengths in the mesh times this are metres (default: {_SCALE:g})")
+    warmth = add(
+        "--object-temperature",
+        dest="temperature",
+        type=float,
+        help=f"of the object at first, degC (default: its own, else {_ROOM:g})",
+    )
+    add_old_name(parser, "--temperature", warmth)
+    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K")
+    add(
+        "--sensor",
+        default="seed",
+        help="a sensor's name, or a file of `thermograsp device fit`",
+    )
+    add("--gripper", metavar="FILE", help="your own in simulation, an MJCF file (default: the shipped one)")
+    add(
+        "--plant",
+        metavar="URL",
+        help="grasp with the gripper of serial://PORT?gripper=URL, and simulate the same; it can't know the material",
+    )
+    add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
+    add("--csv", metavar="FILE", help="write one row a voltage sample (100 Hz)")
+    add(
+        "--render",
+        metavar="FILE",
+        help="draw the grasp: an animation (.gif, .webp) or a strip of pictures (.png)",
+    )
+    add("--plot", metavar="FILE", help="with --plant: draw real beside simulated: .svg, .png or .pdf")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Grasps, writes and prints. 1 where the object was not lifted and held; with --plant, held."""
+    output = Output(args.json)
+    load_mujoco(output)
+    import numpy as np
+
+    from thermograsp.agents import record
+    from thermograsp.columns import write_csv
+    from thermograsp.envs import GraspBatch, GraspTask
+
+    csv, picture = target(args.csv, ()), target(args.render, (".gif", ".webp", ".png"))
+    if args.seed < 0:
+        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
+    if args.plot is not None and args.plant is None:
+        raise InvalidValueError("--plot draws real beside simulated: give --plant, or use --render or --csv")
+    spec = _object(args)
+    # a real object is where it was put, in the middle as well as could be
+    placement: dict[str, Any] = {} if args.plant is None else {"placement": (0.0, 0.0)}
+    batch = GraspBatch(
+        1,
+        task=GraspTask(hold_seconds=args.hold, seconds=args.seconds),
+        material=chosen_material(args.material, args.materials),
+        mode=args.mode,
+        objects=spec,
+        tolerance=args.tolerance,
+        object_temperature=args.temperature if args.object is None else _ROOM,
+        sensor=args.sensor,
+        gripper=args.gripper,
+        cache=not args.no_cache,
+        **placement,
+    )
+    if args.plant is not None:
+        return run_beside(args, batch)
+    film = None
+    if picture is not None:
+        from thermograsp.figures import Film
+
+        count = 6 if picture.suffix == ".png" else max(2, round(10 * args.seconds))
+        film = Film(batch.plant, np.linspace(0.0, args.seconds, count).tolist())
+    with output.progress(args.seconds) as advance:
+
+        def watch(time: float, now: GraspBatch) -> None:
+            advance(args.material, now.dt if time else 0.0)
+            if film is not None:
+                film.watch(time, now)
+
+        (grasp,) = record(batch, [args.seed], args.seconds, args.force, watch=watch)
+    if csv is not None:
+        write_csv(csv, grasp.columns)
+    if film is not None and picture is not None:
+        film.write(picture)
+    assert batch.reading is not None
+    _print(output, args, grasp, float(batch.reading.truth["crushing_force"][0]))
+    batch.close()
+    return 0 if grasp.success else _FAILED
+
+
+def _object(args: argparse.Namespace) -> ObjectSpec:
+    """The object; fills in the arguments that it decides where they are not given."""
+    from thermograsp.envs import ObjectSpec, library_object
+
+    given = {name: getattr(args, name) for name in ("shape", "width", "height", "mesh", "scale")}
+    shape_options = {name: value for name, value in given.items() if value is not None}
+    if args.object is not None:
+        if shape_options:
+            raise InvalidValueError(
+                f"--object {args.object} has its own shape: leave out --{' and --'.join(shape_options)}"
+            )
+        preset = library_object(args.object)
+        args.material = args.material or preset.material
+        args.temperature = preset.temperature if args.temperature is None else args.temperature
+        args.force = preset.grip_force if args.force is None else args.force
+        return replace(preset.spec(), temperature=args.temperature)
+    args.material = args.material or _MATERIAL
+    args.temperature = _ROOM if args.temperature is None else args.temperature
+    args.force = _FORCE if args.force is None else args.force
+    friction = chosen_material(args.material, args.materials).friction
+    surface: dict[str, Any] = {} if friction is None else {"friction": friction}
+    if args.mesh is not None:
+        scale = _SCALE if args.scale is None else args.scale
+        return ObjectSpec(shape="mesh", mesh=args.mesh, scale=scale, **surface)
+    shape, width = args.shape or _SHAPE, shape_options.get("width", _WIDTH)
+    height = width if args.height is None or shape == "sphere" else args.height
+    return ObjectSpec(shape=shape, size=(width, width, height), **surface)
+
+
+def _print(output: Output, args: argparse.Namespace, grasp: Recording, crushing: float) -> None:
+    columns = grasp.columns
+    document: dict[str, Any] = {
+        "object": args.object,
+        "material": grasp.material,
+        "mode": args.mode,
+        "seed": grasp.seed,
+        "rung": grasp.rung,
+        "success": grasp.success,
+        "ending": grasp.ending,
+        "touch_time_s": grasp.touch,
+        "samples": len(columns["time_s"]),
+    }
+    what = "lifted and held" if grasp.success else grasp.ending or f"not lifted and held for {args.hold:g} s"
+    if grasp.ending == "crushed":
+        what = f"crushed by more than {crushing:.1f} N"
+    name = f"{args.object} of {grasp.material}" if args.object else grasp.material
+    output.line(f"{name}, {args.mode} mode: {what}; rung {grasp.rung}")
+    if len(columns["time_s"]):
+        drop = columns["temperature_drop_left_K"]
+        peak = int(abs(drop).argmax())
+        document |= {
+            "peak_temperature_drop_left_K": drop[peak],
+            "peak_time_s": columns["time_s"][peak],
+            "final": {name: values[-1] for name, values in columns.items()},
+        }
+        output.line(f"touch  {grasp.touch:.2f} s")
+        output.line(f"peak   {drop[peak]:.3f} K at {columns['time_s'][peak]:.2f} s (left fingertip)")
+        output.line(f"final  {drop[-1]:.3f} K at {columns['time_s'][-1]:.2f} s")
+    for file in (args.csv, args.render):
+        if file:
+            output.line(f"wrote {file}")
+    output.document({**document, "csv": args.csv, "render": args.render})

@@ -1,0 +1,83 @@
+"""Arguments that several commands share, and what they become."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thermograsp.errors import InvalidValueError, unknown_name
+
+if TYPE_CHECKING:
+    from thermograsp.thermal import Material
+
+
+class _OldName(argparse.Action):
+    """Stores as the option of the new name does, and says on stderr what that is."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, new: str, **keywords: Any) -> None:
+        super().__init__(option_strings, dest, **keywords)
+        self._new = new
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        print(f"thermograsp: {option_string} is an old name of {self._new}", file=sys.stderr)
+        setattr(namespace, self.dest, values)
+
+
+def add_old_name(parser: argparse.ArgumentParser, old: str, option: argparse.Action) -> None:
+    """Takes an option under a name that it had before, too, with a word that it is old; --help leaves it out."""
+    parser.add_argument(
+        old,
+        action=_OldName,
+        new=option.option_strings[0],
+        dest=option.dest,
+        nargs=option.nargs,
+        type=option.type or str,
+        default=argparse.SUPPRESS,
+        help=argparse.SUPPRESS,
+    )
+
+
+def add_materials_file(parser: argparse.ArgumentParser) -> None:
+    """--materials FILE, for materials of one's own."""
+    parser.add_argument(
+        "--materials",
+        metavar="FILE",
+        help="take the material from your own TOML table",
+    )
+
+
+def chosen_material(name: str, file: str | None) -> Material:
+    """The material of that name, from the user's table where there is one. Raises UnknownNameError."""
+    from thermograsp import thermal
+
+    if file is None:
+        return thermal.material(name)
+    table = thermal.load_materials(file)
+    if name not in table:
+        raise unknown_name("material", name, table)
+    return table[name]
+
+
+def target(path: str | None, suffixes: tuple[str, ...]) -> Path | None:
+    """Where a result is to go, checked before the work is done. Raises InvalidValueError."""
+    if path is None:
+        return None
+    file = Path(path)
+    if suffixes and file.suffix.lower() not in suffixes:
+        raise InvalidValueError(f"cannot write {path}: its name must end with {' or '.join(suffixes)}")
+    if not file.resolve().parent.is_dir():
+        raise InvalidValueError(
+            f"cannot write {path}: there is no folder {file.resolve().parent}; create it first"
+        )
+    if file.is_dir():
+        raise InvalidValueError(f"cannot write {path}: it is a folder; name a file")
+    return file

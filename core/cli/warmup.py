@@ -1,0 +1,77 @@
+"""`thermograsp warmup`: compiles and builds ahead what the shipped environments need."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from thermograsp.cli.shared import Output, load_mujoco
+
+NAME = "warmup"
+HELP = "Compile and build ahead what the shipped environments need, for an image or a cluster's shared cache."
+
+_CLOSING = 50  # control steps, in which the fingers meet what lies between them
+_MESH = "mug_of_coffee"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """It takes none."""
+    del parser
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does one stage after the other and prints how long each took."""
+    output = Output(args.json)
+    load_mujoco(output)
+    chosen = stages()
+    told = []
+    with output.progress(len(chosen)) as advance:
+        for name, work in chosen.items():
+            advance(name, 0)
+            begun = time.perf_counter()
+            work()
+            told.append({"stage": name, "seconds": time.perf_counter() - begun})
+            advance(name, 1)
+    output.table(("stage", "s"), [(one["stage"], f"{one['seconds']:.1f}") for one in told])
+    output.document({"stages": told})
+    return 0
+
+
+def stages() -> dict[str, Callable[[], None]]:
+    """What each stage is called and does."""
+    from thermograsp.thermal import SEED_MATERIALS
+
+    return {
+        "Grasp-v0 on every material": lambda: _close("Grasp-v0", SEED_MATERIALS),
+        "Grasp-v0 in O mode": lambda: _close("Grasp-v0", SEED_MATERIALS, mode="O"),
+        "Identify-v0": lambda: _close("Identify-v0"),
+        "Sort-v0": lambda: _close("Sort-v0"),
+        "maps of pressure and temperature": lambda: _close(
+            "Grasp-v0", taxels=(4, 4), face_temperature=(4, 4)
+        ),
+        "an object of any shape": lambda: _close("Grasp-v0", objects=_MESH),
+    }
+
+
+def _close(env_id: str, materials: Sequence[str] = (), **config: Any) -> None:
+    """Makes an environment, resets it on each material (none: on what it draws), and closes the fingers."""
+    import gymnasium
+    import numpy as np
+
+    env = gymnasium.make(f"thermograsp/{env_id}", **config)
+    try:
+        env.reset(seed=0)
+        for name in materials:
+            env.reset(options={"material": name})
+        shape = env.action_space.shape
+        assert shape is not None
+        action = np.zeros(shape, np.float32)
+        action[0] = 1.0 if env_id == "Identify-v0" else -1.0  # closes the fingers
+        for _ in range(_CLOSING):
+            _, _, terminated, truncated, _ = env.step(action)
+            if terminated or truncated:
+                break
+    finally:
+        env.close()

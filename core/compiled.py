@@ -1,0 +1,198 @@
+"""numba's `njit`, whose compiled code is kept on disk only as long as nothing that was compiled into it has changed.
+
+numba itself looks no further than the file that holds the function. A function inlined from another file and a constant
+of another module are part of the machine code too: after a change of theirs numba would go on with the old code. Here
+the code is kept under a hash of the function, of all that it calls and of every value that it refers to.
+"""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import inspect
+import logging
+import os
+import types
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numba
+import numpy as np
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.dispatcher import Dispatcher
+from numba.core.serialize import dumps
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.notice import notice
+
+_LOG = logging.getLogger(__name__)
+_TOLD: list[str] = []
+"""The first function that this process has compiled."""
+
+_BELOW = ("numpy", "numba", "scipy")
+"""Packages whose functions numba compiles in its own way: their names say it."""
+
+
+def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator as numba.njit is. cache: keep the compiled code beside the source, or where NUMBA_CACHE_DIR says."""
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        dispatcher: Any = numba.njit(**options)(function)
+        if cache:
+            dispatcher._cache = _Cache(dispatcher)
+        return dispatcher
+
+    return compiled
+
+
+def compiled_hash(kernel: Any) -> str:
+    """Hash of all that is compiled into an njit function: its own code and options, what it calls, and the values
+    that it refers to. Raises InvalidValueError where it refers to something of which the value cannot be told."""
+    total = hashlib.sha256()
+    for piece in _pieces(kernel, set()):
+        total.update(piece.encode() + b"\0")
+    return total.hexdigest()
+
+
+class _Cache(FunctionCache):
+    """A kernel's compiled code on disk. The hash is taken when the code is first looked for, as a function may refer
+    to what its module defines after it."""
+
+    def __init__(self, dispatcher: Any) -> None:
+        super().__init__(dispatcher.py_func)
+        self._dispatcher = dispatcher
+        self._hashed = False
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        self._hash()
+        found = super().load_overload(sig, target_context)
+        if found is None:
+            _tell(self._dispatcher.py_func.__name__)
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Where the disk is full, this process has its code all the same, and the next one compiles again."""
+        self._hash()
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            warnings.warn(
+                f"cannot keep compiled code in {self._cache_path} ({error}): the next process compiles again; make "
+                "room, or set NUMBA_CACHE_DIR to another folder",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+
+    def _hash(self) -> None:
+        if not self._hashed:
+            stamp = compiled_hash(self._dispatcher)
+            self._cache_file = _CacheFile(self._cache_path, self._impl.filename_base, stamp)
+            self._hashed = True
+
+
+def _tell(name: str) -> None:
+    """Says once that this process compiles, and logs what."""
+    if not _TOLD:
+        _TOLD.append(name)
+        notice("compiling for this processor, once: `thermograsp warmup` does it ahead ...")
+    _LOG.info("compiling %s", name)
+
+
+class _CacheFile(IndexDataCacheFile):
+    """Safe where processes write at once. A file of code is named by what it holds and is written before the index
+    that names it; of two indices written at once one is lost, and with it no more than the time to compile again."""
+
+    def save(self, key: Any, data: Any) -> None:
+        content = hashlib.sha256(f"{self._source_stamp}\0".encode() + dumps(key)).hexdigest()
+        base = self._index_name.removesuffix(".nbi")
+        name = f"{base}.{content[:24]}.nbc"
+        self._save_data(name, data)
+        known = self._load_index()
+        self._save_index({**known, key: name})
+        if not known:
+            self._remove_others(base, name)
+
+    def _remove_others(self, base: str, kept: str) -> None:
+        """Code of an older version."""
+        for path in glob.iglob(os.path.join(glob.escape(self._cache_path), f"{glob.escape(base)}.*.nbc")):
+            if os.path.basename(path) != kept:
+                try:
+                    os.unlink(path)
+                except OSError:  # another process was faster, or has it open
+                    pass
+
+
+def _pieces(value: Any, seen: set[int]) -> Iterator[str]:
+    """Text that differs where what is compiled differs. seen: functions that are already in it."""
+    if isinstance(value, Dispatcher):
+        for name, option in sorted(value.targetoptions.items()):
+            yield f"option {name}"
+            yield from _pieces(option, seen)
+        yield from _pieces(value.py_func, seen)
+    elif callable(value) and (getattr(value, "__module__", None) or "").partition(".")[0] in _BELOW:
+        yield f"name {value.__module__}.{getattr(value, '__qualname__', value)}"
+    elif isinstance(value, types.FunctionType):
+        yield f"function {value.__module__}.{value.__qualname__}"
+        if id(value) not in seen:
+            seen.add(id(value))
+            yield from _function(value, seen)
+    elif isinstance(value, np.ndarray) and value.dtype != object:
+        content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
+        yield f"array {value.dtype.str} {value.shape} {content}"
+    elif isinstance(value, tuple | list):
+        yield f"{type(value).__name__} of {len(value)}"
+        for one in value:
+            yield from _pieces(one, seen)
+    elif isinstance(value, frozenset | set):
+        yield f"set {sorted(map(repr, value))}"
+    elif isinstance(value, Mapping):
+        for key in sorted(value, key=repr):
+            yield f"key {key!r}"
+            yield from _pieces(value[key], seen)
+    elif isinstance(value, type):
+        yield f"class {value.__module__}.{value.__qualname__} {getattr(value, '_fields', ())}"
+    elif (
+        value is None
+        or value is Ellipsis
+        or isinstance(value, int | float | complex | str | bytes | np.generic)
+    ):
+        yield f"{type(value).__name__} {value!r}"
+    elif isinstance(value, np.dtype | numba.types.Type):
+        yield f"type {value!r}"
+    elif isinstance(value, types.BuiltinFunctionType | np.ufunc) or inspect.ismodule(value):
+        yield f"name {value.__name__}"
+    else:
+        raise InvalidValueError(
+            f"a compiled function cannot refer to {value!r} ({type(value).__name__}): whether it has changed since "
+            "the code was compiled cannot be told; hand it over as an argument"
+        )
+
+
+def _function(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
+    yield from _pieces(function.__defaults__, seen)
+    for cell in function.__closure__ or ():
+        yield from _pieces(cell.cell_contents, seen)
+    for code in _codes(function.__code__):
+        yield code.co_code.hex()
+        yield repr((code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars, code.co_argcount))
+        yield from _pieces([one for one in code.co_consts if not isinstance(one, types.CodeType)], seen)
+        for name in code.co_names:
+            if name not in function.__globals__:
+                continue
+            value = function.__globals__[name]
+            yield f"global {name}"
+            yield from _pieces(value, seen)
+            if inspect.ismodule(value) and value.__name__.partition(".")[0] not in _BELOW:
+                for attribute in code.co_names:
+                    if hasattr(value, attribute):
+                        yield f"attribute {attribute}"
+                        yield from _pieces(getattr(value, attribute), seen)
+
+
+def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
+    """A function's code and that of those defined in it."""
+    yield code
+    for one in code.co_consts:
+        if isinstance(one, types.CodeType):
+            yield from _codes(one)

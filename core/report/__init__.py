@@ -1,1 +1,0 @@
-"""What runs leave behind: recordings, CSV files, pictures and pages."""

@@ -1,0 +1,17 @@
+"""Datasets of episodes: made on one machine or many, one Parquet file a range of seeds, and read as batches.
+
+    from thermograsp import dataset
+    dataset.make(dataset.Plan(episodes=1000), "grasps", workers=2)
+    for batch in dataset.iterate("grasps", 256, columns=["voltage", "material"], rng=numpy.random.default_rng(0)): ...
+
+docs/datasets.md lists the columns.
+"""
+
+from thermograsp.dataset.keywords import decoded
+from thermograsp.dataset.minari_export import export_minari
+from thermograsp.dataset.plan import Plan, Shard
+from thermograsp.dataset.reading import iterate, load
+from thermograsp.dataset.run import Made, make
+from thermograsp.dataset.shards import read_plan
+
+__all__ = ["Made", "Plan", "Shard", "decoded", "export_minari", "iterate", "load", "make", "read_plan"]

@@ -1,0 +1,35 @@
+"""What a gripper may grasp: shapes, meshes, materials, parts and contents."""
+
+from .assembly import Assembly
+from .library import ObjectPreset, library_object, load_objects, objects
+from .mesh_files import read_surface
+from .meshes import MeshShape, load_mesh
+from .object_solids import object_solid
+from .object_spec import DEFAULT_FRICTION, DEFAULT_MASS, ObjectSpec, placeless, scaled
+from .parts import Part, checked_size
+from .reservoir import RESERVOIR_ROW, Reservoir, ice, reservoir_step, reservoir_temperature, water
+
+__all__ = [
+    "DEFAULT_FRICTION",
+    "DEFAULT_MASS",
+    "RESERVOIR_ROW",
+    "Assembly",
+    "MeshShape",
+    "ObjectPreset",
+    "ObjectSpec",
+    "Part",
+    "Reservoir",
+    "checked_size",
+    "ice",
+    "library_object",
+    "load_mesh",
+    "load_objects",
+    "object_solid",
+    "objects",
+    "placeless",
+    "read_surface",
+    "reservoir_step",
+    "reservoir_temperature",
+    "scaled",
+    "water",
+]

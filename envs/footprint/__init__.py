@@ -1,0 +1,32 @@
+"""Where a pad meets a body, and the pressure between them."""
+
+from typing import TYPE_CHECKING
+
+from thermograsp.doors import opened
+
+if TYPE_CHECKING:
+    from .grasp_body import PAD, GraspBody
+    from .taxels import MOST_PRESSURE, Taxels, checked_taxels
+
+__all__ = [
+    "MOST_PRESSURE",
+    "PAD",
+    "GraspBody",
+    "Taxels",
+    "checked_taxels",
+]
+
+__getattr__ = opened(
+    __name__,
+    {
+        "grasp_body": (
+            "PAD",
+            "GraspBody",
+        ),
+        "taxels": (
+            "MOST_PRESSURE",
+            "Taxels",
+            "checked_taxels",
+        ),
+    },
+)

@@ -1,0 +1,73 @@
+"""thermograsp/Identify-v0: squeeze an object and say what it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...thermal import SEED_MATERIALS, Material
+from ..plant import SimulationConfig
+from ..tasks import IdentifyTask
+from .single import TouchEnv
+from .vector import TouchVectorEnv
+
+Materials = Sequence[str | Material] | None
+
+
+class IdentifyEnv(TouchEnv):
+    """Feel what the object is made of, and declare it.
+
+    Action, Box(-1, 1, (2 + K,)), clipped, K the number of materials: force (above 0: the fingers close with that share
+    of 40 N; else they open), declare (above .5: the episode ends), and a distribution over the materials in their
+    order, softmax of 5 times these.
+
+    Observation: as GraspEnv's.
+
+    Reward: -cost_per_second a second; at the end 1 + log p / log K, p the share given to the true material: 1 for
+    certainty, 0 for an even distribution. Ends with a declaration; truncated after `seconds`, when the last
+    distribution counts the same.
+
+    info: as GraspEnv's, without dropped and crushed; success (declared, and right), prediction (K,), the declared
+    shares, and loss, -log p. The materials' order: env.unwrapped.batch.task.classes.
+
+    Keywords: material (a list of at least two names or Materials, None = the ten seed materials), seconds (s),
+    cost_per_second, and others as GraspEnv's. Two thermostats at different temperatures,
+    sensor_temperature=(36.0, 30.0), tell materials apart even where an object is as warm as one of them.
+    """
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        *,
+        material: Materials = None,
+        seconds: float = 4.0,
+        cost_per_second: float = 0.1,
+        **config: Any,
+    ) -> None:
+        task, config = _prepare(material, seconds, cost_per_second, config)
+        super().__init__(task, render_mode, **config)
+
+
+class IdentifyVectorEnv(TouchVectorEnv):
+    """`num_envs` of them in one array step; keywords as IdentifyEnv's."""
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        material: Materials = None,
+        seconds: float = 4.0,
+        cost_per_second: float = 0.1,
+        **config: Any,
+    ) -> None:
+        task, config = _prepare(material, seconds, cost_per_second, config)
+        super().__init__(task, num_envs, **config)
+
+
+def _prepare(
+    material: Materials, seconds: float, cost: float, config: dict[str, Any]
+) -> tuple[IdentifyTask, dict[str, Any]]:
+    """The task, and what the plant is told."""
+    chosen = SimulationConfig(material=SEED_MATERIALS if material is None else material).choices
+    task = IdentifyTask(tuple(each.name for each in chosen), seconds, cost)
+    return task, {**config, "material": list(chosen)}

@@ -1,0 +1,88 @@
+"""thermograsp/Sort-v0: of two objects that look alike, lift the one that is asked for."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from thermograsp.errors import InvalidValueError
+
+from ..plant import Goal, SimulationConfig
+from ..spaces import SortObserver
+from ..tasks import SortTask
+from .single import TouchEnv
+from .vector import TouchVectorEnv
+
+
+class SortEnv(TouchEnv):
+    """Two objects beside each other, of one shape, colour, mass and friction: lift the one of the asked material, or
+    the hotter one.
+
+    Action, Box(-1, 1, (4,)), clipped: target opening 0 .. 85 mm, force limit 0 .. 40 N, lift rate -50 .. 50 mm/s,
+    lateral rate -100 .. 100 mm/s. The arm starts between the objects, over neither, and reaches 60 mm to either side.
+
+    Observation, a Dict of float32 boxes:
+
+    | key | shape | what | unit |
+    |---|---|---|---|
+    | gripper | (4,) | opening, its rate, height of the arm, commanded force | m, m/s, m, N |
+    | force | (2, 3) | load cell of the left and the right fingertip, pad frame: normal, two tangential | N |
+    | voltage | (2, 16) | heat flux sensors after the ADC, oldest first, 100 Hz | V |
+    | thermostat | (2,) | temperature of the thermostats | °C |
+    | lateral | (1,) | where the arm is between the objects, object 0 lies below 0, object 1 above | m |
+    | goal | (K,) | 1 for the asked one of K materials, in their order; (1,), 1, where the hotter one is asked | 1 |
+
+    Reward: the change of progress, which is 0 unless both fingertips press the right object, and else .3 times the
+    share of 5 cm reached, plus .5 times the share of hold_seconds held there without a break; touching alone gives
+    nothing. Success pays 1 more, less .1 times the share of `seconds` that it took; lifting the other object by
+    2.5 cm, dropping the right one and crushing either take all progress back and 1 more. Ends with any of these;
+    truncated after `seconds`.
+
+    info: success; material (of object 0 and 1), asked, right (0 or 1), object_temperatures (2,) °C; temperature_drop
+    (2,) K, contact_area (2,) m2, conductance (2,) W/(m2 K) and events of the two fingertips, with the object that each
+    touches or touched last; rung (of both), randomized (one draw for both); wrong, dropped or crushed where it ended
+    so; error where the simulation broke down.
+
+    Keywords: goal ("material", "hotter"), material (a list, None = the ten seed materials; two of them in an episode,
+    for "hotter" one), object_temperature (°C; for "hotter" a pair, the cooler one first, 20 and 28 by default),
+    hold_seconds and seconds (s), objects (an ObjectSpec, or a list to draw from; both are alike, of .1 kg and
+    friction .8 where it says nothing else), render_mode, and others as GraspEnv's, in T mode. The plant is simulated.
+    """
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        *,
+        goal: Goal = "material",
+        hold_seconds: float = 1.0,
+        seconds: float = 10.0,
+        **config: Any,
+    ) -> None:
+        super().__init__(SortTask(hold_seconds, seconds), render_mode, **_prepared(goal, config))
+
+
+class SortVectorEnv(TouchVectorEnv):
+    """`num_envs` of them in one array step; keywords as SortEnv's."""
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        goal: Goal = "material",
+        hold_seconds: float = 1.0,
+        seconds: float = 10.0,
+        **config: Any,
+    ) -> None:
+        super().__init__(SortTask(hold_seconds, seconds), num_envs, **_prepared(goal, config))
+
+
+def _prepared(goal: Goal, config: dict[str, Any]) -> dict[str, Any]:
+    """What the batch is told."""
+    plant = config.pop("plant", "simulated")
+    if plant != "simulated":
+        raise InvalidValueError(
+            f"plant {plant!r}: Sort-v0 needs to know which object is right, and a lateral axis; give 'simulated'"
+        )
+    asked = 1 if goal == "hotter" else len(SimulationConfig(material=config.get("material")).choices)
+    observer = partial(SortObserver, goals=asked)
+    return {**config, "plant": "simulated-pair", "goal": goal, "observer": observer}

@@ -1,0 +1,376 @@
+"""What a simulated plant simulates: objects, materials, temperatures, sensor, and how accurately."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from thermograsp.errors import (
+    InvalidValueError,
+    celsius,
+    non_negative,
+    positive,
+    unknown_keyword,
+)
+
+from ...thermal import (
+    SEED_MATERIALS,
+    SIGNAL_CHAINS,
+    Material,
+    Mode,
+    SensorStack,
+    SignalChain,
+    Thermostat,
+    material,
+    materials,
+    sensor,
+)
+from ...thermal.stack import HeatedStack, any_sensor, converter, heated_core, highest_voltage
+from ..bodies import ObjectSpec, scaled
+from ..footprint import GraspBody
+from ..grippers import SHIPPED_GRIPPER, GripperModel
+from ..limits import LEAST_TOLERANCE, MOST_VOLTAGE, SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
+from ..mechanics import SHIPPED, SolverSettings
+from .randomization import (
+    Cause,
+    Delay,
+    Size,
+    checked,
+    draw,
+)
+
+if TYPE_CHECKING:
+    from ..footprint import Taxels
+    from ..sensing import FaceTemperature
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationConfig:
+    """What is simulated. material: a name, a Material, a list to draw from per episode, or None for an object's own and
+    else the ten seed materials. mode: T or O. objects: the object's shape, its name in the library, or a list to draw
+    from per episode (density and friction are the material's where a shape gives none). scene: objects that are all
+    there in place of one, the first is the one to grasp; where they have no material of their own it is drawn for each.
+    tolerance: K of temperature drop that the thermal network keeps; what air at the object's mean temperature adds is
+    left out (docs/environments.md). air: W/(m2 K). Temperatures in °C, that of the sensors one or each fingertip's; an
+    object with a temperature of its own has that, and the room is as warm as object_temperature unless
+    ambient_temperature is given. thermostat: one of finite power (its setpoint is sensor_temperature, its ambient the
+    room where that is given), None for an ideal one. placement: m and degree; the object lies within +- these of its
+    own place, drawn per episode.
+    randomize: what else differs from episode to episode, records of randomization.py. fingertips: how many carry a
+    sensor (1: the left one). anywhere: heat knows where it enters boxes, cylinders and spheres, as it always does of
+    meshes in mode T; without, each patch is the middle of a face. gripper: an MJCF file, an MjSpec or what
+    load_gripper makes of them, None for the shipped one. solver: MuJoCo's time step and settings. substeps: of
+    MuJoCo in a control step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache:
+    keep thermal networks on disk. taxels: (n, m) of the map of pressure over each pad, None for none.
+    face_temperature: (n, m) of the map of temperature over each sensor's face (T mode), None for none."""
+
+    material: str | Material | Sequence[str | Material] | None = None
+    mode: Mode = "T"
+    objects: str | ObjectSpec | Sequence[str | ObjectSpec] | None = None
+    scene: Sequence[str | ObjectSpec] | None = None
+    tolerance: float = 0.05
+    sensor: str | SensorStack | HeatedStack = "seed"
+    signal: str | SignalChain = "ads1115"
+    air: float = 5.0
+    sensor_temperature: float | tuple[float, float] = 36.0
+    thermostat: Thermostat | None = None
+    object_temperature: float = 24.0
+    ambient_temperature: float | None = None
+    placement: tuple[float, float] = (0.002, 2.0)
+    randomize: Sequence[Cause] = ()
+    fingertips: Literal[1, 2] = 2
+    anywhere: bool = False
+    gripper: Any = None
+    solver: SolverSettings = SHIPPED
+    substeps: int = SUBSTEPS
+    threads: int = 1
+    cache: bool = True
+    taxels: tuple[int, int] | None = None
+    face_temperature: tuple[int, int] | None = None
+
+    def __post_init__(self) -> None:
+        if self.mode not in ("T", "O"):
+            raise InvalidValueError(f"mode must be 'T' or 'O', got {self.mode!r}")
+        if self.fingertips not in (1, 2):
+            raise InvalidValueError(f"fingertips must be 1 or 2, got {self.fingertips!r}")
+        positive("tolerance (K)", self.tolerance)
+        non_negative("air (W/(m2 K))", self.air)
+        for value in self.sensor_temperatures:
+            if not THERMOSTAT[0] <= celsius("sensor_temperature", value) <= THERMOSTAT[1]:
+                raise InvalidValueError(
+                    f"sensor_temperature {value:g} °C: a fingertip reads {THERMOSTAT[0]:g} to {THERMOSTAT[1]:g} °C"
+                )
+        if self.thermostat is not None and len(set(self.sensor_temperatures)) > 1:
+            raise InvalidValueError(
+                f"sensor_temperature {self.sensor_temperature!r} °C: a thermostat of finite power has one setpoint; "
+                "give one temperature, or thermostat=None"
+            )
+        celsius("object_temperature", self.object_temperature)
+        if self.ambient_temperature is not None:
+            celsius("ambient_temperature", self.ambient_temperature)
+        for value in self.placement:
+            non_negative("placement (m, degree)", value)
+        checked(self.randomize)
+        _ = self.tactile  # checks it
+        if self.face_temperature is not None:
+            self._check_face()
+        if self.scene is not None and (self.objects is not None or self.mode == "O" or not len(self.scene)):
+            raise InvalidValueError(
+                f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene has one "
+                "object at least, stands in place of objects, and is of mode 'T'"
+            )
+        period = self.substeps * self.solver.timestep
+        if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
+            raise InvalidValueError(
+                f"{self.substeps} substeps of {self.solver.timestep:g} s make a control step of {period:g} s: "
+                f"give a whole number of {SAMPLE_PERIOD:g} s samples"
+            )
+
+    @property
+    def heated(self) -> HeatedStack | None:
+        """The sensor, where it has a heater of its own. Raises UnknownNameError for a name that is none, and
+        InvalidValueError for what it cannot be together with."""
+        found = any_sensor(self.sensor)
+        if not isinstance(found, HeatedStack):
+            return None
+        if self.mode == "O" or self.thermostat is not None:
+            raise InvalidValueError(
+                f"sensor {found.name!r} has a heater of its own: leave thermostat out, and mode at 'T'"
+            )
+        if self.face_temperature is not None:
+            raise InvalidValueError(
+                f"sensor {found.name!r}: face_temperature maps an element on a thermostat; leave it out"
+            )
+        if highest_voltage(found) > MOST_VOLTAGE:
+            raise InvalidValueError(
+                f"sensor {found.name!r}: its divider sends up to {highest_voltage(found):.3g} V, and observations hold "
+                f"{MOST_VOLTAGE:g} V: give the divider a supply of "
+                f"{found.divider.supply * MOST_VOLTAGE / highest_voltage(found):.2g} V"
+            )
+        return found
+
+    @property
+    def room(self) -> float:
+        """°C of the air."""
+        return self.object_temperature if self.ambient_temperature is None else self.ambient_temperature
+
+    @property
+    def stack(self) -> SensorStack:
+        """The sensor's layers that networks know: all, or those in front of its heater."""
+        heated = self.heated
+        if heated is not None:
+            return heated_core(heated, SAMPLE_PERIOD).element
+        return sensor(self.sensor)  # pyright: ignore[reportArgumentType]
+
+    @property
+    def choices(self) -> tuple[Material, ...]:
+        """Materials that an episode draws from. Raises UnknownNameError, and InvalidValueError for an empty list."""
+        given = SEED_MATERIALS if self.material is None else self.material
+        listed = [given] if isinstance(given, str | Material) else list(given)
+        if not listed:
+            raise InvalidValueError(
+                f"material is an empty list: give one of {len(materials())} names, or None"
+            )
+        return tuple(material(name) for name in listed)
+
+    @property
+    def sensor_temperatures(self) -> tuple[float, float]:
+        """°C of the left and the right thermostat. Raises InvalidValueError for what is neither one nor two."""
+        given = np.ravel(self.sensor_temperature).tolist()
+        if len(given) not in (1, 2):
+            raise InvalidValueError(
+                f"sensor_temperature must be one °C or two, got {self.sensor_temperature!r}"
+            )
+        return given[0], given[-1]
+
+    @property
+    def shapes(self) -> tuple[ObjectSpec, ...]:
+        """Shapes that an episode draws from. Raises UnknownNameError; InvalidValueError for an empty list, and where
+        their names or numbers of convex pieces differ, which all environments of a batch share."""
+        if self.scene is not None:
+            return self._all_there[:1]
+        given = ObjectSpec() if self.objects is None else self.objects
+        several = [given] if isinstance(given, str | ObjectSpec) else given
+        listed = tuple(_from_library(one) if isinstance(one, str) else one for one in several)
+        if len({(shape.name, shape.hulls) for shape in listed}) != 1:
+            raise InvalidValueError(
+                f"objects {[shape.name for shape in listed]} of {[shape.hulls for shape in listed]} convex pieces: "
+                "give at least one, all of the same name and number of pieces"
+            )
+        return listed
+
+    @property
+    def others(self) -> tuple[ObjectSpec, ...]:
+        """Of the scene, beside the first."""
+        return self._all_there[1:]
+
+    @property
+    def _all_there(self) -> tuple[ObjectSpec, ...]:
+        if self.scene is None:
+            return ()
+        return _numbered([_from_library(one) if isinstance(one, str) else one for one in self.scene])
+
+    @property
+    def tactile(self) -> Taxels | None:
+        """What maps the pressure over the pads. Raises InvalidValueError for taxels that are none."""
+        if self.taxels is None:
+            return None
+        from ..footprint import Taxels  # nothing that taxels need is loaded without them
+
+        return Taxels(self.taxels)
+
+    def face_maps(self, num_envs: int, stack: SensorStack) -> FaceTemperature | None:
+        """What maps the temperature over the sensors' faces."""
+        if self.face_temperature is None:
+            return None
+        from ..sensing import FaceTemperature  # nothing that it needs is loaded without it
+
+        return FaceTemperature(self.face_temperature, num_envs, stack, self.samples * SAMPLE_PERIOD)
+
+    def _check_face(self) -> None:
+        from ..footprint import checked_taxels
+
+        checked_taxels(self.face_temperature, "face_temperature")
+        if self.mode == "O":
+            raise InvalidValueError(
+                "face_temperature in mode 'O': the fingertip's face is its thermostat there, whose temperature is the "
+                "observation's thermostat; leave face_temperature out or use mode 'T'"
+            )
+
+    @property
+    def samples(self) -> int:
+        """Of voltage and heat in a control step."""
+        return round(self.substeps * self.solver.timestep / SAMPLE_PERIOD)
+
+    @property
+    def chain(self) -> SignalChain:
+        """The electronics, in the range that the sensor needs. Raises InvalidValueError for a name that is none."""
+        if isinstance(self.signal, SignalChain):
+            return converter(any_sensor(self.sensor), self.signal)
+        if self.signal not in SIGNAL_CHAINS:
+            raise InvalidValueError(f"signal must be one of {sorted(SIGNAL_CHAINS)}, got {self.signal!r}")
+        return converter(any_sensor(self.sensor), SIGNAL_CHAINS[self.signal])
+
+    @property
+    def heater(self) -> Thermostat | None:
+        """The fingertips' thermostat in this room."""
+        if self.thermostat is None or self.ambient_temperature is None:
+            return self.thermostat
+        return replace(self.thermostat, ambient=self.ambient_temperature)
+
+    @property
+    def heat(self) -> dict[str, Any]:
+        """Keywords of what computes the heat."""
+        return {
+            "tolerance": self.tolerance,
+            "air": self.air,
+            "dt": SAMPLE_PERIOD,
+            "samples": self.samples,
+            "sensor_temperature": self.sensor_temperature,
+            "cache": self.cache,
+        }
+
+    def body(
+        self, stack: SensorStack, chosen: Material, spec: ObjectSpec, drawn: Mapping[str, float]
+    ) -> GraspBody:
+        """The object, of that material or, where none was asked for, of its own: the material's density and friction
+        where the shape gives none. Raises InvalidValueError for parts in mode O."""
+        if spec.material is not None:
+            chosen = material(spec.material) if self.material is None else chosen
+            spec = replace(spec, material=chosen if spec.parts else None)
+        if spec.parts:
+            if self.mode == "O":
+                raise InvalidValueError(
+                    f"object {spec.name!r} has parts of other materials, which mode 'O' cannot tell: use mode 'T'"
+                )
+            spec = replace(spec, friction=spec.sliding_friction)
+        elif spec.mass is None and spec.density is None:
+            spec = replace(spec, density=chosen.density)
+        if spec.friction is None and chosen.friction is not None:
+            spec = replace(spec, friction=chosen.friction)
+        spec = scaled(
+            spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
+        )
+        if self.mode == "O":
+            spec = replace(spec, elements=(stack.width, stack.thickness))
+        shift, room = drawn["object_temperature_shift"], self.ambient_temperature
+        usual = self.object_temperature + shift
+        return GraspBody(
+            spec,
+            chosen,
+            usual if spec.temperature is None else spec.temperature + shift,
+            self.mode,
+            stack,
+            self.fingertips,
+            drawn["roughness_factor"],
+            usual if room is None else room,
+            self.anywhere,
+        )
+
+    def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
+        """Of every shape and size that may come, so that one too large is refused at once and not in some later
+        episode."""
+        plain, first = draw((), np.random.default_rng(0)), self.choices[0]
+        factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
+        sizes = [1.0, *(factor for some in factors for factor in some)]
+        return [
+            self.body(stack, first, shape, {**plain, "size_factor": size})
+            for shape in self.shapes
+            for size in sizes
+        ]
+
+    def gripper_for(self, bodies: Sequence[GraspBody]) -> GripperModel:
+        """The gripper, read. Raises GripperError for what is none, and InvalidValueError for a body that it cannot
+        take."""
+        if self.gripper is None:
+            return SHIPPED_GRIPPER
+        from ..grippers import load_gripper  # nothing that another gripper needs is loaded without one
+
+        gripper = load_gripper(self.gripper)
+        for body in bodies:
+            gripper.wrist_at(body.spec)
+        return gripper
+
+    @property
+    def most_delay(self) -> int:
+        """Samples by which voltages may be late."""
+        return max((cause.most for cause in self.causes if isinstance(cause, Delay)), default=0)
+
+    @property
+    def causes(self) -> tuple[Cause, ...]:
+        """What randomize draws, in its order: sizes by steps where each needs a thermal network to be searched."""
+        free = (
+            self.mode == "T"
+            and self.anywhere
+            and self.tolerance >= LEAST_TOLERANCE
+            and all(
+                shape.shape == "box" and not shape.parts and shape.reservoir is None for shape in self.shapes
+            )
+        )
+        listed = checked(self.randomize)
+        return tuple(cause if free or not isinstance(cause, Size) else cause.in_steps() for cause in listed)
+
+
+def check_fields(plant: str, given: Iterable[str], *more: str) -> None:
+    """Raises UnknownKeywordError for a name that is neither a field of SimulationConfig nor one of `more`."""
+    known = {*more, *(field.name for field in fields(SimulationConfig))}
+    for name in given:
+        if name not in known:
+            raise unknown_keyword(f"plant {plant!r}", name, known)
+
+
+def _numbered(scene: Sequence[ObjectSpec]) -> tuple[ObjectSpec, ...]:
+    """The objects with a name each: a name that came before gets its number."""
+    names: list[str] = []
+    for number, spec in enumerate(scene):
+        names.append(f"{spec.name}_{number}" if spec.name in names else spec.name)
+    return tuple(replace(spec, name=name) for spec, name in zip(scene, names, strict=True))
+
+
+def _from_library(name: str) -> ObjectSpec:
+    from ..bodies import library_object
+
+    return library_object(name).spec()

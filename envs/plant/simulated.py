@@ -1,0 +1,336 @@
+"""The simulated plant: MuJoCo mechanics, contact heat and the fingertips' electronics for a batch of environments.
+
+B: environments, O: objects of a scene, F = 2 fingertips.
+"""
+
+from __future__ import annotations
+
+import copy
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermograsp.notice import busy
+from thermograsp.plant import Command, Reading
+
+from ..footprint import GraspBody
+from ..limits import SAMPLE_PERIOD
+from ..mechanics import Mechanics, MechanicsState, Motion
+from ..sensing import Electronics, ElectronicsState, GraspHeat, HeatedCores, HeatState, HeatStep, Thermostats
+from .config import SimulationConfig, check_fields
+from .layouts import EpisodeLabels, Layout, Scene, SceneLayout
+from .randomization import CAUSES, draw
+from .truth import INFO, Truth
+
+if TYPE_CHECKING:
+    from ..sensing import FaceTemperatureState, SceneHeatState, SceneHeatStep
+
+
+@dataclass(frozen=True, slots=True)
+class PlantState:
+    """Everything that decides the future of some environments of a simulated plant; picklable. rest: (n, O) m, heights
+    at which the objects lay. task: what the layout keeps of each episode."""
+
+    mechanics: MechanicsState
+    heat: HeatState | SceneHeatState
+    electronics: ElectronicsState
+    thermostats: tuple[np.ndarray, ...]
+    faces: FaceTemperatureState | None
+    generators: tuple[np.random.Generator, ...]
+    drawn: tuple[dict[str, float], ...]
+    scenes: tuple[Scene, ...]
+    rest: np.ndarray
+    task: np.ndarray
+
+
+class SimulatedPlant:
+    """A batch of simulated grippers, each over the objects of its scene; see thermograsp.plant.Plant. layout: draws the
+    scenes; None for the config's objects or scene. scenes: each environment's objects."""
+
+    def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
+        self.layout: Layout = SceneLayout(config) if layout is None else layout
+        self.num_envs, self.config, self._stack = num_envs, config, config.stack
+        possible, objects = self.layout.possible, len(self.layout.specs)
+        self.heat: Any = GraspHeat(num_envs, **config.heat) if self._alone else self._scene_heat()
+        self.mechanics = Mechanics(
+            self.layout.specs,
+            num_envs,
+            threads=config.threads,
+            library=[body.spec for body in possible if body.spec.mesh],
+            settings=config.solver,
+            gripper=config.gripper_for(possible),
+            lateral=self.layout.lateral,
+            contacts=config.taxels is not None or config.face_temperature is not None,
+        )
+        self.dt = config.substeps * config.solver.timestep
+        self.sample_rate = 1 / SAMPLE_PERIOD
+        self.scenes: list[Scene] = [(possible[0],) * objects] * num_envs
+        self._taxels, self._faces = config.tactile, config.face_maps(num_envs, self._stack)
+        heated, starts = config.heated, config.sensor_temperatures
+        per_kelvin = self._stack.seebeck if heated is None else 1.0  # a divider's voltage comes as it is
+        self._electronics = Electronics(
+            num_envs, config.chain, per_kelvin, SAMPLE_PERIOD, config.samples, config.most_delay
+        )
+        if heated is None:
+            self._thermostats = Thermostats(num_envs, config.heater, starts, self.dt)
+            self._rest_voltage = np.zeros(2)
+        else:
+            self._thermostats = HeatedCores(num_envs, heated, starts, config.room, self.dt)
+            self._rest_voltage = heated.divider.voltage(np.array(starts))
+        self._info = (*INFO, *self.layout.info, *(() if self._thermostats.ideal else ("over_temperature",)))
+        self._causes, nothing = config.causes, np.random.default_rng(0)
+        self._rngs: list[np.random.Generator] = [nothing] * num_envs
+        self._drawn = [draw((), nothing)] * num_envs
+        self._rest = np.zeros((num_envs, objects))
+        self._task = np.zeros((num_envs, self.layout.task_size), int)
+        # Replaced, never written to: readings keep them.
+        crushing = np.asarray(self.layout.labels(self.scenes[0], ("",) * objects).crushing_force)
+        self._labels = EpisodeLabels(
+            np.full(num_envs, "", object),
+            np.full(num_envs, "", object),
+            np.full((num_envs, *crushing.shape), np.inf),
+        )
+        self._randomized: dict[str, np.ndarray] = {}
+
+    @property
+    def model(self) -> Any:
+        """The mujoco.MjModel of the first environment's scene."""
+        return self.mechanics.model
+
+    @property
+    def bodies(self) -> list[GraspBody]:
+        """The first object of each environment, which it is to grasp."""
+        return [scene[0] for scene in self.scenes]
+
+    @property
+    def things(self) -> list[GraspBody]:
+        """The old name of `bodies`; it goes with version 0.3."""
+        warnings.warn("SimulatedPlant.things is now SimulatedPlant.bodies", DeprecationWarning, stacklevel=2)
+        return self.bodies
+
+    def reset(
+        self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
+    ) -> Reading:
+        """Starts the rows anew: draws objects and placement, opens the gripper. options: see the layout."""
+        chosen, centred = list(rows), []
+        for row, rng in zip(chosen, rngs, strict=True):
+            episode = self.layout.draw(rng, options)
+            self._rngs[row], self._drawn[row] = rng, episode.drawn
+            self._electronics.reset(row, episode.drawn, self._rest_voltage)
+            self.scenes[row], self._task[row] = episode.scene, episode.task
+            centred.append(episode.centred)
+        with busy(f"preparing {len(rows)} scene{'s' * (len(rows) > 1)}: shapes and thermal networks"):
+            self._place(chosen, centred)
+        self._rest[chosen] = self.mechanics.object_pose[chosen, :, 2]
+        self._relabel(chosen)
+        rest, scene = self.heat.rest(), None
+        if not self._alone:
+            rest, scene = rest.fingertips, rest
+        force = np.zeros((self.num_envs, self._rest.shape[1], 2, 3))
+        truth, error = self._truth(self.mechanics.object_pose[:, :, 2], force, rest, scene)
+        return Reading(
+            opening=self.mechanics.opening,
+            opening_rate=np.zeros(self.num_envs),
+            height=self.mechanics.height,
+            force=np.zeros((self.num_envs, 2, 3)),
+            voltage=np.zeros((self.num_envs, self.config.samples, 2)) + self._rest_voltage,
+            thermostat=self._thermostats.measured,
+            truth=truth,
+            error=error,
+            told=self._info,
+            lateral=self._lateral,
+            pressure=None if self._taxels is None else self._taxels.nothing(self.num_envs),
+            face_temperature=None if self._faces is None else self._faces.rest(rest),
+        )
+
+    def step(self, command: Command) -> Reading:
+        """One control step of all environments."""
+        motions = self._move(command)
+        scene = owner = None
+        if self._alone:
+            step = self.heat.advance(motions[0].normal, motions[0].place)
+        else:
+            scene = self.heat.advance(
+                np.stack([motion.normal for motion in motions], axis=1),
+                np.stack([motion.place for motion in motions], axis=1),
+            )
+            step, owner = scene.fingertips, scene.owner
+        force = np.stack([motion.force for motion in motions], axis=1)
+        if not self._thermostats.ideal:
+            self._regulate(step, np.linalg.norm(_summed(force), axis=2))
+        heights = np.stack([motion.object_height for motion in motions], axis=1)
+        truth, error = self._truth(heights, force, step, scene)
+        return Reading(
+            opening=motions[0].opening,
+            opening_rate=motions[0].opening_rate,
+            height=motions[0].height,
+            force=_summed(force),
+            voltage=self._electronics.measure(self._sent(step), self._rngs),
+            thermostat=self._thermostats.measured,
+            truth=truth,
+            error=error,
+            told=self._info,
+            lateral=self._lateral,
+            pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
+            face_temperature=None if self._faces is None else self._faces.step(self.mechanics, step, owner),
+        )
+
+    def temperatures(self, row: int) -> tuple[float, ...]:
+        """°C between which the row's heat stays: of its thermostats, objects, room and reservoirs."""
+        objects = (celsius for body in self.scenes[row] for celsius in body.extremes)
+        return (*self.heat.sensor_temperatures[row], *objects)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def state(self, rows: Sequence[int]) -> PlantState:
+        """A copy of the rows' state."""
+        chosen = list(rows)
+        return PlantState(
+            mechanics=self.mechanics.state(np.array(chosen)),
+            heat=self.heat.state(chosen),
+            electronics=self._electronics.state(chosen),
+            thermostats=self._thermostats.state(chosen),
+            faces=None if self._faces is None else self._faces.state(chosen),
+            generators=tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
+            drawn=tuple(self._drawn[row] for row in chosen),
+            scenes=tuple(self.scenes[row] for row in chosen),
+            rest=self._rest[chosen],
+            task=self._task[chosen],
+        )
+
+    def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
+        """Puts the rows into a state; what follows is bit-identical to what followed it first. Returns the generators
+        the rows now draw from."""
+        chosen = list(rows)
+        self.mechanics.set_state(state.mechanics, np.array(chosen))
+        self.heat.set_state(chosen, state.heat)
+        self._electronics.set_state(chosen, state.electronics)
+        self._thermostats.set_state(chosen, state.thermostats)
+        rngs = tuple(copy.deepcopy(rng) for rng in state.generators)
+        for k, row in enumerate(chosen):
+            self.scenes[row], self._rngs[row], self._drawn[row] = state.scenes[k], rngs[k], state.drawn[k]
+        if self._faces is not None and state.faces is not None:
+            self._faces.set_state(chosen, state.faces, state.scenes)
+        self._rest[chosen], self._task[chosen] = state.rest, state.task
+        self._relabel(chosen)
+        return rngs
+
+    @property
+    def _alone(self) -> bool:
+        """Whether there is one object, whose heat needs no owner of each fingertip."""
+        return len(self.layout.specs) == 1
+
+    @property
+    def _lateral(self) -> np.ndarray | None:
+        return self.mechanics.lateral if self.layout.lateral else None
+
+    def _scene_heat(self) -> Any:
+        from ..sensing import SceneHeat  # nothing that several objects need is loaded without them
+
+        return SceneHeat(self.num_envs, len(self.layout.specs), **self.config.heat)
+
+    def _move(self, command: Command) -> tuple[Motion, ...]:
+        """One control step of the mechanics, told of each object."""
+        mechanics, substeps = self.mechanics, self.config.substeps
+        arm = command.opening, command.force_limit, command.lift_rate
+        if self.layout.lateral:
+            sideways = np.zeros(self.num_envs) if command.lateral_rate is None else command.lateral_rate
+            return mechanics.slide(*arm, sideways, substeps)
+        return (mechanics.advance(*arm, substeps),) if self._alone else mechanics.advance_all(*arm, substeps)
+
+    def _place(self, rows: list[int], centred: Sequence[Scene]) -> None:
+        """Puts the rows' scenes on the table, all at its first temperature. centred: as in Episode."""
+        scenes = [self.scenes[row] for row in rows]
+        self.mechanics.reset(rows, [tuple(body.spec for body in scene) for scene in scenes])
+        errors = np.array([[self._drawn[row]["thermostat_error"]] for row in rows])
+        setpoints = self._thermostats.setpoints[rows] + errors
+        if self._alone:
+            self.heat.reset(rows, [scene[0] for scene in centred], setpoints)
+        else:
+            self.heat.reset(rows, centred, setpoints, waiting=self.layout.build_when_touched)
+        if self._faces is not None:
+            self._faces.reset(rows, scenes)
+        self._thermostats.reset(rows)
+
+    def _regulate(self, step: HeatStep, force: np.ndarray) -> None:
+        """Lets thermostats of finite power, or heaters of the sensors' own, answer to the heat drawn from them, and
+        tells of those that are too hot. force: (B, F) N on the pads."""
+        first, drawn = self.heat.sensor_temperatures, step.told["drawn"]
+        if isinstance(self._thermostats, HeatedCores):
+            after = self._thermostats.step(drawn, first, step.drop[:, -1], force)
+        else:
+            after = self._thermostats.step(drawn, first)
+        self.heat.set_thermostats(after)
+        self._thermostats.tell(step.told)
+
+    def _sent(self, step: HeatStep) -> np.ndarray:
+        """(B, N, F) what the electronics take: K of drop, or V of heated sensors' dividers."""
+        if isinstance(self._thermostats, HeatedCores):
+            return np.ascontiguousarray(self._thermostats.voltage(step.drop))
+        return step.drop
+
+    def _relabel(self, rows: Sequence[int]) -> None:
+        """Names what the rows hold now."""
+        labels = EpisodeLabels(*(values.copy() for values in self._labels))
+        for row in rows:
+            rung = self.heat.rung(row)
+            found = self.layout.labels(self.scenes[row], (rung,) if self._alone else rung)
+            for values, value in zip(labels, found, strict=True):
+                values[row] = value
+        self._labels = labels
+        names = [CAUSES[type(cause)][0] for cause in self._causes]
+        self._randomized = {name: np.array([drawn[name] for drawn in self._drawn]) for name in names}
+
+    def _truth(
+        self, heights: np.ndarray, force: np.ndarray, step: HeatStep, scene: SceneHeatStep | None
+    ) -> tuple[Truth, tuple[str, ...]]:
+        """What is known of a step, and why an environment can't go on. heights: (B, O) m. force: (B, O, F, 3) N."""
+        heat, labels, lift = step.told, self._labels, heights - self._rest
+        error = tuple(self.mechanics.failure)
+        truth = Truth(
+            mode=self.config.mode,
+            material=labels.material,
+            temperature_drop=step.drop[:, -1],
+            temperature_drops=step.drop,
+            contact_area=heat["area"],
+            conductance=heat["conductance"],
+            sensor_surface=heat["sensor_surface"],
+            object_surface=heat["object_surface"],
+            object_temperature=heat["object_temperature"],
+            heat_flow=heat["flow"],
+            heat_drawn=heat["drawn"],
+            heat=heat["heat"],
+            heat_imbalance=heat["imbalance"],
+            heat_exchanged=heat["exchanged"],
+            reservoir_temperature=heat["reservoir_temperature"],
+            over_temperature=heat["over_temperature"],
+            events=step.events,
+            rung=labels.rung,
+            lift=lift[:, 0],
+            crushing_force=labels.crushing_force,
+            randomized=self._randomized,
+            failed=np.array([bool(reason) for reason in error]),
+        )
+        if scene is not None:
+            truth["object_temperatures"] = scene.objects["object_temperature"].copy()
+            truth["touched"] = scene.owner.copy()
+        self.layout.extend(truth, self._task, lift, force)
+        return truth, error
+
+
+def _summed(force: np.ndarray) -> np.ndarray:
+    """(B, F, 3) N on all objects, from (B, O, F, 3) one after the other."""
+    total = force[:, 0].copy()
+    for number in range(1, force.shape[1]):
+        total += force[:, number]
+    return total
+
+
+def simulated_plant(url: str, num_envs: int, **config: Any) -> SimulatedPlant:
+    """The plant behind plant="simulated". Keywords as in SimulationConfig. Raises UnknownKeywordError for others."""
+    check_fields(url, config)
+    return SimulatedPlant(num_envs, SimulationConfig(**config))

@@ -1,0 +1,57 @@
+"""What fingertips feel of their contacts: heat, thermostats and electronics of a batch."""
+
+from typing import TYPE_CHECKING
+
+from thermograsp.doors import opened
+
+if TYPE_CHECKING:
+    from .cores import HeatedCores
+    from .electronics import Electronics, ElectronicsState
+    from .face_temperature import FaceTemperature, FaceTemperatureState
+    from .heat import GraspHeat, HeatState, HeatStep
+    from .rows import EVENTS
+    from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
+    from .thermostats import Thermostats
+
+__all__ = [
+    "EVENTS",
+    "Electronics",
+    "ElectronicsState",
+    "FaceTemperature",
+    "FaceTemperatureState",
+    "GraspHeat",
+    "HeatState",
+    "HeatStep",
+    "HeatedCores",
+    "SceneHeat",
+    "SceneHeatState",
+    "SceneHeatStep",
+    "Thermostats",
+]
+
+__getattr__ = opened(
+    __name__,
+    {
+        "cores": ("HeatedCores",),
+        "electronics": (
+            "Electronics",
+            "ElectronicsState",
+        ),
+        "face_temperature": (
+            "FaceTemperature",
+            "FaceTemperatureState",
+        ),
+        "heat": (
+            "GraspHeat",
+            "HeatState",
+            "HeatStep",
+        ),
+        "rows": ("EVENTS",),
+        "scene_heat": (
+            "SceneHeat",
+            "SceneHeatState",
+            "SceneHeatStep",
+        ),
+        "thermostats": ("Thermostats",),
+    },
+)

@@ -1,0 +1,245 @@
+"""Boxes under fingertips: their networks from heat kernels, made as they are touched, and what goes on in them.
+
+An object remembers MOST_PLACES places, those under fingertips among them; what heat did elsewhere is in its mean.
+
+B: rows, F: fingertips, S: substeps.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from threadpoolctl import ThreadpoolController
+
+from ...thermal import Material, SensorStack
+from ...thermal.batch import (
+    HELD,
+    POLE_HEAT,
+    WHERE,
+    BodyResidues,
+    FixedTables,
+    TipRows,
+    body_residues,
+    fixed_heat,
+    fixed_tables,
+    fixed_tip_rows,
+    no_fixed_tables,
+    set_body,
+    set_gram,
+    tip_residues,
+)
+from ...thermal.kernels import Patches, Resolution, box_side, tip
+from ..footprint import GraspBody
+from ..limits import LEAST_TOLERANCE
+from .places import BOX_ROW, MOST_PLACES, Place, Rectangle, Touched, place_of, strayed
+
+MOST_DIFFERENCE = 15.5
+"""K between sensor and object up to which a tolerance is meant to be kept."""
+_LEVEL = Resolution(10, 3)
+_KEPT = 512  # networks
+
+_BLAS = ThreadpoolController()
+
+
+class BoxHeat:
+    """The boxes among `rows` rows. dt: s of a heat sample. tolerance: K."""
+
+    def __init__(self, rows: int, tolerance: float, dt: float) -> None:
+        self._level = _LEVEL if tolerance >= LEAST_TOLERANCE else None
+        self._dt = dt
+        self._tips = 0
+        self._stack: SensorStack | None = None
+        self._bodies: dict[int, tuple[GraspBody, float]] = {}
+        self._touched: dict[int, Touched] = {}
+        self._rows = np.zeros(rows, BOX_ROW)
+        self._strayed = np.zeros((2 * rows, 2), np.int64)
+        self.tables: FixedTables = no_fixed_tables(dt)
+
+    @property
+    def rung(self) -> str:
+        """The model's name."""
+        level = self._of_level
+        return f"kernels:{level.rates}x{level.patterns}"
+
+    def serves(self, body: GraspBody, difference: float) -> bool:
+        """Whether it keeps the tolerance for that object, that is up to difference K from a sensor."""
+        spec = body.spec
+        return (
+            self._level is not None
+            and body.anywhere
+            and difference <= MOST_DIFFERENCE
+            and body.mode == "T"
+            and spec.shape == "box"
+            and not spec.parts
+            and spec.reservoir is None
+            and self._stack in (None, body.stack)
+        )
+
+    def start(self, row: int, body: GraspBody, film: float) -> None:
+        """The row's object is this one, touched nowhere yet, in air of W/(m2 K), its state zeros."""
+        if self._stack is None:
+            self._stack, self._tips = body.stack, body.fingertips
+            level = self._of_level
+            whole = tip(body.stack, _whole(body.stack), level).side
+            self.tables = fixed_tables(
+                len(self._rows), self._tips, MOST_PLACES, level.patterns, whole, self._dt
+            )
+        self._bodies[row] = body, film
+        self._touched[row] = Touched((), (-1,) * self._tips, ())
+        mine = self._rows[row]
+        mine["size"], mine["face"], mine["boxed"] = body.spec.size, -1, 1
+        mine["normal"] = 3 - int(body.law["across"].sum())
+        self.tables.links[row] = 0
+        self.tables.links[row, WHERE : WHERE + self._tips] = -1
+
+    def stop(self, row: int) -> None:
+        """The row holds no box."""
+        self._rows["boxed"][row] = 0
+        self._bodies.pop(row, None)
+        self._touched.pop(row, None)
+
+    def wait(self, row: int, state: np.ndarray) -> None:
+        """The row's network is made before anything touches it, with places in the middle of its faces."""
+        middles = np.zeros((2, 3))
+        middles[:, self._rows["normal"][row]] = -1.0, 1.0
+        self.settle(row, [0], middles, state)
+
+    def strayed(self, force: np.ndarray, place: np.ndarray, samples: int) -> list[tuple[int, int, list[int]]]:
+        """(sample, row, fingertips) of those that begin to press in that one of a step's samples where they have no
+        place. force: (B, S, F) N. place: (B, F, 3) m, in the objects' frames."""
+        if self._stack is None:
+            return []
+        count = strayed(self._rows, force, place, self._tips, self._stack.width, self._strayed)
+        asked: dict[tuple[int, int], list[int]] = {}
+        for row, fingertip in self._strayed[:count].tolist():
+            begun = int((force[row, :, fingertip] > 0).argmax())
+            asked.setdefault((begun * samples // force.shape[1], row), []).append(fingertip)
+        return [(sample, row, fingertips) for (sample, row), fingertips in asked.items()]
+
+    def settle(self, row: int, fingertips: list[int], middles: np.ndarray, state: np.ndarray) -> None:
+        """These fingertips, and those that have no place yet, are at their middles of (F, 3) m from now on. The heat of
+        the object and of fingertips in the row's state (n,) stays to round-off."""
+        touched, mine, tables = self._touched[row], self._rows[row], self.tables
+        body, _ = self._bodies[row]
+        size, width = body.spec.size, body.stack.width
+        new = [f for f in range(self._tips) if touched.contacts[f] < 0 and f not in fingertips]
+        before = fixed_heat(tables, row, state)
+        for f in (*fingertips, *new):
+            place = place_of(mine, width, middles[f])
+            if place is not None:
+                idle = [not state[self._field(k)].any() for k in range(len(touched.places))]
+                touched, gone = touched.moved(f, place, idle, size, width)
+                if gone is not None:
+                    state[self._field(gone)] = 0.0
+        if not touched.places:
+            return
+        tips = [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)]
+        self._make(row, touched)
+        for f in range(self._tips):
+            now = fixed_tip_rows(tables, self._element(row, f)).heat
+            self._keep_heat(state[self.fingertip(f)], tips[f], now)
+        state[0] += (before - fixed_heat(tables, row, state)) / tables.slow[row, HELD]
+
+    def shift(self, rows: np.ndarray, state: np.ndarray, change: np.ndarray) -> None:
+        """The thermostats moved by change (B, F) K: the fields above them in rows (n,) of state (B, n) are lower."""
+        lasting, count = self.tables.poles.shape[1], self.tables.rates.shape[1]
+        for f in range(self._tips):
+            first, by = self.fingertip(f).start, change[rows, f : f + 1]
+            state[rows, first : first + lasting] -= by * self.tables.poles[POLE_HEAT]
+            state[rows, first + lasting : first + lasting + count] -= by
+
+    def fingertip(self, number: int) -> slice:
+        """Where a fingertip's own states are in a row's."""
+        of_tip = self.tables.of_tip
+        first = self.tables.states - (self._tips - number) * of_tip
+        return slice(first, first + of_tip)
+
+    def tip_rows(self, row: int, fingertip: int) -> TipRows:
+        """What a fingertip's states tell."""
+        return fixed_tip_rows(self.tables, self._element(row, fingertip))
+
+    def carry(self, source: int, target: int, fingertip: int, state: np.ndarray) -> None:
+        """The fingertip's field in state (B, n) goes from one row to another, with all its heat."""
+        own = self.fingertip(fingertip)
+        state[target, own] = state[source, own]
+        elements = (self._element(row, fingertip) for row in (source, target))
+        self._keep_heat(state[target, own], *(fixed_tip_rows(self.tables, each).heat for each in elements))
+
+    def touched(self, row: int) -> Touched:
+        """For set_touched."""
+        return self._touched[row]
+
+    def set_touched(self, row: int, touched: Touched) -> None:
+        """The row's network is that of these places; its state is left alone."""
+        self._make(row, touched)
+
+    @property
+    def _of_level(self) -> Resolution:
+        assert self._level is not None
+        return self._level
+
+    def _element(self, row: int, fingertip: int) -> int:
+        return int(self.tables.links[row, WHERE + self._tips + fingertip])
+
+    def _field(self, place: int) -> slice:
+        """Where what has flowed through a place is in a row's state."""
+        each = self.tables.patterns * self.tables.rates.shape[1]
+        first = 1 + self.tables.rates.shape[1] + place * each
+        return slice(first, first + each)
+
+    def _keep_heat(self, state: np.ndarray, before: np.ndarray, after: np.ndarray) -> None:
+        """Puts the heat that a fingertip's states (n,) have by one row and not by the other into its slowest."""
+        state[0] += ((before - after) * state).sum() / after[0]
+
+    def _make(self, row: int, touched: Touched) -> None:
+        """The tables of the row's box and elements are those of these places."""
+        tables, mine, last = self.tables, self._rows[row], self._touched[row]
+        body, film = self._bodies[row]
+        size, stack, level = body.spec.size, body.stack, self._of_level
+        with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+            if touched.places != last.places:
+                places = touched.places
+                set_body(tables, row, _network(body.material, size, film, places, stack, level))
+            for f, number in enumerate(touched.contacts):
+                if number >= 0:
+                    covered = touched.places[number].covered(size, stack.width)
+                    element = 0 if covered == _whole(stack) else 1 + row * self._tips + f
+                    if element:
+                        tables.tips[element] = _element(stack, covered, level)
+                    tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
+                    mine["face"][f], mine["pad"][f] = (
+                        touched.places[number].face,
+                        touched.places[number].middle,
+                    )
+        self._touched[row] = touched
+        set_gram(tables, row)
+
+
+def _whole(stack: SensorStack) -> Rectangle:
+    return (0.0, stack.width), (0.0, stack.width)
+
+
+@lru_cache(maxsize=_KEPT)
+def _element(stack: SensorStack, covered: Rectangle, level: Resolution) -> np.ndarray:
+    return tip_residues(tip(stack, covered, level).side)
+
+
+@lru_cache(maxsize=_KEPT)
+def _network(
+    material: Material,
+    size: tuple[float, float, float],
+    film: float,
+    places: tuple[Place, ...],
+    stack: SensorStack,
+    level: Resolution,
+) -> BodyResidues:
+    """Of a box that is touched there by such sensors."""
+    covered = np.array([place.covered(size, stack.width) for place in places])
+    corner = np.array([place.middle for place in places]) - stack.width / 2
+    half = (covered[:, :, 1] - covered[:, :, 0]) / 2
+    patches = Patches(np.array([place.face for place in places]), corner + covered.mean(axis=2), half)
+    tips = tuple(tip(stack, place.covered(size, stack.width), level) for place in places)
+    capacity = material.volumetric_heat_capacity * math.prod(size)
+    return body_residues(box_side(material, size, film, patches, tips, level), capacity, film > 0)

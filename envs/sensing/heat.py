@@ -1,0 +1,397 @@
+"""Contact to heat: forces of every substep become conductances, patches and the fingertips' temperature drops.
+
+B: environments, S: substeps, F = 2 fingertips, N: heat samples of a control step, K: states of the largest network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...thermal import (
+    CONTACT_LAW,
+    Demand,
+    free_area,
+    shift_thermostats,
+)
+from ...thermal.batch import carry_matrix
+from ..bodies import RESERVOIR_ROW
+from ..footprint import GraspBody
+from .boxes import BoxHeat
+from .kernel import advance_boxes, advance_grasps
+from .networks import HeatNetworks
+from .places import Touched
+from .rows import EVENTS, HEAT_ROW, HEAT_TOLD, RELEASE
+
+if TYPE_CHECKING:
+    from ...thermal import SurfacePatch
+    from .touches import Touches
+
+CONDUCTANCES = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K), over which a network must keep the tolerance
+HORIZON = 20.0  # s of contact over which it must
+LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
+
+
+@dataclass(frozen=True, slots=True)
+class HeatState:
+    """Everything that the heat of some environments remembers; picklable. rows: their HEAT_ROW records. state (n, K).
+    things: each environment's object. places: where a box has been touched; the patches of another one that is touched
+    anywhere, and each fingertip's; None for a plate."""
+
+    rows: np.ndarray
+    state: np.ndarray
+    things: tuple[GraspBody, ...]
+    places: tuple[Touched | tuple[tuple[SurfacePatch, ...], tuple[int, ...]] | None, ...]
+
+
+class HeatStep(NamedTuple):
+    """One control step. drop (B, N, F) K at the end of each heat sample. told (B,): HEAT_TOLD records of
+
+    conductance (B, F) W/(m2 K) and area (B, F) m2 of the contact: their product is the mean over the substeps; heat
+    sees in each sample the mean of that sample's substeps. sensor_surface, object_surface (B, F) °C, means over the
+    contact. object_temperature (B,) °C, the object's mean. heat (B, 3) J gained by left element, right element and
+    object. flow (B, F) W into the object's side and air_loss (B,) W, the step's means. reservoir_temperature (B,) °C,
+    nan where there is none, and reservoir_flow (B,) W into the object, the step's mean. drawn (B, F) W from the
+    thermostats. over_temperature (B,): one of the thermostats has been too hot, and the heaters are off. imbalance (B,)
+    J that the object's side gained beyond what flowed in less what the air took, and exchanged (B,) J, the flow's
+    absolute sum, since the start.
+    """
+
+    drop: np.ndarray
+    told: np.ndarray
+
+    @property
+    def events(self) -> np.ndarray:
+        """(B,) of tuples of (kind, fingertip)."""
+        codes = self.told["events"]
+        return EVENTS[codes[:, 0], codes[:, 1]]
+
+
+class GraspHeat:
+    """The thermal side of `num_envs` grasps. tolerance: K. air: W/(m2 K) on the objects. dt: s, spacing of heat
+    samples, `samples` of them in a control step. sensor_temperature: °C of the thermostats, one or
+    each fingertip's. cache: keep networks on disk. least_sensor_states: of each fingertip (T mode), also where the
+    tolerance needs fewer."""
+
+    def __init__(
+        self,
+        num_envs: int,
+        *,
+        tolerance: float,
+        air: float,
+        dt: float,
+        samples: int,
+        sensor_temperature: float | tuple[float, float],
+        cache: bool = True,
+        least_sensor_states: int = 0,
+    ) -> None:
+        self._tolerance, self._air, self._samples = tolerance, air, samples
+        self._sensor_temperature, self._cache = sensor_temperature, cache
+        self._networks = HeatNetworks(
+            dt, cache, least_sensor_states, lambda: set(self._rows["network"].tolist())
+        )
+        self._boxes = BoxHeat(num_envs, tolerance, dt)
+        self._fingertips = 2
+        # By row, once it has been reset.
+        self._things: dict[int, GraspBody] = {}
+        self._demands: dict[int, Demand] = {}
+        self._films: dict[int, float] = {}
+        self._touches: dict[int, Touches] = {}
+        self._waiting: set[int] = set()
+        self._rows = np.zeros(num_envs, HEAT_ROW)
+        self._laws = np.zeros(num_envs, CONTACT_LAW)
+        self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
+        self._state = np.zeros((num_envs, 0))
+
+    def reset(
+        self,
+        rows: Sequence[int],
+        things: Sequence[GraspBody],
+        sensor_temperatures: np.ndarray | None = None,
+        *,
+        waiting: Collection[int] = (),
+    ) -> None:
+        """The rows start with new objects, everything at its first temperature. sensor_temperatures: °C of each row's
+        thermostats, (n, F), where they differ from the batch's. waiting: rows whose networks are made when something
+        happens to them."""
+        temperatures = np.broadcast_to(self._sensor_temperature, (len(rows), 2))
+        if sensor_temperatures is not None:
+            temperatures = sensor_temperatures
+        for row, thing, temperature in zip(rows, things, temperatures, strict=True):
+            self._place(row, thing, temperature)
+            fresh = self._rows[row]
+            fresh["sensor_temperature"] = temperature
+            fresh["difference"] = temperature - thing.temperature
+            fresh["known"] = thing.mode == "O"
+            fresh["anchor"] = thing.spec.element_places
+            for name in ("offset", "stored", "touching", "books"):
+                fresh[name] = 0
+            fresh["begun"] = thing.spec.reservoir is not None or fresh["ambient"] != 0
+            if thing.spec.reservoir is not None:
+                fresh["enthalpy"] = thing.spec.reservoir.row(thing.temperature)[1]
+            if fresh["boxed"] or row not in waiting or fresh["begun"]:
+                self._build(row)
+            if fresh["boxed"] and fresh["begun"]:
+                self._boxes.wait(row, self._state[row])
+
+    def rung(self, row: int) -> str:
+        """The model that computes an environment's heat."""
+        if row in self._waiting:
+            return ""
+        mine = self._rows[row]
+        return self._boxes.rung if mine["boxed"] else self._networks.rungs[mine["network"]]
+
+    def advance(
+        self, force: np.ndarray, place: np.ndarray, carried: Sequence[tuple[int, int, int, int]] = ()
+    ) -> HeatStep:
+        """One control step. force: (B, S, F) N, normal, of each substep, 0 where apart. place: (B, F, 3) m, the
+        sensor faces' middles in the object's frame at the end of the step. carried: (sample, source, target,
+        fingertip) of fields that go from one row to another as that sample begins, as in carry."""
+        for row in [row for row in self._waiting if force[row].any()]:
+            self._build(row)
+        moved = self._moved(force, place) if self._touches else []
+        drop = np.empty((len(force), self._samples, 2))
+        told = np.empty(len(force), HEAT_TOLD)
+        normal, middles = np.ascontiguousarray(force, dtype=float), np.ascontiguousarray(place, dtype=float)
+        boxed = np.count_nonzero(self._rows["boxed"])
+        strayed = self._boxes.strayed(normal, middles, self._samples) if boxed else []
+        starts = sorted({0, *(sample for sample, *_ in (*strayed, *carried, *moved))})
+        for first, last in pairwise((*starts, self._samples)):
+            for sample, row, tips in strayed:
+                if sample == first:
+                    self._boxes.settle(row, tips, middles[row], self._state[row])
+            for sample, source, target, tip in carried:
+                if sample == first:
+                    self._leave(told, sample, source, tip)
+                    self.carry(source, target, tip)
+            for sample, row, tip in moved:
+                if sample == first:
+                    self._touch(row, self._touches[row].moved(tip, place[row, tip]))
+            now = (normal, middles, drop, told, first, last)
+            tables = self._networks.tables(self._fingertips)
+            if boxed < len(drop):
+                advance_grasps(self._laws, self._reservoirs, self._rows, self._state, *now, *tables)
+            if boxed:
+                advance_boxes(self._laws, self._rows, self._state, *now, *self._boxes.tables)
+        return HeatStep(drop, told)
+
+    def rest(self) -> HeatStep:
+        """What a step would tell of a batch in which nothing has touched yet."""
+        told = np.zeros(len(self._rows), HEAT_TOLD)
+        told["sensor_surface"] = self._rows["sensor_temperature"] + self._rows["offset"]
+        told["object_surface"] = told["sensor_surface"] - self._rows["difference"]
+        told["object_temperature"] = told["object_surface"][:, 0]
+        told["reservoir_temperature"] = np.where(
+            self._reservoirs["conductance"] > 0, self._reservoirs["temperature"], np.nan
+        )
+        return HeatStep(np.zeros((len(self._rows), self._samples, 2)), told)
+
+    def set_thermostats(self, celsius: np.ndarray) -> None:
+        """Temperatures (B, F) °C of the thermostats from now on."""
+        change = celsius - self._rows["sensor_temperature"] - self._rows["offset"]
+        self._rows["offset"] += change
+        tips, boxed = self._fingertips, self._rows["boxed"] > 0
+        own = np.flatnonzero(~boxed)
+        if len(own) and self._networks.systems:
+            shifted, _ = shift_thermostats(
+                self._networks.tables(tips),
+                self._rows["network"][own],
+                self._state[own, : self._networks.states],
+                self._rows["difference"][own, :tips],
+                change[own, :tips],
+            )
+            self._state[own, : self._networks.states] = shifted
+        if boxed.any():
+            self._boxes.shift(np.flatnonzero(boxed), self._state, change)
+        self._rows["difference"][:, :tips] += change[:, :tips]
+
+    def carry(self, source: int, target: int, fingertip: int) -> None:
+        """The fingertip's field goes from one row to another, whose object it touches from now on. The source's
+        fingertip is left as warm as its thermostat. Raises InvalidValueError in O mode."""
+        if target in self._waiting:
+            self._build(target)
+        old, new = self._rows[source], self._rows[target]
+        before, after = (self._of_tip(row, fingertip) for row in (source, target))
+        if old["boxed"] and new["boxed"]:
+            self._boxes.carry(source, target, fingertip, self._state)
+        else:
+            if old["boxed"] or new["boxed"]:
+                rows = (
+                    self._boxes.tip_rows(row, fingertip)
+                    if self._rows["boxed"][row]
+                    else self._networks.tip_rows(int(self._rows["network"][row]))
+                    for row in (source, target)
+                )
+                matrix = carry_matrix(*rows)
+            else:
+                matrix = self._networks.carried(int(old["network"]), int(new["network"]))
+            # Row by row, so that rounding does not depend on what else the batch holds.
+            self._state[target, after] = (matrix * self._state[source, before]).sum(axis=1)
+        self._state[source, before] = 0.0
+        new["stored"][fingertip], old["stored"][fingertip] = old["stored"][fingertip], 0.0
+
+    def _of_tip(self, row: int, fingertip: int) -> slice:
+        """Where the fingertip's own states are in the row's."""
+        if self._rows["boxed"][row]:
+            return self._boxes.fingertip(fingertip)
+        return self._networks.fingertip(int(self._rows["network"][row]), fingertip)
+
+    def state(self, rows: Sequence[int]) -> HeatState:
+        """A copy of what the rows remember."""
+        chosen = list(rows)
+        things = tuple(self._things[row] for row in chosen)
+        places = tuple(self._places(row) for row in chosen)
+        return HeatState(self._rows[chosen], self._state[chosen], things, places)
+
+    def _places(self, row: int) -> Touched | tuple[tuple[SurfacePatch, ...], tuple[int, ...]] | None:
+        if self._rows["boxed"][row]:
+            return self._boxes.touched(row)
+        touches = self._touches.get(row)
+        return (touches.body.patches, touches.contacts) if touches else None
+
+    def set_state(self, rows: Sequence[int], state: HeatState) -> None:
+        """Puts the rows into a state taken by `state`."""
+        for k, row in enumerate(rows):
+            self._place(row, state.things[k], state.rows["sensor_temperature"][k])
+            self._build(row)
+            places = state.places[k]
+            if isinstance(places, Touched):
+                self._boxes.set_touched(row, places)
+            elif places is not None:
+                self._touches[row] = self._touches[row].at(*places)
+                self._rows["network"][row] = self._number(row)
+            network = self._rows["network"][row]  # this batch's own number of it
+            self._rows[row] = state.rows[k]
+            self._rows["network"][row] = network
+            width = min(state.state.shape[1], self._state.shape[1])
+            self._state[row] = 0.0
+            self._state[row, :width] = state.state[k, :width]
+
+    @property
+    def sensor_temperatures(self) -> np.ndarray:
+        """(B, F) °C of the thermostats at the start."""
+        return self._rows["sensor_temperature"]
+
+    def _place(self, row: int, thing: GraspBody, sensor_temperature: np.ndarray) -> None:
+        self._things[row] = thing
+        self._laws[row] = thing.law
+        self._touches.pop(row, None)
+        inside = thing.spec.reservoir
+        self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
+        if inside is not None:
+            self._reservoirs[row] = inside.row(thing.temperature)[0]
+        celsius = {thing.temperature}
+        if self._air and thing.ambient is not None:
+            celsius.add(thing.ambient)
+        if inside is not None:
+            celsius.add(float(self._reservoirs["temperature"][row]))
+        # In steps, so that nearly equal temperatures share a network.
+        above = float(max(np.abs(sensor_temperature - each).max() for each in celsius))
+        self._rows["boxed"][row] = self._boxes.serves(thing, above)
+        above /= LEAST_DIFFERENCE
+        difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
+        self._demands[row] = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
+        self._waiting.add(row)
+        mine = self._rows[row]
+        mine["glued"] = thing.mode == "O"
+        mine["reach"] = thing.stack.width / 2
+        mine["element_capacity"] = thing.stack.heat_capacity
+        mine["ambient"] = (
+            0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
+        )
+
+    def _build(self, row: int) -> None:
+        """Makes the row's network, all at its first temperature."""
+        self._waiting.discard(row)
+        self._state[row] = 0.0
+        self._fingertips = self._things[row].fingertips
+        if self._rows["boxed"][row]:
+            self._box(row)
+            return
+        self._boxes.stop(row)
+        thing, demand = self._things[row], self._demands[row]
+        geometry, capacity = thing.geometry, thing.heat_capacity
+        touches = None
+        if thing.solid is not None:
+            from .touches import first_touches  # with what makes networks of meshes
+
+            touches = first_touches(thing, demand, self._cache)
+        if touches is not None:
+            self._touches[row] = touches
+            geometry = touches.body.geometry
+            capacity = geometry.whole_capacity
+        free = free_area(geometry)
+        mine = self._rows[row]
+        mine["lasting"] = touches is not None
+        mine["capacity"] = capacity
+        mine["air"] = self._air * free
+        mine["fed"] = touches is not None and touches.fed
+        # What the object gives to the air and to a reservoir at its mean, as one film of that many W/(m2 K).
+        inside = 0.0 if mine["fed"] else float(self._reservoirs["conductance"][row])
+        self._films[row] = self._air + inside / free
+        mine["network"] = self._number(row)
+
+    def _box(self, row: int) -> None:
+        """The row is a box, all at its first temperature and touched nowhere yet."""
+        thing, mine = self._things[row], self._rows[row]
+        self._boxes.start(row, thing, self._air)
+        mine["lasting"], mine["fed"], mine["network"] = 1, 0, 0
+        mine["capacity"] = thing.box_capacity
+        self._make_room()
+
+    def _number(self, row: int) -> int:
+        """Number of the row's network."""
+        film, touches = self._films[row], self._touches.get(row)
+        if touches is None:
+            number = self._networks.of_plate(self._things[row].geometry, self._demands[row], film)
+        else:
+            number = self._networks.of_touches(touches, film, float(self._rows["air"][row]))
+        self._make_room()
+        return number
+
+    def _make_room(self) -> None:
+        """States are as many as those of the largest row."""
+        states, last = max(self._networks.states, self._boxes.tables.states), self._state.shape[1]
+        if states != last:
+            kept = np.zeros((len(self._state), states))
+            kept[:, :last] = self._state[:, :states]
+            self._state = kept
+
+    def _leave(self, told: np.ndarray, sample: int, row: int, fingertip: int) -> None:
+        """Notes that the fingertip leaves the row's object for another one within a step."""
+        if sample > 0 and self._rows["touching"][row, fingertip]:
+            self._rows["touching"][row, fingertip] = 0
+            told["events"][row, fingertip] |= RELEASE
+
+    def _moved(self, force: np.ndarray, place: np.ndarray) -> list[tuple[int, int, int]]:
+        """(sample, row, fingertip) of those that begin to touch where they have not been since they were there last."""
+        rows = np.array(list(self._touches))
+        mine = self._rows[rows]
+        away = np.sqrt(((place[rows] - mine["anchor"]) ** 2).sum(axis=2))
+        elsewhere = (away > mine["reach"][:, None]) | (mine["known"] == 0)
+        pressed = force[rows] > 0
+        asked = elsewhere & pressed.any(axis=1)
+        sample = pressed.argmax(axis=1) * self._samples // force.shape[1]
+        tips = np.argwhere(asked[:, : self._fingertips]).tolist()
+        return [(int(sample[k, tip]), int(rows[k]), tip) for k, tip in tips]
+
+    def _touch(self, row: int, touches: Touches) -> None:
+        """The row's object is touched there from now on, and keeps its field."""
+        last, self._touches[row] = self._touches[row], touches
+        old = int(self._rows["network"][row])
+        self._rows["network"][row] = new = self._number(row)
+        if last.body is touches.body:
+            return
+        before = self._state[row].copy()
+        self._state[row] = 0.0
+        # Row by row, so that rounding does not depend on what else the batch holds.
+        field = self._networks.field_carried(old, new, touches.field_from(last))
+        self._state[row, : len(field)] = (field * before[: field.shape[1]]).sum(axis=1)
+        matrix = self._networks.carried(old, new)
+        for tip in range(len(touches.contacts)):
+            source, target = (self._networks.fingertip(number, tip) for number in (old, new))
+            self._state[row, target] = (matrix * before[source]).sum(axis=1)

@@ -1,0 +1,277 @@
+"""One control step of heat, compiled row by row: contact laws, touches and releases, thermal networks.
+
+B: environments, S: substeps, F = 2 fingertips, N: heat samples, K: states of the largest network.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ...thermal.batch import (
+    RESERVOIR,
+    WHERE,
+    FixedTables,
+    HeatReading,
+    HeatTables,
+    advance_fixed,
+    advance_row,
+    fingertips_of,
+    fixed_room,
+    forget_row,
+)
+from ...thermal.contact import conductance, contact
+from ...thermal.network import NODE, workspace
+from ...thermal.numerics import FAST
+from ..bodies import reservoir_step, reservoir_temperature
+from .rows import (
+    NEW_PATCH,
+    OFF_ELEMENT,
+    RELEASE,
+    TOUCH,
+)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, first, last, *numbers):
+    """Advances rows (B,) HEAT_ROW and state (B, K) by the samples first to last - 1 of a control step, and fills these
+    of drop (B, N, F) K and, once the last one is done, told (B,) HEAT_TOLD. Rows of boxes are advance_boxes' to take.
+
+    A step may be taken in several calls, one after the other, with the same normal, place, drop and told: what changes
+    networks between two samples does so between two calls, and the numbers are the same however many there are.
+    laws: (B,) CONTACT_LAW. reservoirs: (B,) RESERVOIR_ROW. normal: (B, S, F) N. place: (B, F, 3) m. numbers: the
+    fields of a HeatTables, which cost less to hand over one by one."""
+    tables = HeatTables(*numbers)
+    samples, tips = drop.shape[1], fingertips_of(tables)
+    room, reading = workspace(tables.rows.shape[2], tables.gram.shape[3]), _reading(samples, tips)
+    conducts = np.zeros((samples, 2))
+    duration = tables.dt * samples
+    for b in range(len(rows)):
+        row, one, x = rows[b], told[b], state[b]
+        if row.boxed:
+            continue
+        _meet(laws[b], row, one, normal[b], place[b], drop[b], conducts, first)
+        if first == 0 and reservoirs[b].conductance > 0.0:
+            one.reservoir_temperature = reservoir_temperature(reservoirs[b], row.enthalpy)
+        around = row.ambient
+        film, above = reservoirs[b].conductance, 0.0
+        if film > 0.0:
+            above = one.reservoir_temperature - (
+                row.sensor_temperature[0] + row.offset[0] - row.difference[0]
+            )
+            if row.fed:
+                if first == 0:
+                    _set_node(tables, row.network, x, above)
+                film = 0.0
+            else:
+                around = (row.air * row.ambient + film * above) / (row.air + film)
+        if row.begun:
+            for k in range(first, last):
+                if row.lasting == 0 and _renewed(one, conducts, k):
+                    forget_row(tables, row.network, x)
+                advance_row(tables, row.network, x, conducts[k], row.difference, around, room, reading, 0, k)
+                _add(one, reading, drop[b], k, samples, tips)
+        if last < samples:
+            continue
+        if row.begun:
+            _end(row, one, reading, samples - 1, tips)
+            if row.ambient != 0.0 or film > 0.0:
+                mean = one.air_loss / (row.air + film)  # of the object over the step, above its first
+                one.air_loss = row.air * (mean - row.ambient)
+                if film > 0.0:
+                    one.reservoir_flow = film * (above - mean)
+            if row.fed:
+                one.reservoir_flow = NODE * (above - _node(tables, row.network, x)) / duration
+            if film > 0.0 or row.fed:
+                reservoir = reservoirs[b]
+                row.enthalpy = reservoir_step(reservoir, row.enthalpy, one.reservoir_flow, duration)
+                one.reservoir_temperature = reservoir_temperature(reservoir, row.enthalpy)
+        _book(row, one, duration)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def advance_boxes(laws, rows, state, normal, place, drop, told, first, last, *numbers):
+    """The same for the rows that are boxes of FixedTables, of whose fields the numbers are. They are compiled apart, so
+    that whoever has none of them does not wait for it. Boxes have no reservoirs."""
+    tables = FixedTables(*numbers)
+    samples, tips = drop.shape[1], (tables.links.shape[1] - WHERE) // 2
+    room, reading = fixed_room(tables.gram.shape[1]), _reading(samples, tips)
+    conducts = np.zeros((samples, 2))
+    for b in range(len(rows)):
+        row, one = rows[b], told[b]
+        if row.boxed == 0:
+            continue
+        _meet(laws[b], row, one, normal[b], place[b], drop[b], conducts, first)
+        if row.begun:
+            for k in range(first, last):
+                for f in range(tips):
+                    if tables.links[b, WHERE + f] < 0:
+                        conducts[k, f] = 0.0
+                advance_fixed(
+                    tables, b, state[b], conducts[k], row.difference, row.ambient, room, reading, 0, k
+                )
+                _add(one, reading, drop[b], k, samples, tips)
+        if last < samples:
+            continue
+        if row.begun:
+            _end(row, one, reading, samples - 1, tips)
+        _book(row, one, tables.dt * samples)
+
+
+@njit(cache=True, error_model="numpy")
+def _reading(samples, tips):
+    """Room for the HeatReading of one row."""
+    by_tip, by_row = np.zeros((5, samples, tips)), np.zeros((2, samples))
+    return HeatReading(
+        by_tip[0:1], by_tip[1:2], by_row[0:1], by_tip[2:3], by_tip[3:4], by_tip[4:5], by_row[1:2]
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _meet(law, row, one, normal, place, drop, conducts, first):
+    """Where a row's fingertips touch in a control step: fills conducts (N, F) W/K of each sample, notes what has begun
+    and ended, and before the first sample clears what the step adds up."""
+    samples = len(drop)
+    for f in range(2):
+        touching = _mean_contacts(law, normal[:, f], one, f, place[f], conducts)
+        if first == 0:
+            _follow(row, one, f, touching, place[f])
+            row.begun |= touching
+            one.heat[f] = one.flow[f] = 0.0
+            one.sensor_surface[f] = row.sensor_temperature[f] + row.offset[f]
+            one.object_surface[f] = one.sensor_surface[f] - row.difference[f]
+            for k in range(samples):
+                drop[k, f] = 0.0
+        if row.glued and _distance(place[f], row.anchor[f]) > row.reach:
+            for k in range(samples):  # a fingertip without a sensor takes no part
+                conducts[k, f] = 0.0
+    if first == 0:
+        one.over_temperature = False
+        one.heat[2] = one.air_loss = 0.0
+        one.object_temperature = one.object_surface[0]
+        one.reservoir_temperature, one.reservoir_flow = math.nan, 0.0
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _add(one, reading, drop, k, samples, tips):
+    """Adds sample k to what the step tells."""
+    for f in range(tips):
+        drop[k, f] = reading.drop[0, k, f]
+        one.flow[f] += reading.flow[0, k, f] / samples
+    one.air_loss += reading.air_loss[0, k] / samples
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _end(row, one, reading, k, tips):
+    """What sample k, the step's last, leaves."""
+    for f in range(tips):
+        one.heat[f] = reading.element_heat[0, k, f]
+        one.sensor_surface[f] += reading.sensor_rise[0, k, f]
+        one.object_surface[f] += reading.object_rise[0, k, f]
+    one.heat[2] = reading.object_heat[0, k]
+    one.object_temperature += one.heat[2] / row.capacity
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _book(row, one, duration):
+    """The balance of heat after a step of so many seconds."""
+    for f in range(2):
+        one.drawn[f] = one.flow[f]
+        if row.glued == 0:
+            one.heat[f] += row.element_capacity * row.offset[f]
+            one.drawn[f] += (one.heat[f] - row.stored[f]) / duration
+        row.stored[f] = one.heat[f]
+    row.books[0] += (one.flow[0] + one.flow[1] + one.reservoir_flow) * duration
+    row.books[1] += (abs(one.flow[0]) + abs(one.flow[1]) + abs(one.reservoir_flow)) * duration
+    row.books[2] += one.air_loss * duration
+    gained = one.heat[2] + (one.heat[0] + one.heat[1] if row.glued else 0.0)
+    one.imbalance = gained + row.books[2] - row.books[0]
+    one.exchanged = row.books[1]
+
+
+@njit(cache=True, error_model="numpy")
+def _node(tables, network, x):
+    """K of the network's node above the object's first temperature."""
+    heat = 0.0
+    for i in range(tables.sizes[network, 1]):
+        heat += tables.rows[network, RESERVOIR, i] * x[i]
+    return heat / NODE
+
+
+@njit(cache=True, error_model="numpy")
+def _set_node(tables, network, x, above):
+    """Gives the node that temperature, K; the object keeps its own."""
+    change = above - _node(tables, network, x)
+    for i in range(tables.sizes[network, 1]):
+        x[i] += change * tables.rows[network, RESERVOIR, i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _mean_contacts(law, normal, one, f, place, felt):
+    """Fills felt (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends fall
+    within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is the
+    mean of all, and whose area is the mean over the substeps that press. place: see contact. Returns whether any does.
+    """
+    samples, substeps = len(felt), len(normal)
+    total, area, pressing = 0.0, 0.0, 0
+    for k in range(samples):
+        felt[k, f] = 0.0
+    for s in range(substeps):
+        if normal[s] > 0:
+            face, load = contact(law, normal[s], place)
+            if face > 0:
+                conducts = conductance(law, load / face) * face
+                total += conducts
+                area += face
+                pressing += 1
+                for k in range(s * samples // substeps, samples):  # in parts of 1/(S N) of the step
+                    part = min((s + 1) * samples, (k + 1) * substeps) - max(s * samples, k * substeps)
+                    if part <= 0:
+                        break
+                    felt[k, f] += conducts * part
+    for k in range(samples):
+        felt[k, f] /= substeps
+    one.area[f] = area / pressing if pressing else 0.0
+    one.conductance[f] = total / substeps / one.area[f] if pressing else 0.0
+    return pressing > 0
+
+
+@njit(cache=True, error_model="numpy")
+def _renewed(one, felt, k):
+    """Whether a fingertip meets its new patch in sample k."""
+    for f in range(2):
+        if one.events[f] & NEW_PATCH and felt[k, f] > 0.0:
+            before = 0.0
+            for earlier in range(k):
+                before += felt[earlier, f]
+            if before == 0.0:
+                return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def _follow(row, one, f, touching, place):
+    """Notes a touch, a release or a new patch since the last step."""
+    touched, events = row.touching[f] > 0, 0
+    moved = _distance(place, row.anchor[f]) > row.reach
+    row.touching[f] = touching
+    if touched and not touching:
+        events = RELEASE
+    if touching and not touched:
+        events = OFF_ELEMENT if row.glued and moved else TOUCH
+    if touching and not row.glued and (moved or not row.known[f]):
+        if row.known[f]:
+            events |= NEW_PATCH
+        row.known[f] = 1
+        for i in range(3):
+            row.anchor[f, i] = place[i]
+    one.events[f] = events
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _distance(a, b):
+    x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return math.sqrt(x * x + y * y + z * z)

@@ -1,0 +1,96 @@
+"""A gripper's action: target opening, force limit and lift rate, and on a lateral axis its rate, each scaled to
+-1 .. 1.
+
+B: environments.
+"""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.plant import Command
+
+from ..limits import MAX_FORCE, MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
+
+
+def action_space() -> gymnasium.spaces.Box:
+    """Target opening 0 .. 85 mm, force limit 0 .. 40 N, lift rate -50 .. 50 mm/s, each scaled to -1 .. 1."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (3,), np.float32)
+
+
+def command_of(action: np.ndarray) -> Command:
+    """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
+    finite."""
+    array = np.ascontiguousarray(action, np.float32)  # as the space's
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InvalidValueError(
+            f"an action is (3,): opening, force limit, lift rate, each -1 .. 1; got shape {np.shape(action)[1:]}"
+        )
+    _finite(array)
+    opening, force_limit, lift_rate = np.minimum(np.maximum(array, -1.0), 1.0).astype(float).T
+    return Command(
+        (opening + 1) / 2 * MAX_OPENING, (force_limit + 1) / 2 * MAX_FORCE, lift_rate * MAX_LIFT_RATE
+    )
+
+
+def _finite(action: np.ndarray) -> None:
+    """Raises InvalidValueError, which names the first row of actions (B, n) that is not finite."""
+    if not np.isfinite(action).all():
+        row = int(np.argmin(np.isfinite(action).all(axis=1)))
+        raise InvalidValueError(
+            f"action {action[row]} of environment {row} is not finite: give numbers in -1 .. 1"
+        )
+
+
+def sliding_action_space() -> gymnasium.spaces.Box:
+    """The same, and the lateral rate -100 .. 100 mm/s."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
+
+
+def sliding_command_of(action: np.ndarray) -> Command:
+    """Commands of actions (B, 4), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
+    finite."""
+    array = np.asarray(action, dtype=float)
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise InvalidValueError(
+            "an action is (4,): opening, force limit, lift rate, lateral rate, each -1 .. 1; got shape "
+            f"{np.shape(action)[1:]}"
+        )
+    _finite(array)
+    sideways = np.clip(array[:, 3], -1.0, 1.0)
+    return command_of(array[:, :3])._replace(lateral_rate=sideways * MAX_LATERAL_RATE)
+
+
+def sliding_action_of(
+    opening: float, force_limit: float, lift_rate: float, lateral_rate: float
+) -> np.ndarray:
+    """The action (4,) of a command in m, N and m/s. Raises InvalidValueError for one that the gripper or its arm does
+    not have."""
+    _within("lateral_rate", lateral_rate, -MAX_LATERAL_RATE, MAX_LATERAL_RATE, "m/s")
+    return np.append(action_of(opening, force_limit, lift_rate), np.float32(lateral_rate / MAX_LATERAL_RATE))
+
+
+def action_of(
+    opening: float | np.ndarray, force_limit: float | np.ndarray, lift_rate: float | np.ndarray
+) -> np.ndarray:
+    """The action (3,) of a command in m, N and m/s, or (3, B) of arrays (B,). Raises InvalidValueError for one that the
+    gripper does not have: an action beyond -1 .. 1 is clipped, and would do what nobody asked for."""
+    _within("opening", opening, 0.0, MAX_OPENING, "m")
+    _within("force_limit", force_limit, 0.0, MAX_FORCE, "N")
+    _within("lift_rate", lift_rate, -MAX_LIFT_RATE, MAX_LIFT_RATE, "m/s")
+    scaled = (2 * opening / MAX_OPENING - 1, 2 * force_limit / MAX_FORCE - 1, lift_rate / MAX_LIFT_RATE)
+    return np.array(scaled, np.float32)
+
+
+def _within(name: str, value: float | np.ndarray, low: float, high: float, unit: str) -> None:
+    """Raises InvalidValueError, which asks about millimetres where these would fit, for a value that is not in low ..
+    high up to round-off."""
+    values, slack = np.asarray(value, float), 1e-6 * high
+    wrong = values[~((values >= low - slack) & (values <= high + slack))]
+    if wrong.size:
+        given = float(wrong.flat[0])
+        in_metres = unit != "N" and low <= given / 1000 <= high
+        hint = f"; did you mean {given / 1000:g} {unit} ({given:g} m{unit})?" if in_metres else ""
+        raise InvalidValueError(f"{name} {given:g} {unit}: give {low:g} to {high:g} {unit}{hint}")

@@ -1,0 +1,35 @@
+"""What an agent that sorts feels and is told: as in every environment, and where its arm is and what is asked."""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+
+from thermograsp.plant import Reading
+
+from ..limits import LATERAL_REACH
+from .observation import Observation, Observer
+
+_FURTHEST = LATERAL_REACH + 0.005  # m
+
+
+class SortObserver(Observer):
+    """Of `num_envs` environments that can be asked for `goals` things. lateral (1,) m, of the arm along y; goal
+    (goals,), 1 for what is asked and 0 for the others."""
+
+    def __init__(self, num_envs: int, goals: int) -> None:
+        super().__init__(num_envs)
+        lateral = gymnasium.spaces.Box(-_FURTHEST, _FURTHEST, (1,), np.float32)
+        goal = gymnasium.spaces.Box(0.0, 1.0, (goals,), np.float32)
+        self.space = gymnasium.spaces.Dict({**self.space.spaces, "lateral": lateral, "goal": goal})
+        self.last = (*self.last, *(np.zeros((num_envs, *box.shape), np.float32) for box in (lateral, goal)))
+
+    def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
+        """See Observer; needs a plant with a lateral axis that says what is asked."""
+        observation = super().observe(reading, force_limit, seen)
+        assert reading.lateral is not None
+        lateral, goal = self.last[-2:]
+        bound = np.float32(_FURTHEST)
+        lateral[seen, 0] = np.clip(reading.lateral[seen].astype(np.float32), -bound, bound)
+        goal[seen] = reading.truth["goal"][seen]
+        return {**observation, "lateral": lateral.copy(), "goal": goal.copy()}

@@ -1,0 +1,396 @@
+"""The serial plant: a real gripper with real fingertips behind the interface of the simulated one.
+
+F = 2 fingertips, S: voltage samples of a control step. There is one environment.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.plant import Command, Reading
+
+from ..drivers import Fingertips, Gripper, GripperStatus, open_gripper
+from ..errors import (
+    DeviceError,
+    LinkLostError,
+    NoAnswerError,
+    SensorFaultError,
+    StaleSensorError,
+    StoppedError,
+)
+from ..protocol import Flag, Samples
+from .pacing import Pace, RealTime
+
+UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height", "lateral")
+_STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
+MOST_OPENING = 0.085  # m that a command may ask for, and an observation tell
+OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
+_STOPPED = "the fingers were stopped where they are; reset the environment to go on"
+_TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
+_WARMING = Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT | _TOLERATED
+_SETTLING = 0.2  # s between looks at a thermostat that warms up
+
+
+@dataclass(frozen=True, slots=True)
+class SerialConfig:
+    """rate: Hz of the voltage. dt: s, the control period, a whole number of samples. setpoint: °C of both thermostats.
+    speed: m/s of the fingers. most_force: N on a pad, of either sign, above which the gripper lets go; so it does where
+    a load cell is at an end of its range (62.4 N in docs/firmware.md), whatever this is. watchdog: s without a step
+    after which it lets go; 0 for never. settle_within, open_within: s that a reset waits for the thermostats, and for
+    the fingers to open."""
+
+    rate: int = 100
+    dt: float = 0.02
+    setpoint: float = 36.0
+    speed: float = 0.1
+    most_force: float = 50.0
+    watchdog: float = 0.5
+    settle_within: float = 60.0
+    open_within: float = 6.0
+
+    def __post_init__(self) -> None:
+        for name in ("dt", "speed", "most_force", "settle_within", "open_within"):
+            positive(f"serial plant: {name}", getattr(self, name))
+        for name in ("setpoint", "watchdog"):
+            finite(f"serial plant: {name}", getattr(self, name))
+        if self.samples < 1 or abs(self.dt * self.rate - self.samples) > 1e-9:
+            raise InvalidValueError(
+                f"serial plant: {self.rate} Hz and steps of {self.dt:g} s: give a whole number of samples a step"
+            )
+        if self.watchdog and self.watchdog < 2 * self.dt:
+            raise InvalidValueError(
+                f"serial plant: watchdog must be 0 or at least 2 steps, got {self.watchdog:g} s"
+            )
+
+    @property
+    def samples(self) -> int:
+        """Of the voltage in a control step."""
+        return round(self.dt * self.rate)
+
+
+@dataclass(slots=True)
+class PaceCounts:
+    """steps. overruns: that ended more than 1 ms late. latest: s, the worst. repeated, skipped: samples that were not
+    there in time, so that the one before stood in for it, and that came too many."""
+
+    steps: int = 0
+    overruns: int = 0
+    latest: float = 0.0
+    repeated: int = 0
+    skipped: int = 0
+
+
+class SerialPlant:
+    """See thermograsp.plant.Plant; owns fingertips and gripper, and closes them.
+
+    A step sends the command, waits for the step's end, and reads. The voltages are the oldest samples not yet read, so
+    that they are at most a step and a sample old. What goes wrong in a step or a reset opens the gripper and ends the
+    episode: a step's reading has the last values and says why in error. Without a lift axis the height is 0 and
+    lift_rate does nothing; lateral_rate does nothing; a gripper of a shorter stroke opens as far as it can. truth has
+    `unknown`, names that only a simulation knows or that need such an axis, and `late`, s by which the step's end was
+    missed. The fingers stay as they are on close.
+    """
+
+    num_envs = 1
+
+    def __init__(
+        self,
+        fingertips: Fingertips,
+        gripper: Gripper,
+        config: SerialConfig | None = None,
+        pace: Pace | None = None,
+        widest: float | None = None,
+    ) -> None:
+        self.config = config or SerialConfig()
+        self.dt, self.sample_rate = self.config.dt, float(self.config.rate)
+        self.counts = PaceCounts()
+        self._tips, self._gripper, self._pace = fingertips, gripper, pace or RealTime()
+        if widest is None:  # a gripper's class from before there was a stroke may lack it
+            stroke = positive("the gripper's stroke (m)", getattr(gripper, "stroke", MOST_OPENING))
+            widest = min(stroke, MOST_OPENING)
+        self._widest = widest
+        self._queue: deque[tuple[np.ndarray, np.ndarray, np.ndarray]] = deque()
+        self._held = (np.zeros(2), np.zeros((2, 3)), np.full(2, np.nan))
+        self._opening = 0.0
+        self._end = 0.0
+        self._trouble = "reset the environment first"
+        self._fed = 0.0
+        self._armed = False
+        self._holding = False  # it was to let go, and has not been told yet
+        self._stopped = False  # since the last reset
+        self._guarding = threading.Lock()
+        self._closing = threading.Event()
+        self._guard: threading.Thread | None = None
+        if self.config.watchdog and isinstance(self._pace, RealTime):
+            self._guard = threading.Thread(target=self._watch, name="gripper watchdog", daemon=True)
+            self._guard.start()
+
+    def reset(
+        self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
+    ) -> Reading:
+        """Opens the gripper and waits for it and for the thermostats. Nothing is drawn: the object is what lies there.
+        Raises DeviceError and its kinds, InvalidValueError for options."""
+        del rows, rngs
+        if options:
+            raise InvalidValueError(f"a serial plant has no reset options, got {sorted(options)}")
+        try:
+            self._prepare()
+        except StoppedError as error:
+            self._end_episode(str(error))
+            raise
+        except BaseException as error:
+            self._let_go(f"the reset failed: {error}")
+            raise
+        return self._still()
+
+    def _prepare(self) -> None:
+        self._armed = self._holding = self._stopped = False
+        self._await(self._heated, self.config.open_within, "the fingertips to answer")
+        self._require_unstopped()
+        self._gripper.activate()
+        self._require_unstopped()
+        self._gripper.move(self._widest, 0.0, self.config.speed)
+        self._await(lambda: not self._gripper.status().moving, self.config.open_within, "the gripper to open")
+        self._await(self._settled, self.config.settle_within, "the thermostats to reach their setpoint")
+        self._opening = self._gripper.status().opening
+        self._take(self._tips.wait(1, self.config.open_within))
+        self._held = (self._queue[-1][0], *self._held[1:])
+        self._queue.clear()  # the episode's samples are those that follow
+        with self._guarding:
+            self._require_unstopped()
+            self._trouble = ""
+        self._end = self._pace.now()
+
+    def step(self, command: Command) -> Reading:
+        """One control step."""
+        if self._trouble:
+            return self._still()
+        self._end += self.dt
+        try:
+            with self._guarding:
+                self._require_unstopped()
+                self._fed, self._armed = self._pace.now(), True
+                self._require_unreleased()
+                opening, force = float(command.opening[0]), float(command.force_limit[0])
+                self._gripper.move(self._within(opening), force, self.config.speed)
+            self._pace.until(self._end - _STATUS_LEAD)
+            status = self._checked(self._gripper.status())
+            self._pace.until(self._end)
+            self._take(self._tips.take())
+            voltage = self._oldest()
+        except StoppedError as error:
+            self._end_episode(str(error))
+            return self._still()
+        except DeviceError as error:
+            self._let_go(str(error))
+            return self._still()
+        except Exception as error:
+            self._let_go(f"{error!r}: the gripper let go; reset the environment")
+            raise
+        late = self._late()
+        rate = (status.opening - self._opening) / self.dt
+        self._opening = status.opening
+        return self._reading(voltage, rate, late)
+
+    def stop(self) -> None:
+        """Stops the fingers where they are, from another thread, before what a step or a reset asks of the gripper, and
+        ends the episode: nothing moves them until the next reset. Raises what the gripper's `stop` raises."""
+        self._stopped = True
+        self._gripper.stop()
+        with self._guarding:  # a step may have been about to move them
+            self._gripper.stop()
+            self._end_episode(_STOPPED)
+
+    def quantised(self, command: Command) -> Command:
+        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps, no
+        lift."""
+        wanted = self._within(command.opening)
+        opening, force, _ = self._gripper.quantised(wanted, command.force_limit, self.config.speed)
+        return Command(opening, force, np.zeros_like(opening))
+
+    def close(self) -> None:
+        """Ends the watchdog and releases both lines. Does nothing the second time."""
+        self._closing.set()
+        if self._guard is not None:
+            self._guard.join()
+        self._tips.close()
+        self._gripper.close()
+
+    def _still(self) -> Reading:
+        """The last values, once more."""
+        return self._reading(np.tile(self._held[0], (self.config.samples, 1)), 0.0, 0.0)
+
+    def _reading(self, voltage: np.ndarray, rate: float, late: float) -> Reading:
+        _, force, thermostat = self._held
+        unknown = np.empty(1, object)
+        unknown[0] = UNKNOWN
+        return Reading(
+            opening=np.array([self._opening]),
+            opening_rate=np.array([rate]),
+            height=np.zeros(1),
+            force=force[None].copy(),
+            voltage=voltage[None],
+            thermostat=thermostat[None].copy(),
+            truth={"unknown": unknown, "late": np.array([late])},
+            error=(self._trouble,),
+            told=("unknown", "late"),
+        )
+
+    def _take(self, samples: Samples) -> None:
+        samples.require_healthy(but=_TOLERATED)
+        self._queue.extend(zip(samples.voltage, samples.force, samples.thermostat, strict=True))
+        pressed = float(np.abs(samples.force[:, :, 0]).max(initial=0.0))
+        if not pressed <= self.config.most_force:  # nor NaN
+            raise SensorFaultError(
+                f"a pad is pressed with {pressed:.1f} N, more than most_force, {self.config.most_force:g} N"
+            )
+        if samples.flags.size:
+            self._held = (self._held[0], samples.force[-1], samples.thermostat[-1])
+
+    def _oldest(self) -> np.ndarray:
+        """(S, F) V; the queue is kept shorter than another step's."""
+        wanted, rows = self.config.samples, []
+        while len(self._queue) > 2 * wanted:
+            self._queue.popleft()
+            self.counts.skipped += 1
+        for _ in range(wanted):
+            if self._queue:
+                self._held = (self._queue.popleft()[0], *self._held[1:])
+            else:
+                self.counts.repeated += 1
+            rows.append(self._held[0])
+        return np.array(rows)
+
+    def _late(self) -> float:
+        """s; a step that ends late is counted, and the next one has its full time."""
+        late = max(0.0, self._pace.now() - self._end)
+        self.counts.steps += 1
+        self.counts.latest = max(self.counts.latest, late)
+        if late > OVERRUN:
+            self.counts.overruns += 1
+            self._end += late
+        return late
+
+    def _checked(self, status: GripperStatus) -> GripperStatus:
+        if status.fault or not status.active:
+            raise DeviceError(f"gripper: {status.fault or 'not active any more; reset the environment'}")
+        return status
+
+    def _settled(self) -> bool:
+        samples = self._tips.take()
+        samples.require_healthy(but=_WARMING)
+        return len(samples) > 0 and not int(samples.flags[-1]) & int(_WARMING & ~_TOLERATED)
+
+    def _heated(self) -> bool:
+        try:
+            self._tips.set_setpoint(self.config.setpoint, self.config.setpoint)
+        except StoppedError as error:  # of the thermostats: not of the fingers
+            raise DeviceError(f"fingertips: {error}") from error
+        return True
+
+    def _await(self, ready: Callable[[], bool], seconds: float, what: str) -> None:
+        """Until it is ready, through a line that is being repaired."""
+        deadline, why = self._pace.now() + seconds, ""
+        while True:
+            try:
+                if ready():
+                    return
+                why = ""
+            except (LinkLostError, StaleSensorError, NoAnswerError) as error:
+                why = f" ({error})"
+            if self._pace.now() > deadline:
+                raise DeviceError(
+                    f"waited {seconds:g} s in vain for {what}{why}; look at it, then reset again"
+                )
+            self._pace.until(self._pace.now() + _SETTLING)
+
+    def _require_unstopped(self) -> None:
+        if self._stopped:
+            raise StoppedError(_STOPPED)
+
+    def _require_unreleased(self) -> None:
+        if self._trouble:
+            raise DeviceError(self._trouble)
+
+    def _within(self, opening: Any) -> Any:
+        """m; a gripper of a shorter stroke than a command may ask for opens as far as it can. Raises InvalidValueError
+        for what no command may ask for."""
+        asked = np.asarray(opening, float)
+        wrong = asked[~((asked >= 0) & (asked <= MOST_OPENING * (1 + 1e-6)))]
+        if wrong.size:
+            raise InvalidValueError(f"opening {wrong.flat[0]:g} m: give 0 to {MOST_OPENING:g} m")
+        return np.minimum(opening, self._widest)
+
+    def _let_go(self, why: str) -> None:
+        """Opens the gripper; where it does not hear, the watchdog tells it again and again. One that was stopped stays
+        as it is."""
+        with self._guarding:
+            if self._stopped:
+                return self._end_episode(_STOPPED)
+            self._trouble, self._armed, self._holding = why, False, True
+            self._open()
+
+    def _end_episode(self, why: str) -> None:
+        """The fingers stay as they are."""
+        self._trouble, self._armed, self._holding = why, False, False
+
+    def _open(self) -> None:
+        with suppress(Exception):  # of whatever kind: another package's gripper may raise anything
+            with suppress(StoppedError):  # what stopped it goes first
+                self._gripper.move(self._widest, 0.0, self.config.speed)
+            self._holding = False
+
+    def _watch(self) -> None:
+        """The watchdog's thread."""
+        while not self._closing.wait(self.config.watchdog / 4):
+            silent = self._pace.now() - self._fed
+            if self._armed and silent > self.config.watchdog:
+                self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
+            elif self._holding:
+                with self._guarding:
+                    if self._holding:
+                        self._open()
+
+
+_SIMULATED = {
+    "taxels": "they are simulated, since a real fingertip has one load cell and no map of pressure",
+    "face_temperature": "it is simulated, since a real fingertip has one heat flux sensor and no map of temperature",
+}
+
+
+def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
+    """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
+    as open_gripper takes it. config: SerialConfig's. Raises InvalidValueError for anything else, and DeviceError."""
+    parts = urlsplit(url)
+    options = dict(parse_qsl(parts.query))
+    gripper_url = options.pop("gripper", "")
+    if parts.netloc or not parts.path or options or not gripper_url:
+        raise InvalidValueError(
+            f"plant {url!r}: give serial://PORT?gripper=URL, such as robotiq:///dev/ttyUSB0"
+        )
+    if num_envs != 1:
+        raise InvalidValueError(f"a serial plant is one gripper, so num_envs must be 1, got {num_envs}")
+    for name, what in _SIMULATED.items():
+        if config.pop(name, None) is not None:
+            raise InvalidValueError(f"{name}: {what}; leave {name} out")
+    try:
+        settings = SerialConfig(**config)
+    except TypeError as error:
+        names = ", ".join(SerialConfig.__slots__)
+        raise InvalidValueError(f"a serial plant takes {names}: {error}") from error
+    gripper = open_gripper(gripper_url)
+    try:
+        tips = Fingertips(parts.path, rate=settings.rate, setpoint=settings.setpoint)
+    except BaseException:
+        gripper.close()
+        raise
+    return SerialPlant(tips, gripper, settings)

@@ -1,0 +1,87 @@
+"""Shipped networks grasp what no constant force does; networks are read back as they were written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+import thermograsp  # noqa: F401  registers the environments
+from thermograsp.agents.episodes import rollout
+from thermograsp.agents.trained import Network, load_network
+from thermograsp.assets import ROOT, asset
+from thermograsp.envs import STAKES, force_window
+from thermograsp.envs.spaces.senses import SIZE, Senses
+from thermograsp.errors import InvalidValueError
+
+SHIPPED = sorted((ROOT / "policies").glob("*.npz"))
+
+
+def stakes(num_envs: int) -> gymnasium.vector.VectorEnv:
+    return gymnasium.make_vec(
+        "thermograsp/Grasp-v0", num_envs=num_envs, vectorization_mode="vector_entry_point", **STAKES
+    )
+
+
+def small_network(actions: int = 3) -> Network:
+    rng = np.random.default_rng(0)
+    sizes = (SIZE, 8, actions)
+    layers = tuple(
+        (rng.standard_normal((out, into)).astype(np.float32), rng.standard_normal(out).astype(np.float32))
+        for into, out in zip(sizes, sizes[1:], strict=False)
+    )
+    return Network(layers, Senses(heat=False), 5, {"seed": 3})
+
+
+@pytest.mark.parametrize(("policy", "points"), [("trained", 5), ("feeling", 15)])
+def test_who_feels_heat_beats_every_constant_force(policy: str, points: int) -> None:
+    """No constant force serves more than those episodes whose windows it is in."""
+    env = stakes(48)
+    _, info = env.reset(seed=7)
+    things = env.unwrapped.batch.plant.bodies  # pyright: ignore
+    windows = [force_window(thing) for thing in things]
+    best = max(sum(low < force < high for low, high in windows) for force in np.linspace(1, 40, 300))
+    found = rollout(env, 48, 7, policy)
+    assert found.successes > best + 48 * points / 100
+    assert len(set(info["material"])) == 8
+
+
+def test_all_that_is_shipped_is_small_and_says_how_it_was_trained() -> None:
+    assert asset("policies/grasp_heat_no-load.npz") in SHIPPED
+    assert sum(path.stat().st_size for path in SHIPPED) < 1_000_000
+    for path in SHIPPED:
+        network = load_network(path)
+        assert {"seed", "control_steps", "ppo"} <= set(network.about)
+        heat, load = path.stem.split("_")[1:]
+        assert (network.senses.heat, network.senses.load) == (heat == "heat", load == "load")
+
+
+def test_a_network_is_read_back_as_it_was_written(tmp_path: Path) -> None:
+    written = small_network()
+    read = load_network(written.save(tmp_path / "one.npz"))
+    assert (read.senses, read.repeat, read.about) == (written.senses, written.repeat, written.about)
+    for ours, theirs in zip(written.layers, read.layers, strict=True):
+        np.testing.assert_array_equal(ours[0], theirs[0])
+        np.testing.assert_array_equal(ours[1], theirs[1])
+
+
+def test_episodes_do_not_depend_on_how_many_run_at_once(tmp_path: Path) -> None:
+    path = str(small_network().save(tmp_path / "one.npz"))
+    one, two, many = (rollout(stakes(n), 4, 11, path, max_steps=40) for n in (1, 2, 5))
+    assert one.digest == two.digest == many.digest and one.steps == many.steps
+
+
+def test_what_is_no_policy_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "one.npz"
+    with pytest.raises(InvalidValueError, match="no file"):
+        rollout(stakes(1), 1, 0, str(path))
+    path.write_bytes(b"no archive")
+    with pytest.raises(InvalidValueError, match="no trained policy"):
+        load_network(path)
+    np.savez(path, weights=np.zeros(3))
+    with pytest.raises(InvalidValueError, match="no trained policy"):
+        load_network(path)
+    with pytest.raises(InvalidValueError, match="4 numbers"):
+        rollout(stakes(1), 1, 0, str(small_network(actions=4).save(path)))

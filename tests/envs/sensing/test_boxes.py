@@ -1,0 +1,173 @@
+"""Boxes by heat kernels: any size, any place, any part of the sensor's face, without a search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermograsp import thermal
+from thermograsp.envs import EVERYTHING, GraspBatch, GraspBody, GraspTask, ObjectSpec
+from thermograsp.envs.limits import LEAST_TOLERANCE
+from thermograsp.envs.sensing import boxes as boxes_module
+from thermograsp.envs.sensing.heat import GraspHeat
+from thermograsp.envs.sensing.places import MOST_PLACES
+from thermograsp.thermal.network.coupling import propagator, step
+
+from ..scripted import grasp_action
+
+ENDLESS = GraspTask(hold_seconds=1e3, seconds=1e3)
+STACK = thermal.sensor("seed")
+STEP = 0.02  # s
+SETTINGS = {
+    "tolerance": LEAST_TOLERANCE,
+    "air": 0.0,
+    "dt": STEP / 2,
+    "samples": 2,
+    "sensor_temperature": 36.0,
+}
+CUBE = ObjectSpec(mass=0.1, friction=0.8)
+MIDDLES = CUBE.element_places
+
+
+def thing(spec: ObjectSpec = CUBE, name: str = "glass", **more) -> GraspBody:
+    return GraspBody(spec, thermal.material(name), 24.0, "T", STACK, anywhere=True, **more)
+
+
+def heat_of(*things: GraspBody, **settings: float) -> GraspHeat:
+    heat = GraspHeat(len(things), **{**SETTINGS, **settings})
+    heat.reset(range(len(things)), things, np.full((len(things), 2), 36.0))
+    return heat
+
+
+def press(heat: GraspHeat, seconds: float, *places: np.ndarray | None, newton: float = 10.0):
+    """Both fingertips on each row's object at places (2, 3) m, apart where None. Returns what each step told."""
+    force, place = np.zeros((len(places), 10, 2)), np.zeros((len(places), 2, 3))
+    for row, at in enumerate(places):
+        if at is not None:
+            force[row], place[row] = newton, at
+    return [heat.advance(force, place) for _ in range(round(seconds / STEP))]
+
+
+@pytest.mark.parametrize("name", ["cotton", "wood", "glass", "stainless_steel", "aluminium"])
+def test_drops_are_those_of_the_searched_network_within_the_tolerance(name):
+    """A cube that is pressed in the middle of its faces, one fingertip earlier than the other, and let go."""
+    heat = heat_of(thing(name=name))
+    geometry = thermal.Geometry(STACK, thermal.material(name), "T", 81e-6, "square", (0.04, 0.04, 0.04), 2)
+    demand = thermal.Demand(0.005, 12.0)
+    searched = thermal.network_for(geometry, demand).system
+    other = propagator(searched.rates, searched.ports, STEP / 2)
+    x, drops, expected = np.zeros((1, len(searched.rates))), [], []
+    difference = np.zeros((1, searched.ports.shape[1]))
+    difference[0, :: searched.modes] = 12.0
+    for k in range(400):
+        force = np.zeros((1, 10, 2))
+        force[0, :, 0], force[0, :, 1] = 10.0 * (k < 300), 10.0 * (20 <= k < 300)
+        told = heat.advance(force, MIDDLES[None])
+        felt = np.repeat(told.told["conductance"] * told.told["area"], searched.modes, axis=1)
+        for _ in range(2):
+            x, _ = step(other, x, felt, difference)
+            expected.append(searched.drop @ x[0])
+        drops.append(told.drop[0])
+    drops, expected = np.concatenate(drops), np.array(expected)
+    # tolerances are promised from .05 s after a touch on
+    late = np.ones(len(drops), bool)
+    late[[*range(5), *range(40, 45)]] = False
+    assert np.abs(drops - expected)[late].max() < 0.05
+    assert np.abs(drops).max() > 0.2
+
+
+def test_books_hold_whatever_a_fingertip_does():
+    """It slides over faces and edges, leaves and comes back, in air, with more places than are remembered."""
+    rng = np.random.default_rng(1)
+    spec = ObjectSpec(size=(0.02, 0.03, 0.024), mass=0.1, friction=0.8)
+    warm = replace(thing(spec, "aluminium"), ambient=22.0)
+    heat = heat_of(warm, air=15.0)
+    gone = exchanged = 0.0
+    for k in range(60):
+        place = np.array([[-0.01, 0, 0], [0.01, 0, 0]]) + [0, *rng.uniform(-0.018, 0.018, 2)] * np.array(
+            [[1], [1]]
+        )
+        if k % 3:
+            place[:, 1] += 0.001 * k % 0.004
+        for told in press(heat, 0.1, place if rng.random() < 0.8 else None):
+            row = told.told[0]
+            gone += STEP * (row["drawn"].sum() - row["air_loss"])
+            assert abs(row["imbalance"]) < 1e-10 * max(row["exchanged"], 1.0)
+            assert row["heat"].sum() == pytest.approx(gone, abs=1e-9)
+            assert 22 - 0.05 < row["object_temperature"] < 36
+            exchanged = row["exchanged"]
+    assert len(heat._boxes.touched(0).places) == MOST_PLACES
+    assert exchanged > 1.0
+
+
+def test_a_field_that_slides_away_is_found_where_it_was():
+    bar = ObjectSpec(size=(0.01, 0.07, 0.024), mass=0.1, friction=0.8)
+    heat = heat_of(*[thing(bar) for _ in range(4)])
+    left = np.array([[-0.005, 0.0, 0.0], [0.005, 0.0, 0.0]])
+    press(heat, 5.0, left, left, left, left)
+    press(heat, 1.0, None, left + [0, 0.02, 0], None, left + [0, 0.02, 0])
+    press(heat, 2.0, None, None, None, None)
+    for row in (2, 3):  # the last ones' objects are fresh once more, their fingertips as they are
+        heat._state[row, : heat._of_tip(row, 0).start] = 0.0
+    told = press(heat, 0.5, left, left, left, left)
+    warm, slid, fresh, other = (told[-1].drop[row, -1, 0] for row in range(4))
+    assert fresh - warm > 0.1 and other - slid > 0.1
+
+
+def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
+    spec = ObjectSpec(size=(0.03, 0.024, 0.018), mass=0.1, friction=0.8)
+    course = [MIDDLES, MIDDLES + [0, 0.011, 0], None, MIDDLES + [0, 0.011, 0.008], MIDDLES]
+    together = heat_of(thing(spec), thing(spec, "aluminium"), thing(), air=5.0)
+    alone, states, seen = heat_of(thing(spec), air=5.0), [], []
+    for k, place in enumerate(course):
+        states.append(alone.state([0]))
+        seen.append([])
+        many = press(together, 0.2, place, course[-1 - k], MIDDLES)
+        for a, b in zip(press(alone, 0.2, place), many, strict=True):
+            assert np.array_equal(a.drop[0], b.drop[0]) and a.told[0].tobytes() == b.told[0].tobytes()
+            seen[-1].append(a.told[0].tobytes())
+    other = heat_of(thing(name="cork"), air=5.0)
+    for heat in (other, alone):
+        heat.set_state([0], states[2])
+        for place, told in zip(course[2:], seen[2:], strict=True):
+            assert [step.told[0].tobytes() for step in press(heat, 0.2, place)] == told
+
+
+def test_drawn_sizes_vector_and_single_agree_bit_for_bit():
+    config = {"randomize": EVERYTHING, "task": ENDLESS, "anywhere": True, "tolerance": LEAST_TOLERANCE}
+    many = GraspBatch(2, **config)
+    many.reset(range(2), [np.random.default_rng(i) for i in range(2)])
+    singles = [GraspBatch(1, **config) for _ in range(2)]
+    for i, single in enumerate(singles):
+        single.reset([0], [np.random.default_rng(i)])
+    for _ in range(80):
+        together = many.step(grasp_action(many))
+        for row, single in enumerate(singles):
+            for key, value in single.step(grasp_action(single)).observation.items():
+                assert np.array_equal(value[0], together.observation[key][row])
+
+
+def test_however_many_sizes_and_places_are_drawn_what_is_kept_stays_the_same():
+    boxes_module._network.cache_clear()
+    heat, rng, kept = heat_of(thing(), thing()), np.random.default_rng(0), []
+    for episode in range(40):
+        size = tuple(rng.uniform(0.01, 0.05, 3))
+        spec = ObjectSpec(size=size, mass=0.1, friction=0.8)
+        heat.reset([episode % 2], [thing(spec)], np.full((1, 2), 36.0))
+        places = spec.element_places + [0, *rng.uniform(-0.5, 0.5, 2) * size[1:]]
+        press(heat, 0.04, *([places] * 2))
+        kept.append([array.nbytes for array in heat._boxes.tables if isinstance(array, np.ndarray)])
+        assert kept[0] == kept[-1] and len(heat._boxes._bodies) == 2
+        assert not heat._networks.systems
+    assert boxes_module._network.cache_info().maxsize is not None
+
+
+def test_a_face_that_covers_a_part_of_the_sensor_s_is_taken_by_its_rectangle():
+    """Half on the face is not the same as a contact of half the area in the middle."""
+    heat = heat_of(thing(name="aluminium"))
+    press(heat, 0.02, MIDDLES + [0, 0, 0.0195])
+    touched = heat._boxes.touched(0)
+    covered = touched.places[touched.contacts[0]].covered(CUBE.size, STACK.width)
+    assert covered[0] == (0.0, 0.009) and covered[1] == (0.0, pytest.approx(0.005, abs=1e-4))

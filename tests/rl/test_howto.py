@@ -1,0 +1,25 @@
+"""docs/howto.md: the training runs as it stands."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("stable_baselines3", reason="needs stable-baselines3: make test-rl")
+
+PAGE = Path(__file__).parents[2] / "docs" / "howto.md"
+
+
+@pytest.mark.parametrize("block", re.findall(r"```python rl\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL))
+def test_the_block_runs_and_trains(block: str) -> None:
+    """All steps that it asks for are taken, and what comes of them is a policy for that environment."""
+    names: dict[str, Any] = {"__name__": "__main__"}
+    exec(compile(block, PAGE.name, "exec"), names)
+    model, env = names["model"], names["env"]
+    (asked,) = re.findall(r"model\.learn\((\d+)\)", block)
+    assert model.num_timesteps >= int(asked) and model._n_updates > 0
+    assert all(bool(part.isfinite().all()) for part in model.policy.parameters())
+    observation, _ = env.reset(seed=0)
+    actions, _ = model.predict(observation)
+    assert actions.shape == env.action_space.shape and env.action_space.contains(actions)

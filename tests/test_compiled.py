@@ -1,0 +1,197 @@
+"""Compiled code on disk is used only where nothing that was compiled into it has changed."""
+
+import importlib
+import os
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba.core.dispatcher import Dispatcher
+
+from thermograsp.compiled import compiled_hash, njit
+from thermograsp.errors import InvalidValueError
+
+FILES = {
+    "lower.py": """
+from thermograsp.compiled import njit
+
+@njit(cache=True, inline="always")
+def inlined(x):
+    return x + 1.0
+
+@njit(cache=True)
+def called(x):
+    return 2.0 * inlined(x)
+""",
+    "limits.py": "LARGEST = 100.0\nSTEPS = (1.0, 2.0)\n",
+    "upper.py": """
+import limits
+from limits import STEPS
+from lower import called, inlined
+from thermograsp.compiled import njit
+
+@njit(cache=True)
+def kernel(x):
+    return min(called(x) + inlined(x) + STEPS[1], limits.LARGEST)
+""",
+}
+
+
+def result(folder: Path) -> tuple[float, int]:
+    """What a new process gets from the kernel, and how often it had to compile it."""
+    code = """
+from upper import kernel
+print(kernel(1.0), sum(kernel.stats.cache_misses.values()))
+"""
+    done = subprocess.run([sys.executable, "-B", "-c", code], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    value, compiled = done.stdout.split()
+    return float(value), int(compiled)
+
+
+def test_a_hash_does_not_depend_on_the_process() -> None:
+    code = """
+from thermograsp.compiled import compiled_hash
+from thermograsp.thermal.network import advance
+print(compiled_hash(advance))
+"""
+    hashes = set()
+    for seed in "1", "2", "3", "4":
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        hashes.add(done.stdout)
+    assert len(hashes) == 1
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, content in FILES.items():
+        (tmp_path / name).write_text(content)
+    return tmp_path
+
+
+def edit(folder: Path, name: str, old: str, new: str) -> None:
+    source = (folder / name).read_text()
+    assert source.count(old) == 1
+    (folder / name).write_text(source.replace(old, new))
+
+
+def hash_now(folder: Path) -> str:
+    """Of the kernel, its modules loaded afresh."""
+    names = [name.removesuffix(".py") for name in FILES]
+    sys.path.insert(0, str(folder))
+    try:
+        importlib.invalidate_caches()
+        return compiled_hash(importlib.import_module("upper").kernel)
+    finally:
+        sys.path.remove(str(folder))
+        for name in names:
+            sys.modules.pop(name, None)
+
+
+def test_an_edit_of_what_was_compiled_in_is_never_missed(folder: Path) -> None:
+    """Nor does code of an older version pile up."""
+    assert result(folder) == (8.0, 1)
+    files = sorted(path.suffix for path in (folder / "__pycache__").glob("upper.kernel*"))
+    assert files == [".nbc", ".nbi"]
+    assert result(folder) == (8.0, 0)
+    edit(folder, "lower.py", "x + 1.0", "x + 10.0")
+    edit(folder, "limits.py", "2.0)", "4.0)")
+    assert result(folder) == (2 * 11 + 11 + 4, 1)
+    assert sorted(path.suffix for path in (folder / "__pycache__").glob("upper.kernel*")) == files
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("lower.py", "x + 1.0", "x + 10.0"),  # inlined from another file, straight and through a call
+        ("lower.py", "2.0 *", "3.0 *"),  # called in another file
+        ("lower.py", 'inline="always"', 'fastmath=True, inline="always"'),
+        ("limits.py", "2.0)", "4.0)"),  # a value imported from another file
+        ("limits.py", "100.0", "40.0"),  # an attribute of another module
+        ("upper.py", "min(", "max("),
+    ],
+)
+def test_every_edit_changes_the_hash(folder: Path, name: str, old: str, new: str) -> None:
+    sys.dont_write_bytecode, before_flag = True, sys.dont_write_bytecode
+    try:
+        before = hash_now(folder)
+        edit(folder, name, old, new)
+        assert hash_now(folder) != before
+    finally:
+        sys.dont_write_bytecode = before_flag
+
+
+def test_an_edit_of_what_is_not_compiled_in_costs_nothing(folder: Path) -> None:
+    before = hash_now(folder)
+    (folder / "limits.py").write_text("OTHER = 1.0\n" + FILES["limits.py"])
+    (folder / "lower.py").write_text(FILES["lower.py"] + "\n# a comment\n\ndef unrelated():\n    return 1\n")
+    assert hash_now(folder) == before
+
+
+@pytest.mark.slow
+def test_processes_that_compile_at_once_get_the_right_code(folder: Path) -> None:
+    code = """
+import sys
+import numpy as np
+sys.stdin.read()  # wait until all have started
+from upper import kernel
+for kind in sys.argv[1:]:
+    assert kernel(np.dtype(kind).type(1)) == 8, kind
+"""
+    for _ in range(2):
+        processes = [
+            subprocess.Popen([sys.executable, "-B", "-c", code, *kinds], cwd=folder, stdin=subprocess.PIPE)
+            for kinds in (("f8", "i8"), ("i8", "f8"))
+        ]
+        for process in processes:
+            assert process.stdin is not None
+            process.stdin.close()
+        assert [process.wait(timeout=300) for process in processes] == [0] * 2
+
+
+def test_what_cannot_be_hashed_is_refused() -> None:
+    unknown = object()
+
+    @njit(cache=True)
+    def kernel(x: float) -> float:
+        return x if unknown else 0.0
+
+    with pytest.raises(InvalidValueError, match="hand it over as an argument"):
+        compiled_hash(kernel)
+
+
+def test_values_and_options_are_told_apart() -> None:
+    def hash_of(value: object, **options: bool) -> str:
+        @njit(**options)
+        def kernel(x: float) -> float:
+            return value  # pyright: ignore[reportReturnType]
+
+        return compiled_hash(kernel)
+
+    values = [1, 1.0, 1.0000000000000002, True, "1", (1,), (1, 1), np.ones(2), np.ones(2, np.float32), None]
+    hashes = [hash_of(value) for value in values] + [hash_of(1, fastmath=True)]
+    assert len(set(hashes)) == len(hashes)
+    assert hash_of(np.ones(2)) == hash_of(np.ones(2))
+
+
+def test_every_kernel_of_the_package_has_a_hash() -> None:
+    kernels = 0
+    for package in ("thermal", "envs"):
+        root = importlib.import_module(f"thermograsp.{package}")
+        for module in pkgutil.walk_packages(root.__path__, f"{root.__name__}."):
+            if module.name.endswith("sb3"):
+                continue
+            for value in vars(importlib.import_module(module.name)).values():
+                if isinstance(value, Dispatcher):
+                    assert len(compiled_hash(value)) == 64
+                    kernels += 1
+    assert kernels > 50

@@ -1,0 +1,70 @@
+"""The compiled contact law is the contact law."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermograsp.thermal import (
+    LAPPED_ALUMINA,
+    Joint,
+    Pad,
+    Surface,
+    contact_conductance,
+    cylinder_contact,
+    cylinder_law,
+    flat_contact,
+    flat_law,
+    joint,
+    material,
+    sphere_contact,
+    sphere_law,
+)
+from thermograsp.thermal.contact.law import conductance, contact
+
+FORCES = np.logspace(-6, 3.5, 200)
+PAD = Pad()
+SHAPES = {
+    "flat": (lambda j: flat_law(PAD, j, (0.04, 0.012)), lambda: flat_contact(PAD, FORCES, (0.04, 0.012))),
+    "cylinder": (
+        lambda j: cylinder_law(PAD, j, 0.02, 0.05),
+        lambda: cylinder_contact(PAD, FORCES, 0.02, 0.05),
+    ),
+    "short cylinder": (
+        lambda j: cylinder_law(PAD, j, 0.3, 0.006),
+        lambda: cylinder_contact(PAD, FORCES, 0.3, 0.006),
+    ),
+    "ball": (lambda j: sphere_law(PAD, j, 0.005), lambda: sphere_contact(PAD, FORCES, 0.005)),
+    "nearly flat": (lambda j: sphere_law(PAD, j, 2.0), lambda: sphere_contact(PAD, FORCES, 2.0)),
+}
+
+
+def mixed(share: float) -> Joint:
+    """Neither plastic nor elastic."""
+    return Joint(2.0, 1e-6, 0.1, 5e9, 3e8, share, 0.026, 3e-7)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("name", ["glass", "copper", "cotton", "polyethylene", "mixed"])
+def test_it_is_the_area_and_conductance_law_over_nine_decades_of_force(shape, name):
+    pair = mixed(0.4) if name == "mixed" else joint(LAPPED_ALUMINA, Surface.of(material(name)))
+    compiled, reference = SHAPES[shape]
+    law, expected = compiled(pair), reference()
+    area, load = np.array([contact(law, force, np.zeros(3)) for force in FORCES]).T
+    assert np.allclose(area, expected.face, rtol=1e-12, atol=0)
+    assert np.allclose(load, expected.face_force, rtol=1e-12, atol=0)
+    found = [conductance(law, pressure) for pressure in expected.face_pressure]
+    assert np.allclose(found, contact_conductance(pair, expected.face_pressure), rtol=1e-10, atol=0)
+
+
+def test_a_pad_off_the_middle_meets_what_lies_under_it() -> None:
+    rng, pair = np.random.default_rng(0), joint(LAPPED_ALUMINA, Surface.of(material("glass")))
+    for size in ((0.04, 0.03), (0.006, 0.05), (0.015, 0.004)):
+        law, fixed = flat_law(PAD, pair, size, (2, 0)), flat_law(PAD, pair, size)
+        for place in rng.uniform(-0.03, 0.03, (200, 3)):
+            expected = flat_contact(PAD, 1.0, size, (place[2], place[0]))
+            area, load = contact(law, 1.0, place)
+            assert area == pytest.approx(float(expected.face), rel=1e-12, abs=1e-18)
+            assert load == pytest.approx(float(expected.face_force), rel=1e-12, abs=1e-15)
+            assert contact(fixed, 1.0, place) == (fixed["area"], fixed["share"])
+        assert contact(law, 1.0, np.zeros(3)) == (law["area"], law["share"])

@@ -1,0 +1,82 @@
+"""The choice of a network: monotone in the demand, honest about its error."""
+
+import numpy as np
+import pytest
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.thermal import Demand
+from thermograsp.thermal.matter.materials import materials
+from thermograsp.thermal.matter.sensors import sensor
+from thermograsp.thermal.network.choice import FIRST, choose
+from thermograsp.thermal.network.states import Orders
+from thermograsp.thermal.network.system import sample_geometry
+from thermograsp.thermal.plates.samples import Geometry
+from thermograsp.thermal.rungs import semi_analytic
+from thermograsp.thermal.rungs.network import solve
+from thermograsp.thermal.rungs.problem import PressProblem
+
+
+def geometry(name: str = "glass", mode: str = "T", fingertips: int = 1) -> Geometry:
+    return Geometry(sensor("seed"), materials()[name], mode, 8.1e-5, "square", (0.04, 0.04, 0.01), fingertips)  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+def test_stricter_demands_cost_more(mode: str) -> None:
+    samples = sample_geometry(geometry(mode=mode))
+    choices = [choose(samples, Demand(tolerance, 12.0, (1e3, 1e4), 10.0)) for tolerance in (1.0, 0.1, 0.01)]
+    costs = [choice.system.orders.multiply_adds for choice in choices]
+    assert costs == sorted(costs) and costs[0] < costs[-1]
+    assert all(choice.error <= tolerance for choice, tolerance in zip(choices, (1.0, 0.1, 0.01), strict=True))
+
+
+def test_impossible_demand_says_what_is_possible() -> None:
+    with pytest.raises(InvalidValueError, match="no network keeps"):
+        choose(sample_geometry(geometry()), Demand(1e-9, 12.0, (1e4,), 10.0))
+
+
+@pytest.mark.parametrize("fingertips", [1, 2])
+@pytest.mark.parametrize("seed", range(4))
+def test_random_scenes_keep_the_tolerance(seed: int, fingertips: int) -> None:
+    """Against the solution without a grid, which shares neither kernels nor states with the networks. A second
+    fingertip that stays apart changes nothing."""
+    rng = np.random.default_rng(seed)
+    stack, names = sensor("seed"), sorted(materials())
+    problem = PressProblem(
+        stack,
+        materials()[names[rng.integers(len(names))]],
+        "T" if seed % 2 else "O",
+        float(10 ** rng.uniform(2, 5)),
+        float(rng.uniform(0.2, 1)) * stack.face_area,
+        "square" if rng.random() < 0.5 else "round",
+        (0.03, 0.03, float(rng.uniform(0.002, 0.03))),
+        0.0,
+        36.0,
+        24.0,
+    )
+    body = Geometry(
+        stack,
+        problem.material,
+        problem.mode,
+        problem.area,
+        problem.shape,
+        problem.object_size,
+        2 if fingertips == 2 else 1,
+    )
+    tolerance = float(10 ** rng.uniform(-2.2, 0))
+    assert not callable(problem.conductance)
+    choice = choose(sample_geometry(body), Demand(tolerance, 12.0, (problem.conductance,), 10.0))
+    t = np.arange(201) * FIRST
+    late = np.unique(np.geomspace(1, 200, 30).astype(int))
+    exact = semi_analytic.solve(problem, t[late]).temperature_drop
+    assert np.max(np.abs(solve(problem, t, choice.system).temperature_drop[late] - exact)) <= tolerance
+
+
+def test_orders_read_as_they_print() -> None:
+    for text in ("2/10/12", "1/0/4", "3/8/10/9"):
+        assert str(Orders.parse(text)) == text
+    for text in ("", "2", "2/3", "a/b/c", "1/2/3/4/5", "-1/2/3"):
+        with pytest.raises(InvalidValueError, match="orders must read"):
+            Orders.parse(text)
+    # twice the states cost at least 1.5 times as much, and more modes more
+    assert Orders(2, 20, 24).multiply_adds > 1.5 * Orders(2, 10, 12).multiply_adds
+    assert Orders(3, 10, 12).multiply_adds > Orders(2, 10, 12).multiply_adds

@@ -1,0 +1,140 @@
+"""Many worlds of one scene, from recorded contact sensors."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+import importlib.util
+import pickle
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from thermograsp.errors import InvalidValueError, MissingDependencyError
+from thermograsp.touch import ThermalTouch, prepare
+
+_spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
+assert _spec and _spec.loader
+hand = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(hand)
+
+PADS = {name: f"{name}_pad" for name in hand.FINGERS}
+OBJECTS = {"can": "aluminium"}
+FORCES = (10.0, 4.0, -5.0)
+
+
+@pytest.fixture(scope="module")
+def model() -> mujoco.MjModel:
+    if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
+        pytest.skip("this MuJoCo has no contact sensors")
+    return prepare(mujoco.MjSpec.from_string(hand.scene()), PADS, OBJECTS)
+
+
+@pytest.fixture(scope="module")
+def record(model: mujoco.MjModel) -> np.ndarray:
+    """(worlds, 400 substeps, sensordata) of hands that press with FORCES."""
+    found = np.empty((len(FORCES), 400, model.nsensordata))
+    for world, force in enumerate(FORCES):
+        data = mujoco.MjData(model)
+        hand.press(data, force)
+        for step in range(found.shape[1]):
+            mujoco.mj_step(model, data)
+            found[world, step] = data.sensordata
+    return found
+
+
+def many(model: mujoco.MjModel, worlds: int, **words: object) -> ThermalTouch:
+    return ThermalTouch(model, fingertips=PADS, objects=OBJECTS, worlds=worlds, **words)  # pyright: ignore
+
+
+def test_one_world_gives_the_bits_of_a_row_of_many(model: mujoco.MjModel, record: np.ndarray) -> None:
+    touch = many(model, len(FORCES), seed=5)
+    for first in range(0, record.shape[1], 10):
+        touch.update(record[:, first : first + 10])
+    for world in range(len(FORCES)):
+        alone = many(model, 1, seed=5 + world)
+        reading = alone.update(record[world : world + 1])
+        np.testing.assert_array_equal(reading.voltage[0], touch.reading.voltage[world])
+        np.testing.assert_array_equal(reading.temperature_drop[0], touch.reading.temperature_drop[world])
+    assert touch.reading.touching == (("can",) * 3, ("can",) * 3, ("",) * 3)
+    drop = touch.reading.temperature_drop
+    assert (drop[0] > drop[1]).all() and (drop[1] > 1.0).all() and not drop[2].any()
+    for balance in touch.balance:  # pyright: ignore[reportGeneralTypeIssues]
+        error = balance.objects.sum() + balance.air - balance.given.sum()
+        assert abs(error) <= 1e-10 * np.abs(balance.given).sum()
+
+
+def test_recorded_sensors_tell_what_the_simulation_does(model: mujoco.MjModel, record: np.ndarray) -> None:
+    touch = ThermalTouch(model, fingertips=PADS, objects=OBJECTS, chain="ideal")
+    data = mujoco.MjData(model)
+    hand.press(data, FORCES[0])
+    for _ in range(record.shape[1]):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    recorded = many(model, 1, chain="ideal").update(record[:1])
+    np.testing.assert_allclose(recorded.force[0], touch.reading.force, rtol=1e-3)
+    np.testing.assert_allclose(recorded.temperature_drop[0], touch.reading.temperature_drop, rtol=0.01)
+
+
+def test_resets_go_by_rows(model: mujoco.MjModel, record: np.ndarray) -> None:
+    touch = many(model, 2, seed=0, chain="ideal")
+    touch.update(record[:2, :200])
+    kept = touch.reading
+    touch.reset(worlds=np.array([False, True]), temperatures={"can": 60.0})
+    assert touch.reading.object_temperature["can"][1] == pytest.approx(60.0)  # pyright: ignore
+    assert not touch.reading.temperature_drop[1].any()
+    np.testing.assert_array_equal(touch.reading.temperature_drop[0], kept.temperature_drop[0])
+    touch.update(record[:2, 200:])
+    unbroken = many(model, 2, seed=0, chain="ideal").update(record[:2])
+    np.testing.assert_array_equal(touch.reading.temperature_drop[0], unbroken.temperature_drop[0])
+    assert (touch.reading.temperature_drop[1] < 0).all()
+
+
+def test_a_world_that_breaks_down_fails_alone(model: mujoco.MjModel, record: np.ndarray) -> None:
+    broken = record[:2].copy()
+    broken[0, 100] = np.nan
+    touch = many(model, 2, seed=0)
+    reading = touch.update(broken)
+    assert reading.failed.tolist() == [True, False]  # pyright: ignore
+    assert np.isnan(reading.voltage[0]).all() and np.isnan(reading.temperature_drop[0]).all()
+    whole = many(model, 2, seed=0).update(record[:2])
+    np.testing.assert_array_equal(reading.voltage[1], whole.voltage[1])
+    touch.reset(worlds=[0])
+    reading = touch.update(record[:2])
+    assert not reading.failed.any() and np.isfinite(reading.voltage).all()  # pyright: ignore
+
+
+def test_a_state_of_many_worlds_goes_on_alike(model: mujoco.MjModel, record: np.ndarray) -> None:
+    touch = many(model, 3, seed=1)
+    touch.update(record[:, :203])
+    kept = pickle.dumps(touch.state())
+    first = touch.update(record[:, 203:])
+    again = many(model, 3)
+    again.set_state(pickle.loads(kept))
+    second = again.update(record[:, 203:])
+    np.testing.assert_array_equal(first.voltage, second.voltage)
+    with pytest.raises(InvalidValueError, match="worlds"):
+        many(model, 2).set_state(pickle.loads(kept))
+
+
+def test_what_does_not_fit_is_refused(model: mujoco.MjModel, record: np.ndarray) -> None:
+    bare, data = hand.hand()
+    with pytest.raises(InvalidValueError, match="prepare"):
+        many(bare, 2)
+    with pytest.raises(InvalidValueError, match="MjData"):
+        many(model, 2).update(data)
+    with pytest.raises(InvalidValueError, match="shape"):
+        many(model, 2).update(record)
+    with pytest.raises(InvalidValueError, match="worlds"):
+        many(model, 2).reset(worlds=[2])
+    with pytest.raises(InvalidValueError, match="worlds"):
+        many(model, 0)
+    with pytest.raises(InvalidValueError, match="worlds=n"):
+        ThermalTouch(bare, fingertips=PADS, objects=OBJECTS).update(record)
+
+
+def test_a_mujoco_without_contact_sensors_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("thermograsp.touch.contacts.sensors._SENSOR", None)
+    with pytest.raises(MissingDependencyError, match=r"need MuJoCo 3\.3\.5"):
+        prepare(mujoco.MjSpec.from_string(hand.scene()), PADS, OBJECTS)

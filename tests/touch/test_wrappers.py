@@ -1,0 +1,74 @@
+"""Heat for environments that others wrote."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import mujoco
+import numpy as np
+import pytest
+
+import thermograsp
+from thermograsp.errors import InvalidValueError
+
+_spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
+assert _spec and _spec.loader
+hand = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(hand)
+
+PADS = {name: f"{name}_pad" for name in hand.FINGERS}
+
+
+class Theirs(gymnasium.Env):
+    """Ten substeps in one call, as gymnasium's own MuJoCo environments take them. anew: a new model at each reset."""
+
+    def __init__(self, anew: bool = False) -> None:
+        self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (2,), np.float64)
+        self.action_space = gymnasium.spaces.Box(-20.0, 20.0, (1,), np.float32)
+        self.model, self.data = hand.hand()
+        self.anew = anew
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
+        super().reset(seed=seed)
+        if self.anew:
+            self.model, self.data = hand.hand()
+        mujoco.mj_resetData(self.model, self.data)
+        return self.data.qpos[:2].copy(), {}
+
+    def step(self, action: Any) -> Any:
+        hand.press(self.data, float(action[0]))
+        mujoco.mj_step(self.model, self.data, nstep=10)
+        return self.data.qpos[:2].copy(), 0.0, False, False, {}
+
+
+@pytest.mark.parametrize("anew", [False, True])
+def test_every_substep_of_an_environment_is_heard(anew: bool) -> None:
+    step = mujoco.mj_step
+    env = thermograsp.wrappers.AddThermalObservation(
+        Theirs(anew), fingertips=PADS, objects={"can": "aluminium"}, chain="ideal"
+    )
+    model, data = hand.hand()
+    touch = thermograsp.ThermalTouch(model, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal")
+    env.reset(seed=0)
+    observation, info = env.reset(seed=0)
+    assert observation in env.observation_space
+    touch.reset(data, seed=0)
+    for _ in range(30):
+        observation, _, _, _, info = env.step(np.array([10.0]))
+        hand.press(data, 10.0)
+        for _ in range(10):
+            mujoco.mj_step(model, data)
+            touch.update(data)
+    assert observation in env.observation_space
+    np.testing.assert_array_equal(info["touch"].voltage, touch.reading.voltage)
+    assert (info["touch"].temperature_drop > 1.0).all()
+    assert mujoco.mj_step is step
+
+
+def test_an_environment_without_mujoco_is_refused() -> None:
+    with pytest.raises(InvalidValueError, match="has no MuJoCo"):
+        thermograsp.wrappers.AddThermalObservation(gymnasium.make("CartPole-v1"), fingertips=PADS)

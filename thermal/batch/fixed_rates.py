@@ -1,0 +1,499 @@
+"""Heat of boxes and fingertips whose networks share their rates: what differs between rows is residues alone.
+
+A contact's flow q is known to either body by how it has faded at each of the level's rates, y' = -rate y + q: the same
+numbers whatever the body, its place and its size, so that a field stays where fingertips come, go, slide and change
+objects. A body's temperature at its ports is the sum over the rates of (residues y). The step is that of
+network/coupling.py; as a rate's states fade alike, its products with ports are taken once and not at each pole.
+
+Beside its contacts a body follows its surroundings (a box the air, an element its thermostat): z' = rate (around - z),
+and u z of it at the ports; by reciprocity u y is heat of the flows. A box's slowest state is its own and comes first.
+
+B: rows, F: fingertips, M: places of a box, P: patterns of a contact, N = M P, K = RATES, E = POLES_KEPT: an element's
+slow poles, Q: pole pairs, T: elements under different contacts.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..kernels import Side
+from ..network import POLES, WEIGHTS
+from ..numerics import FAST
+from .carry import TipRows
+from .residues import residues
+from .residues import rows as shared_rows
+
+SHARED = np.geomspace(0.01, 1e3, 10)
+"""1/s: the rates of all networks, on which an impedance is within 3e-4 of the whole contact's."""
+_CONTACT = 0.4  # K/W of a good contact with a sensor's face, beside which errors of impedances are weighed
+_PAIRS = len(POLES)
+_FADING, _SEEN, _PUSHED = 1, 2, 2 + 2 * _PAIRS
+_TOLD = 2 + 4 * _PAIRS  # of a rate: itself, how it fades in a step, how it is seen and pushed at the poles
+HELD = _TOLD  # of the slowest state of a box: sqrt(J K) of heat in it
+_PORT, _DROP, POLE_HEAT = _TOLD, _TOLD + 1, _TOLD + 2  # of an element's pole
+RATES, POLES_KEPT, LANES = 12, 8, 4
+"""Of a level, of an element's slow poles, and of the step's poles, at most: loops of a length that the compiler knows
+are faster, and what is left over is zero."""
+USED, AIRED, WHERE = 0, 1, 2  # of FixedTables.links; then a fingertip's place each, then its element
+
+
+class FixedTables(NamedTuple):
+    """Rows of boxes between fingertips, for steps of dt s.
+
+    patterns, places: P and M. rates (14, K) and poles (17, E): rates 1/s, and what a step makes of them; of poles
+    their ports sqrt(K/J), drop and heat too. tips (T, P P + 2 P + 2, K): residues K/J, drop and heat rows, and what
+    follows the thermostat of either. slow (B, 15 + N): of a box's slowest state the same, its heat, and its ports.
+    body (B, N N + N + 1, K): residues, heat rows u, heat of what follows the air J/K. gram (B, F P, F P, 2, LANES):
+    real and imaginary K/J of all that is in touch at the poles. links (B, 2 + 2 F): places used, whether the air
+    takes any heat, each fingertip's place (-1 for none) and element.
+    """
+
+    dt: float
+    patterns: int
+    places: int
+    rates: np.ndarray
+    poles: np.ndarray
+    tips: np.ndarray
+    slow: np.ndarray
+    body: np.ndarray
+    gram: np.ndarray
+    links: np.ndarray
+
+    @property
+    def states(self) -> int:
+        """Of a row."""
+        count, tips = self.rates.shape[1], (self.links.shape[1] - WHERE) // 2
+        return 1 + count * (1 + self.places * self.patterns) + tips * self.of_tip
+
+    @property
+    def of_tip(self) -> int:
+        """States of a fingertip; they come last, one fingertip after the other."""
+        return self.poles.shape[1] + self.rates.shape[1] * (1 + self.patterns)
+
+
+def fixed_tables(
+    rows: int, fingertips: int, places: int, patterns: int, whole: Side, dt: float
+) -> FixedTables:
+    """Empty tables. whole: the element under a contact with all of its face, which is element 0."""
+    slow = _slow(whole)
+    poles, rates = np.zeros((_TOLD + 3, POLES_KEPT)), np.zeros((_TOLD, RATES))
+    poles[:_TOLD, :slow] = _told(whole.rates[:slow], dt)
+    seen = whole.ports[:, 0], whole.outputs["drop"], whole.outputs["element"]
+    poles[_PORT, :slow], poles[_DROP, :slow], poles[POLE_HEAT, :slow] = (row[:slow] for row in seen)
+    rates[:, : len(SHARED)] = _told(SHARED, dt)
+    rates[_FADING, len(SHARED) :] = 1.0  # what is left over stays 0
+    ports = places * patterns
+    tables = FixedTables(
+        dt,
+        patterns,
+        places,
+        rates,
+        poles,
+        np.zeros((1 + rows * fingertips, patterns * patterns + 2 * patterns + 2, RATES)),
+        np.zeros((rows, _TOLD + 1 + ports)),
+        np.zeros((rows, ports * ports + ports + 1, RATES)),
+        np.zeros((rows, fingertips * patterns, fingertips * patterns, 2, LANES)),
+        np.full((rows, WHERE + 2 * fingertips), -1),
+    )
+    tables.links[:, WHERE + fingertips :] = 0
+    tables.tips[0] = tip_residues(whole)
+    return tables
+
+
+def no_fixed_tables(dt: float) -> FixedTables:
+    """Of no rows."""
+    return FixedTables(
+        dt,
+        1,
+        1,
+        np.zeros((_TOLD, RATES)),
+        np.zeros((_TOLD + 3, POLES_KEPT)),
+        np.zeros((1, 5, RATES)),
+        np.zeros((0, HELD + 2)),
+        np.zeros((0, 3, RATES)),
+        np.zeros((0, 1, 1, 2, LANES)),
+        np.zeros((0, WHERE + 2), int),
+    )
+
+
+def set_gram(tables: FixedTables, row: int) -> None:
+    """Makes what meets at the row's contacts what its other tables say; after these have changed."""
+    parts = tables.slow[row], tables.body[row], tables.gram[row], tables.links[row]
+    _gram(tables.rates, tables.poles, tables.tips, *parts, tables.patterns, tables.places)
+
+
+def fixed_heat(tables: FixedTables, row: int, state: np.ndarray) -> float:
+    """J in the row's box above its first temperature; state (n,)."""
+    count, ports = tables.rates.shape[1], tables.places * tables.patterns
+    rows = tables.body[row, ports * ports :]
+    own = state[1 : 1 + count * (1 + ports)].reshape(1 + ports, count)
+    if not tables.links[row, AIRED]:
+        return float(tables.slow[row, HELD] * state[0])
+    total = tables.slow[row, HELD] * state[0] + (rows[-1] * own[0]).sum() + (rows[:-1] * own[1:]).sum()
+    return float(total)
+
+
+def fixed_tip_rows(tables: FixedTables, number: int) -> TipRows:
+    """What a fingertip with the element of that number tells of its states."""
+    patterns, rates, poles, element = tables.patterns, tables.rates[0], tables.poles, tables.tips[number]
+    drop, heat, ports = (
+        element[first : first + patterns] for first in (patterns**2, patterns**2 + patterns, 0)
+    )
+    still = element[patterns**2 + 2 * patterns :]
+    return TipRows(
+        np.concatenate((poles[0], np.tile(rates, 1 + patterns))),
+        np.concatenate((poles[POLE_HEAT], still[1], heat.ravel())),
+        np.concatenate((poles[_DROP], still[0], drop.ravel())),
+        np.concatenate((poles[_PORT], heat[0], ports.ravel())),
+    )
+
+
+def _told(rates: np.ndarray, dt: float) -> np.ndarray:
+    """(14, ...) of rates 1/s: themselves, what of a state is left after a step, how it is seen at the poles, and what
+    flows at the poles push it by."""
+    scale = 1 / (POLES.reshape(-1, *(1,) * np.ndim(rates)) + dt * rates)
+    weighted = -2 * dt * np.moveaxis(WEIGHTS * np.moveaxis(scale, 0, -1), -1, 0)
+    left = 1 - rates * weighted.real.sum(axis=0)
+    parts = (rates, left, *scale.real, *scale.imag, *weighted.real, *-weighted.imag)
+    return np.stack([np.asarray(part, float) for part in parts])
+
+
+def tip_residues(side: Side) -> np.ndarray:
+    """(P P + 2 P + 2, K) of an element: a row of FixedTables.tips."""
+    slow, patterns = _slow(side), side.ports.shape[1]
+    rates, ports = side.rates[slow:], side.ports[slow:]
+    drop, heat = side.outputs["drop"][slow:, None], side.outputs["element"][slow:, None]
+    columns = np.concatenate((ports * drop, ports * heat, drop * heat, heat * heat), axis=1)
+    found = np.zeros((patterns**2 + columns.shape[1], RATES))
+    found[: patterns**2, : len(SHARED)] = residues(rates, ports, SHARED, _CONTACT).reshape(len(SHARED), -1).T
+    found[patterns**2 :, : len(SHARED)] = shared_rows(rates, columns, SHARED).T
+    return found
+
+
+class BodyResidues(NamedTuple):
+    """Of a box with N ports: rate 1/s, ports (N,) and heat of its slowest state; residues (N, N, K), heat rows (N, K)
+    and heat of what follows the air (K,), zeros where it takes none."""
+
+    rate: float
+    ports: np.ndarray
+    held: float
+    residues: np.ndarray
+    heat: np.ndarray
+    still: np.ndarray
+
+
+def body_residues(box: Side, capacity: float, aired: bool) -> BodyResidues:
+    """Of a box's network, its slowest state first. capacity: J/K of the box. aired: the air takes heat."""
+    heat, count, shared = box.outputs["object"], box.ports.shape[1], len(SHARED)
+    rates, fast, held = box.rates[1:], box.ports[1:], heat[1:, None]
+    found, warmed, still = np.zeros((count, count, RATES)), np.zeros((count, RATES)), np.zeros(RATES)
+    found[..., :shared] = residues(rates, fast, SHARED, _CONTACT).transpose(1, 2, 0)
+    if aired:
+        warmed[:, :shared] = shared_rows(rates, held * fast, SHARED).T
+        # what the ports hardly see of the heat is hardly known from them: all of it together is the box's
+        own = np.maximum(shared_rows(rates, held * held, SHARED)[:, 0], 0.0)
+        if own.any():
+            still[:shared] = own * max(capacity - heat[0] ** 2, 0.0) / own.sum()
+    return BodyResidues(float(box.rates[0]), box.ports[0], float(heat[0]), found, warmed, still)
+
+
+def set_body(tables: FixedTables, row: int, box: BodyResidues) -> None:
+    """Makes a box, with as many ports as its places have patterns, the row's."""
+    count, most = len(box.ports), tables.places * tables.patterns
+    slow, body = tables.slow[row], tables.body[row]
+    slow[:] = body[:] = 0.0
+    slow[:_TOLD] = _told(np.asarray(box.rate), tables.dt)
+    slow[HELD], slow[HELD + 1 : HELD + 1 + count] = box.held, box.ports
+    body[: most * most].reshape(most, most, -1)[:count, :count] = box.residues
+    body[most * most :][:count], body[-1] = box.heat, box.still
+    tables.links[row, USED] = count // tables.patterns
+    tables.links[row, AIRED] = box.still.any()
+
+
+def _slow(element: Side) -> int:
+    """How many of an element's states are its slow poles, which only the even pattern sees."""
+    return int(np.argmax(np.append(element.ports[:, 1:].any(axis=1), True)))
+
+
+@njit(cache=True, error_model="numpy")
+def _gram(rates, poles, tips, slow, body, gram, index, patterns, places):
+    """Fills gram (F P, F P, 2, LANES) of one row from the other tables and its own slow, body and index."""
+    most = places * patterns
+    fingertips = (len(index) - WHERE) // 2
+    gram[:] = 0.0
+    for f in range(fingertips):
+        element = tips[index[WHERE + fingertips + f]]
+        for p in range(patterns):
+            a = f * patterns + p
+            for part in range(2):
+                for q in range(_PAIRS):
+                    at = _SEEN + part * _PAIRS + q
+                    for r in range(patterns):
+                        for k in range(RATES):
+                            gram[a, f * patterns + r, part, q] += rates[at, k] * element[p * patterns + r, k]
+                    if p == 0:
+                        for k in range(POLES_KEPT):
+                            gram[a, a, part, q] += poles[at, k] * poles[_PORT, k] * poles[_PORT, k]
+                    if index[WHERE + f] < 0:
+                        continue
+                    j = index[WHERE + f] * patterns + p
+                    for g in range(fingertips):
+                        if index[WHERE + g] < 0:
+                            continue
+                        for r in range(patterns):
+                            i, c = index[WHERE + g] * patterns + r, g * patterns + r
+                            gram[a, c, part, q] += slow[at] * slow[HELD + 1 + j] * slow[HELD + 1 + i]
+                            for k in range(RATES):
+                                gram[a, c, part, q] += rates[at, k] * body[j * most + i, k]
+
+
+class FixedRoom(NamedTuple):
+    """Memory of advance_fixed; what it holds between calls does not matter. moved (F P, K). Real and imaginary parts at
+    the poles: flows (F P, 2, LANES), matrix (F P, F P, 2, LANES) and factors (F P, 2, LANES). numbers (2, F P)."""
+
+    moved: np.ndarray
+    flows: np.ndarray
+    matrix: np.ndarray
+    factors: np.ndarray
+    numbers: np.ndarray
+
+
+@njit(cache=True)
+def fixed_room(ports):
+    """Room for so many ports of contacts."""
+    matrix = np.zeros((ports + 2, ports, 2, LANES))
+    return FixedRoom(
+        np.zeros((ports, RATES)), matrix[ports], matrix[:ports], matrix[ports + 1], np.zeros((2, ports))
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def advance_fixed(tables, i, x, conductance, difference, around, room, reading, b, k):
+    """One step of row i, state x in place, for compiled callers. conductance: (F,) W/K, 0 of a fingertip without a
+    place. difference: (F,) K, what element less box was when both were uniform. around: K, the air above the box's
+    first temperature. Into sample k of row b of a HeatReading, whose air_loss is what the air takes in all."""
+    dt, patterns, most = tables.dt, tables.patterns, tables.places * tables.patterns
+    rates, poles, index = tables.rates, tables.poles, tables.links[i]
+    slow, body, gram = tables.slow[i], tables.body[i], tables.gram[i]
+    tips, count, lasting, square = tables.tips, RATES, POLES_KEPT, patterns * patterns
+    fingertips = (len(index) - WHERE) // 2
+    used, aired = index[USED] * patterns, index[AIRED] > 0
+    heats, still = most * most, most * most + most  # rows of the body
+    z, fields = 1, 1 + count
+    first_tip = fields + most * count
+    of_tip = lasting + count * (1 + patterns)
+    moved, flows, matrix, factors = room.moved, room.flows, room.matrix, room.factors
+    flow0, weight = room.numbers[0], room.numbers[1]
+    slope = -slow[0] * (x[0] - slow[HELD] * around)
+    before = _held(slow, body, heats, still, x, used, aired) if aired else 0.0
+
+    met = 0
+    for f in range(fingertips):
+        reading.flow[b, k, f] = 0.0
+        if conductance[f] <= 0.0:
+            continue
+        element = index[WHERE + fingertips + f]
+        tip = first_tip + f * of_tip
+        for p in range(patterns):
+            j = index[WHERE + f] * patterns + p
+            apart = 0.0
+            for r in range(RATES):
+                moved[met, r] = -tips[element, square + patterns + p, r] * x[tip + lasting + r]
+            if aired:
+                for r in range(RATES):
+                    moved[met, r] += body[heats + j, r] * (x[z + r] - around)
+                    apart += body[heats + j, r] * around
+            for other in range(used):
+                start = fields + other * count
+                for r in range(RATES):
+                    moved[met, r] += body[j * most + other, r] * x[start + r]
+            for other in range(patterns):
+                start = tip + lasting + (1 + other) * count
+                for r in range(RATES):
+                    moved[met, r] -= tips[element, p * patterns + other, r] * x[start + r]
+            for r in range(RATES):
+                apart += moved[met, r]
+                moved[met, r] *= -rates[0, r]
+            apart += slow[HELD + 1 + j] * x[0]
+            if p == 0:
+                apart -= difference[f]
+                for r in range(POLES_KEPT):
+                    apart -= poles[_PORT, r] * x[tip + r]
+            flow0[met] = -apart / dt
+            weight[met] = 1 / (dt * conductance[f])
+            met += 1
+
+    a = 0
+    for f in range(fingertips):
+        if conductance[f] <= 0.0:
+            continue
+        tip = first_tip + f * of_tip
+        for p in range(patterns):
+            push = slow[HELD + 1 + index[WHERE + f] * patterns + p] * slope
+            for part in range(2):
+                flows[a, part, LANES - 1] = 0.0
+                for q in range(_PAIRS):
+                    at = _SEEN + part * _PAIRS + q
+                    heard = slow[at] * push
+                    for r in range(RATES):
+                        heard += rates[at, r] * moved[a, r]
+                    if p == 0:
+                        for r in range(POLES_KEPT):
+                            heard += poles[at, r] * poles[_PORT, r] * poles[0, r] * x[tip + r]
+                    flows[a, part, q] = (flow0[a] if part == 0 else 0.0) - heard
+            c = 0
+            for g in range(fingertips):
+                if conductance[g] <= 0.0:
+                    continue
+                for r in range(patterns):
+                    for part in range(2):
+                        for q in range(LANES):
+                            matrix[a, c, part, q] = gram[f * patterns + p, g * patterns + r, part, q]
+                    c += 1
+            for q in range(LANES):
+                matrix[a, a, 0, q] += weight[a]
+            a += 1
+    _solve_symmetric(matrix, flows, factors, met)
+
+    for r in range(RATES):
+        x[z + r] = around + rates[_FADING, r] * (x[z + r] - around)
+    for other in range(used):
+        start = fields + other * count
+        for r in range(RATES):
+            x[start + r] *= rates[_FADING, r]
+    x[0] = slow[HELD] * around + slow[_FADING] * (x[0] - slow[HELD] * around)
+    for f in range(fingertips):
+        tip = first_tip + f * of_tip
+        for r in range(POLES_KEPT):
+            x[tip + r] *= poles[_FADING, r]
+        for other in range(1 + patterns):
+            start = tip + lasting + other * count
+            for r in range(RATES):
+                x[start + r] *= rates[_FADING, r]
+    a, taken = 0, 0.0
+    for f in range(fingertips):
+        if conductance[f] <= 0.0:
+            continue
+        tip = first_tip + f * of_tip
+        for p in range(patterns):
+            j = index[WHERE + f] * patterns + p
+            start, under = fields + j * count, tip + lasting + (1 + p) * count
+            for r in range(RATES):
+                moved[a, r] = 0.0
+            mean, into = 0.0, 0.0
+            for q in range(_PAIRS):
+                real, imag = flows[a, 0, q], flows[a, 1, q]
+                mean -= 2 * (_LAGS[q].real * real - _LAGS[q].imag * imag)
+                into += slow[_PUSHED + q] * real + slow[_PUSHED + _PAIRS + q] * imag
+                for r in range(RATES):
+                    moved[a, r] += rates[_PUSHED + q, r] * real + rates[_PUSHED + _PAIRS + q, r] * imag
+            for r in range(RATES):
+                x[start + r] += moved[a, r]
+                x[under + r] -= moved[a, r]
+            x[0] += slow[HELD + 1 + j] * into
+            if p == 0:
+                reading.flow[b, k, f] = mean
+                for r in range(POLES_KEPT):
+                    into = 0.0
+                    for q in range(_PAIRS):
+                        into += poles[_PUSHED + q, r] * flows[a, 0, q]
+                        into += poles[_PUSHED + _PAIRS + q, r] * flows[a, 1, q]
+                    x[tip + r] -= poles[_PORT, r] * into
+            if aired:  # what all states lose is what came in less what they gained, each by itself
+                whole = slow[HELD] * slow[HELD + 1 + j]
+                for r in range(RATES):
+                    whole += body[heats + j, r]
+                taken += mean * whole
+            a += 1
+
+    now = _held(slow, body, heats, still, x, used, aired)
+    reading.object_heat[b, k] = now
+    reading.air_loss[b, k] = taken - (now - before) / dt if aired else 0.0
+    for f in range(fingertips):
+        element = index[WHERE + fingertips + f]
+        tip = first_tip + f * of_tip
+        drop, heat, rise = 0.0, 0.0, 0.0
+        for r in range(POLES_KEPT):
+            drop += poles[_DROP, r] * x[tip + r]
+            heat += poles[POLE_HEAT, r] * x[tip + r]
+            rise += poles[_PORT, r] * x[tip + r]
+        start = tip + lasting
+        for r in range(RATES):
+            drop += tips[element, square + 2 * patterns, r] * x[start + r]
+            heat += tips[element, square + 2 * patterns + 1, r] * x[start + r]
+            rise += tips[element, square + patterns, r] * x[start + r]
+        for p in range(patterns):
+            start = tip + lasting + (1 + p) * count
+            for r in range(RATES):
+                drop += tips[element, square + p, r] * x[start + r]
+                heat += tips[element, square + patterns + p, r] * x[start + r]
+                rise += tips[element, p, r] * x[start + r]
+        reading.drop[b, k, f], reading.element_heat[b, k, f] = drop, heat
+        reading.sensor_rise[b, k, f] = rise
+        above, j = now / (slow[HELD] * slow[HELD]), index[WHERE + f] * patterns
+        if j >= 0:
+            above = slow[HELD + 1 + j] * x[0]
+            if aired:
+                for r in range(RATES):
+                    above += body[heats + j, r] * x[z + r]
+            for other in range(used):
+                start = fields + other * count
+                for r in range(RATES):
+                    above += body[j * most + other, r] * x[start + r]
+        reading.object_rise[b, k, f] = above
+
+
+_LAGS = WEIGHTS / POLES
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _held(slow, body, heats, still, x, used, aired):
+    """J in a box, above its first temperature."""
+    total = slow[HELD] * x[0]
+    if aired:
+        for r in range(RATES):
+            total += body[still, r] * x[1 + r]
+        for other in range(used):
+            start = 1 + (1 + other) * RATES
+            for r in range(RATES):
+                total += body[heats + other, r] * x[start + r]
+    return total
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _solve_symmetric(matrix, flows, factors, m):
+    """Solves matrix x = flows at all poles at once, the leading m of each, in place, without pivoting: the matrix is
+    symmetric, of which the upper half is looked at, and its numerical range lies in a half plane (step.py)."""
+    for c in range(m):
+        for q in range(LANES):
+            real, imag = matrix[c, c, 0, q], matrix[c, c, 1, q]
+            size = 1 / (real * real + imag * imag)
+            matrix[c, c, 0, q], matrix[c, c, 1, q] = real * size, -imag * size
+        for r in range(c + 1, m):
+            for q in range(LANES):
+                real, imag = matrix[c, r, 0, q], matrix[c, r, 1, q]
+                factors[r, 0, q] = real * matrix[c, c, 0, q] - imag * matrix[c, c, 1, q]
+                factors[r, 1, q] = real * matrix[c, c, 1, q] + imag * matrix[c, c, 0, q]
+            for s in range(r, m):
+                for q in range(LANES):
+                    real, imag = matrix[c, s, 0, q], matrix[c, s, 1, q]
+                    matrix[r, s, 0, q] -= factors[r, 0, q] * real - factors[r, 1, q] * imag
+                    matrix[r, s, 1, q] -= factors[r, 0, q] * imag + factors[r, 1, q] * real
+            for q in range(LANES):
+                real, imag = flows[c, 0, q], flows[c, 1, q]
+                flows[r, 0, q] -= factors[r, 0, q] * real - factors[r, 1, q] * imag
+                flows[r, 1, q] -= factors[r, 0, q] * imag + factors[r, 1, q] * real
+    for c in range(m - 1, -1, -1):
+        for s in range(c + 1, m):
+            for q in range(LANES):
+                real, imag = flows[s, 0, q], flows[s, 1, q]
+                flows[c, 0, q] -= matrix[c, s, 0, q] * real - matrix[c, s, 1, q] * imag
+                flows[c, 1, q] -= matrix[c, s, 0, q] * imag + matrix[c, s, 1, q] * real
+        for q in range(LANES):
+            real, imag = flows[c, 0, q], flows[c, 1, q]
+            flows[c, 0, q] = real * matrix[c, c, 0, q] - imag * matrix[c, c, 1, q]
+            flows[c, 1, q] = real * matrix[c, c, 1, q] + imag * matrix[c, c, 0, q]

@@ -1,0 +1,199 @@
+"""Area and conductance of a fingertip's contact as one compiled function of the normal force, for many rows at once.
+
+The laws are those of area.py and conductance.py, which stay the reference: a row holds one object's numbers, and
+`contact` evaluates them in the order of their formulas, to 1e-9. Rows never mix.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..numerics import (
+    FARTHEST,
+    FAST,
+    HIGH,
+    LOW,
+    NEAREST,
+    SERIES,
+)
+from .area import Pad, flat_contact
+from .rough_faces import Joint, solid_conductance
+
+FLAT, CYLINDER, SPHERE = range(3)
+
+CONTACT_LAW = np.dtype(
+    [
+        # flat: m2 of the face in contact and its share of the force while the pad is at the middle; sizes m of the
+        # object's face along two axes of its frame, 0 where the pad is always taken to be there
+        ("area", "f8"),
+        ("share", "f8"),
+        ("size", "f8", (2,)),
+        ("across", "i8", (2,)),
+        # curved: Pa/m2 of a pad under a body of that radius, half widths m and, of a cylinder, lengths m in contact
+        ("stiffness", "f8"),
+        ("half_pad", "f8"),
+        ("half_face", "f8"),
+        ("pad_length", "f8"),
+        ("face_length", "f8"),
+        # solid spots: h = exp(spot_scale + spot_power log p)
+        ("spot_scale", "f8"),
+        ("spot_power", "f8"),
+        # gas: h = gas / (roughness separation + jump), separation by hardnesses Pa
+        ("gas", "f8"),
+        ("jump", "f8"),
+        ("roughness", "f8"),
+        ("log_hardness", "f8"),
+        ("log_elastic_hardness", "f8"),
+        ("elastic_share", "f8"),
+        ("shape", "i8"),
+    ]
+)
+"""Of a row, what the conductance of a contact depends on besides force; flat_law and its like make one."""
+
+# Mean planes' distance over roughness, sqrt(2) erfc^-1(x), in powers of where sqrt(-log x) is between LOW and HIGH; the
+# series' first terms, good to 1e-11.
+_LOG_LEAST, _LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
+_SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
+_NEWTON_STEPS = 8
+
+
+def flat_law(
+    pad: Pad, joint: Joint, size: tuple[float, float], across: tuple[int, int] | None = None
+) -> np.void:
+    """The law of a flat object whose face is of that size m; see area.flat_contact. across: the axes of the object's
+    frame along which the sizes lie, to follow a pad that leaves the face's middle; None for one that does not."""
+    newton = flat_contact(pad, 1.0, size)
+    law = _law(pad, joint, shape=FLAT, area=float(newton.face), share=float(newton.face_force))
+    if across is not None:
+        law["size"], law["across"] = size, across
+    return law
+
+
+def cylinder_law(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
+    """The law of a cylinder of that radius and length m; see area.cylinder_contact."""
+    lengths = {"pad_length": min(length, pad.width), "face_length": min(length, pad.face)}
+    return _law(pad, joint, shape=CYLINDER, stiffness=_stiffness(pad, radius), **lengths)
+
+
+def sphere_law(pad: Pad, joint: Joint, radius: float) -> np.void:
+    """The law of a sphere of that radius m; see area.sphere_contact."""
+    return _law(pad, joint, shape=SPHERE, stiffness=_stiffness(pad, radius))
+
+
+def _stiffness(pad: Pad, radius: float) -> float:
+    return pad.foundation_modulus / (2 * radius * pad.thickness)
+
+
+def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
+    law = np.zeros(1, CONTACT_LAW)
+    scale, higher = solid_conductance(joint, np.array([1.0, np.e]))
+    numbers |= {
+        "half_pad": pad.width / 2,
+        "half_face": pad.face / 2,
+        "spot_scale": float(np.log(scale)),
+        "spot_power": float(np.log(higher / scale)),
+        "gas": float(joint.gas_conductivity),
+        "jump": float(joint.jump),
+        "roughness": float(joint.roughness),
+        "log_hardness": float(np.log(joint.hardness)),
+        "log_elastic_hardness": float(np.log(joint.elastic_hardness)),
+        "elastic_share": float(joint.elastic_share),
+    }
+    for name, value in numbers.items():
+        law[name] = value
+    return law[0]
+
+
+@njit(cache=True, error_model="numpy")
+def _overlap(law, place):
+    """(area m2 on the face, its share of the force) of a flat object. place: see contact."""
+    if law.size[0] == 0:
+        return law.area, law.share
+    on_pad, on_face = 1.0, 1.0
+    for side in range(2):
+        axis = law.across[side]
+        offset, half = abs(place[axis]), law.size[side] / 2
+        on_pad *= max(min(law.half_pad, half - offset) + min(law.half_pad, half + offset), 0.0)
+        on_face *= max(min(law.half_face, half - offset) + min(law.half_face, half + offset), 0.0)
+    return on_face, on_face / on_pad if on_pad > 0 else 0.0
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def contact(law, force, place):
+    """(area m2 on the face, its force N) at a normal force N > 0 on the pad. place: (3,) m, the pad's middle from the
+    object's in the object's frame, which laws of a fixed place leave aside."""
+    if law.shape == FLAT:
+        area, share = _overlap(law, place)
+        return area, force * share
+    half, half_face, stiffness = law.half_pad, law.half_face, law.stiffness
+    if law.shape == CYLINDER:
+        load = force / (stiffness * law.pad_length)
+        narrow = (0.75 * load) ** (1 / 3)
+        square = narrow * narrow if narrow <= half else (load / half + 2 / 3 * half * half) / 2
+        across = min(math.sqrt(square), half_face)
+        reach = law.face_length * 2 * across
+        return reach, stiffness * reach * (square - across * across / 3)
+    square = _square_inverse(force / (stiffness * half**4)) * half * half
+    u = square / (half_face * half_face)
+    return half_face * half_face * _square_area(u), stiffness * half_face**4 * _square_load(u)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def conductance(law, pressure):
+    """W/(m2 K) at a pressure Pa > 0, solid spots and gas together."""
+    log_pressure = math.log(pressure)
+    solid = math.exp(law.spot_scale + law.spot_power * log_pressure)
+    share, separation = law.elastic_share, 0.0
+    if share < 1.0:
+        separation += (1 - share) * _separation(log_pressure + math.log(2.0) - law.log_hardness)
+    if share > 0.0:
+        separation += share * _separation(log_pressure + math.log(4.0) - law.log_elastic_hardness)
+    return solid + law.gas / (law.roughness * separation + law.jump)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _separation(log_share):
+    y = math.sqrt(-min(max(log_share, _LOG_LEAST), _LOG_MOST))
+    z = (2 * y - LOW - HIGH) / (HIGH - LOW)
+    total = 0.0
+    for i in range(len(_SEPARATION) - 1, -1, -1):
+        total = total * z + _SEPARATION[i]
+    return total
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _square_area(u):
+    if u <= 1.0:
+        return math.pi * u
+    if u >= 2.0:
+        return 4.0
+    return math.pi * u - 4 * (u * math.acos(1 / math.sqrt(u)) - math.sqrt(u - 1))
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _square_load(u):
+    if u <= 1.0:
+        return math.pi / 2 * u * u
+    if u >= 2.0:
+        return 4 * u - 8 / 3
+    root = math.sqrt(u - 1)
+    turned = math.acos(1 / math.sqrt(u))
+    return math.pi / 2 * u * u - 2 * u * u * turned + 2 * root * u + 4 / 3 * root**3
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _square_inverse(load):
+    narrow = math.sqrt(2 * load / math.pi)
+    if load <= math.pi / 2:
+        return narrow
+    u = max(narrow, (load + 8 / 3) / 4)
+    for _ in range(_NEWTON_STEPS):
+        change = (_square_load(u) - load) / _square_area(u)
+        u -= change
+        if abs(change) < 1e-15 * u:
+            break
+    return u

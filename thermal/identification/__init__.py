@@ -1,0 +1,20 @@
+"""Which material was touched, from the voltage of a touch."""
+
+from . import prior
+from .effusivity import EffusivityPosterior
+from .identifier import Identifier, identify
+from .response import SystemFamily, unit_response
+from .result import Identification, Verdict
+from .setup import TouchSetup
+
+__all__ = [
+    "EffusivityPosterior",
+    "Identification",
+    "Identifier",
+    "SystemFamily",
+    "TouchSetup",
+    "Verdict",
+    "identify",
+    "prior",
+    "unit_response",
+]

@@ -1,0 +1,47 @@
+"""Heat kernels between patches, and passive networks from them: any place, size, material and coverage, without a
+search and without an eigenproblem of the body's size.
+
+What other rooms build on:
+
+- A contact is a rectangle on a face of the box (`Patches`) and the same rectangle on the element's face (`Rectangle`,
+  m from its corner): where the object covers it.
+- A contact's flow is a sum of few orthonormal patterns psi_i, the even one first, whose densities are psi_i / area:
+  port i carries W, and its temperature is the mean of psi_i times the surface's. A conductance h(x) over it is the
+  matrix H_ij = integral of h psi_i psi_j over it; h area I where h does not vary. `contact_patterns` tells the psi.
+- Bodies are told by their impedance at the real MOMENTS between patterns, K/W, less their slowest state, and by its
+  slope (`BoxSamples`). What lies between body and contact (a skin, a bond, a film) is composed there, before the
+  network.
+- `tip` and `box_side` are networks x' = -rates x + ports q, T = ports^T x (`Side`): pure functions of place, size,
+  material and coverage, with at most `Resolution.rates` times the ports states and one more. A tip's network does not
+  depend on what it touches, so that its field stays when it goes from one object to another.
+- `touch_sides` makes both for one touch alone: rates and patterns are its own, so that fewer serve and errors are a
+  tenth. Nothing of its fields but the elements' slowest states means anything to another touch.
+- Outputs are rows on the states: a stack of other layers, read out across any of them, is another `SensorStack`.
+
+What is left out: the film is one for all faces; patches are parallel to the faces' sides; O mode, cylinders, spheres
+and meshes are still in plates/, network/ and meshes/.
+"""
+
+from .box import BoxSamples, Patches, box_samples
+from .contact import Resolution, Side, Tip, box_side, tip
+from .coverage import contact_patterns
+from .element import Rectangle
+from .samples import MOMENTS
+from .touch import Detail, touch_sides
+
+__all__ = [
+    "MOMENTS",
+    "BoxSamples",
+    "Detail",
+    "Patches",
+    "Rectangle",
+    "Resolution",
+    "Side",
+    "Tip",
+    "Tip",
+    "box_samples",
+    "box_side",
+    "contact_patterns",
+    "tip",
+    "touch_sides",
+]

@@ -1,0 +1,186 @@
+"""Fingertips on a box, anywhere on its faces, as passive networks of fixed rates: a field's states are how its flows
+have faded at these, whatever the body, so that it stays where a place, a size or an object changes.
+
+Each contact keeps the few patterns of flow that it excites (coverage.py); box and elements become networks on them
+(exponentials.py). The film of air on the box does not cover what lies under a fingertip.
+
+F: fingertips, P: patterns known (patterns.py), M: kept of each, S: moments, n: states.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..matter import Material, SensorStack
+from .box import BoxSamples, Patches, box_samples
+from .coverage import Rectangle, contact_patterns
+from .element import POLES, Element, element, element_samples
+from .exponentials import misfit, residues, states
+from .outputs import output_row
+from .patterns import GRAM
+from .samples import GRASP, OF_GRASP
+
+_WEIGHED = 3e4  # W/(m2 K) of the contact beside which errors of impedances are weighed
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """The knob between speed and accuracy. rates: how many, of every network, slowest to fastest 1/s equally spaced in
+    the logarithm. patterns: kept of each contact. least: a state's share of the whole resistance below which it is left
+    out."""
+
+    rates: int
+    patterns: int
+    slowest: float = 0.01
+    fastest: float = 1e3
+    least: float = 2e-5
+
+    @property
+    def decay(self) -> np.ndarray:
+        """(rates,) 1/s."""
+        return np.geomspace(self.slowest, self.fastest, self.rates)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One side of the contacts as a network. rates: (n,) 1/s. ports: (n, ports) sqrt(K/J). outputs: name -> (n,) rows.
+    misfit: largest error of its impedance, as a share of the whole contact's."""
+
+    rates: np.ndarray
+    ports: np.ndarray
+    outputs: dict[str, np.ndarray]
+    misfit: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tip:
+    """A fingertip's element under a contact of m2 area: basis (P, M) of the patterns kept and even (M,), the net heat
+    of each; impedance (S,) K/W of the even one; side: its network, outputs "drop" (K) and "element" (J)."""
+
+    area: float
+    basis: np.ndarray
+    even: np.ndarray
+    impedance: np.ndarray
+    side: Side
+
+    @property
+    def uniform(self) -> np.ndarray:
+        """(n,) the states of an element that is 1 K warm throughout, in its slowest modes; the others forget it at
+        once."""
+        heat = self.side.outputs["element"]
+        return np.where(np.arange(len(heat)) < POLES, heat, 0.0)
+
+    @property
+    def weight(self) -> np.ndarray:
+        """(S,) W/K, what an error of an object's impedance counts at most."""
+        return contact_weight(self.impedance, self.area)
+
+
+def contact_weight(impedance: np.ndarray, area: float) -> np.ndarray:
+    """W/K, what an error of impedance counts beside an element of impedance (S,) K/W under a contact of m2 area."""
+    return 1 / (impedance + 1 / (_WEIGHED * area))
+
+
+@lru_cache(maxsize=1024)
+def tip(stack: SensorStack, covered: Rectangle, level: Resolution) -> Tip:
+    """The element under a contact that covers that rectangle of its face, m from the face's corner."""
+    known = element(stack)
+    (x0, x1), (y0, y1) = covered
+    basis = contact_patterns(stack, covered, level.patterns)
+    impedance = basis.T @ element_samples(stack, covered).value[OF_GRASP] @ basis
+    even = GRAM[0] @ basis
+    even[1:] = 0.0
+    area = (x1 - x0) * (y1 - y0)
+    weight = contact_weight(impedance[:, 0, 0], area)
+    return Tip(
+        area, basis, even, impedance[:, 0, 0].copy(), _element_side(known, impedance, even, weight, level)
+    )
+
+
+def box_side(
+    material: Material,
+    size: tuple[float, float, float],
+    film: float,
+    patches: Patches,
+    tips: tuple[Tip, ...],
+    level: Resolution,
+) -> Side:
+    """The box's network, M ports a patch, its slowest state first; outputs "object" (J in it) and "loss" (W to the
+    air). size: m. film: W/(m2 K). tips: on the patches."""
+    box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, patches)
+    count, kept = len(GRAM), level.patterns
+    turn = np.zeros((len(tips) * count, len(tips) * kept))
+    for f, one in enumerate(tips):
+        turn[f * count : (f + 1) * count, f * kept : (f + 1) * kept] = one.basis
+    port = box.port @ turn
+    rest = turn.T @ box.impedance[OF_GRASP] @ turn
+    weights = [
+        1 / (1 / one.weight + rest[:, f * kept, f * kept] + port[f * kept] ** 2 / (GRASP + box.rate))
+        for f, one in enumerate(tips)
+    ]
+    weight = np.min(weights, axis=0)
+    rate, heat = box.rate, None
+    if film > 0:
+        rate, rest, heat = _shielded(box, film, rest, port, turn, tips)
+    found = residues(rest, level.decay, weight)
+    fast, ports = states(found, level.decay, level.least / weight[-1])
+    rates = np.concatenate(([rate], fast))
+    held = np.zeros(len(rates))
+    if heat is None:
+        held[0] = box.held
+    else:
+        net = np.concatenate([one.even for one in tips])
+        held[0] = box.held
+        held[1:] = output_row(GRASP, heat, fast, ports, GRASP, net - box.held * port)
+    return Side(
+        rates,
+        np.concatenate((port[None], ports)),
+        {"object": held, "loss": held * rates},
+        misfit(rest, found, level.decay, weight),
+    )
+
+
+def _shielded(
+    box: BoxSamples, film: float, rest: np.ndarray, port: np.ndarray, turn: np.ndarray, tips: tuple[Tip, ...]
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """The slowest rate, the samples without it, and the heat's (S, ports), with no film on the patches: a film's flow
+    is put back there in proportion to the temperature."""
+    assert box.heat is not None
+    kept = len(tips[0].even)
+    back = np.repeat([film * one.area for one in tips], kept)
+    slow = 1 / (GRASP + box.rate)
+    whole = rest + slow[:, None, None] * np.outer(port, port)
+    heat = box.heat[OF_GRASP] @ turn + slow[:, None] * box.held * port
+    rate = max(box.rate - float(np.sum(back * port**2)), 0.0)
+    # T = Z (q + back T)
+    opened = np.linalg.inv(np.eye(len(back)) - whole * back)
+    whole = opened @ whole
+    heat = heat + np.einsum("si,i,sij->sj", heat, back, whole)
+    slow = 1 / (GRASP + rate)
+    whole = (whole + whole.transpose(0, 2, 1)) / 2
+    return rate, whole - slow[:, None, None] * np.outer(port, port), heat - slow[:, None] * box.held * port
+
+
+def _element_side(
+    known: Element, impedance: np.ndarray, even: np.ndarray, weight: np.ndarray, level: Resolution
+) -> Side:
+    slow = (1 / (GRASP[:, None] + known.rates)) @ known.ports**2
+    rest = impedance - slow[:, None, None] * np.outer(even, even)
+    found = residues(rest, level.decay, weight)
+    fast, ports = states(found, level.decay, level.least / weight[-1])
+    # neither output jumps with heat at the face, but all heat that goes in is in
+    transfers = (np.outer(rest[OF_GRASP], even) for rest in (known.drop_rest, known.heat_rest))
+    jumps = (-(known.drop @ known.ports) * even, (1 - known.heat @ known.ports) * even)
+    drop, heat = (
+        output_row(GRASP, transfer, fast, ports, weight, jump)
+        for transfer, jump in zip(transfers, jumps, strict=True)
+    )
+    return Side(
+        np.concatenate((known.rates, fast)),
+        np.concatenate((known.ports[:, None] * even, ports)),
+        {"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
+        misfit(rest, found, level.decay, weight),
+    )

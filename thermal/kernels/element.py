@@ -1,0 +1,208 @@
+"""The sensor's element seen through a patch anywhere on its face: a box of layers, held at its back.
+
+Under the whole face or a part of it: the first layer as a half-space, a product of kernels as in box.py, and what its
+depth and the further layers change, a sum over the few lateral eigenfunctions that reach them. What is even over the
+cross-section is one-dimensional: its slowest poles are found once per stack and kept exactly, since the temperature
+drop, a mean over the face, follows from them alone.
+
+P: patterns (patterns.py), S: moments (samples.py), L: lateral eigenfunctions of an axis, K: poles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..matter import SensorStack
+from ..plates import Sampled, stack_impedance, stack_profile
+from .axis import SWITCH, images
+from .patterns import ALONG, GRAM, JUMPS, NODES
+from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
+
+Rectangle = tuple[tuple[float, float], tuple[float, float]]
+"""(low, high) in m along a face's two axes."""
+
+POLES = 5
+_DEPTHS = 6.0  # wave number times the first layer's thickness beyond which nothing below it is seen, exp(-12)
+_SCAN = 4000  # places where the characteristic function is looked at for its first roots
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Element:
+    """A stack whose back is held at its first temperature, per heat that flows into its face.
+
+    rates: (K,) 1/s and ports: (K,) sqrt(K/J) of its slowest even poles; their outputs drop: (K,) K/sqrt(J) and heat:
+    (K,) sqrt(J K). drop_rest: (S,) K/W and heat_rest: (S,) J/W of the even part's transform at MOMENTS beyond them.
+    correction: (2, S, L, L) m2 K/W to add to the first layer's half-space for each lateral eigenfunction, and its
+    derivative by the moment."""
+
+    stack: SensorStack
+    rates: np.ndarray
+    ports: np.ndarray
+    drop: np.ndarray
+    heat: np.ndarray
+    drop_rest: np.ndarray
+    heat_rest: np.ndarray
+    correction: np.ndarray
+
+
+@lru_cache(maxsize=64)
+def element(stack: SensorStack) -> Element:
+    """What a contact needs of a stack; some milliseconds, once."""
+    layers = stack.layers[::-1]
+    near, area = layers[0], stack.face_area
+    rates = _even_rates(stack)
+    temperature, drop, flow, slope = _characteristic(stack, rates)
+    squared = temperature / slope / area  # residues, K/J
+    ports = np.sqrt(squared)
+    drop = drop / slope / area
+    # stored heat: what flows in less what leaves at the back, over s
+    heat = -flow / slope / rates
+    s = MOMENTS[:, None]
+    temperatures, flows = stack_profile(layers, "isothermal", s, np.zeros(1))
+    sensed = len(layers) - 1 - stack.sensed
+    even_drop = (temperatures[sensed + 1] - temperatures[sensed])[:, 0] / area
+    even_heat = (flows[0] - flows[-1])[:, 0] / MOMENTS
+    weights = 1 / (s + rates)
+    count = int(_DEPTHS / near.thickness * stack.width / np.pi) + 1
+    wave = np.arange(count) * np.pi / stack.width
+    kappa2 = (wave[:, None] ** 2 + wave**2).ravel()
+    tiny = 1e-30
+    turned = s * (1 + 1j * tiny)
+    half_space = 1 / (near.conductivity * np.sqrt(turned / near.diffusivity + kappa2))
+    correction = stack_impedance(layers, "isothermal", turned, kappa2) - half_space
+    correction = np.stack((correction.real, correction.imag / (s * tiny)))
+    return Element(
+        stack,
+        rates,
+        ports,
+        drop / ports,
+        heat / ports,
+        even_drop - weights @ drop,
+        even_heat - weights @ heat,
+        correction.reshape(2, len(MOMENTS), count, count),
+    )
+
+
+@lru_cache(maxsize=1024)
+def element_samples(stack: SensorStack, covered: Rectangle) -> Sampled:
+    """(S, P, P) K/W between patterns of unit heat flow into a rectangle of the face, m from the face's corner."""
+    known, layer = element(stack), stack.layers[-1]
+    ends = np.array(covered)
+    centre, half = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2
+    capacity = layer.volumetric_heat_capacity
+    diffusivity = layer.conductivity / capacity
+    area = 4 * half[0] * half[1]
+    kernel, overlap = _lateral(
+        stack.width, diffusivity * TIMES, centre, half, NODES, JUMPS, ALONG, known.correction.shape[-1]
+    )
+    # products of two functions along each axis, then of the two axes, for the pairs of patterns that there are
+    pairs = (overlap[:, :, None] * overlap[:, None]).reshape(2, -1, overlap.shape[-1])
+    lateral = pairs[0] @ known.correction @ pairs[1].T
+    first, second = (along[:, None] * len(JUMPS) + along for along in ALONG.T)
+    lateral = lateral[..., first, second] / area**2
+    value = np.tensordot(TO_MOMENTS, kernel, axes=1) / (capacity * area**2)
+    value += before(diffusivity) / (capacity * area) * GRAM + lateral[0]
+    slope = np.tensordot(TO_SLOPES, kernel, axes=1) / (capacity * area**2) + lateral[1]
+    value.setflags(write=False)
+    slope.setflags(write=False)
+    return Sampled(value, slope)
+
+
+def _characteristic(
+    stack: SensorStack, rates: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """At s = -rates (K,), per unit heat flux out of the back's face: temperature of the front, drop (thermostat side
+    less object side), the flux itself, and the slope by s of the flux into the front, whose roots are the poles."""
+    tiny = 1e-30
+    s = -rates * (1 + 1j * tiny)
+    temperature, flux = np.zeros_like(s), np.ones_like(s)
+    at = [temperature]
+    for layer in stack.layers:
+        k = layer.conductivity
+        g = np.sqrt(s * layer.volumetric_heat_capacity / k)
+        turn = g * layer.thickness
+        temperature, flux = (
+            temperature * np.cosh(turn) + flux * np.sinh(turn) / (k * g),
+            temperature * k * g * np.sinh(turn) + flux * np.cosh(turn),
+        )
+        at.append(temperature)
+    drop = (at[stack.sensed] - at[stack.sensed + 1]).real
+    return at[-1].real, drop, -np.ones(len(rates)), flux.imag / (-rates * tiny)
+
+
+def _front_flux(stack: SensorStack, roots: np.ndarray) -> np.ndarray:
+    """Flux into the front at s = -roots^2 per unit flux out of the back."""
+    temperature, flux = np.zeros_like(roots), np.ones_like(roots)
+    for layer in stack.layers:
+        k = layer.conductivity
+        g = roots * np.sqrt(layer.volumetric_heat_capacity / k)
+        turn = g * layer.thickness
+        temperature, flux = (
+            temperature * np.cos(turn) + flux * np.sin(turn) / (k * g),
+            -temperature * k * g * np.sin(turn) + flux * np.cos(turn),
+        )
+    return flux
+
+
+def _even_rates(stack: SensorStack) -> np.ndarray:
+    """(POLES,) 1/s, the slowest of the stack with an adiabatic front."""
+    delay = sum(
+        layer.thickness * np.sqrt(layer.volumetric_heat_capacity / layer.conductivity)
+        for layer in stack.layers
+    )
+    roots = np.linspace(0.0, (POLES + 2) * 2 * np.pi / delay, _SCAN)[1:]
+    flux = _front_flux(stack, roots)
+    first = np.flatnonzero(flux[1:] * flux[:-1] < 0)[:POLES]
+    low, high, sign = roots[first], roots[first + 1], np.sign(flux[first])
+    for _ in range(60):
+        middle = (low + high) / 2
+        before_it = np.sign(_front_flux(stack, middle)) == sign
+        low, high = np.where(before_it, middle, low), np.where(before_it, high, middle)
+    return ((low + high) / 2) ** 2
+
+
+@njit(cache=True, error_model="numpy")
+def _lateral(width, taus, centre, half, nodes, jumps, along, count):
+    """(T, P, P) m of the first layer's half-space and (2, F, count) of the functions on eigenfunctions."""
+    functions, patterns = len(jumps), len(along)
+    kernel = np.empty((len(taus), patterns, patterns))
+    overlap = np.empty((2, functions, count))
+    between = np.empty((2, functions, functions))
+    places = np.empty((2, len(nodes)))
+    table = np.empty((len(nodes), len(nodes)))
+    for axis in range(2):
+        for k in range(len(nodes)):
+            places[axis, k] = centre[axis] + half[axis] * nodes[k]
+        for f in range(functions):
+            for w in range(count):
+                total, wave = 0.0, w * np.pi / width
+                for k in range(len(nodes)):
+                    total += jumps[f, k] * (
+                        places[axis, k] if w == 0 else np.sin(wave * places[axis, k]) / wave
+                    )
+                overlap[axis, f, w] = total / np.sqrt(width if w == 0 else width / 2)
+    for t in range(len(taus)):
+        tau = taus[t]
+        for axis in range(2):
+            if tau > SWITCH * width * width:
+                between[axis] = 0.0
+                for w in range(min(count, 12)):
+                    decay = np.exp(-((w * np.pi / width) ** 2) * tau)
+                    for f in range(functions):
+                        for g in range(functions):
+                            between[axis, f, g] += decay * overlap[axis, f, w] * overlap[axis, g, w]
+            else:
+                images(places[axis], 1, places[axis], 1, True, width, 0.0, tau, table)
+                between[axis] = jumps @ table @ jumps.T
+        depth = 1 / np.sqrt(np.pi * tau)
+        for i in range(patterns):
+            for j in range(patterns):
+                kernel[t, i, j] = (
+                    depth * between[0, along[i, 0], along[j, 0]] * between[1, along[i, 1], along[j, 1]]
+                )
+    return kernel, overlap

@@ -1,0 +1,36 @@
+"""A passive network of fixed rates from an impedance at real moments.
+
+Z(s) of a conducting body is a sum of R_k / (s + rate_k) with positive semidefinite residues. Put on rates that are the
+same for every body, equally spaced in the logarithm, it is found by least squares under that constraint (alternating
+directions: Boyd et al., Found. Trends Mach. Learn. 3, 2011), in the same few steps whatever the body: no search and no
+eigenproblem of its size, and what comes out is passive by construction.
+
+S: moments, K: rates, N: ports.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..numerics import passive_residues
+from .samples import GRASP
+
+
+def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(K, N, N) positive semidefinite. impedance: (S, N, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
+    return passive_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
+
+
+def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:
+    """Largest weighted error of the sum."""
+    told = np.tensordot(1 / (GRASP[:, None] + rates), found, axes=1)
+    return float(np.max(np.abs(told - impedance) * weight[:, None, None]))
+
+
+def states(found: np.ndarray, rates: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
+    """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the sum's states. least: K/W, resistance of a state that is left
+    out."""
+    values, vectors = np.linalg.eigh(found)
+    ports = (vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]).transpose(0, 2, 1)
+    kept = values / rates[:, None] > least
+    return np.broadcast_to(rates[:, None], values.shape)[kept], ports[kept]

@@ -1,0 +1,153 @@
+"""A touched patch on a solid's surface: where it lies, and which cells of the grid its heat enters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermograsp.compiled import njit
+from thermograsp.errors import MeshError
+
+from .cut import cell_range, slab
+from .grid import MeshGrid, snapped
+from .patterns import PatchPatterns
+from .place import ABOVE, CORNERS, PlacedPatch, within_cube
+from .rays import FACING, crossed_above
+
+
+@dataclass(frozen=True, slots=True)
+class PatchOnGrid:
+    """shares: (N, M) how each pattern's heat flow is spread over the cells, the uniform one's in all 1; also how the
+    cells' temperatures count in the pattern's. skin: (M, M) K/W from the cells' nodes to the surface. area: m2 of
+    surface touched, seen along the normal."""
+
+    shares: np.ndarray
+    skin: np.ndarray
+    area: float
+
+
+def patch_on_grid(
+    grid: MeshGrid, triangles: np.ndarray, patch: PlacedPatch, patterns: PatchPatterns
+) -> PatchOnGrid:
+    """The patch's cells. triangles: (F, 3, 3) m in the grid's frame. Surface within half a side above and below the
+    centre is touched, where it faces the patch's way and nothing of the object lies above it."""
+    axes = np.stack((*patch.sides, patch.normal))
+    half = patch.half_width
+    areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    facing = areas @ patch.normal > FACING * np.linalg.norm(areas, axis=1)
+    local = (triangles[facing] - patch.centre) @ axes.T
+    near = np.all((local.min(axis=1) <= half) & (local.max(axis=1) >= -half), axis=1)
+    corners, counts = within_cube(np.ascontiguousarray(local[near]), half)
+    corners = np.ascontiguousarray(snapped(corners @ axes + patch.centre, grid.edges))
+    room = 4096
+    while True:
+        cells, seen, middles, spans = _pieces(corners, counts, axes, *grid.edges, room)
+        if len(cells) < room:
+            break
+        room *= 4
+    cells = grid.index.ravel()[cells]
+    around = (triangles - patch.centre) @ axes.T
+    over = np.all((around.min(axis=1) <= [half, half, np.inf]) & (around.max(axis=1) >= -half), axis=1)
+    above = crossed_above((middles - patch.centre) @ axes.T, np.ascontiguousarray(around[over]), ABOVE)
+    touched = (cells >= 0) & ~above.any(axis=1)
+    cells, seen, middles, spans = cells[touched], seen[touched], middles[touched], spans[touched]
+    total = float(seen.sum())
+    if not total > 0:
+        raise MeshError(
+            f"the patch {2e3 * half:.3g} mm wide meets no surface at its place: it may lie beyond an edge"
+        )
+    weights = seen / total
+    spans = (spans - (patch.sides @ patch.centre)[:, None]) / half
+    values = patterns.means(spans[:, :, 0], spans[:, :, 1])
+    # Only the uniform pattern lets heat in, also where the surface ends within the patch.
+    values[:, 1:] -= weights @ values[:, 1:]
+    shares = np.zeros((len(grid.capacity), patterns.count))
+    np.add.at(shares, cells, weights[:, None] * values)
+    # from a cell's node to its wall, along the normal
+    across = grid.conductivity[cells] @ patch.normal**2
+    distance = (middles - grid.nodes[cells]) @ patch.normal
+    skin = values.T @ ((weights * distance / across / total)[:, None] * values)
+    levels, turn = np.linalg.eigh(skin)
+    return PatchOnGrid(shares, (turn * np.maximum(levels, 0.0)) @ turn.T, total)
+
+
+@njit(cache=True)
+def _pieces(corners, counts, axes, x, y, z, room):
+    """The polygons' pieces in the cells, at most `room`: cells (n,) in the order of memory, areas (n,) seen along the
+    last of the axes, middles (n, 3), and spans (n, 2, 2) from where to where along the first two."""
+    normal = axes[2]
+    in_x, in_y, in_z, spare = (
+        np.zeros((CORNERS, 3)),
+        np.zeros((CORNERS, 3)),
+        np.zeros((CORNERS, 3)),
+        np.zeros((CORNERS, 3)),
+    )
+    cells, seen = np.zeros(room, np.int64), np.zeros(room)
+    middles, spans = np.zeros((room, 3)), np.zeros((room, 2, 2))
+    found, start = 0, 0
+    for polygon in range(len(counts)):
+        count = counts[polygon]
+        shape = corners[start : start + count]
+        start += count
+        if count < 3:
+            continue
+        i0, i1 = cell_range(shape, count, 0, x, normal[0])
+        for i in range(i0, i1 + 1):
+            n = slab(shape, count, 0, x, i, i0, i1, spare, in_x)
+            if n < 3:
+                continue
+            j0, j1 = cell_range(in_x, n, 1, y, normal[1])
+            for j in range(j0, j1 + 1):
+                m = slab(in_x, n, 1, y, j, j0, j1, spare, in_y)
+                if m < 3:
+                    continue
+                k0, k1 = cell_range(in_y, m, 2, z, normal[2])
+                for k in range(k0, k1 + 1):
+                    c = slab(in_y, m, 2, z, k, k0, k1, spare, in_z)
+                    area = _seen(in_z, c, normal, middles[found])
+                    if area > 1e-20 and found < room - 1:
+                        cells[found] = (i * (len(y) - 1) + j) * (len(z) - 1) + k
+                        seen[found] = area
+                        _span(in_z, c, axes, spans[found])
+                        found += 1
+    if found == room - 1:
+        found = room
+    return cells[:found], seen[:found], middles[:found], spans[:found]
+
+
+@njit(cache=True)
+def _span(polygon, count, axes, span):
+    """From where to where (2, 2) a polygon reaches along the first two axes."""
+    for side in range(2):
+        span[side, 0], span[side, 1] = np.inf, -np.inf
+        for i in range(count):
+            at = 0.0
+            for c in range(3):
+                at += polygon[i, c] * axes[side, c]
+            span[side, 0], span[side, 1] = min(span[side, 0], at), max(span[side, 1], at)
+
+
+@njit(cache=True)
+def _seen(polygon, count, normal, middle):
+    """Area m2 of a polygon seen along a normal; its middle is filled in."""
+    total = 0.0
+    middle[:] = 0.0
+    for t in range(1, count - 1):
+        part = 0.0
+        for c in range(3):
+            d, e = (c + 1) % 3, (c + 2) % 3
+            part += (
+                0.5
+                * normal[c]
+                * (
+                    (polygon[t, d] - polygon[0, d]) * (polygon[t + 1, e] - polygon[0, e])
+                    - (polygon[t, e] - polygon[0, e]) * (polygon[t + 1, d] - polygon[0, d])
+                )
+            )
+        total += part
+        for c in range(3):
+            middle[c] += part * (polygon[0, c] + polygon[t, c] + polygon[t + 1, c]) / 3
+    if total > 0:
+        middle /= total
+    return total

@@ -1,0 +1,101 @@
+"""Where a touched patch lies on a solid's surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermograsp.compiled import njit
+from thermograsp.errors import MeshError
+
+from .cut import clip
+from .rays import crossings
+from .solid import SurfacePatch
+
+ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
+CORNERS = 24  # of a triangle clipped by twelve planes: 15
+ABOVE = 5e-6  # m, more than which above a surface lies something else
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedPatch:
+    """A patch on the surface, in the grid's frame. centre, normal: (3,). half_width: m. sides: (2, 3) directions of
+    the square's sides. aligned: whether they and the normal are along the grid's axes. relief: (2,) m, how far below
+    and above the centre the surface reaches at the square's edges and corners. slopes: (2,) m, how far at the ends of
+    each of the sides."""
+
+    centre: np.ndarray
+    normal: np.ndarray
+    half_width: float
+    sides: np.ndarray
+    aligned: bool
+    relief: tuple[float, float]
+    slopes: tuple[float, float]
+
+
+def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -> PlacedPatch:
+    """The patch on the surface nearest to its centre along its normal. triangles: (F, 3, 3) m in the frame.
+
+    Raises MeshError where there is no surface facing that way."""
+    centre, normal = frame @ np.array(patch.centre), frame @ patch.direction
+    half = patch.half_width
+    axis = int(np.argmax(np.abs(normal)))
+    aligned = bool(np.abs(normal[axis]) > ALONG)
+    if aligned:
+        normal = np.sign(normal[axis]) * np.eye(3)[axis]
+    first = np.cross(normal, np.eye(3)[(axis + 1) % 3])
+    first /= np.linalg.norm(first)
+    sides = np.stack((first, np.cross(normal, first)))
+    # where the very middle is a hole, the surface beside it
+    for middle in half * np.array([[0, 0], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]]):
+        depth = crossings(triangles, centre + middle @ sides, normal)
+        if len(depth):
+            placed = centre + depth[np.argmin(np.abs(depth))] * normal
+            relief, slopes = _relief(triangles, placed, normal, half * sides)
+            return PlacedPatch(placed, normal, half, sides, aligned, relief, slopes)
+    at = ", ".join(f"{1e3 * x:.4g}" for x in patch.centre)
+    raise MeshError(
+        f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.normal)} does not meet the "
+        "surface: give a point on it and the outward normal there"
+    )
+
+
+def layer_beneath(triangles: np.ndarray, patch: PlacedPatch) -> float:
+    """m from the patch's middle down to the first boundary of materials, 0 where there is none within half a side.
+    triangles: (F, 3, 3) m of all parts in the grid's frame."""
+    below = -crossings(triangles, patch.centre, patch.normal)
+    below = below[(below > ABOVE) & (below < patch.half_width)]
+    return float(below.min()) if len(below) else 0.0
+
+
+def _relief(
+    triangles: np.ndarray, centre: np.ndarray, normal: np.ndarray, sides: np.ndarray
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """See PlacedPatch. sides: (2, 3) m, from the middle to the edges' middles; farther away is another surface."""
+    heights = []
+    for place in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+        above = crossings(triangles, centre + 0.999 * np.array(place) @ sides, normal)
+        nearest = float(above[np.argmin(np.abs(above))]) if len(above) else 0.0
+        heights.append(nearest if abs(nearest) < np.linalg.norm(sides[0]) else 0.0)
+    steep = np.abs(heights[:4])
+    relief = max(-min(heights), 0.0), max(max(heights), 0.0)
+    return relief, (float(steep[:2].max()), float(steep[2:].max()))
+
+
+@njit(cache=True)
+def within_cube(local, half):
+    """Corners (n, 3) and their counts of the triangles' parts within the cube of that half side."""
+    corners, counts = np.zeros((CORNERS * len(local), 3)), np.zeros(len(local), np.int64)
+    first, second = np.zeros((CORNERS, 3)), np.zeros((CORNERS, 3))
+    end = 0
+    for f in range(len(local)):
+        first[:3] = local[f]
+        count = 3
+        for axis in range(3):
+            count = clip(first, count, axis, -half, True, second)
+            count = clip(second, count, axis, half, False, first)
+        counts[f] = count
+        corners[end : end + count] = first[:count]
+        end += count
+    return corners[:end], counts

@@ -1,0 +1,327 @@
+"""An object of any shape and where fingertips touch it: one network of all its patches, a contact system of any two.
+
+A fingertip that goes from one patch to another sees other ports of the same states, so that nothing is forgotten. A
+patch that is added changes the states; field_carried takes the object's field along.
+
+P: patches, M: heat-flow patterns of each, F: fingertips, K: states of the object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.files import cached_arrays
+
+from ..matter import Material, SensorStack
+from ..network import (
+    CONDUCTANCES,
+    MOMENTS,
+    NODE,
+    BodyGeometry,
+    ContactSystem,
+    Demand,
+    ThermalNetwork,
+    excited_states,
+    responses,
+    sample_geometry,
+    state_bases,
+    with_sensors,
+)
+from ..plates import Geometry
+from .hollow import wetted_faces
+from .network import body_network
+from .patterns import learned_patterns
+from .place import place_patch
+from .solid import Solid, SurfacePatch
+
+PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
+PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)
+_COARSE = (
+    0.08  # K of tolerance per 12 K of difference from which on two patterns of flux serve in place of three
+)
+_CUTS = np.geomspace(0.1, 1e-7, 25)  # weight below which states are left out
+_LEAST_WEIGHT = 1e-7  # singular values below that share of the largest are left out
+_TIMES = np.concatenate(([0.0], np.geomspace(1e-3, 300.0, 40)))  # s, over which a field is followed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TouchedBody:
+    """geometry: what it remembers of fingertips and object. sensor: a fingertip's network. object: the object's, M
+    ports a patch, its state 0 the mean. patches, and centres (P, 3) m: where on the surface they are. error: K of
+    temperature drop that its fewer states were measured to be off, in the demand's cases, from all of the grid's."""
+
+    geometry: BodyGeometry
+    sensor: ThermalNetwork
+    object: ThermalNetwork
+    patches: tuple[SurfacePatch, ...]
+    centres: np.ndarray
+    error: float
+
+    @property
+    def modes(self) -> int:
+        """M."""
+        return self.sensor.ports.shape[1]
+
+    def system(self, contacts: Sequence[int]) -> ContactSystem:
+        """The system of a fingertip on each of these patches. Raises InvalidValueError where they are not F of them."""
+        count, patches = self.geometry.fingertips, len(self.patches)
+        if len(contacts) != count or not all(0 <= c < patches for c in contacts):
+            raise InvalidValueError(f"contacts {tuple(contacts)}: give {count} of 0 .. {patches - 1}")
+        ports = self.object.ports.reshape(self.object.order, patches, self.modes)
+        touched = np.ascontiguousarray(ports[:, list(contacts)].transpose(1, 0, 2))
+        orders = (self.object.order, None if count == 1 else 0)
+        heat = self.object.outputs["heat"]
+        return with_sensors(self.geometry, self.sensor, self.object.rates, touched, heat, orders)
+
+    @property
+    def hollow(self) -> bool:
+        """Whether there is a wall that contents wet."""
+        return "wet" in self.object.outputs
+
+    def filled(self, film: float, air: float) -> FilledBody:
+        """In air, with contents behind a film on the walls of its hollow, W/K each in all."""
+        rows, order = self.object.outputs, self.object.order
+        wet = np.stack([row for name, row in rows.items() if name.startswith("film:")])
+        walls = wet.T @ wet
+        # The walls' mean as the squares have it, so that what is as warm as its contents is at rest to round-off.
+        mean = walls[:, 0] * rows["heat"][0]
+        matrix = np.zeros((order + 1, order + 1))
+        matrix[:order, :order] = np.diag(self.object.rates) + film * walls
+        matrix[:order, :order] += air * np.outer(rows["mean"], rows["mean"])
+        matrix[order, :order] = matrix[:order, order] = -film * mean / np.sqrt(NODE)
+        matrix[order, order] = film * mean[0] * rows["heat"][0] / NODE
+        rates, turn = np.linalg.eigh(matrix)
+        lost = air * turn[:order].T @ rows["mean"]
+        return FilledBody(self, np.maximum(rates, 0.0), turn, lost, np.sqrt(NODE) * turn[order])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilledBody:
+    """A touched body whose walls feed a node of NODE J/K that stands for contents of any heat capacity: what steps it
+    sets the node's temperature before each step. rates: (K + 1,) 1/s. turn: (K + 1, K + 1), the body's states and the
+    node's from its own. air_loss: (K + 1,) W. reservoir: (K + 1,) J of the node."""
+
+    body: TouchedBody
+    rates: np.ndarray
+    turn: np.ndarray
+    air_loss: np.ndarray
+    reservoir: np.ndarray
+
+    def system(self, contacts: Sequence[int]) -> ContactSystem:
+        """As TouchedBody's."""
+        empty, order = self.body.system(contacts), self.body.object.order
+        ports = np.concatenate((self.turn[:order].T @ empty.ports[:order], empty.ports[order:]))
+
+        def turned(rows: np.ndarray) -> np.ndarray:
+            return np.concatenate((rows[..., :order] @ self.turn[:order], rows[..., order:]), axis=-1)
+
+        def own(row: np.ndarray) -> np.ndarray:
+            return np.concatenate((row, np.zeros(len(empty.rates) - order)))
+
+        return replace(
+            empty,
+            orders=replace(empty.orders, even=order + 1),
+            rates=np.concatenate((self.rates, empty.rates[order:])),
+            ports=ports,
+            drop=turned(empty.drop),
+            element_heat=turned(empty.element_heat),
+            object_heat=turned(empty.object_heat),
+            sensor_surface=turned(empty.sensor_surface),
+            object_surface=turned(empty.object_surface),
+            air_loss=own(self.air_loss),
+            reservoir=own(self.reservoir),
+        )
+
+
+def touched_body(
+    body: Solid,
+    patches: Sequence[SurfacePatch],
+    stack: SensorStack,
+    demand: Demand,
+    *,
+    fingertips: int = 2,
+    film: float = 0.0,
+    cache: bool = True,
+) -> TouchedBody:
+    """An object and its patches, of one area, with as few states as keep half the demand's tolerance where the
+    fingertips are on the last of the patches; the other half is the grid's and the patterns'. film: W/K between
+    contents and the walls of its hollow, where it has one, which makes outputs of them (see body_network's walls).
+
+    Raises InvalidValueError for other patches and where no network keeps the tolerance, MeshError as body_network
+    does."""
+    patches = tuple(patches)
+    area = patches[0].area
+    modes = 2 if demand.tolerance >= _COARSE * abs(demand.difference) / 12 else 3
+    plate = Geometry(stack, PLATE_MATERIAL, "T", area, "square", PLATE)
+    key = {
+        "body": [
+            (p.vertices, p.faces, p.material.conductivity, p.material.volumetric_heat_capacity)
+            for p in body.parts
+        ],
+        "patches": patches,
+        "stack": stack,
+        "demand": demand,
+        "fingertips": fingertips,
+        "film": film,
+    }
+
+    def build() -> dict[str, np.ndarray]:
+        walls = wetted_faces(body) if film else None
+        patterns = learned_patterns(plate, modes)
+        whole = body_network(body, patches, patterns=patterns, walls=walls, cache=False)
+        learned = sample_geometry(plate).networks(modes)
+        basis = state_bases(learned, area)["sensor"]
+        geometry = _geometry(plate, whole, body, fingertips)
+        centres = np.array([place_patch(body.outside, patch, np.eye(3)).centre for patch in patches])
+        full = TouchedBody(geometry, learned["sensor"], whole, patches, centres, 0.0)
+        reduced = _smallest(full, basis.vectors, basis.weights, demand, film)
+        told = {"centres": centres, "error": np.array(reduced.error)}
+        return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), **told}
+
+    arrays = cached_arrays(key, build, enabled=cache)
+    sensor, whole = _unpack("sensor", arrays), _unpack("object", arrays)
+    geometry = _geometry(plate, whole, body, fingertips)
+    return TouchedBody(geometry, sensor, whole, patches, arrays["centres"], float(arrays["error"]))
+
+
+def surface_normal(body: Solid, place: np.ndarray) -> np.ndarray:
+    """(3,) outward normal of the face nearest to a place (3,) m."""
+    triangles = body.outside
+    a = triangles[:, 0]
+    normals = np.cross(triangles[:, 1] - a, triangles[:, 2] - a)
+    areas = np.linalg.norm(normals, axis=1)
+    faces = areas > 0
+    normals = normals[faces] / areas[faces, None]
+    above = np.einsum("fc,fc->f", place - a[faces], normals)
+    # beside a face its nearest point is on an edge
+    foot = place - above[:, None] * normals
+    inside = np.ones(len(foot), bool)
+    nearest = np.full(len(foot), np.inf)
+    for i in range(3):
+        start, end = triangles[faces, i], triangles[faces, (i + 1) % 3]
+        edge = end - start
+        inside &= np.einsum("fc,fc->f", np.cross(edge, foot - start), normals) >= 0
+        share = np.einsum("fc,fc->f", place - start, edge) / np.einsum("fc,fc->f", edge, edge)
+        away = place - start - np.clip(share, 0.0, 1.0)[:, None] * edge
+        nearest = np.minimum(nearest, np.linalg.norm(away, axis=1))
+    return normals[np.argmin(np.where(inside, np.abs(above), nearest))]
+
+
+def field_carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:
+    """(K of target, K of source): the object's field on the states of a network of patches that both have, and others.
+
+    What heat has done that came in through common patches is known on either side: the fields that pulses of heat leave
+    at _TIMES after them are mapped on each other by least squares, and any field that was made through these patches is
+    a sum of such. The object's heat stays the same to round-off, since its mean is a state of its own."""
+    common = [patch for patch in source.patches if patch in target.patches]
+    before, after = (_pulses(each, common) for each in (source, target))
+    left, weights, right = np.linalg.svd(before, full_matrices=False)
+    kept = weights > _LEAST_WEIGHT * weights.max(initial=0.0)
+    carried = np.zeros((target.object.order, source.object.order))
+    carried[1:, 1:] = (after @ right[kept].T / weights[kept]) @ left[:, kept].T
+    carried[0, 0] = 1.0
+    return carried
+
+
+def _pulses(body: TouchedBody, common: list[SurfacePatch]) -> np.ndarray:
+    """(K - 1, pulses): fields after a joule let in through each pattern of the common patches, each of them weighted by
+    the time that it stays."""
+    ports = body.object.ports.reshape(body.object.order, len(body.patches), body.modes)
+    chosen = ports[1:, [body.patches.index(patch) for patch in common]].reshape(body.object.order - 1, -1)
+    faded = np.exp(-np.outer(body.object.rates[1:], _TIMES)) * np.sqrt(np.maximum(_TIMES, _TIMES[1]))
+    return (chosen[:, :, None] * faded[:, None, :]).reshape(len(chosen), -1)
+
+
+def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: int) -> BodyGeometry:
+    capacity = float(whole.outputs["heat"][0] ** 2)
+    return BodyGeometry(
+        plate.stack,
+        plate.material,
+        "T",
+        plate.area,
+        "square",
+        plate.object_size,
+        2 if fingertips == 2 else 1,
+        capacity,
+        body.surface,
+    )
+
+
+def _smallest(
+    full: TouchedBody, sensor: np.ndarray, weights: np.ndarray, demand: Demand, film: float
+) -> TouchedBody:
+    """The first that keeps the tolerance. sensor: (states, R) basis of its field, and weights (R,)."""
+    film = film if full.hollow else 0.0
+    turn, held = _held(full.object, film)
+    basis = excited_states(held, _flows(replace(full, object=held)))
+    states = turn @ basis.vectors
+    if film:  # what is uniform is a state of its own
+        states[0] = 0.0
+        states = np.concatenate((np.eye(len(states))[:, :1], np.linalg.qr(states)[0]), axis=1)
+        basis = replace(basis, weights=np.append(np.inf, basis.weights))
+    last = range(len(full.patches) - full.geometry.fingertips, len(full.patches))
+
+    def felt(body: TouchedBody) -> np.ndarray:
+        return responses(body.filled(film, 0.0).system(last) if film else body.system(last), demand)
+
+    reference = felt(full)
+    error = np.inf
+    for cut in _CUTS:
+        smaller = TouchedBody(
+            full.geometry,
+            full.sensor.projected(sensor[:, weights > cut / 8]),
+            full.object.projected(states[:, basis.weights > cut]),
+            full.patches,
+            full.centres,
+            0.0,
+        )
+        error = float(np.max(np.abs(felt(smaller) - reference)))
+        if error <= demand.tolerance / 2:
+            return replace(smaller, error=error)
+    raise InvalidValueError(
+        f"no network keeps {demand.tolerance / 2:g} K for this contact; the best misses {error:.2g} K: "
+        "ask for a larger tolerance"
+    )
+
+
+def _held(body: ThermalNetwork, film: float) -> tuple[np.ndarray, ThermalNetwork]:
+    """The network with contents that are held behind a film of W/K in all, and the matrix from its states."""
+    if not film:
+        return np.eye(body.order), body
+    wet = np.stack([row for name, row in body.outputs.items() if name.startswith("film:")])
+    rates, turn = np.linalg.eigh(np.diag(body.rates) + film * wet.T @ wet)
+    return turn, ThermalNetwork(np.maximum(rates, 0.0), turn.T @ body.ports, body.direct)
+
+
+def _flows(full: TouchedBody) -> np.ndarray:
+    """(cases, moments, P M) W: heat flows of one and of two fingertips on any of the patches."""
+    modes, area = full.modes, full.geometry.area
+    z_object, z_sensor = full.object.impedance(MOMENTS), full.sensor.impedance(MOMENTS)
+    flows = []
+    for conductance in CONDUCTANCES:
+        for count in range(1, full.geometry.fingertips + 1):
+            for touching in combinations(range(len(full.patches)), count):
+                at = np.concatenate([np.arange(modes) + f * modes for f in touching])
+                z = z_object[:, at[:, None], at] + np.kron(np.eye(count), z_sensor)
+                drive = np.tile(np.eye(modes)[0], count)
+                flow = np.zeros((len(MOMENTS), z_object.shape[1]))
+                flow[:, at] = np.linalg.solve(z + np.eye(len(at)) / (conductance * area), drive)
+                flows.append(flow)
+    return np.array(flows)
+
+
+def _pack(name: str, network: ThermalNetwork) -> dict[str, np.ndarray]:
+    rows = {f"{name} output {key}": row for key, row in network.outputs.items()}
+    return {f"{name} rates": network.rates, f"{name} ports": network.ports, **rows}
+
+
+def _unpack(name: str, arrays: dict[str, np.ndarray]) -> ThermalNetwork:
+    rates, ports = arrays[f"{name} rates"], arrays[f"{name} ports"]
+    start = f"{name} output "
+    rows = {key.removeprefix(start): row for key, row in arrays.items() if key.startswith(start)}
+    return ThermalNetwork(rates, ports, np.zeros((ports.shape[1],) * 2), rows)

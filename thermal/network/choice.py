@@ -1,0 +1,150 @@
+"""The smallest network that keeps a tolerance: candidates in order of cost, each measured against the full one.
+
+Each candidate is compared with the network of full order (itself within .0015 K of the semi-analytic solution) in the
+temperature drop after a touch, at the conductances and times that matter; both are evaluated exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+
+from ..plates import Geometry
+from .states import (
+    Orders,
+    StateBasis,
+    reduce,
+    state_bases,
+)
+from .system import (
+    MOST_MODES,
+    ContactSystem,
+    GeometrySamples,
+    assemble,
+)
+
+FIRST = 0.05  # s after a touch from which on a tolerance is kept
+FLOOR = 1.5e-3  # K, error of the full network per 12 K of initial difference
+_CUTS = np.geomspace(0.3, 1e-8, 40)  # weight below which states are left out
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """tolerance: K of temperature drop from FIRST s on. difference: K between sensor and object at the touch.
+    conductances: W/(m2 K) that occur. horizon: s of contact. opposite: W/(m2 K) of the second fingertip while the first
+    touches, None where it is the first's."""
+
+    tolerance: float
+    difference: float
+    conductances: tuple[float, ...] = (1e2, 1e3, 1e4, 1e5)
+    horizon: float = 20.0
+    opposite: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """system: the network. error: K, bound found for the demand it was chosen for."""
+
+    system: ContactSystem
+    error: float
+
+
+def choose(samples: GeometrySamples, demand: Demand) -> Choice:
+    """The cheapest system that meets the demand. Raises InvalidValueError where none does, with the best error."""
+    floor = FLOOR * max(abs(demand.difference) / 12, 1e-3)
+    full = {modes: samples.networks(modes) for modes in range(1, MOST_MODES + 1)}
+    bases = {modes: state_bases(networks, samples.geometry.area) for modes, networks in full.items()}
+    geometry = samples.geometry
+    reference = responses(assemble(geometry, full[MOST_MODES]), demand)
+    order = list(range(len(reference)))
+    best = np.inf
+    cases = _cases(geometry.fingertips, demand)
+    for orders in candidates(bases):
+        networks = reduce(full[orders.modes], bases[orders.modes], orders)
+        system = assemble(geometry, networks)
+        error = 0.0
+        for case in order:
+            apart = np.abs(
+                _response(system.rates, system.ports, system.drop[0], geometry, demand, *cases[case])
+                - reference[case]
+            )
+            error = max(error, float(np.max(apart)))
+            if error + floor > demand.tolerance:
+                # what this candidate fails on, the next one is asked first
+                order.remove(case)
+                order.insert(0, case)
+                break
+        else:
+            return Choice(system, error + floor)
+        best = min(best, error + floor)
+    raise InvalidValueError(
+        f"no network keeps {demand.tolerance:g} K for this contact: ask for a larger tolerance, or let rung 'auto' "
+        "take the semi-analytic one or a grid"
+    )
+
+
+def candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:
+    """Orders worth trying, cheapest first. bases: of the bodies, by the number of patch modes."""
+    found = set()
+    for modes, bodies in bases.items():
+        for cut in _CUTS:
+            for sensor_cut in (cut, cut / 8):
+                orders = {
+                    name: max(
+                        int(np.sum(basis.weights > (sensor_cut if name == "sensor" else cut))),
+                        basis.still + 1,
+                    )
+                    for name, basis in bodies.items()
+                }
+                found.add(Orders(modes, orders.get("sensor", 0), orders["even"], orders.get("odd")))
+    return sorted(found, key=lambda orders: (orders.multiply_adds, str(orders)))
+
+
+def responses(system: ContactSystem, demand: Demand) -> np.ndarray:
+    """Temperature drops (cases, times) K of the first fingertip at every conductance: it alone touches, and all
+    touch."""
+    return drops(system.rates, system.ports, system.drop[0], system.geometry, demand)
+
+
+def drops(
+    rates: np.ndarray, ports: np.ndarray, row: np.ndarray, geometry: Geometry, demand: Demand
+) -> np.ndarray:
+    """The same of a system's rates (K,) 1/s, ports (K, M) sqrt(K/J) and row (K,) of the first fingertip's drop."""
+    cases = _cases(geometry.fingertips, demand)
+    return np.array([_response(rates, ports, row, geometry, demand, *case) for case in cases])
+
+
+def _cases(fingertips: int, demand: Demand) -> list[tuple[float, float]]:
+    """(conductance of the first fingertip, of the second)."""
+    alone = [(conductance, 0.0) for conductance in demand.conductances]
+    if fingertips == 1:
+        return alone
+    both = [(c, c if demand.opposite is None else demand.opposite) for c in demand.conductances]
+    return [case for pair in zip(alone, both, strict=True) for case in pair]
+
+
+def _response(
+    rates: np.ndarray,
+    ports: np.ndarray,
+    row: np.ndarray,
+    geometry: Geometry,
+    demand: Demand,
+    first: float,
+    second: float,
+) -> np.ndarray:
+    times = np.geomspace(FIRST, max(demand.horizon, 2 * FIRST), 40)
+    modes = ports.shape[1] // geometry.fingertips
+    weights = np.zeros(ports.shape[1])
+    drive = np.zeros_like(weights)
+    for tip, conductance in enumerate((first, second)[: geometry.fingertips]):
+        weights[tip * modes : (tip + 1) * modes] = conductance * geometry.area
+        drive[tip * modes] = demand.difference
+    scaled = ports * np.sqrt(weights)
+    decay, vectors = np.linalg.eigh(np.diag(rates) + scaled @ scaled.T)
+    source = vectors.T @ (ports @ (weights * drive))
+    product = np.outer(times, np.maximum(decay, 0.0))
+    grown = times[:, None] * np.where(product > 1e-12, -np.expm1(-product) / np.maximum(product, 1e-300), 1.0)
+    return grown @ (source * (vectors.T @ row))

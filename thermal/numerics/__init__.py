@@ -1,0 +1,42 @@
+"""Numerical tools that know nothing of sensors: Laplace inversion, finite volumes, arrays of other libraries."""
+
+from .erfc_inverse import FARTHEST, HIGH, LOW, NEAREST, SERIES, erfc_inverse
+from .fastmath import FAST
+from .finite_volume import Axis, Body, graded_cells, radial_axis, single_cell, symmetric_axis
+from .grid_contact import BOTTOM, OBJECT, SENSOR, TOP, Grid, Interface, Stage, rates
+from .laplace import invert
+from .laplace_window import invert_many, windows
+from .namespace import Array, as_integers, as_like, namespace_of
+from .passive_residues import passive_residues
+
+__all__ = [
+    "BOTTOM",
+    "FARTHEST",
+    "FAST",
+    "HIGH",
+    "LOW",
+    "NEAREST",
+    "OBJECT",
+    "SENSOR",
+    "SERIES",
+    "TOP",
+    "Array",
+    "Axis",
+    "Body",
+    "Grid",
+    "Interface",
+    "Stage",
+    "as_integers",
+    "as_like",
+    "erfc_inverse",
+    "graded_cells",
+    "invert",
+    "invert_many",
+    "namespace_of",
+    "passive_residues",
+    "radial_axis",
+    "rates",
+    "single_cell",
+    "symmetric_axis",
+    "windows",
+]

@@ -1,0 +1,3 @@
+"""What compiled functions may do to floating-point arithmetic."""
+
+FAST = {"reassoc", "contract", "nsz"}

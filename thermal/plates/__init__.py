@@ -1,0 +1,20 @@
+"""Layered plates seen through a contact patch, in the Laplace domain."""
+
+from .impedance import Far, Sampled, stack_impedance, stack_profile
+from .lateral_sum import lateral_sum
+from .patch import SquarePatch
+from .samples import BodySamples, ElementSamples, Geometry, sample_bodies, sample_element
+
+__all__ = [
+    "BodySamples",
+    "ElementSamples",
+    "Far",
+    "Geometry",
+    "Sampled",
+    "SquarePatch",
+    "lateral_sum",
+    "sample_bodies",
+    "sample_element",
+    "stack_impedance",
+    "stack_profile",
+]

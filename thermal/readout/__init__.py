@@ -1,0 +1,44 @@
+"""From a temperature drop to the voltage that a driver reports, and the thermostat behind the sensor."""
+
+from .kernel import chain_numbers, measure_rows
+from .signal import (
+    ADS1115,
+    ADS1115_DIVIDER,
+    IDEAL,
+    SIGNAL_CHAINS,
+    SignalChain,
+    SignalState,
+    measure,
+    measure_sample,
+    saturated,
+    settled,
+)
+from .thermostat import (
+    TOO_HOT,
+    Thermostat,
+    ThermostatState,
+    ideal_thermostat,
+    settled_thermostat,
+    thermostat_step,
+)
+
+__all__ = [
+    "ADS1115",
+    "ADS1115_DIVIDER",
+    "IDEAL",
+    "SIGNAL_CHAINS",
+    "TOO_HOT",
+    "SignalChain",
+    "SignalState",
+    "Thermostat",
+    "ThermostatState",
+    "chain_numbers",
+    "ideal_thermostat",
+    "measure",
+    "measure_rows",
+    "measure_sample",
+    "saturated",
+    "settled",
+    "settled_thermostat",
+    "thermostat_step",
+]

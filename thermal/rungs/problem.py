@@ -1,0 +1,117 @@
+"""One press of the sensor on an object: what every rung of the ladder is asked, and what it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermograsp.errors import (
+    InvalidValueError,
+    finite,
+    non_negative,
+    positive,
+)
+
+from ..matter import Material, Mode, SensorStack, Shape
+from ..readout import Thermostat
+from ..stack import HeatedStack
+
+Conductance = float | Callable[[float], float]
+
+
+@dataclass(frozen=True, slots=True)
+class PressProblem:
+    """A patch in the middle of an object's face pressed on the sensor, both bodies uniform at first.
+
+    mode: "T", the element sits on the thermostat and starts at sensor_temperature, contact opens between
+    element and object; "O", the element is bonded to the object and starts at object_temperature, contact
+    opens between thermostat and element. conductance: W/(m2 K) of that contact, a number or a function of
+    time in s. area: m2 of the contact, at most the sensor's face. shape: of the contact patch ("round": the
+    sensor's cross-section is round too, of the same area as the square one). object_size: (width, depth,
+    thickness) m, the patch in the middle of a width x depth face. air: W/(m2 K) on the object's free faces,
+    whose ambient is object_temperature. Temperatures in °C. opposite: W/(m2 K), a second fingertip of the
+    same kind on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power
+    that is settled at sensor_temperature at first, None for an ideal one. heated: a sensor with a heater of its own in
+    place of a thermostat, whose element `stack` then is. force: N on it, a number or a function of time in s.
+    """
+
+    stack: SensorStack
+    material: Material
+    mode: Mode
+    conductance: Conductance
+    area: float
+    shape: Shape
+    object_size: tuple[float, float, float]
+    air: float
+    sensor_temperature: float
+    object_temperature: float
+    opposite: Conductance | None = None
+    thermostat: Thermostat | None = None
+    heated: HeatedStack | None = None
+    force: Conductance = np.inf
+
+    def __post_init__(self) -> None:
+        if self.mode not in ("T", "O"):
+            raise InvalidValueError(f"mode must be 'T' or 'O', got {self.mode!r}")
+        if self.shape not in ("square", "round"):
+            raise InvalidValueError(f"shape must be 'square' or 'round', got {self.shape!r}")
+        if not callable(self.conductance):
+            non_negative("conductance (W/(m2 K))", self.conductance)
+        if self.opposite is not None and not callable(self.opposite):
+            non_negative("opposite (W/(m2 K))", self.opposite)
+        positive("area (m2)", self.area)
+        if self.area > self.stack.face_area * (1 + 1e-9):
+            raise InvalidValueError(
+                f"area {self.area:g} m2 is more than the face of sensor {self.stack.name!r}, "
+                f"{self.stack.face_area:g} m2: give at most that"
+            )
+        if len(self.object_size) != 3:
+            raise InvalidValueError(
+                f"object_size must be (width, depth, thickness) in m, got {self.object_size!r}"
+            )
+        for axis, size in zip(("width", "depth", "thickness"), self.object_size, strict=True):
+            positive(f"object_size: {axis} (m)", size)
+        side = self.stack.width
+        if min(self.object_size[:2]) < side * (1 - 1e-9):
+            raise InvalidValueError(
+                f"the object's face {self.object_size[0]:g} x {self.object_size[1]:g} m is smaller than the sensor's, "
+                f"{side:g} m square: give a larger object_size or a smaller sensor"
+            )
+        non_negative("air (W/(m2 K))", self.air)
+        if self.heated is not None and (self.thermostat is not None or self.mode == "O"):
+            raise InvalidValueError(
+                f"sensor {self.heated.name!r} has a heater of its own: leave thermostat out, and mode at 'T'"
+            )
+        finite("sensor_temperature (°C)", self.sensor_temperature)
+        finite("object_temperature (°C)", self.object_temperature)
+
+    @property
+    def plain(self) -> bool:
+        """Whether one fingertip presses, on an ideal thermostat."""
+        return self.opposite is None and self.thermostat is None and self.heated is None
+
+    @property
+    def temperature_difference(self) -> float:
+        """K, sensor less object at first."""
+        return self.sensor_temperature - self.object_temperature
+
+
+@dataclass(frozen=True, slots=True)
+class PressCurves:
+    """What a rung answers at the times asked for, shape (n,) unless stated.
+
+    temperature_drop: K, over the sensed layer, mean over the face, thermostat side less object side.
+    heat_flow: W through the opening contact (T: element to object, O: thermostat to element).
+    sensor_surface, object_surface: °C, means over the contact on its sensor side and its object side
+    (O mode: thermostat and element). stored_heat: (n, 2) J gained by the sensor's element and by the object.
+    A quantity that a rung cannot give is NaN. reading: °C at a heated sensor's readout, None of other sensors.
+    """
+
+    temperature_drop: np.ndarray
+    heat_flow: np.ndarray
+    sensor_surface: np.ndarray
+    object_surface: np.ndarray
+    stored_heat: np.ndarray
+    reading: np.ndarray | None = None

@@ -1,0 +1,37 @@
+"""A stack as a passive thermal network of few states, for simulations that step many fingertips."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermograsp.errors import positive
+
+from ..network import ThermalNetwork
+from .cells import stack_chain
+from .design import HeatedStack
+
+
+def stack_network(stack: HeatedStack, area: float, *, order: int | None = None) -> ThermalNetwork:
+    """Ports: heat into the face and into the heater's place, W over `area` m2. Output "reading": K at the readout.
+
+    order: states to keep, the most important ones (Hankel); None for all of the chain's. Surroundings are at 0.
+    """
+    positive("area (m2)", area)
+    chain = stack_chain(stack)
+    capacity = chain.capacity * area
+    matrix = np.zeros((len(capacity), len(capacity)))
+    for i, link in enumerate(chain.links * area):
+        matrix[i : i + 2, i : i + 2] += link * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    matrix[chain.back, chain.back] += chain.loss * area
+    root = 1 / np.sqrt(capacity)
+    rates, turn = np.linalg.eigh(matrix * np.outer(root, root))
+    if not chain.loss:
+        rates[0] = 0.0  # the mean temperature of an adiabatic stack, up to round-off
+    rows = turn.T * root
+    network = ThermalNetwork(
+        np.maximum(rates, 0.0),
+        rows[:, [chain.face, chain.heater]],
+        np.zeros((2, 2)),
+        {"reading": rows[:, chain.readout]},
+    )
+    return network if order is None else network.reduced(order=order)

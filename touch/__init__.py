@@ -1,0 +1,42 @@
+"""The seam between anyone's mechanics and heat: any MuJoCo scene feels heat.
+
+touch = thermograsp.ThermalTouch(model, fingertips={"thumb": "thumb_pad"}, objects={"can": "aluminium"})
+mujoco.mj_step(model, data)
+reading = touch.update(data)  # after every step; the reading of the last dt
+"""
+
+from typing import TYPE_CHECKING
+
+from thermograsp.doors import opened
+
+if TYPE_CHECKING:
+    from .contacts import prepare
+    from .heat import HeatBalance
+    from .scene import Face, Fingertip, ThermalBody, flat_faces, largest_face, rotation, triangles
+    from .thermal_touch import SAMPLES, ThermalTouch, TouchReading, TouchState
+
+__all__ = [
+    "SAMPLES",
+    "Face",
+    "Fingertip",
+    "HeatBalance",
+    "ThermalBody",
+    "ThermalTouch",
+    "TouchReading",
+    "TouchState",
+    "flat_faces",
+    "largest_face",
+    "prepare",
+    "rotation",
+    "triangles",
+]
+
+__getattr__ = opened(
+    __name__,
+    {
+        "contacts": ("prepare",),
+        "heat": ("HeatBalance",),
+        "scene": ("Face", "Fingertip", "ThermalBody", "flat_faces", "largest_face", "rotation", "triangles"),
+        "thermal_touch": ("SAMPLES", "ThermalTouch", "TouchReading", "TouchState"),
+    },
+)

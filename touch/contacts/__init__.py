@@ -1,0 +1,17 @@
+"""Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
+
+from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
+from .reader import ContactReader
+from .sensors import SensorPlaces, prepare, sensor_places
+
+__all__ = [
+    "COLUMNS",
+    "CONDUCTANCE",
+    "FORCE",
+    "NORMAL",
+    "PLACE",
+    "ContactReader",
+    "SensorPlaces",
+    "prepare",
+    "sensor_places",
+]

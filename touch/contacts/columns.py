@@ -1,0 +1,4 @@
+"""Columns of what is noted of a fingertip on a target, sums over substeps: conductance W/K and force N on the pad, and
+at the last substep that touched the pad's middle m (3) and the way it looks (3), both in the object's frame."""
+
+CONDUCTANCE, FORCE, PLACE, NORMAL, COLUMNS = 0, 1, 2, 5, 8

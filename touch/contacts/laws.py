@@ -1,0 +1,80 @@
+"""What conducts where a pad meets a geom: the contact law of every pair, and the resistance of a small contact."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from ...thermal import (
+    CONTACT_LAW,
+    LAPPED_ALUMINA,
+    Joint,
+    Pad,
+    Surface,
+    cylinder_law,
+    flat_law,
+    joint,
+    sphere_law,
+)
+from ..scene import BodyShape, PadPlace
+
+_SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
+_WIDE = 10.0  # m, a face that no pad reaches the end of
+
+
+def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.ndarray:
+    """(F, G + F, 3) CONTACT_LAW records: of each pad on each geom of the objects, in their order, by the axis of the
+    geom's frame that the pad looks along; and on each other pad, whose sides are taken as parallel to its own."""
+    geoms = [(shape, geom) for shape in shapes for geom in shape.geoms]
+    laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
+    for f, pad in enumerate(pads):
+        width = float(math.sqrt(pad.size.prod()))
+        sheet = Pad(width=width, face=min(pad.stack.width, width))
+        for g, (shape, geom) in enumerate(geoms):
+            faces = joint(LAPPED_ALUMINA, Surface.of(shape.material))
+            for axis in range(3):
+                laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
+        for g, other in enumerate(pads, len(geoms)):
+            faces = joint(LAPPED_ALUMINA, LAPPED_ALUMINA)
+            side = min(other.stack.width, float(math.sqrt(other.size.prod())))
+            laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
+    return laws
+
+
+def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) -> np.void:
+    kind, (a, b, c) = mujoco.mjtGeom(int(model.geom_type[geom])), (float(s) for s in model.geom_size[geom])
+    shapes = mujoco.mjtGeom
+    if kind == shapes.mjGEOM_SPHERE:
+        return sphere_law(pad, faces, a)
+    if kind == shapes.mjGEOM_ELLIPSOID:
+        # the radii of curvature where an axis leaves it, their geometric mean
+        along, first, second = np.roll((a, b, c), -axis)
+        return sphere_law(pad, faces, first * second / along)
+    if kind in (shapes.mjGEOM_CYLINDER, shapes.mjGEOM_CAPSULE) and axis < 2:
+        return cylinder_law(pad, faces, a, 2 * b)
+    if kind == shapes.mjGEOM_CAPSULE:
+        return sphere_law(pad, faces, a)
+    if kind == shapes.mjGEOM_CYLINDER:
+        side = math.sqrt(math.pi) * a
+        return flat_law(pad, faces, (side, side), (0, 1))
+    if kind == shapes.mjGEOM_BOX:
+        first, second = (i for i in range(3) if i != axis)
+        sizes = 2 * model.geom_size[geom]
+        return flat_law(pad, faces, (float(sizes[first]), float(sizes[second])), (first, second))
+    return flat_law(pad, faces, (_WIDE, _WIDE))
+
+
+def constrictions(pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.ndarray:
+    """(F, O + F) K m/W: of a contact smaller than the sensor's face, the resistance on both sides that the networks,
+    which know the whole face, lack is this times (1/side - 1/width). Of objects, then of other fingertips."""
+    conducting = [shape.material.conductivity for shape in shapes]
+    conducting += [pad.stack.layers[-1].conductivity for pad in pads]
+    return np.array(
+        [[_SQUARE * (1 / pad.stack.layers[-1].conductivity + 1 / k) for k in conducting] for pad in pads]
+    )

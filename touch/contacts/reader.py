@@ -1,0 +1,383 @@
+"""Contacts of a simulation, read after each of its steps by compiled code: which pad, which object, how hard, where.
+
+W: worlds, F: fingertips, O: objects, T = O + F: targets, G: geoms of the objects, N = G + F: what a pad may meet,
+C: contacts.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from thermograsp.compiled import njit
+from thermograsp.errors import InvalidValueError, SimulationError
+
+from ...thermal.contact import CYLINDER, FLAT, conductance, contact
+from ..scene import BodyShape, PadPlace
+from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
+from .laws import constrictions, pair_laws
+from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
+
+DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it
+RIM = 0.0005  # m beyond the pad's sides
+LOOKING = 0.6  # least cosine between the pad's normal and the contact's
+
+_AXES, _HALF, _WIDTH, _PAD = 3, 12, 14, 15
+"""Where a pad's axes, half sides m and its sensor's width m stand behind its position m in the frame of its body."""
+
+
+class ContactReader:
+    """Reads contacts. What it has read is in `touches` (W, F, T, COLUMNS), see columns.py, and `beside` (W, F) N, sums
+    over the `substeps` since `clear`; broken (W,) are the worlds with a force that is not finite."""
+
+    def __init__(
+        self, model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape], worlds: int
+    ) -> None:
+        count, objects = len(pads), len(shapes)
+        self.touches = np.zeros((worlds, count, objects + count, COLUMNS))
+        self.beside = np.zeros((worlds, count))
+        self.broken = np.zeros(worlds, bool)
+        self.substeps = 0
+        # of each geom: the fingertip, or F plus its number among the objects' geoms, or -1
+        self._role = np.full(model.ngeom, -1, np.int64)
+        self._pads = np.zeros((count, _PAD))
+        for f, pad in enumerate(pads):
+            self._role[list(pad.geoms)] = f
+            self._pads[f] = (*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width)
+        geoms = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
+        self._role[[geom for _, geom in geoms]] = count + np.arange(len(geoms))
+        # of what a pad may meet: the target, the geom (-1 for a fingertip), its body; of fingertips too
+        met = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]
+        met += [(objects + f, -1, pad.body) for f, pad in enumerate(pads)]
+        self._met = np.array(met, np.int64)
+        self._laws = pair_laws(model, pads, shapes)
+        self._small = constrictions(pads, shapes)
+        self._pushed = np.zeros((count, len(met), 3))
+        self._pyramidal = int(model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
+        self._own = (
+            *(self._role, self._pads, self._met, self._laws, self._small, self._pushed),
+            *(self.touches[0], self.beside[0], self._pyramidal),
+        )
+        self._of: mujoco.MjData | None = None
+        empty = np.zeros((0, 3))
+        self._poses = (empty, empty, empty, empty)
+
+    def read(self, data: mujoco.MjData, weight: float = 1.0) -> None:
+        """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
+        that are not finite."""
+        self.substeps += int(weight)
+        if data.ncon == 0:
+            return
+        if data is not self._of:
+            self._of, self._poses = data, (data.xpos, data.xmat, data.geom_xpos, data.geom_xmat)
+        found = data.contact
+        finite = _read(
+            found.geom,
+            found.pos,
+            found.frame,
+            found.dim,
+            found.efc_address,
+            data.efc_force,
+            *self._poses,
+            *self._own,
+            float(weight),
+        )
+        if not finite:
+            raise SimulationError(
+                f"a contact force is not finite at {data.time:g} s: the simulation broke down; reset both"
+            )
+
+    def sense(self, record: np.ndarray, places: SensorPlaces) -> None:
+        """Adds what contact sensors recorded of one substep, (W, sensordata). Worlds with a number that is not finite
+        are `broken` from then on, and nothing more is added to them."""
+        self.substeps += 1
+        if record.shape != (len(self.beside), places.size):
+            raise InvalidValueError(
+                f"a record must hold the sensordata of {len(self.beside)} worlds, ({len(self.beside)}, {places.size}), "
+                f"got shape {record.shape}"
+            )
+        _sense(
+            np.ascontiguousarray(record, float),
+            *places[:6],
+            self._role.shape[0],
+            self._pads,
+            self._met,
+            self._laws,
+            self._small,
+            self._pushed,
+            self.touches,
+            self.beside,
+            self.broken,
+        )
+
+    def clear(self) -> None:
+        """Sums start anew."""
+        self.touches[:] = 0.0
+        self.beside[:] = 0.0
+        self.substeps = 0
+
+
+@njit(cache=True, error_model="numpy")
+def _read(
+    geom, pos, frame, dim, address, efc, xpos, xmat, geom_xpos, geom_xmat,
+    role, pads, met, laws, small, pushed, touches, beside, pyramidal, weight,
+):  # fmt: skip
+    """Adds to touches and beside. pushed (F, N, 3): room for forces and moments. Returns whether all are finite."""
+    tips, things = len(pads), len(met)
+    any_met = False
+    for c in range(len(geom)):
+        first, second = role[geom[c, 0]], role[geom[c, 1]]
+        if first < 0 or second < 0 or address[c] < 0 or first == second:
+            continue
+        sign = 1.0
+        if first >= tips or (second < tips and second < first):
+            first, second, sign = second, first, -1.0
+        if first >= tips:
+            continue
+        force = efc[address[c]]
+        if pyramidal == 1 and dim[c] > 1:
+            for k in range(1, 2 * (dim[c] - 1)):
+                force += efc[address[c] + k]
+        if not math.isfinite(force):
+            return False
+        if force <= 0.0:
+            continue
+        if not any_met:
+            for f in range(tips):
+                for g in range(things):
+                    pushed[f, g, 0] = 0.0
+                    pushed[f, g, 1] = 0.0
+                    pushed[f, g, 2] = 0.0
+            any_met = True
+        thing = second - tips if second >= tips else things - tips + second
+        on, y, z = _lies(pads, first, met, xpos, xmat, pos[c], frame[c], sign)
+        if second < tips:
+            on_other, _, _ = _lies(pads, second, met, xpos, xmat, pos[c], frame[c], -sign)
+            if not on_other:
+                beside[second] += weight * force
+            on = on and on_other
+        if on:
+            pushed[first, thing, 0] += force
+            pushed[first, thing, 1] += force * y
+            pushed[first, thing, 2] += force * z
+        else:
+            beside[first] += weight * force
+    if any_met:
+        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, met, laws, small, pushed, touches, weight)
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _sense(
+    record, pairs, poses, geoms, turns, offsets, bodies, all_geoms,
+    pads, met, laws, small, pushed, touches, beside, broken,
+):  # fmt: skip
+    """_read of recorded sensors, world by world."""
+    tips, things = len(pads), len(met)
+    xpos, xmat = np.zeros((bodies, 3)), np.zeros((bodies, 9))
+    geom_xpos, geom_xmat = np.zeros((all_geoms, 3)), np.zeros((all_geoms, 9))
+    for w in range(len(record)):
+        data, total = record[w], 0.0
+        for p in range(len(pairs)):
+            for k in range(PLACE_AT + 3):
+                total += abs(data[pairs[p, 2] + k])
+        for p in range(len(poses)):
+            for k in range(3):
+                total += abs(data[poses[p, 1] + k])
+            for k in range(4):
+                total += abs(data[poses[p, 2] + k])
+        if not math.isfinite(total):
+            broken[w] = True
+        if broken[w]:
+            continue
+        for p in range(len(poses)):
+            body, at, quat = poses[p, 0], poses[p, 1], poses[p, 2]
+            a, b, c, d = data[quat], data[quat + 1], data[quat + 2], data[quat + 3]
+            for k in range(3):
+                xpos[body, k] = data[at + k]
+            turn = xmat[body]
+            turn[0], turn[4], turn[8] = (
+                a * a + b * b - c * c - d * d,
+                a * a - b * b + c * c - d * d,
+                a * a - b * b - c * c + d * d,
+            )
+            turn[1], turn[3] = 2 * (b * c - a * d), 2 * (b * c + a * d)
+            turn[2], turn[6] = 2 * (b * d + a * c), 2 * (b * d - a * c)
+            turn[5], turn[7] = 2 * (c * d - a * b), 2 * (c * d + a * b)
+        for g in range(len(geoms)):
+            geom, body = geoms[g, 0], geoms[g, 1]
+            for i in range(3):
+                geom_xpos[geom, i] = xpos[body, i]
+                for k in range(3):
+                    geom_xpos[geom, i] += xmat[body, 3 * i + k] * offsets[g, k]
+                    geom_xmat[geom, 3 * i + k] = 0.0
+                    for j in range(3):
+                        geom_xmat[geom, 3 * i + k] += xmat[body, 3 * i + j] * turns[g, 3 * j + k]
+        any_met = False
+        for p in range(len(pairs)):
+            f, thing, at = pairs[p, 0], pairs[p, 1], pairs[p, 2]
+            if data[at] <= 0:
+                continue
+            if not any_met:
+                for i in range(tips):
+                    for g in range(things):
+                        pushed[i, g, 0] = 0.0
+                        pushed[i, g, 1] = 0.0
+                        pushed[i, g, 2] = 0.0
+                any_met = True
+            _press(data, at, pads, f, met, xpos, xmat, thing, pushed, beside[w])
+        if any_met:
+            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, met, laws, small, pushed, touches[w], 1.0)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _press(data, at, pads, f, met, xpos, xmat, thing, pushed, beside):
+    """A net force on a pad or beside it; of another fingertip only where it is on that one's pad too."""
+    things, tips = len(met), len(pads)
+    on, y, z, force = _bears(data, at, pads, f, met, xpos, xmat, 1.0)
+    if thing >= things - tips:
+        other = thing - (things - tips)
+        on_other, _, _, back = _bears(data, at, pads, other, met, xpos, xmat, -1.0)
+        if not on_other and back > 0:
+            beside[other] += back
+        on = on and on_other
+    if force > 0:
+        if on:
+            pushed[f, thing, 0] += force
+            pushed[f, thing, 1] += force * y
+            pushed[f, thing, 2] += force * z
+        else:
+            beside[f] += force
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _bears(data, at, pads, f, met, xpos, xmat, sign):
+    """Whether a net force is on a pad, where (m, along its y and z), and its part along the normal, N."""
+    place, vector = data[at + PLACE_AT : at + PLACE_AT + 3], data[at + FORCE_AT : at + FORCE_AT + 3]
+    x, y, z, force = _from_pad(pads, f, met, xpos, xmat, place, vector, sign)
+    return force > 0 and _within(pads, f, x, y, z), y, z, force
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _lies(pads, f, met, xpos, xmat, pos, frame, sign):
+    """Whether a contact is on a pad and looks at it, and where (m, along its y and z)."""
+    x, y, z, cosine = _from_pad(pads, f, met, xpos, xmat, pos, frame, sign)
+    return cosine >= LOOKING and _within(pads, f, x, y, z), y, z
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _from_pad(pads, f, met, xpos, xmat, place, vector, sign):
+    """Where a place is from a pad's middle, m along its normal, y and z, and the vector's part along the normal."""
+    body = met[len(met) - len(pads) + f, 2]
+    x, y, z, along = 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        middle = xpos[body, k]
+        for j in range(3):
+            middle += xmat[body, 3 * k + j] * pads[f, j]
+        away = place[k] - middle
+        normal, first, second = 0.0, 0.0, 0.0
+        for j in range(3):
+            turn = xmat[body, 3 * k + j]
+            normal += turn * pads[f, _AXES + 3 * j]
+            first += turn * pads[f, _AXES + 3 * j + 1]
+            second += turn * pads[f, _AXES + 3 * j + 2]
+        along += sign * normal * vector[k]
+        x += away * normal
+        y += away * first
+        z += away * second
+    return x, y, z, along
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _within(pads, f, x, y, z):
+    return abs(x) <= DEPTH and abs(y) <= pads[f, _HALF] + RIM and abs(z) <= pads[f, _HALF + 1] + RIM
+
+
+@njit(cache=True, error_model="numpy")
+def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, met, laws, small, pushed, touches, weight):
+    """Adds what presses on the pads to the touches."""
+    tips, things = len(pads), len(met)
+    place, normal, middle = np.empty(3), np.empty(3), np.empty(3)
+    side_y, side_z = np.empty(3), np.empty(3)
+    for f in range(tips):
+        turned = False
+        for g in range(things):
+            force = pushed[f, g, 0]
+            if force <= 0:
+                continue
+            if not turned:
+                turned = True
+                turn, pad = xmat[met[things - tips + f, 2]], pads[f]
+                for k in range(3):
+                    middle[k] = xpos[met[things - tips + f, 2], k]
+                    normal[k], side_y[k], side_z[k] = 0.0, 0.0, 0.0
+                    for j in range(3):
+                        middle[k] += turn[3 * k + j] * pad[j]
+                        normal[k] += turn[3 * k + j] * pad[_AXES + 3 * j]
+                        side_y[k] += turn[3 * k + j] * pad[_AXES + 3 * j + 1]
+                        side_z[k] += turn[3 * k + j] * pad[_AXES + 3 * j + 2]
+            target, geom, body = met[g, 0], met[g, 1], met[g, 2]
+            half, axis = pads[f, _WIDTH] / 2, 0
+            if geom >= 0:
+                most = 0.0
+                for i in range(3):
+                    looking, place[i] = 0.0, 0.0
+                    for k in range(3):
+                        looking += geom_xmat[geom, 3 * k + i] * normal[k]
+                        place[i] += geom_xmat[geom, 3 * k + i] * (middle[k] - geom_xpos[geom, k])
+                    if abs(looking) > most:
+                        most, axis = abs(looking), i
+            else:
+                # another fingertip: how far the pads' middles are apart along this one's sides
+                other = g - (things - tips)
+                place[0], place[1], place[2] = 0.0, 0.0, 0.0
+                for k in range(3):
+                    away = middle[k] - xpos[body, k]
+                    for j in range(3):
+                        away -= xmat[body, 3 * k + j] * pads[other, j]
+                    place[1] += away * side_y[k]
+                    place[2] += away * side_z[k]
+            law = laws[f, g, axis]
+            area, share = contact(law, force, place)
+            touch = touches[f, target]
+            if area > 0 and share > 0:
+                pressure = share / area
+                if law.shape == CYLINDER:
+                    # MuJoCo may name any point of the line of contact: only what is across it is heard.
+                    along_y, along_z = 0.0, 0.0
+                    for k in range(3):
+                        along_y += side_y[k] * geom_xmat[geom, 3 * k + 2]
+                        along_z += side_z[k] * geom_xmat[geom, 3 * k + 2]
+                    length = math.sqrt(along_y * along_y + along_z * along_z)
+                    across = 0.0
+                    if length > 0:
+                        across = (pushed[f, g, 1] * along_z - pushed[f, g, 2] * along_y) / (force * length)
+                    area *= _kept(across, area / (2 * law.face_length), half)
+                elif law.shape != FLAT:
+                    # A round body presses where MuJoCo says, which need not be on the sensor's face.
+                    reach = math.sqrt(area) / 2
+                    area *= _kept(pushed[f, g, 1] / force, reach, half)
+                    area *= _kept(pushed[f, g, 2] / force, reach, half)
+                if area > 0:
+                    side = math.sqrt(min(area, 4 * half * half))
+                    series = 1 / (conductance(law, pressure) * area)
+                    series += small[f, target] * (1 / side - 1 / (2 * half))
+                    touch[CONDUCTANCE] += weight / series
+            touch[FORCE] += weight * force
+            for i in range(3):
+                touch[PLACE + i], touch[NORMAL + i] = 0.0, 0.0
+                for k in range(3):
+                    touch[PLACE + i] += xmat[body, 3 * k + i] * (middle[k] - xpos[body, k])
+                    touch[NORMAL + i] += xmat[body, 3 * k + i] * normal[k]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _kept(at, reach, half):
+    """Share of an interval of half width reach round `at` that is within -half to half."""
+    return min(max(min(half, at + reach) - max(-half, at - reach), 0.0) / (2 * reach), 1.0)

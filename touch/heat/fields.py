@@ -1,0 +1,137 @@
+"""Heat fields of fingertips and objects as passive networks, and how an object's field survives a new place.
+
+A fingertip's network is always that of its whole face, so that its field goes with it wherever it touches. An object's
+network is seen through the places where it has been touched. A place that comes or goes changes its states, and the
+field is carried along.
+
+n: states, M: patterns of a contact, N: places.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ...thermal import Material
+from ...thermal.kernels import Patches, Resolution, Side, Tip, box_side, tip
+from ..scene import BodyShape, PadPlace
+
+NEAR = 0.25  # of the sensor's width: a pad that is as near to a known place is on it
+GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
+MOST_PLACES = 2
+"""Of an object that are remembered besides those in use."""
+
+_LEVELS = ((0.04, Resolution(8, 3)), (0.015, Resolution(12, 4)), (0.0, Resolution(18, 5)))
+_TIMES = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
+_LEAST = 1e-3  # singular values below that share of the largest are left out
+
+
+def resolution(tolerance: float) -> Resolution:
+    """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K."""
+    return next(level for least, level in _LEVELS if tolerance >= least)
+
+
+def fingertip_field(pad: PadPlace, level: Resolution) -> Tip:
+    """The network of a fingertip's whole face."""
+    whole = (0.0, pad.stack.width)
+    return tip(pad.stack, (whole, whole), level)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a fingertip touches: a face of the object's box, 2 axis + side, the middle (2,) m along the other two axes
+    from its corner, and the fingertip, by number."""
+
+    face: int
+    middle: tuple[float, float]
+    fingertip: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyField:
+    """An object's network of the places where it is touched. rates: (n,) 1/s. ports: (n, N M) sqrt(K/J). heat: (n,) J
+    and loss: (n,) W of a state; only the first one, the mean temperature's, has any."""
+
+    places: tuple[Place, ...]
+    rates: np.ndarray
+    ports: np.ndarray
+    heat: np.ndarray
+    loss: np.ndarray
+
+    def port(self, place: int, patterns: int) -> np.ndarray:
+        """(n, M) of one place."""
+        return self.ports[:, place * patterns : (place + 1) * patterns]
+
+
+def near(one: Place, other: Place, reach: float) -> bool:
+    """Whether two places of one fingertip are the same to it. reach: m."""
+    apart = max(abs(a - b) for a, b in zip(one.middle, other.middle, strict=True))
+    return one.fingertip == other.fingertip and one.face == other.face and apart <= reach
+
+
+def untouched(shape: BodyShape, film: float) -> BodyField:
+    """An object that nothing has touched: its mean temperature and no more. film: W/(m2 K) of the air."""
+    capacity = shape.heat_capacity
+    held = np.array([np.sqrt(capacity)])
+    rate = np.array([film * shape.surface / capacity])
+    return BodyField((), rate, np.zeros((1, 0)), held, held * rate)
+
+
+def touched(
+    shape: BodyShape, film: float, places: tuple[Place, ...], tips: tuple[Tip, ...], level: Resolution
+) -> BodyField:
+    """An object and its places. tips: of all fingertips, by number. The air takes heat from its mean temperature."""
+    x, y, z = shape.size.tolist()
+    at = tuple((place.face, place.middle) for place in places)
+    seen = tuple(tips[place.fingertip] for place in places)
+    side = _side(shape.material, (x, y, z), at, seen, level)
+    bare = untouched(shape, film)
+    rates = side.rates.copy()
+    rates[0] = bare.rates[0]
+    rest = np.zeros(len(rates) - 1)
+    return BodyField(
+        places, rates, side.ports, np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
+    )
+
+
+@lru_cache(maxsize=2048)
+def _side(
+    material: Material,
+    size: tuple[float, float, float],
+    at: tuple[tuple[int, tuple[float, float]], ...],
+    seen: tuple[Tip, ...],
+    level: Resolution,
+) -> Side:
+    """The network of a box of that material and size m with patches at those faces and middles."""
+    half = np.empty((len(at), 2))
+    for row, (face, _), tip_ in zip(half, at, seen, strict=True):
+        others = [size[i] for i in range(3) if i != face // 2]
+        row[:] = [min(np.sqrt(tip_.area), side) / 2 for side in others]
+    patches = Patches(np.array([face for face, _ in at]), np.array([middle for _, middle in at]), half)
+    return box_side(material, size, 0.0, patches, seen, level)
+
+
+@lru_cache(maxsize=1024)
+def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
+    """(n after, n before): the field on the states of a network with other places.
+
+    The field on the new states is the one that the places of both will see alike from then on, left alone: their
+    temperatures at _TIMES, by least squares. Heat stays the same, since it is all in the mean temperature's state."""
+    matrix = np.zeros((len(after.rates), len(before.rates)))
+    matrix[0, 0] = 1.0
+    common = [place for place in before.places if place in after.places]
+    if not common:
+        return matrix
+    source, target = (_future(field, common, patterns) for field in (before, after))
+    matrix[1:, 1:] = np.linalg.pinv(target, rcond=_LEAST) @ source
+    return matrix
+
+
+def _future(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
+    """(temperatures, n - 1) of the places' patterns at _TIMES, each weighted by the time that it stays."""
+    at = [field.places.index(place) for place in common]
+    ports = np.concatenate([field.port(place, patterns) for place in at], axis=1)[1:]
+    faded = np.exp(-np.outer(field.rates[1:], _TIMES)) * np.sqrt(np.maximum(_TIMES, _TIMES[1]))
+    return (ports[:, :, None] * faded[:, None, :]).reshape(len(ports), -1).T

@@ -1,0 +1,375 @@
+"""Heat of all fingertips and objects of one or many worlds: separate passive fields that any contacts join.
+
+Every field is x' = -rates x + ports q; contacts with conductances G join them to x' = -(rates + B G B^T) x + B G d,
+which one rational step of the exponential solves (thermal/network/coupling.py): exact while conductances stand still,
+stable and balanced whatever they do. Temperatures count from the air's. A world's numbers do not depend on how many
+there are.
+
+W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact (objects, then fingertips) and fields, K: states.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...thermal.stack import CoreState
+from ..contacts import FORCE
+from ..scene import BodyShape, PadPlace
+from .backs import HeatedBack
+from .fields import (
+    GRID,
+    MOST_PLACES,
+    NEAR,
+    BodyField,
+    Place,
+    carried,
+    fingertip_field,
+    near,
+    resolution,
+    touched,
+    untouched,
+)
+from .march import march, settle
+from .systems import Pair, SystemPool, groups
+
+MOST_SYSTEMS = 4096
+"""That are kept; beyond, those that no world uses are forgotten."""
+
+
+class HeatBalance(NamedTuple):
+    """J since the start. given (F, O): from each fingertip to each object, and passed (F, F): from each to each later
+    fingertip. air: from all objects to the air. elements (F,) and objects (O,): gained."""
+
+    given: np.ndarray
+    passed: np.ndarray
+    air: float
+    elements: np.ndarray
+    objects: np.ndarray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeatState:
+    """What the heat remembers. fields: (W, O) the objects' networks; current (W, F, O): each pair's place among its
+    object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted from the air's
+    temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with heaters of
+    their own."""
+
+    fields: tuple[tuple[BodyField, ...], ...]
+    current: np.ndarray
+    states: np.ndarray
+    started: np.ndarray
+    given: np.ndarray
+    air: np.ndarray
+    drop: np.ndarray
+    backs: tuple[CoreState, ...]
+
+
+class JoinedHeat:
+    """Heat of pads and objects in steps of dt s. tolerance: K. film: W/(m2 K) of the air at `ambient` °C."""
+
+    def __init__(
+        self,
+        pads: Sequence[PadPlace],
+        shapes: Sequence[BodyShape],
+        *,
+        worlds: int,
+        dt: float,
+        tolerance: float,
+        film: float,
+        ambient: float,
+    ) -> None:
+        self._pads, self._shapes = tuple(pads), tuple(shapes)
+        self._dt, self._film, self._ambient = dt, film, ambient
+        self._level = resolution(tolerance)
+        self._tips = tuple(fingertip_field(pad, self._level) for pad in pads)
+        self._widths = np.array([pad.stack.width for pad in pads])
+        self._boxes = np.array(
+            [np.concatenate((s.size, s.extent, s.centre, s.axes.ravel())) for s in self._shapes]
+        )
+        count, objects, fields = len(pads), len(shapes), len(shapes) + len(pads)
+        self._known: dict[tuple[int, tuple[Place, ...]], BodyField] = {}
+        self._bare = tuple(self._field(o, ()) for o in range(objects))
+        self._held_by = np.array([field.heat[0] for field in self._bare])
+        self._warm = np.tile(np.array([pad.temperature for pad in pads]) - ambient, (worlds, 1))
+        self._rows = _padded([tip.side.outputs["drop"] for tip in self._tips])
+        self._elements = _padded([tip.side.outputs["element"] for tip in self._tips])
+        self._fields = [list(self._bare) for _ in range(worlds)]
+        self._current = np.full((worlds, count, objects), -1)
+        self._faces = np.full((worlds, count, objects), -1)
+        self._middles = np.zeros((worlds, count, objects, 2))
+        self._new_faces, self._new_middles = self._faces.copy(), self._middles.copy()
+        self._closed = np.zeros((worlds, count, fields), bool)
+        self._stale = np.zeros(worlds, bool)
+        self._plan = np.full((worlds, min(count, fields)), -1)
+        self._nets = np.zeros((worlds, fields), np.int64)
+        self._given, self._air = np.zeros((worlds, count, fields)), np.zeros(worlds)
+        self._x = np.zeros((worlds, fields, max(self._rows.shape[1], 1)))
+        self._started = np.zeros((worlds, objects))
+        self.drop = np.zeros((worlds, count))
+        """(W, F) K over the sensed layers, mean over the face."""
+        self._backs = tuple(
+            HeatedBack(pad, f, self._tips[f], worlds=worlds, dt=dt, ambient=ambient)
+            for f, pad in enumerate(self._pads)
+            if pad.heated
+        )
+        self._busy = np.zeros(fields, bool)
+        self._forget()
+        self.reset(range(worlds), np.tile([shape.temperature for shape in shapes], (worlds, 1)))
+
+    def reset(self, worlds: Sequence[int], temperatures: np.ndarray) -> None:
+        """Those worlds' fields at their first temperatures; the objects' (rows, O) in °C."""
+        for w, celsius in zip(worlds, temperatures, strict=True):
+            self._fields[w] = list(self._bare)
+            self._x[w] = 0.0
+            self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by
+            self._renumber(w)
+        rows = list(worlds)
+        for back in self._backs:
+            back.reset(rows)
+            self._warm[rows, back.tip] = back.temperature[rows] - self._ambient
+        self._current[rows], self._faces[rows], self._plan[rows] = -1, -1, -1
+        self._closed[rows], self._stale[rows] = False, False
+        self._given[rows], self._air[rows], self.drop[rows] = 0.0, 0.0, 0.0
+        self._started[rows] = self._held()[rows]
+
+    def advance(self, touches: np.ndarray, substeps: int) -> None:
+        """One step of dt. touches: (W, F, T, COLUMNS), sums over so many substeps."""
+        moved = settle(
+            touches,
+            self._boxes,
+            self._widths,
+            NEAR * self._widths,
+            self._faces,
+            self._middles,
+            self._new_faces,
+            self._new_middles,
+            self._closed,
+            self._stale,
+        )
+        if moved:
+            for w, f, o in np.argwhere(self._new_faces >= 0).tolist():
+                self._settle(w, f, o)
+        while self._stale.any():
+            for w in np.flatnonzero(self._stale).tolist():
+                self._stale[w] = False
+                self._join(w)
+        before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
+        pool = self._pool
+        march(
+            self._dt,
+            substeps,
+            self._level.patterns,
+            touches,
+            self._warm,
+            self._plan,
+            pool.starts,
+            pool.integers,
+            pool.numbers,
+            pool.grams,
+            self._fade,
+            self._held_by,
+            self._rows,
+            self._nets,
+            self._x,
+            self._given,
+            self._air,
+            self.drop,
+            self._busy,
+        )
+        for back, (held, passed) in zip(self._backs, before, strict=True):
+            f = back.tip
+            force = touches[:, f, :, FORCE].sum(axis=1) + touches[:, :, len(self._shapes) + f, FORCE].sum(
+                axis=1
+            )
+            out = self._passed(back) - passed
+            back.step(self._field_of(back), held, out, self.drop[:, f], force / substeps)
+            self._warm[:, f] = back.temperature - self._ambient
+
+    @property
+    def sent(self) -> np.ndarray:
+        """(W, F) what the electronics take: K of drop, or V of the dividers of sensors with heaters of their own."""
+        if not self._backs:
+            return self.drop
+        found = self.drop.copy()
+        for back in self._backs:
+            found[:, back.tip] = back.voltage
+        return found
+
+    def _field_of(self, back: HeatedBack) -> np.ndarray:
+        """(W, K) states of its element."""
+        return self._x[:, len(self._shapes) + back.tip]
+
+    def _passed(self, back: HeatedBack) -> np.ndarray:
+        """(W,) J out of its face so far."""
+        own = len(self._shapes) + back.tip
+        return self._given[:, back.tip].sum(axis=1) - self._given[:, :, own].sum(axis=1)
+
+    @property
+    def object_temperature(self) -> np.ndarray:
+        """(W, O) °C, the objects' means."""
+        return self._ambient + self._x[:, : len(self._shapes), 0] / self._held_by
+
+    def balance(self, world: int) -> HeatBalance:
+        """Where a world's heat has gone."""
+        objects = len(self._shapes)
+        own = self._x[world, objects:, : self._elements.shape[1]]
+        given = self._given[world]
+        elements = (self._elements * own).sum(axis=1)
+        for back in self._backs:
+            elements[back.tip] += back.gained[world]
+        return HeatBalance(
+            given[:, :objects].copy(),
+            given[:, objects:].copy(),
+            float(self._air[world]),
+            elements,
+            (self._held() - self._started)[world],
+        )
+
+    def state(self) -> HeatState:
+        """A copy of what it remembers."""
+        return HeatState(
+            tuple(tuple(fields) for fields in self._fields),
+            self._current.copy(),
+            self._x.copy(),
+            self._started.copy(),
+            self._given.copy(),
+            self._air.copy(),
+            self.drop.copy(),
+            tuple(back.state() for back in self._backs),
+        )
+
+    def set_state(self, state: HeatState) -> None:
+        """Puts it into a state taken by `state`."""
+        for o, field in ((o, field) for fields in state.fields for o, field in enumerate(fields)):
+            self._known.setdefault((o, field.places), field)
+        self._fields = [
+            [self._known[o, field.places] for o, field in enumerate(fields)] for fields in state.fields
+        ]
+        self._current[:] = state.current
+        self._x = state.states.copy()
+        self._given[:], self._air[:], self._started[:] = state.given, state.air, state.started
+        self.drop[:] = state.drop
+        for back, own in zip(self._backs, state.backs, strict=True):
+            back.set_state(own)
+            self._warm[:, back.tip] = back.temperature - self._ambient
+        for w, f, o in np.ndindex(self._current.shape):
+            self._place(w, f, o)
+        self._forget()
+
+    def _held(self) -> np.ndarray:
+        """(W, O) J in the objects, counted from the air's temperature."""
+        return self._x[:, : len(self._shapes), 0] * self._held_by
+
+    def _field(self, o: int, places: tuple[Place, ...]) -> BodyField:
+        if (o, places) not in self._known:
+            shape = self._shapes[o]
+            self._known[o, places] = (
+                touched(shape, self._film, places, self._tips, self._level)
+                if places
+                else untouched(shape, self._film)
+            )
+        return self._known[o, places]
+
+    def _forget(self) -> None:
+        """Systems are made anew when they are wanted."""
+        self._pool = SystemPool(self._tips, len(self._shapes), self._level.patterns, self._dt)
+        self._numbers: dict[BodyField, int] = {}
+        self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
+        in_use = {field for fields in self._fields for field in fields}
+        self._known = {key: field for key, field in self._known.items() if field in in_use or not key[1]}
+        for w in range(len(self._fields)):
+            self._renumber(w)
+        self._plan[:] = -1
+        self._stale[:] = True
+
+    def _renumber(self, w: int) -> None:
+        """Which networks a world's fields have."""
+        for o, field in enumerate(self._fields[w]):
+            if field not in self._numbers:
+                number = self._numbers[field] = len(self._tips) + len(self._numbers)
+                rows, wide = self._fade.shape
+                if number == rows or len(field.rates) > wide:
+                    more = (number == rows) * rows, max(len(field.rates) - wide, 0)
+                    self._fade = np.pad(self._fade, ((0, more[0]), (0, more[1])))
+                self._fade[number, : len(field.rates)] = np.exp(-self._dt * field.rates)
+            self._nets[w, o] = self._numbers[field]
+        objects = len(self._shapes)
+        self._nets[w, objects:] = np.arange(len(self._tips))
+        wide = self._fade.shape[1] - self._x.shape[2]
+        if wide > 0:
+            self._x = np.pad(self._x, ((0, 0), (0, 0), (0, wide)))
+        elif wide < 0:
+            self._fade = np.pad(self._fade, ((0, 0), (0, -wide)))
+
+    def _settle(self, w: int, f: int, o: int) -> None:
+        """The pair's place: one that is known near there, or a new one."""
+        width = float(self._widths[f])
+        spacing, middle = GRID * width, []
+        sizes = np.delete(self._shapes[o].size, self._new_faces[w, f, o] // 2)
+        for at, size in zip(self._new_middles[w, f, o].tolist(), sizes.tolist(), strict=True):
+            room = max(size - width, 0.0) / 2
+            off = min(max(round((at - size / 2) / spacing) * spacing, -room), room)
+            middle.append(size / 2 + off)
+        place = Place(int(self._new_faces[w, f, o]), (middle[0], middle[1]), f)
+        known = self._fields[w][o].places
+        for number, one in enumerate(known):
+            if near(one, place, NEAR * width):
+                self._current[w, f, o] = number
+                break
+        else:
+            self._add(w, o, place)
+        self._place(w, f, o)
+        self._stale[w] = True
+
+    def _place(self, w: int, f: int, o: int) -> None:
+        number = int(self._current[w, f, o])
+        if number < 0:
+            self._faces[w, f, o] = -1
+            return
+        place = self._fields[w][o].places[number]
+        self._faces[w, f, o], self._middles[w, f, o] = place.face, place.middle
+
+    def _add(self, w: int, o: int, place: Place) -> None:
+        """A new place of an object; the one that was in use the longest ago goes where there would be too many."""
+        before = self._fields[w][o]
+        current = self._current[w, :, o]
+        used = {int(number) for number in current if number >= 0}
+        used.discard(int(current[place.fingertip]))
+        kept = list(range(len(before.places)))
+        idle = [number for number in kept if number not in used]
+        if len(idle) > MOST_PLACES:
+            kept.remove(idle[0])
+        after = self._field(o, (*(before.places[number] for number in kept), place))
+        own = carried(before, after, self._level.patterns) @ self._x[w, o, : len(before.rates)]
+        current[:] = [kept.index(known) if known in kept else -1 for known in current.tolist()]
+        current[place.fingertip] = len(after.places) - 1
+        self._fields[w][o] = after
+        self._renumber(w)
+        self._x[w, o] = 0.0
+        self._x[w, o, : len(own)] = own
+        for f in range(len(self._pads)):
+            self._place(w, f, o)
+
+    def _join(self, w: int) -> None:
+        """The systems of a world's closed contacts."""
+        if len(self._pool) > MOST_SYSTEMS + 2 * self._plan.size:
+            self._forget()
+        objects = len(self._shapes)
+        pairs: list[Pair] = [(f, t) for f, t in np.argwhere(self._closed[w]).tolist()]
+        self._plan[w] = -1
+        for number, group in enumerate(groups(pairs, objects)):
+            fields = {t: self._fields[w][t] for t in sorted({t for _, t in group if t < objects})}
+            current = {(f, t): int(self._current[w, f, t]) for f, t in group if t < objects}
+            self._plan[w, number] = self._pool.number(group, fields, current)
+
+
+def _padded(rows: Sequence[np.ndarray]) -> np.ndarray:
+    """The rows behind one another, zeros behind the shorter ones."""
+    table = np.zeros((len(rows), max(len(row) for row in rows)))
+    for own, row in zip(table, rows, strict=True):
+        own[: len(row)] = row
+    return table

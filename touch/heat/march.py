@@ -1,0 +1,157 @@
+"""The compiled part of a sample of heat: which contacts are closed and where, and a step of every field.
+
+W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact and fields, C: groups of a world, K: states.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ...thermal.network import POLES, StepArrays, advance, workspace
+from ..contacts import CONDUCTANCE, NORMAL, PLACE
+from .systems import CONTACTS, FIELDS, FLOATS, GRAM, HEADER, OWN, PORTS, SHARED, STATES
+
+_PAIRS = len(POLES)
+TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
+
+
+@njit(cache=True, error_model="numpy")
+def settle(touches, boxes, widths, reach, faces, middles, new_faces, new_middles, closed, stale):
+    """Notes which contacts are closed, (W, F, T), and where; stale (W,) where that is no longer what it was.
+
+    boxes: (O, 18) size, extent and centre m and the axes, row by row. widths: (F,) m of the sensors. reach: (F,) m.
+    faces (W, F, O) and middles (W, F, O, 2): the places in use, face -1 for none. A contact that has left its place is
+    told by new_faces, else -1, and new_middles. Returns how many have."""
+    worlds, tips, targets = closed.shape
+    objects, moved = len(boxes), 0
+    position, looking = np.empty(3), np.empty(3)
+    for w in range(worlds):
+        for f in range(tips):
+            for t in range(targets):
+                touch = touches[w, f, t]
+                now = touch[CONDUCTANCE] > 0
+                if now != closed[w, f, t]:
+                    closed[w, f, t], stale[w] = now, True
+                if t >= objects:
+                    continue
+                new_faces[w, f, t] = -1
+                if not now:
+                    continue
+                box, most = boxes[t], 0
+                for i in range(3):
+                    looking[i], position[i] = 0.0, 0.0
+                    for k in range(3):
+                        axis = box[9 + 3 * k + i]
+                        looking[i] += axis * touch[NORMAL + k]
+                        position[i] += axis * (touch[PLACE + k] - box[6 + k])
+                    position[i] *= box[i] / box[3 + i]
+                for i in range(1, 3):
+                    if abs(looking[i]) > abs(looking[most]):
+                        most = i
+                known = faces[w, f, t]
+                if known >= 0 and abs(looking[known // 2]) > abs(looking[most]) - TURN:
+                    most = known // 2
+                face = 2 * most + (1 if looking[most] < 0 else 0)  # the pad looks inward
+                j, apart = 0, 0.0
+                for i in range(3):
+                    if i == most:
+                        continue
+                    room = max(box[i] - widths[f], 0.0) / 2
+                    at = box[i] / 2 + min(max(position[i], -room), room)
+                    new_middles[w, f, t, j] = at
+                    apart = max(apart, abs(at - middles[w, f, t, j]))
+                    j += 1
+                if face != known or apart > reach[f]:
+                    new_faces[w, f, t] = face
+                    moved += 1
+    return moved
+
+
+@njit(cache=True, error_model="numpy")
+def march(
+    dt, substeps, patterns, touches, warm, plan, starts, integers, numbers, grams, fade, held, rows, nets,
+    x, given, air, drop, busy,
+):  # fmt: skip
+    """One step of dt s of every world.
+
+    touches: (W, F, T, columns), sums over so many substeps. warm: (W, F) K, the thermostats above the air. plan: (W, C)
+    the groups' systems, -1 behind the last. fade: (networks, K), what a state keeps in a step alone; nets: (W, T) which
+    of them each field is. held: (O,) J of the mean's state. rows: (F, K) of the drop. x: (W, T, K), given: (W, F, T) J
+    and air: (W,) J go on in place; drop: (W, F) K is filled. busy: room (T,)."""
+    worlds, fields, objects = x.shape[0], x.shape[1], len(held)
+    most, wide = 1, 1
+    for w in range(worlds):
+        for c in range(plan.shape[1]):
+            if plan[w, c] < 0:
+                break
+            start = starts[plan[w, c]]
+            most, wide = max(most, integers[start + STATES]), max(wide, integers[start + PORTS])
+    room = workspace(most, wide)
+    state = np.empty(most)
+    for w in range(worlds):
+        for b in range(fields):
+            busy[b] = False
+        for c in range(plan.shape[1]):
+            if plan[w, c] < 0:
+                break
+            start = starts[plan[w, c]]
+            n, m, contacts = integers[start + STATES], integers[start + PORTS], integers[start + CONTACTS]
+            first = integers[start + FLOATS]
+            gram_at = integers[start + GRAM]
+            scales = first + 2 * n
+            ports_at = scales + 2 * _PAIRS * n
+            system = StepArrays(
+                dt,
+                numbers[first : first + n],
+                numbers[ports_at : ports_at + m * n].reshape(m, n),
+                numbers[scales : scales + _PAIRS * n].reshape(_PAIRS, n),
+                numbers[scales + _PAIRS * n : ports_at].reshape(_PAIRS, n),
+                grams[gram_at : gram_at + _PAIRS * m * m].reshape(_PAIRS, m, m),
+                integers[start + SHARED],
+                integers[start + OWN],
+                patterns,
+                contacts,
+                numbers[first + n : first + 2 * n],
+                0.0,
+            )
+            listed = start + HEADER
+            at = 0
+            for i in range(integers[start + FIELDS]):
+                field, size = integers[listed + 2 * i], integers[listed + 2 * i + 1]
+                busy[field] = True
+                for k in range(size):
+                    state[at + k] = x[w, field, k]
+                at += size
+            joined = listed + 2 * integers[start + FIELDS]
+            for j in range(m):
+                room.drive[j] = 0.0
+            for i in range(contacts):
+                f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
+                for k in range(patterns):
+                    room.weight[i * patterns + k] = touches[w, f, t, CONDUCTANCE] / substeps
+                room.drive[i * patterns] = warm[w, f] - (warm[w, t - objects] if t >= objects else 0.0)
+            air[w] += dt * advance(system, state, room.weight, room.drive, room.flow, room)
+            for i in range(contacts):
+                f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
+                given[w, f, t] += dt * room.flow[i * patterns]
+            at = 0
+            for i in range(integers[start + FIELDS]):
+                field, size = integers[listed + 2 * i], integers[listed + 2 * i + 1]
+                for k in range(size):
+                    x[w, field, k] = state[at + k]
+                at += size
+        for b in range(fields):
+            if busy[b]:
+                continue
+            before = x[w, b, 0]
+            for k in range(x.shape[2]):
+                x[w, b, k] *= fade[nets[w, b], k]
+            if b < objects:
+                air[w] += held[b] * (before - x[w, b, 0])
+        for f in range(len(rows)):
+            total = 0.0
+            for k in range(rows.shape[1]):
+                total += rows[f, k] * x[w, objects + f, k]
+            drop[w, f] = total

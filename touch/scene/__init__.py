@@ -1,0 +1,26 @@
+"""What stands in somebody's MuJoCo model: fingertips with their pads, and the objects that they may touch."""
+
+from .bodies import PREFIX, BodyShape, ThermalBody, bodies
+from .faces import Face, flat_faces, largest_face, rotation, triangles
+from .fingertips import Fingertip, PadPlace, pads
+from .names import find, geom_label, geoms_of
+from .overlap import refuse_overlap
+
+__all__ = [
+    "PREFIX",
+    "BodyShape",
+    "Face",
+    "Fingertip",
+    "PadPlace",
+    "ThermalBody",
+    "bodies",
+    "find",
+    "flat_faces",
+    "geom_label",
+    "geoms_of",
+    "largest_face",
+    "pads",
+    "refuse_overlap",
+    "rotation",
+    "triangles",
+]

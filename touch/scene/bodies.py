@@ -1,0 +1,204 @@
+"""What fingertips touch: bodies and geoms of a model, their materials and temperatures, and the boxes of their heat."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, celsius
+
+from ...thermal import Material
+from ...thermal import material as named_material
+from .faces import rotation, triangles
+from .names import find, geom_label, geoms_of
+
+PREFIX = "thermograsp:"
+"""Of the names of an MJCF's custom texts that tell an object's material and temperature."""
+
+_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+_ROUND = (math.pi / 6) ** (1 / 3)  # side of the cube of a sphere's volume, of its diameter
+_DISC = math.sqrt(math.pi) / 2  # side of the square of a disc's area, of its diameter
+
+
+@dataclass(frozen=True, slots=True)
+class ThermalBody:
+    """What an object is to heat. material: a name of thermal.materials() or a Material. temperature: °C at the start,
+    None for that of the air."""
+
+    material: str | Material
+    temperature: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.temperature is not None:
+            celsius("ThermalBody: temperature (°C)", self.temperature)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyShape:
+    """An object of a model, and the box that its heat flows in.
+
+    name: as it was asked for. body: number of the MuJoCo body. geoms: their numbers. material. temperature: °C. size
+    (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the body's frame. extent
+    (3,) m: the object's true size along them. surface: m2 that the air touches.
+
+    A box stands as it is; a round, hollow or composed object is a box of its volume and proportions."""
+
+    name: str
+    body: int
+    geoms: tuple[int, ...]
+    material: Material
+    temperature: float
+    size: np.ndarray
+    centre: np.ndarray
+    axes: np.ndarray
+    extent: np.ndarray
+    surface: float
+
+    @property
+    def heat_capacity(self) -> float:
+        """J/K."""
+        return float(np.prod(self.size)) * self.material.volumetric_heat_capacity
+
+
+def bodies(
+    model: mujoco.MjModel, objects: Mapping[str, str | Material | ThermalBody] | None, ambient: float
+) -> tuple[BodyShape, ...]:
+    """The objects of a model: those asked for, and those that its MJCF names. Raises UnknownNameError and
+    InvalidValueError."""
+    wanted: dict[str, str | Material | ThermalBody] = dict(written(model))
+    wanted.update(objects or {})
+    if not wanted:
+        raise InvalidValueError(
+            'objects: none given; say what may be touched, such as {"can": "aluminium"}, or write '
+            f'<text name="{PREFIX}can" data="aluminium"/> into the <custom> section of the MJCF'
+        )
+    found = [_body(model, name, one, ambient) for name, one in wanted.items()]
+    owner: dict[int, str] = {}
+    for shape in found:
+        for geom in shape.geoms:
+            if owner.setdefault(geom, shape.name) != shape.name:
+                raise InvalidValueError(
+                    f"objects {owner[geom]!r} and {shape.name!r} share geom {geom_label(model, geom)}: name it once"
+                )
+    return tuple(found)
+
+
+def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
+    """The objects that the MJCF itself describes: custom texts "thermograsp:NAME" of a material and, behind it, °C."""
+    found = {}
+    for number in range(model.ntext):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, number) or ""
+        if not name.startswith(PREFIX):
+            continue
+        first, count = int(model.text_adr[number]), int(model.text_size[number])
+        text = bytes(model.text_data)[first : first + count].split(b"\0")[0].decode()
+        words = text.split()
+        try:
+            made_of, *rest = words
+            (degrees,) = map(float, rest) if rest else (None,)
+        except ValueError:
+            raise InvalidValueError(
+                f'<text name="{name}" data="{text}"/>: write a material and, if it is not the air\'s, a temperature in '
+                '°C, such as "aluminium 5.0"'
+            ) from None
+        found[name.removeprefix(PREFIX)] = ThermalBody(made_of, degrees)
+    return found
+
+
+def _body(
+    model: mujoco.MjModel, name: str, told: str | Material | ThermalBody | None, ambient: float
+) -> BodyShape:
+    kind, number = find(model, name, ("body", "geom"), "object")
+    thing = told if isinstance(told, ThermalBody) else None
+    if thing is None:
+        if not isinstance(told, str | Material):
+            raise InvalidValueError(
+                f"object {name!r}: give a material's name, a Material or a ThermalBody, got {told!r}"
+            )
+        thing = ThermalBody(told)
+    geoms = geoms_of(model, kind, number)
+    if not geoms:
+        raise InvalidValueError(
+            f"object {name!r} has no geom, so there is nothing to touch: name another body"
+        )
+    size, centre, axes, extent, surface = _box(model, name, geoms)
+    return BodyShape(
+        name,
+        int(model.geom_bodyid[geoms[0]]),
+        geoms,
+        named_material(thing.material),
+        ambient if thing.temperature is None else float(thing.temperature),
+        size,
+        centre,
+        axes,
+        extent,
+        surface,
+    )
+
+
+def _box(
+    model: mujoco.MjModel, name: str, geoms: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]:
+    measured = [_measured(model, name, geom) for geom in geoms]
+    if len(geoms) == 1:
+        geom, (size, extent, surface) = geoms[0], measured[0]
+        turn = rotation(model.geom_quat[geom])
+        middle = model.geom_aabb[geom, :3] if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH else 0.0
+        return size, model.geom_pos[geom] + turn @ np.broadcast_to(middle, 3), turn, extent, surface
+    corners = []
+    for geom in geoms:
+        box = model.geom_aabb[geom]
+        corners.append(
+            (box[:3] + _CORNERS * box[3:]) @ rotation(model.geom_quat[geom]).T + model.geom_pos[geom]
+        )
+    low, high = np.concatenate(corners).min(axis=0), np.concatenate(corners).max(axis=0)
+    extent = high - low
+    volume = sum(float(np.prod(size)) for size, _, _ in measured)
+    size = extent * min((volume / float(np.prod(extent))) ** (1 / 3), 1.0)
+    return size, (low + high) / 2, np.eye(3), extent, sum(surface for _, _, surface in measured)
+
+
+def _measured(model: mujoco.MjModel, name: str, geom: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """Of a geom: the size (3,) m of the box of its volume, its true size (3,) m and its surface, m2."""
+    kind, (a, b, c) = mujoco.mjtGeom(int(model.geom_type[geom])), (float(s) for s in model.geom_size[geom])
+    shapes = mujoco.mjtGeom
+    if kind == shapes.mjGEOM_BOX:
+        size = 2 * np.array([a, b, c])
+        return size, size, 8 * (a * b + b * c + a * c)
+    if kind == shapes.mjGEOM_SPHERE:
+        return np.full(3, 2 * a * _ROUND), np.full(3, 2 * a), 4 * math.pi * a * a
+    if kind == shapes.mjGEOM_ELLIPSOID:
+        extent = 2 * np.array([a, b, c])
+        mean = ((a * b) ** 1.6 + (b * c) ** 1.6 + (a * c) ** 1.6) / 3  # Thomsen's formula, to 1 %
+        return extent * _ROUND, extent, 4 * math.pi * mean ** (1 / 1.6)
+    if kind == shapes.mjGEOM_CYLINDER:
+        extent = 2 * np.array([a, a, b])
+        return extent * (_DISC, _DISC, 1), extent, 2 * math.pi * a * (a + 2 * b)
+    if kind == shapes.mjGEOM_CAPSULE:
+        extent = 2 * np.array([a, a, b + a])
+        return (
+            np.array([2 * a * _DISC, 2 * a * _DISC, 2 * b + 4 / 3 * a]),
+            extent,
+            4 * math.pi * a * (a + b),
+        )
+    if kind == shapes.mjGEOM_MESH:
+        faces = triangles(model, geom)
+        middle = faces.reshape(-1, 3).mean(axis=0)
+        p, q, r = np.moveaxis(faces - middle, 1, 0)
+        volume = float(np.einsum("fi,fi->", p, np.cross(q, r)) / 6)
+        extent = 2 * model.geom_aabb[geom, 3:]
+        if volume > 1e-12:
+            surface = float(np.linalg.norm(np.cross(q - p, r - p), axis=1).sum() / 2)
+            return extent * min((volume / float(np.prod(extent))) ** (1 / 3), 1.0), extent, surface
+    label = kind.name.removeprefix("mjGEOM_").lower()
+    raise InvalidValueError(
+        f"object {name!r}: geom {geom_label(model, geom)} is a {label} without volume, so it holds no heat: "
+        "give it a box as thick as what it stands for, and name that"
+    )

@@ -1,0 +1,243 @@
+"""Fingertips on anyone's model: where their pads are, which way they look and how large they are."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from thermograsp.errors import InvalidValueError, celsius, positive
+
+from ...thermal import SensorStack
+from ...thermal.stack import HeatedStack, any_sensor, heated_core
+from .bodies import BodyShape
+from .faces import flat_faces, largest_face, rotation, triangles
+from .names import find, geom_label, geoms_of, names
+
+SMALLEST = 4e-6  # m2, of a face that can be a pad
+_STEP = 0.01  # s; what is in front of a heater does not depend on it
+_DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
+
+
+@dataclass(frozen=True, slots=True)
+class Fingertip:
+    """A fingertip that feels heat. name: of a geom, a site or a body. sensor: a preset's name, a .toml file or a
+    SensorStack, or a HeatedStack, whose heater follows its own law. temperature: °C of its thermostat, or of a heated
+    sensor before anything is touched.
+
+    The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
+    objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it. A site's
+    pad lies in its y and z and looks along its x. Or it is given in the frame of the body that carries it: position
+    (3,) m and normal (3,) together, and size (2,) m."""
+
+    name: str
+    position: tuple[float, float, float] | None = None
+    normal: tuple[float, float, float] | None = None
+    size: tuple[float, float] | None = None
+    sensor: str | SensorStack | HeatedStack = "seed"
+    temperature: float = 36.0
+
+    def __post_init__(self) -> None:
+        celsius(f"fingertip {self.name!r}: temperature (°C)", self.temperature)
+        if (self.position is None) != (self.normal is None):
+            raise InvalidValueError(f"fingertip {self.name!r}: give position and normal together, or neither")
+        for field, count in (("position", 3), ("normal", 3), ("size", 2)):
+            value = getattr(self, field)
+            if value is None:
+                continue
+            if len(value) != count or not np.isfinite(value).all():
+                raise InvalidValueError(
+                    f"fingertip {self.name!r}: {field} must be {count} finite numbers, got {value!r}"
+                )
+        for side in self.size or ():
+            positive(f"fingertip {self.name!r}: size (m)", side)
+        if self.normal is not None and not np.linalg.norm(self.normal) > 0:
+            raise InvalidValueError(f"fingertip {self.name!r}: its normal must not be zero")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PadPlace:
+    """A fingertip's pad. label: the fingertip's. body: number of the MuJoCo body that carries it; geoms: whose contacts
+    are its. position (3,) m and axes (3, 3), columns normal, y and z, in the body's frame. size (2,) m along y and z.
+    stack: the sensor, or what of it is in front of its heater. temperature: °C of the thermostat or, at first, of the
+    heater's place. heated: the whole sensor, where it has a heater of its own."""
+
+    label: str
+    body: int
+    geoms: tuple[int, ...]
+    position: np.ndarray
+    axes: np.ndarray
+    size: np.ndarray
+    stack: SensorStack
+    temperature: float
+    heated: HeatedStack | None = None
+
+
+def pads(
+    model: mujoco.MjModel, fingertips: Mapping[str, str | Fingertip], objects: Sequence[BodyShape]
+) -> tuple[PadPlace, ...]:
+    """The pads of a model's fingertips, found where nothing has moved yet. Raises UnknownNameError and
+    InvalidValueError."""
+    if not fingertips:
+        raise InvalidValueError('fingertips: none given; name at least one, such as {"thumb": "thumb_pad"}')
+    told = {label: one if isinstance(one, Fingertip) else Fingertip(one) for label, one in fingertips.items()}
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    found = {
+        label: find(model, one.name, ("geom", "site", "body"), f"fingertip {label!r}")
+        for label, one in told.items()
+    }
+    geoms = {label: geoms_of(model, *where) for label, where in found.items()}
+    _apart(model, geoms, objects)
+    middles = {label: _middle(model, data, where, geoms[label]) for label, where in found.items()}
+    placed = []
+    for label, one in told.items():
+        others = [middle for other, middle in middles.items() if other != label]
+        towards = [np.mean(others, axis=0)] if others else []
+        towards += [data.xpos[o.body] + data.xmat[o.body].reshape(3, 3) @ o.centre for o in objects]
+        placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middles[label]))
+    return tuple(placed)
+
+
+def _apart(model: mujoco.MjModel, geoms: Mapping[str, tuple[int, ...]], objects: Sequence[BodyShape]) -> None:
+    owner: dict[int, str] = {}
+    for label, own in geoms.items():
+        if not own:
+            raise InvalidValueError(
+                f"fingertip {label!r} has no geom that could touch anything; geoms: {', '.join(names(model, 'geom'))}"
+            )
+        for geom in own:
+            if geom in owner:
+                raise InvalidValueError(
+                    f"fingertips {owner[geom]!r} and {label!r} are on one geom, {geom_label(model, geom)}: give each "
+                    "its own geom, since contacts tell geoms and no more"
+                )
+            owner[geom] = label
+    for shape in objects:
+        for geom in shape.geoms:
+            if geom in owner:
+                raise InvalidValueError(
+                    f"geom {geom_label(model, geom)} is fingertip {owner[geom]!r} and part of object {shape.name!r}: "
+                    "name one of them otherwise"
+                )
+
+
+def _middle(
+    model: mujoco.MjModel, data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...]
+) -> np.ndarray:
+    if where[0] == "site":
+        return data.site_xpos[where[1]].copy()
+    return data.geom_xpos[list(geoms)].mean(axis=0)
+
+
+def _pad(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    label: str,
+    one: Fingertip,
+    where: tuple[str, int],
+    geoms: tuple[int, ...],
+    towards: list[np.ndarray],
+    middle: np.ndarray,
+) -> PadPlace:
+    kind, number = where
+    body = (
+        number
+        if kind == "body"
+        else int((model.geom_bodyid if kind == "geom" else model.site_bodyid)[number])
+    )
+    turn = data.xmat[body].reshape(3, 3)
+    if one.position is not None:
+        normal = np.asarray(one.normal, float)
+        found = np.asarray(one.position, float), _frame(normal / np.linalg.norm(normal)), np.full(2, _DEFAULT)
+    elif kind == "site":
+        size = model.site_size[number]
+        flat = model.site_type[number] == mujoco.mjtGeom.mjGEOM_BOX
+        found = (
+            model.site_pos[number].copy(),
+            rotation(model.site_quat[number]),
+            2 * size[1:].copy() if flat else np.full(2, _DEFAULT),
+        )
+    else:
+        found = None
+        for goal in towards:
+            away = turn.T @ (goal - middle)
+            if np.linalg.norm(away) > 1e-6:
+                found = _face(model, geoms, away / np.linalg.norm(away))
+            if found is not None:
+                break
+    if found is None:
+        raise InvalidValueError(
+            f"fingertip {label!r}: no face of {one.name!r} looks at the other fingertips or the objects; say where its "
+            "pad is: Fingertip(name, position=(x, y, z), normal=(x, y, z), size=(y, z))"
+        )
+    position, axes, size = found
+    if one.size is not None:
+        size = np.asarray(one.size, float)
+    stack = any_sensor(one.sensor)
+    heated = None
+    if isinstance(stack, HeatedStack):
+        heated, stack = stack, heated_core(stack, _STEP).element
+    return PadPlace(label, body, geoms, position, axes, size, stack, float(one.temperature), heated)
+
+
+def _face(
+    model: mujoco.MjModel, geoms: tuple[int, ...], direction: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Position, axes and size of the face of these geoms that looks along a direction of their body's frame."""
+    parts = [(str(geom), triangles(model, geom)) for geom in geoms]
+    face = largest_face(flat_faces([part for part in parts if len(part[1])], direction), direction)
+    if face is not None and face.area >= SMALLEST:
+        axes = _frame(face.normal)
+        flat = (face.corners - face.centre) @ axes[:, 1:]
+        # the side lengths along the axes in which the face is narrowest
+        angles = np.radians(np.arange(0, 90, 1.0))
+        turns = np.array([[[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]] for a in angles])
+        spans = np.ptp(flat @ turns, axis=1)
+        best = int(np.argmin(np.round(spans.prod(axis=1), 12)))
+        axes = np.column_stack((axes[:, 0], axes[:, 1:] @ turns[best]))
+        return face.centre, axes, spans[best]
+    round_kinds = (
+        mujoco.mjtGeom.mjGEOM_SPHERE,
+        mujoco.mjtGeom.mjGEOM_CAPSULE,
+        mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+    )
+    for geom in geoms:
+        if mujoco.mjtGeom(int(model.geom_type[geom])) in round_kinds:
+            return _round(model, geom, direction)
+    return None
+
+
+def _round(
+    model: mujoco.MjModel, geom: int, direction: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The pad of a round geom: where the direction leaves it, as wide as it is."""
+    turn, size = rotation(model.geom_quat[geom]), model.geom_size[geom]
+    own = turn.T @ direction
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE:
+        out = np.array([own[0], own[1], 0.0]) if np.hypot(own[0], own[1]) > 0.5 else own
+        out = out / np.linalg.norm(out)
+        point, wide = size[0] * out, np.array([1.6 * size[0]] * 2)
+        if abs(out[2]) > 0:
+            point[2] += math.copysign(size[1], out[2])
+    elif model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_SPHERE:
+        out, point, wide = own, size[0] * own, np.array([1.6 * size[0]] * 2)
+    else:
+        point = own / np.sqrt(np.sum((own / size) ** 2))
+        out = point / size**2
+        out, wide = out / np.linalg.norm(out), np.array([1.6 * float(size.min())] * 2)
+    return model.geom_pos[geom] + turn @ point, _frame(turn @ out), wide
+
+
+def _frame(normal: np.ndarray) -> np.ndarray:
+    """(3, 3), columns the normal, y and z, along the body's axes where it can be."""
+    z = np.eye(3)[2] if abs(normal[2]) < 0.9 else np.eye(3)[0]
+    z = z - (z @ normal) * normal
+    z = z / np.linalg.norm(z)
+    return np.stack([normal, np.cross(z, normal), z], axis=1)

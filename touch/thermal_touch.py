@@ -1,0 +1,487 @@
+"""The sense of heat of anyone's MuJoCo scene.
+
+W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from thermograsp.compiled import njit
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name
+
+from ..thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
+from ..thermal.readout import chain_numbers, measure_rows
+from ..thermal.stack import converter
+from .contacts import FORCE, ContactReader, sensor_places
+from .draw import draw_fingertips
+from .heat import HeatBalance, HeatState, JoinedHeat
+from .scene import Fingertip, PadPlace, ThermalBody, bodies, pads, refuse_overlap
+
+SAMPLES = 16
+"""Of the voltage that a reading holds."""
+SAMPLE_TIME = 0.01  # s between samples of the converter, about: a whole part of dt and whole substeps
+_WHOLE = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TouchReading:
+    """What the fingertips feel at `time` s. voltage: (F, SAMPLES) V as the driver reports it, oldest first.
+    temperature_drop: (F,) K over the sensed layer. force: (F,) N normal on the pads, and beside: (F,) N on the
+    fingertips off their pads, means over the last dt. touching: (F,) names of objects or other fingertips, the one that
+    presses most where there are several, "" where none. object_temperature: °C by object, its mean. failed:
+    whether the simulation broke down; its numbers are nan then.
+
+    Of many worlds, everything has a leading axis of worlds, and `touching` is a tuple of tuples."""
+
+    time: float | np.ndarray
+    voltage: np.ndarray
+    temperature_drop: np.ndarray
+    force: np.ndarray
+    beside: np.ndarray
+    touching: tuple[str, ...] | tuple[tuple[str, ...], ...]
+    object_temperature: Mapping[str, float | np.ndarray]
+    failed: bool | np.ndarray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TouchState:
+    """What a ThermalTouch remembers, picklable. It holds at `time` (W,) s and no other; started: whether an update or
+    a reset has said what time it is."""
+
+    time: np.ndarray
+    started: bool
+    heat: HeatState
+    signal: tuple[np.ndarray, np.ndarray, np.ndarray]
+    sums: tuple[np.ndarray, np.ndarray, np.ndarray, int]
+    period: tuple[np.ndarray, np.ndarray, int]
+    generators: tuple[dict, ...]
+    reading: TouchReading
+
+
+class ThermalTouch:
+    """Fingertips that feel heat in a MuJoCo model of any make; nothing in it is changed.
+
+    fingertips: label -> name of a geom, site or body, or a Fingertip. objects: name of a body or geom -> material or
+    ThermalBody; those that the MJCF describes (<custom><text name="thermograsp:NAME" data="aluminium 5.0"/>) need not
+    be named. dt: s between readings, whole steps of the model. tolerance: K of temperature drop that the heat models
+    are made for. ambient: °C, and air: W/(m2 K), of the air round the objects. chain: the electronics, a
+    SignalChain or one of thermal.SIGNAL_CHAINS. seed: of their noise, until the first reset. worlds: how many, of
+    recorded contact sensors (touch.prepare); None for the one of an MjData. World w's noise is that of seed + w.
+
+    Heat is advanced once per sample of the converter, a hundredth of a second or the nearest whole part of dt. What two
+    fingertips feel through an object follows its box (BodyShape).
+    Raises UnknownNameError for names and InvalidValueError for values that cannot be.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        *,
+        fingertips: Mapping[str, str | Fingertip],
+        objects: Mapping[str, str | Material | ThermalBody] | None = None,
+        dt: float = 0.02,
+        tolerance: float = 0.05,
+        ambient: float = 24.0,
+        air: float = 5.0,
+        chain: SignalChain | str = ADS1115,
+        seed: int | None = None,
+        worlds: int | None = None,
+    ) -> None:
+        if not isinstance(model, mujoco.MjModel):
+            raise InvalidValueError(f"model must be a mujoco.MjModel, got {type(model).__name__}")
+        if worlds is not None and (not isinstance(worlds, int) or worlds < 1):
+            raise InvalidValueError(f"worlds must be a whole number from 1 on, or None, got {worlds!r}")
+        self._model, self._step = model, float(model.opt.timestep)
+        celsius("ambient (°C)", ambient)
+        non_negative("air (W/(m2 K))", air)
+        positive("tolerance (K)", tolerance)
+        self._substeps = _whole_steps(positive("dt (s)", dt), self._step)
+        self._samples = _samples(self._substeps, dt)
+        self._sample_steps = self._substeps // self._samples
+        self._shapes = bodies(model, objects, ambient)
+        self._pads = pads(model, fingertips, self._shapes)
+        self._names = (*self.objects, *self.fingertips, "")
+        self._many, count = worlds is not None, worlds or 1
+        self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
+        self._reader = ContactReader(model, self._pads, self._shapes, count)
+        self._heat = JoinedHeat(
+            self._pads,
+            self._shapes,
+            worlds=count,
+            dt=dt / self._samples,
+            tolerance=tolerance,
+            film=air,
+            ambient=ambient,
+        )
+        tips, targets = self._reader.touches.shape[1:3]
+        of_chain, sample = _chain(chain), dt / self._samples
+        chains = [_numbers(of_chain, pad, sample) for pad in self._pads]
+        self._chains = np.tile(np.concatenate(chains), count)
+        # the low-pass's output and its last input, V, and voltages under way: none
+        self._filtered, self._last = np.zeros((count * tips, 1)), np.zeros((count * tips, 1))
+        self._late = np.zeros((count * tips, 0, 1))
+        self._sampled = np.zeros((count * tips, 1, 1))
+        self._voltage = np.zeros((count, tips, SAMPLES))
+        self._pressed, self._off = np.zeros((count, tips, targets)), np.zeros((count, tips))
+        self._time, self._started, self._count = np.zeros(count), False, 0
+        self._fresh = (
+            True  # nothing has been updated since the start: whether pads are inside objects is not known
+        )
+        first = np.random.SeedSequence().entropy if seed is None else seed
+        self._rngs = [np.random.default_rng(first + w) for w in range(count)]  # pyright: ignore[reportOperatorIssue]
+        self._rest(range(count))
+        self._reading = self._read()
+
+    @property
+    def fingertips(self) -> tuple[str, ...]:
+        """Their labels, in the order of a reading's rows."""
+        return tuple(pad.label for pad in self._pads)
+
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(shape.name for shape in self._shapes)
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The one it was made for."""
+        return self._model
+
+    @property
+    def balance(self) -> HeatBalance | tuple[HeatBalance, ...]:
+        """Where heat has gone since the last reset; a tuple of many worlds'."""
+        every = tuple(self._heat.balance(w) for w in range(len(self._time)))
+        return every if self._many else every[0]
+
+    @property
+    def reading(self) -> TouchReading:
+        """The last one."""
+        return self._reading
+
+    def update(self, data: mujoco.MjData | np.ndarray) -> TouchReading:
+        """To be called after every mj_step: notes its contacts. Returns the reading of the last whole dt.
+
+        data: MjData, or of many worlds the recorded sensordata (W, substeps, sensors) or of one substep (W, sensors).
+
+        Where steps were taken without it, the contacts of the last of them stand for all. Called again at the same
+        time it changes nothing. Raises InvalidValueError for data of another model or of an earlier time, and
+        SimulationError for forces that are not finite; of many worlds, those `failed` until they are reset."""
+        if self._sensors is not None:
+            return self._hear(data)
+        passed = self._passed(data)
+        reader = self._reader
+        while passed > 0:
+            room = self._sample_steps - reader.substeps
+            taken = min(passed, room)
+            reader.read(data, taken)
+            passed -= taken
+            if taken == room:
+                self._sample()
+        return self._reading
+
+    def reset(
+        self,
+        data: mujoco.MjData | None = None,
+        *,
+        seed: int | Sequence[int] | None = None,
+        temperatures: Mapping[str, float | np.ndarray] | None = None,
+        worlds: Sequence[int] | np.ndarray | None = None,
+    ) -> TouchReading:
+        """Everything at its first temperature, at the data's time (without, at that of the next update). seed: of the
+        electronics' noise, one for each world or the first world's; None goes on with it. temperatures: °C of objects
+        by name, for this time, one or one for each world. worlds: which, by number or as (W,) booleans; None for
+        all."""
+        rows = self._rows(worlds)
+        if data is not None:
+            if self._many:
+                raise InvalidValueError("many worlds have no MjData: reset(worlds=...)")
+            self._check(data)
+        self._fresh = True
+        names = self.objects
+        first = np.tile([shape.temperature for shape in self._shapes], (len(rows), 1))
+        for name, value in (temperatures or {}).items():
+            if name not in names:
+                raise unknown_name("object", name, names)
+            if np.shape(value) not in ((), (len(rows),)):
+                raise InvalidValueError(
+                    f"temperatures[{name!r}] must be one number or {len(rows)}, got shape {np.shape(value)}"
+                )
+            for one in np.ravel(value):
+                celsius(f"temperatures[{name!r}] (°C)", float(one))
+            first[:, names.index(name)] = value
+        self._heat.reset(rows, first)
+        if seed is not None:
+            seeds = [seed + w for w in rows] if isinstance(seed, int | np.integer) else list(seed)
+            if len(seeds) != len(rows):
+                raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
+            for w, own in zip(rows, seeds, strict=True):
+                self._rngs[w] = np.random.default_rng(own)
+        reader = self._reader
+        reader.touches[rows], reader.beside[rows], reader.broken[rows] = 0.0, 0.0, False
+        self._pressed[rows], self._off[rows] = 0.0, 0.0
+        if len(rows) == len(self._time):
+            reader.clear()
+            self._count = 0
+        self._time[rows] = 0.0 if data is None else float(data.time)
+        if not self._many:
+            self._started = data is not None
+        self._rest(rows)
+        self._reading = self._read()
+        return self._reading
+
+    def draw(self, scene: mujoco.MjvScene, data: mujoco.MjData, *, world: int = 0) -> int:
+        """Adds what each fingertip feels to a scene of MuJoCo's viewer (viewer.user_scn) or Renderer (renderer.scene):
+        a plate on its pad, blue where it loses heat and red where it gains, and a bar of its voltage. To be called
+        after the scene was updated. Returns how many geoms were added."""
+        self._check(data)
+        reading = self._reading
+        drops, volts = reading.temperature_drop, reading.voltage[..., -1]
+        if self._many:
+            drops, volts = drops[world], volts[world]
+        return draw_fingertips(scene, data, self._pads, drops, volts)
+
+    def state(self) -> TouchState:
+        """A copy of what it remembers, to go with a saved state of the simulation."""
+        reader = self._reader
+        return TouchState(
+            self._time.copy(),
+            self._started,
+            self._heat.state(),
+            (self._filtered.copy(), self._last.copy(), self._voltage.copy()),
+            (reader.touches.copy(), reader.beside.copy(), reader.broken.copy(), reader.substeps),
+            (self._pressed.copy(), self._off.copy(), self._count),
+            tuple(dict(rng.bit_generator.state) for rng in self._rngs),
+            self._reading,
+        )
+
+    def set_state(self, state: TouchState) -> None:
+        """Puts it into a state taken by `state` of a ThermalTouch made alike."""
+        if state.sums[0].shape != self._reader.touches.shape:
+            raise InvalidValueError(
+                f"the state is of other fingertips, objects or worlds: {state.sums[0].shape[:3]} in place of "
+                f"{self._reader.touches.shape[:3]}"
+            )
+        self._time[:], self._started, self._reading = state.time, state.started, state.reading
+        self._heat.set_state(state.heat)
+        reader = self._reader
+        reader.touches[:], reader.beside[:], reader.broken[:], reader.substeps = state.sums
+        self._filtered[:], self._last[:], self._voltage[:] = state.signal
+        self._pressed[:], self._off[:], self._count = state.period
+        for rng, own in zip(self._rngs, state.generators, strict=True):
+            rng.bit_generator.state = own
+
+    def _rest(self, rows: Sequence[int]) -> None:
+        """Those worlds' electronics as if at rest for as long as a reading reaches back."""
+        tips = len(self._pads)
+        for w in rows:
+            own = slice(w * tips, (w + 1) * tips)
+            sent = self._heat.sent[w][:, None]  # nothing, or what a divider sends of a sensor at rest
+            self._filtered[own], self._last[own] = sent, sent
+            noise = self._rngs[w].standard_normal((SAMPLES, tips)).T[:, :, None]
+            volts = np.zeros((tips, SAMPLES, 1))
+            measure_rows(
+                self._chains[own],
+                self._filtered[own],
+                self._last[own],
+                self._late[own],
+                np.repeat(sent, SAMPLES, axis=1)[:, :, None],
+                np.ascontiguousarray(noise),
+                volts,
+            )
+            self._voltage[w] = volts[:, :, 0]
+
+    def _rows(self, worlds: Sequence[int] | np.ndarray | None) -> list[int]:
+        count = len(self._time)
+        if worlds is None:
+            return list(range(count))
+        told = np.asarray(worlds)
+        if told.dtype == bool and told.shape == (count,):
+            return np.flatnonzero(told).tolist()
+        if told.size and (
+            told.ndim != 1 or told.dtype.kind not in "iu" or told.min() < 0 or told.max() >= count
+        ):
+            raise InvalidValueError(f"worlds must be numbers from 0 to {count - 1} or ({count},) booleans")
+        return sorted(set(told.tolist()))
+
+    def _hear(self, record: mujoco.MjData | np.ndarray) -> TouchReading:
+        assert self._sensors is not None
+        if isinstance(record, mujoco.MjData):
+            raise InvalidValueError("a ThermalTouch of many worlds reads recorded sensordata, not MjData")
+        found = np.asarray(record, float)
+        if found.ndim not in (2, 3):
+            raise InvalidValueError(
+                f"a record must have the shape (worlds, substeps, sensordata), got {found.shape}"
+            )
+        for n in range(found.shape[1] if found.ndim == 3 else 1):
+            self._reader.sense(found[:, n] if found.ndim == 3 else found, self._sensors)
+            self._time += self._step
+            if self._reader.substeps == self._sample_steps:
+                self._sample()
+        return self._reading
+
+    def _passed(self, data: mujoco.MjData | np.ndarray) -> int:
+        """Substeps since the last call."""
+        if not isinstance(data, mujoco.MjData):
+            raise InvalidValueError(
+                f"update takes the simulation's MjData, got {type(data).__name__}; for recorded sensordata say how "
+                "many worlds: ThermalTouch(..., worlds=n)"
+            )
+        self._check(data)
+        now = data.time
+        if self._fresh and data.xmat[-1].any():  # zeros where nothing has been computed yet
+            refuse_overlap(self._model, data, self._pads, self._shapes)
+            self._fresh = False
+        if not self._started:
+            self._time[0], self._started = now - self._step, True
+        apart = (now - self._time.item()) / self._step
+        passed = round(apart)
+        if passed < 0 or abs(apart - passed) > 1e-3 * max(passed, 1):
+            raise InvalidValueError(
+                f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, steps of {self._step:g} s: "
+                "call touch.reset(data) after the simulation was reset, or touch.set_state for a saved one"
+            )
+        self._time[0] = now
+        return passed
+
+    def _check(self, data: mujoco.MjData) -> None:
+        model = getattr(data, "model", self._model)
+        if model is not self._model and _shape(model) != _shape(self._model):
+            raise InvalidValueError(
+                "the data belong to another model than this ThermalTouch: make one for theirs, "
+                "thermograsp.ThermalTouch(data.model, ...)"
+            )
+
+    def _sample(self) -> None:
+        """A whole sample has passed: heat, then the converter."""
+        reader = self._reader
+        self._heat.advance(reader.touches, reader.substeps)
+        noise = [rng.standard_normal(len(self._pads)) for rng in self._rngs]
+        _close_sample(
+            reader.touches,
+            reader.beside,
+            self._pressed,
+            self._off,
+            self._chains,
+            self._filtered,
+            self._last,
+            self._late,
+            self._heat.sent,
+            np.concatenate(noise),
+            self._sampled,
+            self._voltage,
+        )
+        reader.substeps = 0
+        self._count += 1
+        if self._count == self._samples:
+            self._reading = self._read()
+            self._count = 0
+
+    def _read(self) -> TouchReading:
+        names, broken = self._names, self._reader.broken
+        force, beside, most = _close_reading(self._pressed, self._off, self._substeps, len(self._shapes))
+        warmth = self._heat.object_temperature
+        time, volts, drop = self._time.copy(), self._voltage.copy(), self._heat.drop.copy()
+        touching = tuple(tuple([names[t] for t in own]) for own in most.tolist())
+        if not self._many:
+            means = dict(zip(names, warmth[0].tolist(), strict=False))
+            return TouchReading(
+                time.item(), volts[0], drop[0], force[0], beside[0], touching[0], means, False
+            )
+        for array in (volts, drop, force, beside, warmth):
+            array[broken] = np.nan
+        columns = dict(zip(names, warmth.T, strict=False))
+        return TouchReading(time, volts, drop, force, beside, touching, columns, broken.copy())
+
+
+@njit(cache=True, error_model="numpy")
+def _close_sample(touches, beside, pressed, off, chains, filtered, last, late, drop, noise, sampled, voltage):
+    """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages."""
+    worlds, tips, targets = pressed.shape
+    for w in range(worlds):
+        for f in range(tips):
+            off[w, f] += beside[w, f]
+            beside[w, f] = 0.0
+            for t in range(targets):
+                pressed[w, f, t] += touches[w, f, t, FORCE]
+                for k in range(touches.shape[3]):
+                    touches[w, f, t, k] = 0.0
+    rows = worlds * tips
+    measure_rows(
+        chains, filtered, last, late, drop.reshape((rows, 1, 1)), noise.reshape((rows, 1, 1)), sampled
+    )
+    for w in range(worlds):
+        for f in range(tips):
+            for k in range(voltage.shape[2] - 1):
+                voltage[w, f, k] = voltage[w, f, k + 1]
+            voltage[w, f, voltage.shape[2] - 1] = sampled[w * tips + f, 0, 0]
+
+
+@njit(cache=True, error_model="numpy")
+def _close_reading(pressed, off, substeps, objects):
+    """Mean forces (W, F) on the pads and beside them, and what presses most (W, F), -1 where nothing does; the sums
+    start anew. Fingertips on one another are noted with the first of the two."""
+    worlds, tips, targets = pressed.shape
+    force, beside, most = (
+        np.zeros((worlds, tips)),
+        np.empty((worlds, tips)),
+        np.empty((worlds, tips), np.int64),
+    )
+    for w in range(worlds):
+        for f in range(tips):
+            beside[w, f], most[w, f], largest = off[w, f] / substeps, -1, 0.0
+            for t in range(targets):
+                own = pressed[w, f, t]
+                if t >= objects:
+                    own += pressed[w, t - objects, objects + f]
+                force[w, f] += own / substeps
+                if own > largest:
+                    largest, most[w, f] = own, t
+        for f in range(tips):
+            off[w, f] = 0.0
+            for t in range(targets):
+                pressed[w, f, t] = 0.0
+    return force, beside, most
+
+
+def _whole_steps(dt: float, step: float) -> int:
+    count = round(dt / step)
+    if count < 1 or abs(dt / step - count) > _WHOLE * count:
+        nearest = max(count, 1) * step
+        raise InvalidValueError(
+            f"dt={dt:g} s is not a whole number of the model's steps of {step:g} s: give {nearest:g}"
+        )
+    return count
+
+
+def _samples(substeps: int, dt: float) -> int:
+    """Of a reading: as many as divide its substeps, at most one each SAMPLE_TIME."""
+    most = max(int(dt / SAMPLE_TIME * (1 + _WHOLE)), 1)
+    return max(count for count in range(1, most + 1) if substeps % count == 0)
+
+
+def _numbers(chain: SignalChain, pad: PadPlace, sample: float) -> np.ndarray:
+    """Of the chain as it takes the pad's sensor: a drop in K, or the voltage of a divider as it is."""
+    if pad.heated is None:
+        return chain_numbers(chain, pad.stack.seebeck, sample)
+    return chain_numbers(converter(pad.heated, chain), 1.0, sample)
+
+
+def _chain(chain: SignalChain | str) -> SignalChain:
+    if isinstance(chain, SignalChain):
+        return chain
+    if chain not in SIGNAL_CHAINS:
+        raise unknown_name("signal chain", chain, SIGNAL_CHAINS)
+    return SIGNAL_CHAINS[chain]
+
+
+def _shape(model: mujoco.MjModel) -> tuple[bytes, tuple[int, ...]]:
+    """By which a copy of a model is known from another one; `MjModel.signature` came after MuJoCo 3.3.0."""
+    return model.names, (model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom)

@@ -1,0 +1,93 @@
+"""Heat for Gymnasium environments of others, unmodified."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium
+import mujoco
+import numpy as np
+
+from thermograsp.errors import InvalidValueError
+
+from ...thermal import Material
+from ..scene import Fingertip, ThermalBody
+from ..thermal_touch import SAMPLES, ThermalTouch
+from .substeps import SteppedTouch
+
+VOLTAGE = "voltage"
+"""The observation's new entry."""
+OBSERVATION = "observation"
+"""That of what was the whole observation, where that was no Dict."""
+
+
+class AddThermalObservation(gymnasium.Wrapper):
+    """Adds "voltage" (F, 16) V to the observation of a Gymnasium environment that has MuJoCo's `model` and `data`.
+
+    A Dict observation gains the entry; any other becomes Dict(observation=..., voltage=...). info["touch"] is the last
+    TouchReading. fingertips, objects and further words: those of ThermalTouch. Every substep is heard, also where the
+    environment takes several in one call of mj_step: while it steps, mujoco.mj_step is replaced by one that takes such
+    calls apart, so environments that step in several threads of a process are not served. An environment that makes its
+    model anew at a reset gets a ThermalTouch anew.
+    """
+
+    def __init__(
+        self,
+        env: gymnasium.Env,
+        *,
+        fingertips: Mapping[str, str | Fingertip],
+        objects: Mapping[str, str | Material | ThermalBody] | None = None,
+        **words: Any,
+    ) -> None:
+        super().__init__(env)
+        every = {"fingertips": fingertips, "objects": objects, **words}
+        self._stepped = SteppedTouch(lambda: _simulation(self.env), every)
+        shape = (len(self.touch.fingertips), SAMPLES)
+        volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
+        theirs = env.observation_space
+        if isinstance(theirs, gymnasium.spaces.Dict):
+            if VOLTAGE in theirs.spaces:
+                raise InvalidValueError(f"the environment's observation has an entry {VOLTAGE!r} already")
+            self.observation_space = gymnasium.spaces.Dict({**theirs.spaces, VOLTAGE: volts})
+        else:
+            self.observation_space = gymnasium.spaces.Dict({OBSERVATION: theirs, VOLTAGE: volts})
+
+    @property
+    def touch(self) -> ThermalTouch:
+        """Of the environment's present model."""
+        return self._stepped.touch
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """As the environment's; fingertips and objects start at their first temperatures."""
+        observation, info = self.env.reset(seed=seed, options=options)
+        self._stepped.restart(seed)
+        return self._with_voltage(observation), {**info, "touch": self.touch.reading}
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """As the environment's, with every substep heard."""
+        with self._stepped.hearing():
+            observation, reward, terminated, truncated, info = self.env.step(action)
+        info = {**info, "touch": self.touch.reading}
+        return self._with_voltage(observation), reward, terminated, truncated, info
+
+    def _with_voltage(self, observation: Any) -> dict[str, Any]:
+        volts = self.touch.reading.voltage.astype(np.float32)
+        if isinstance(self.env.observation_space, gymnasium.spaces.Dict):
+            return {**observation, VOLTAGE: volts}
+        return {OBSERVATION: observation, VOLTAGE: volts}
+
+
+def _simulation(env: gymnasium.Env) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    bare = env.unwrapped
+    model, data = getattr(bare, "model", None), getattr(bare, "data", None)
+    if not isinstance(model, mujoco.MjModel) or not isinstance(data, mujoco.MjData):
+        raise InvalidValueError(
+            f"{type(bare).__name__} has no MuJoCo `model` and `data`: call ThermalTouch.update after its steps"
+        )
+    return model, data

@@ -1,0 +1,118 @@
+"""Emulated fingertips and an emulated gripper that belong together: one simulated plant is what both move and feel."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+
+from thermograsp.envs.limits import SAMPLE_PERIOD
+from thermograsp.envs.plant import SimulatedPlant
+from thermograsp.errors import InvalidValueError
+from thermograsp.hardware import (
+    Contact,
+    EmulatedFingertips,
+    EmulatedGripper,
+    Feel,
+    GripperModel,
+)
+from thermograsp.hardware.drivers import Activation
+from thermograsp.plant import Command, Reading
+
+_WIDE = 1e-4  # m from the whole stroke that still counts as wide open
+_PRESSING = 0.2  # N on each pad
+_STANDING = 2e-3  # m/s of fingers that something has stopped
+_SHORT = 1e-3  # m short of their target
+_REHEARSAL = 50  # control steps, in which the fingers reach an object
+_PAUSE = 1.0  # s without a sample, in which the simulation stands still
+
+
+class SimulatedHand:
+    """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too.
+
+    A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., stands between the
+    fingers whenever an active gripper is wide open. Its simulation goes on, a control step whenever one is due for the
+    next sample, from the first command to close until the fingers are wide open again. While the gripper is not active
+    nothing is between them. The fingers' speed is the simulation's, whatever the command says, there is no lift axis,
+    and the plates keep the simulation's temperature. Two threads may serve the two lines.
+
+    opening, contact, current: see Fingers. episodes: objects so far. Raises InvalidValueError for a plant of more
+    than one environment.
+    """
+
+    def __init__(self, simulation: SimulatedPlant, seed: int = 0, model: GripperModel | None = None) -> None:
+        if simulation.num_envs != 1:
+            raise InvalidValueError(f"a hand is one gripper, the simulation has {simulation.num_envs}")
+        model = model or GripperModel()
+        self.opening, self.contact, self.current = model.units.stroke, Contact.NONE, 0.0
+        self.episodes = 0
+        self._simulation, self._seed, self._stroke = simulation, seed, model.units.stroke
+        self._rehearse()
+        self._plates = simulation.config.sensor_temperatures
+        self._last_command = (model.units.stroke, 0.0)
+        self._reading: Reading | None = None
+        self._begun: float | None = None  # s, of the control step that the reading is of
+        self._lock = threading.Lock()
+        self.gripper = EmulatedGripper(model, self)
+        self.fingertips = EmulatedFingertips(self._feel)  # feels at once
+
+    def move(self, target: float, force: float, speed: float, seconds: float) -> None:
+        """See Fingers."""
+        with self._lock:
+            self._last_command = (target, force)
+            if not self._active:
+                self._reading = self._begun = None
+            if self._reading is None or target > self.opening - _SHORT:
+                self.contact = Contact.NONE
+            if self._reading is None:
+                step = speed * seconds
+                self.opening += float(np.clip(target - self.opening, -step, step))
+
+    @property
+    def _active(self) -> bool:
+        return self.gripper.state.activation == Activation.DONE
+
+    def _rehearse(self) -> None:
+        """A grasp that nobody sees: what is compiled or loaded at a first touch must not keep a line waiting."""
+        self._simulation.reset([0], [np.random.default_rng(self._seed)], {})
+        for _ in range(_REHEARSAL):
+            self._simulation.step(Command(np.zeros(1), np.full(1, 20.0), np.zeros(1)))
+
+    def _feel(self, now: float) -> Feel:
+        with self._lock:
+            wide = min(self.opening, self._last_command[0]) > self._stroke - _WIDE
+            if self._active and wide and (self._reading is None or self._begun is not None):
+                self._put_object()
+            if self._reading is None or (self._begun is None and wide):
+                return Feel(thermostat=self._plates)
+            return self._simulated(now)
+
+    def _put_object(self) -> None:
+        rng = np.random.default_rng(self._seed + self.episodes)
+        self._reading, self._begun = self._simulation.reset([0], [rng], {}), None
+        self.opening, self.contact = self._stroke, Contact.NONE
+        self.episodes += 1
+
+    def _simulated(self, now: float) -> Feel:
+        """What the sample of time `now` feels."""
+        dt, samples = self._simulation.dt, self._simulation.config.samples
+        if self._begun is None or now - self._begun > _PAUSE:
+            self._begun = now - dt  # a step is due
+        place = round((now - self._begun) / SAMPLE_PERIOD)
+        while place >= samples:
+            self._step()
+            self._begun += dt
+            place -= samples
+        assert self._reading is not None
+        reading = self._reading
+        left, right = reading.force[0].tolist()
+        volts = reading.voltage[0, place].tolist()
+        return Feel((volts[0], volts[1]), (0.0, 0.0), (left, right), tuple(reading.thermostat[0].tolist()))  # pyright: ignore[reportArgumentType]
+
+    def _step(self) -> None:
+        target, force = self._last_command
+        reading = self._simulation.step(Command(np.array([target]), np.array([force]), np.zeros(1)))
+        self._reading, self.opening = reading, float(reading.opening[0])
+        pressing = reading.force[0, :, 0].min() > _PRESSING
+        standing = abs(reading.opening_rate[0]) < _STANDING and self.opening > target + _SHORT
+        self.contact = Contact.CLOSING if pressing and standing else Contact.NONE
