@@ -33,6 +33,22 @@ def driver(served: PtyDevice, **keywords: Any) -> Fingertips:
 
 
 @contextmanager
+def plugged_elsewhere(served: PtyDevice, before: str) -> Iterator[None]:
+    """The unplugged device is back under another number than `before`, whoever else opens and closes terminals."""
+    held = list(os.openpty())  # mostly the old number
+    try:
+        served.plug()
+        while os.readlink(served.path) == before:
+            served.unplug()
+            held += os.openpty()
+            served.plug()
+        yield
+    finally:
+        for end in held:
+            os.close(end)
+
+
+@contextmanager
 def nothing_left() -> Iterator[None]:
     """The block leaves no thread, no descriptor; what an earlier test left to the collector does not count."""
     threads, files = set(threading.enumerate()), descriptors()

@@ -32,7 +32,16 @@ from thermograsp.hardware import (
 )
 from thermograsp.hardware.protocol.messages import SetRate, SetSetpoint
 
-from .serving import PATIENCE, QUICK, driver, error_within, healthy_within, nothing_left, serving
+from .serving import (
+    PATIENCE,
+    QUICK,
+    driver,
+    error_within,
+    healthy_within,
+    nothing_left,
+    plugged_elsewhere,
+    serving,
+)
 
 pytest.importorskip("serial")
 
@@ -138,14 +147,8 @@ def test_unplugged_while_reading_and_back_under_another_number(tmp_path: Path) -
         before = os.readlink(served.path)
         served.unplug()
         assert "plugged in" in str(error_within(tips.take, LinkLostError))
-        held = list(os.openpty())
-        while not os.path.exists(before):  # until somebody has the old number
-            held += os.openpty()
-        served.plug()
-        assert os.readlink(served.path) != before
-        healthy_within(tips)
-        for end in held:
-            os.close(end)
+        with plugged_elsewhere(served, before):
+            healthy_within(tips)
         statistics = tips.statistics()
         assert (statistics.reconnects, statistics.reboots) == (1, 0)
         assert tips.thermostats().setpoint == (36.0, 36.0)

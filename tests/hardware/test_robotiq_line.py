@@ -33,7 +33,7 @@ from thermograsp.hardware import (
 )
 from thermograsp.hardware.emulators.planned_gripper_faults import plan_gripper_fault
 
-from .serving import PATIENCE, nothing_left
+from .serving import PATIENCE, nothing_left, plugged_elsewhere
 
 pytest.importorskip("serial")
 pytest.importorskip("pymodbus")
@@ -274,14 +274,10 @@ def test_unplugged_and_back_under_another_number(tmp_path: Path) -> None:
         assert in_time(lambda: pytest.raises((LinkLostError, PortMissingError), gripper.status)) < PATIENCE
         with pytest.raises(PortMissingError):
             gripper.move(0.03, 40.0, 0.1)
-        held = os.openpty()  # takes the old number
-        served.plug()
-        assert os.readlink(served.path) != before
-        assert works(gripper)
-        gripper.move(0.05, 40.0, 0.15)
-        assert gripper.wait().opening == pytest.approx(0.05, abs=0.0005)
-        for end in held:
-            os.close(end)
+        with plugged_elsewhere(served, before):
+            assert works(gripper)
+            gripper.move(0.05, 40.0, 0.15)
+            assert gripper.wait().opening == pytest.approx(0.05, abs=0.0005)
 
 
 def test_back_without_its_activation(tmp_path: Path) -> None:
