@@ -132,6 +132,7 @@ class ThermalTouch:
         self._voltage = np.zeros((count, tips, SAMPLES))
         self._pressed, self._off = np.zeros((count, tips, targets)), np.zeros((count, tips))
         self._time, self._started, self._count = np.zeros(count), False, 0
+        self._heard: mujoco.MjData | None = None  # the last update's, which are of this model
         self._fresh = (
             True  # nothing has been updated since the start: whether pads are inside objects is not known
         )
@@ -329,12 +330,14 @@ class ThermalTouch:
 
     def _passed(self, data: mujoco.MjData | np.ndarray) -> int:
         """Substeps since the last call."""
-        if not isinstance(data, mujoco.MjData):
-            raise InvalidValueError(
-                f"update takes the simulation's MjData, got {type(data).__name__}; for recorded sensordata say how "
-                "many worlds: ThermalTouch(..., worlds=n)"
-            )
-        self._check(data)
+        if data is not self._heard:
+            if not isinstance(data, mujoco.MjData):
+                raise InvalidValueError(
+                    f"update takes the simulation's MjData, got {type(data).__name__}; for recorded sensordata say how "
+                    "many worlds: ThermalTouch(..., worlds=n)"
+                )
+            self._check(data)
+            self._heard = data
         now = data.time
         if self._fresh and data.xmat[-1].any():  # zeros where nothing has been computed yet
             refuse_overlap(self._model, data, self._pads, self._shapes)
@@ -374,7 +377,7 @@ class ThermalTouch:
             self._last,
             self._late,
             self._heat.sent,
-            np.concatenate(noise),
+            noise[0] if len(noise) == 1 else np.concatenate(noise),
             self._sampled,
             self._voltage,
         )
@@ -388,17 +391,17 @@ class ThermalTouch:
         names, broken = self._names, self._reader.broken
         force, beside, most = _close_reading(self._pressed, self._off, self._substeps, len(self._shapes))
         warmth = self._heat.object_temperature
-        time, volts, drop = self._time.copy(), self._voltage.copy(), self._heat.drop.copy()
-        touching = tuple(tuple([names[t] for t in own]) for own in most.tolist())
+        volts, drop = self._voltage.copy(), self._heat.drop.copy()
+        touching = tuple([tuple([names[t] for t in own]) for own in most.tolist()])
         if not self._many:
             means = dict(zip(names, warmth[0].tolist(), strict=False))
-            return TouchReading(
-                time.item(), volts[0], drop[0], force[0], beside[0], touching[0], means, False
-            )
+            now = self._time.item()
+            return TouchReading(now, volts[0], drop[0], force[0], beside[0], touching[0], means, False)
         for array in (volts, drop, force, beside, warmth):
             array[broken] = np.nan
         columns = dict(zip(names, warmth.T, strict=False))
-        return TouchReading(time, volts, drop, force, beside, touching, columns, broken.copy())
+        now = self._time.copy()
+        return TouchReading(now, volts, drop, force, beside, touching, columns, broken.copy())
 
 
 @njit(cache=True, error_model="numpy")

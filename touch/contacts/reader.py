@@ -130,7 +130,7 @@ def _read(
 ):  # fmt: skip
     """Adds to touches and beside. pushed (F, N, 3): room for forces and moments. Returns whether all are finite."""
     tips, things = len(pads), len(met)
-    any_met = False
+    any_met, frames = False, pads  # frames: made once something has met
     for c in range(len(geom)):
         first, second = role[geom[c, 0]], role[geom[c, 1]]
         if first < 0 or second < 0 or address[c] < 0 or first == second:
@@ -154,11 +154,12 @@ def _read(
                     pushed[f, g, 0] = 0.0
                     pushed[f, g, 1] = 0.0
                     pushed[f, g, 2] = 0.0
+            frames = _frames(pads, met, xpos, xmat)
             any_met = True
         thing = second - tips if second >= tips else things - tips + second
-        on, y, z = _lies(pads, first, met, xpos, xmat, pos[c], frame[c], sign)
+        on, y, z = _lies(pads[first], frames[first], pos[c], frame[c], sign)
         if second < tips:
-            on_other, _, _ = _lies(pads, second, met, xpos, xmat, pos[c], frame[c], -sign)
+            on_other, _, _ = _lies(pads[second], frames[second], pos[c], frame[c], -sign)
             if not on_other:
                 beside[second] += weight * force
             on = on and on_other
@@ -169,7 +170,7 @@ def _read(
         else:
             beside[first] += weight * force
     if any_met:
-        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, met, laws, small, pushed, touches, weight)
+        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, pushed, touches, weight)
     return True
 
 
@@ -219,7 +220,7 @@ def _sense(
                     geom_xmat[geom, 3 * i + k] = 0.0
                     for j in range(3):
                         geom_xmat[geom, 3 * i + k] += xmat[body, 3 * i + j] * turns[g, 3 * j + k]
-        any_met = False
+        any_met, frames = False, pads  # frames: made once something has met
         for p in range(len(pairs)):
             f, thing, at = pairs[p, 0], pairs[p, 1], pairs[p, 2]
             if data[at] <= 0:
@@ -230,20 +231,40 @@ def _sense(
                         pushed[i, g, 0] = 0.0
                         pushed[i, g, 1] = 0.0
                         pushed[i, g, 2] = 0.0
+                frames = _frames(pads, met, xpos, xmat)
                 any_met = True
-            _press(data, at, pads, f, met, xpos, xmat, thing, pushed, beside[w])
+            _press(data, at, pads, frames, f, thing, things, pushed, beside[w])
         if any_met:
-            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, met, laws, small, pushed, touches[w], 1.0)
+            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, pushed, touches[w], 1.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _frames(pads, met, xpos, xmat):
+    """(F, 12) where the pads are in the world: the middle m, then the normal, y and z."""
+    tips = len(pads)
+    frames = np.empty((tips, 12))
+    for f in range(tips):
+        body = met[len(met) - tips + f, 2]
+        for k in range(3):
+            frames[f, k] = xpos[body, k]
+            for i in range(3):
+                frames[f, 3 + 3 * i + k] = 0.0
+            for j in range(3):
+                turn = xmat[body, 3 * k + j]
+                frames[f, k] += turn * pads[f, j]
+                for i in range(3):
+                    frames[f, 3 + 3 * i + k] += turn * pads[f, _AXES + 3 * j + i]
+    return frames
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _press(data, at, pads, f, met, xpos, xmat, thing, pushed, beside):
+def _press(data, at, pads, frames, f, thing, things, pushed, beside):
     """A net force on a pad or beside it; of another fingertip only where it is on that one's pad too."""
-    things, tips = len(met), len(pads)
-    on, y, z, force = _bears(data, at, pads, f, met, xpos, xmat, 1.0)
+    tips = len(pads)
+    on, y, z, force = _bears(data, at, pads[f], frames[f], 1.0)
     if thing >= things - tips:
         other = thing - (things - tips)
-        on_other, _, _, back = _bears(data, at, pads, other, met, xpos, xmat, -1.0)
+        on_other, _, _, back = _bears(data, at, pads[other], frames[other], -1.0)
         if not on_other and back > 0:
             beside[other] += back
         on = on and on_other
@@ -257,71 +278,49 @@ def _press(data, at, pads, f, met, xpos, xmat, thing, pushed, beside):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _bears(data, at, pads, f, met, xpos, xmat, sign):
+def _bears(data, at, pad, frame, sign):
     """Whether a net force is on a pad, where (m, along its y and z), and its part along the normal, N."""
     place, vector = data[at + PLACE_AT : at + PLACE_AT + 3], data[at + FORCE_AT : at + FORCE_AT + 3]
-    x, y, z, force = _from_pad(pads, f, met, xpos, xmat, place, vector, sign)
-    return force > 0 and _within(pads, f, x, y, z), y, z, force
+    x, y, z, force = _from_pad(frame, place, vector, sign)
+    return force > 0 and _within(pad, x, y, z), y, z, force
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _lies(pads, f, met, xpos, xmat, pos, frame, sign):
+def _lies(pad, own, place, vector, sign):
     """Whether a contact is on a pad and looks at it, and where (m, along its y and z)."""
-    x, y, z, cosine = _from_pad(pads, f, met, xpos, xmat, pos, frame, sign)
-    return cosine >= LOOKING and _within(pads, f, x, y, z), y, z
+    x, y, z, cosine = _from_pad(own, place, vector, sign)
+    return cosine >= LOOKING and _within(pad, x, y, z), y, z
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _from_pad(pads, f, met, xpos, xmat, place, vector, sign):
+def _from_pad(frame, place, vector, sign):
     """Where a place is from a pad's middle, m along its normal, y and z, and the vector's part along the normal."""
-    body = met[len(met) - len(pads) + f, 2]
     x, y, z, along = 0.0, 0.0, 0.0, 0.0
     for k in range(3):
-        middle = xpos[body, k]
-        for j in range(3):
-            middle += xmat[body, 3 * k + j] * pads[f, j]
-        away = place[k] - middle
-        normal, first, second = 0.0, 0.0, 0.0
-        for j in range(3):
-            turn = xmat[body, 3 * k + j]
-            normal += turn * pads[f, _AXES + 3 * j]
-            first += turn * pads[f, _AXES + 3 * j + 1]
-            second += turn * pads[f, _AXES + 3 * j + 2]
-        along += sign * normal * vector[k]
-        x += away * normal
-        y += away * first
-        z += away * second
+        away = place[k] - frame[k]
+        along += sign * frame[3 + k] * vector[k]
+        x += away * frame[3 + k]
+        y += away * frame[6 + k]
+        z += away * frame[9 + k]
     return x, y, z, along
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _within(pads, f, x, y, z):
-    return abs(x) <= DEPTH and abs(y) <= pads[f, _HALF] + RIM and abs(z) <= pads[f, _HALF + 1] + RIM
+def _within(pad, x, y, z):
+    return abs(x) <= DEPTH and abs(y) <= pad[_HALF] + RIM and abs(z) <= pad[_HALF + 1] + RIM
 
 
 @njit(cache=True, error_model="numpy")
-def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, met, laws, small, pushed, touches, weight):
+def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, pushed, touches, weight):
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)
-    place, normal, middle = np.empty(3), np.empty(3), np.empty(3)
-    side_y, side_z = np.empty(3), np.empty(3)
+    place = np.empty(3)
     for f in range(tips):
-        turned = False
+        middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:]
         for g in range(things):
             force = pushed[f, g, 0]
             if force <= 0:
                 continue
-            if not turned:
-                turned = True
-                turn, pad = xmat[met[things - tips + f, 2]], pads[f]
-                for k in range(3):
-                    middle[k] = xpos[met[things - tips + f, 2], k]
-                    normal[k], side_y[k], side_z[k] = 0.0, 0.0, 0.0
-                    for j in range(3):
-                        middle[k] += turn[3 * k + j] * pad[j]
-                        normal[k] += turn[3 * k + j] * pad[_AXES + 3 * j]
-                        side_y[k] += turn[3 * k + j] * pad[_AXES + 3 * j + 1]
-                        side_z[k] += turn[3 * k + j] * pad[_AXES + 3 * j + 2]
             target, geom, body = met[g, 0], met[g, 1], met[g, 2]
             half, axis = pads[f, _WIDTH] / 2, 0
             if geom >= 0:

@@ -138,7 +138,7 @@ class JoinedHeat:
 
     def advance(self, touches: np.ndarray, substeps: int) -> None:
         """One step of dt. touches: (W, F, T, COLUMNS), sums over so many substeps."""
-        moved = settle(
+        moved, stale = settle(
             touches,
             self._boxes,
             self._widths,
@@ -153,7 +153,7 @@ class JoinedHeat:
         if moved:
             for w, f, o in np.argwhere(self._new_faces >= 0).tolist():
                 self._settle(w, f, o)
-        while self._stale.any():
+        while (moved or stale) and self._stale.any():
             for w in np.flatnonzero(self._stale).tolist():
                 self._stale[w] = False
                 self._join(w)

@@ -23,10 +23,10 @@ def settle(touches, boxes, widths, reach, faces, middles, new_faces, new_middles
 
     boxes: (O, 18) size, extent and centre m and the axes, row by row. widths: (F,) m of the sensors. reach: (F,) m.
     faces (W, F, O) and middles (W, F, O, 2): the places in use, face -1 for none. A contact that has left its place is
-    told by new_faces, else -1, and new_middles. Returns how many have."""
+    told by new_faces, else -1, and new_middles. Returns how many have, and how many worlds are stale."""
     worlds, tips, targets = closed.shape
     objects, moved = len(boxes), 0
-    position, looking = np.empty(3), np.empty(3)
+    position, looking, outdated = np.empty(3), np.empty(3), 0
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):
@@ -66,7 +66,8 @@ def settle(touches, boxes, widths, reach, faces, middles, new_faces, new_middles
                 if face != known or apart > reach[f]:
                     new_faces[w, f, t] = face
                     moved += 1
-    return moved
+        outdated += stale[w]
+    return moved, outdated
 
 
 @njit(cache=True, error_model="numpy")
