@@ -12,7 +12,16 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from .contacts import prepare
     from .heat import HeatBalance
-    from .scene import Face, Fingertip, ThermalBody, flat_faces, largest_face, rotation, triangles
+    from .scene import (
+        Face,
+        Fingertip,
+        SensorElement,
+        ThermalBody,
+        flat_faces,
+        largest_face,
+        rotation,
+        triangles,
+    )
     from .thermal_touch import SAMPLES, ThermalTouch, TouchReading, TouchState
 
 __all__ = [
@@ -20,6 +29,7 @@ __all__ = [
     "Face",
     "Fingertip",
     "HeatBalance",
+    "SensorElement",
     "ThermalBody",
     "ThermalTouch",
     "TouchReading",
@@ -36,7 +46,16 @@ __getattr__ = opened(
     {
         "contacts": ("prepare",),
         "heat": ("HeatBalance",),
-        "scene": ("Face", "Fingertip", "ThermalBody", "flat_faces", "largest_face", "rotation", "triangles"),
+        "scene": (
+            "Face",
+            "Fingertip",
+            "SensorElement",
+            "ThermalBody",
+            "flat_faces",
+            "largest_face",
+            "rotation",
+            "triangles",
+        ),
         "thermal_touch": ("SAMPLES", "ThermalTouch", "TouchReading", "TouchState"),
     },
 )

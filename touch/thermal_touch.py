@@ -23,7 +23,7 @@ from ..thermal.stack import converter
 from .contacts import FORCE, ContactReader, sensor_places
 from .draw import draw_fingertips
 from .heat import HeatBalance, HeatState, JoinedHeat
-from .scene import Fingertip, PadPlace, ThermalBody, bodies, pads, refuse_overlap
+from .scene import Fingertip, PadPlace, ThermalBody, bodies, glued_elements, pads, refuse_overlap
 
 SAMPLES = 16
 """Of the voltage that a reading holds."""
@@ -37,7 +37,8 @@ class TouchReading:
     temperature_drop: (F,) K over the sensed layer. force: (F,) N normal on the pads, and beside: (F,) N on the
     fingertips off their pads, means over the last dt. touching: (F,) names of objects or other fingertips, the one that
     presses most where there are several, "" where none. object_temperature: °C by object, its mean. failed:
-    whether the simulation broke down; its numbers are nan then.
+    whether the simulation broke down; its numbers are nan then. element_voltage (E, SAMPLES) V and element_drop (E,) K:
+    of the elements that are glued on objects, in the order of `ThermalTouch.elements`.
 
     Of many worlds, everything has a leading axis of worlds, and `touching` is a tuple of tuples."""
 
@@ -49,6 +50,8 @@ class TouchReading:
     touching: tuple[str, ...] | tuple[tuple[str, ...], ...]
     object_temperature: Mapping[str, float | np.ndarray]
     failed: bool | np.ndarray
+    element_voltage: np.ndarray
+    element_drop: np.ndarray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,12 +111,14 @@ class ThermalTouch:
         self._sample_steps = self._substeps // self._samples
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
+        self._glued = glued_elements(model, self._shapes, ambient)
         self._names = (*self.objects, *self.fingertips, "")
         self._many, count = worlds is not None, worlds or 1
         self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
         self._reader = ContactReader(model, self._pads, self._shapes, count)
         self._heat = JoinedHeat(
             self._pads,
+            self._glued,
             self._shapes,
             worlds=count,
             dt=dt / self._samples,
@@ -123,13 +128,13 @@ class ThermalTouch:
         )
         tips, targets = self._reader.touches.shape[1:3]
         of_chain, sample = _chain(chain), dt / self._samples
-        chains = [_numbers(of_chain, pad, sample) for pad in self._pads]
-        self._chains = np.tile(np.concatenate(chains), count)
+        chains = [_numbers(of_chain, pad, sample) for pad in (*self._pads, *self._glued)]
+        self._chains, sensors = np.tile(np.concatenate(chains), count), len(chains)
         # the low-pass's output and its last input, V, and voltages under way: none
-        self._filtered, self._last = np.zeros((count * tips, 1)), np.zeros((count * tips, 1))
-        self._late = np.zeros((count * tips, 0, 1))
-        self._sampled = np.zeros((count * tips, 1, 1))
-        self._voltage = np.zeros((count, tips, SAMPLES))
+        self._filtered, self._last = np.zeros((count * sensors, 1)), np.zeros((count * sensors, 1))
+        self._late = np.zeros((count * sensors, 0, 1))
+        self._sampled = np.zeros((count * sensors, 1, 1))
+        self._voltage = np.zeros((count, sensors, SAMPLES))
         self._pressed, self._off = np.zeros((count, tips, targets)), np.zeros((count, tips))
         self._time, self._started, self._count = np.zeros(count), False, 0
         self._heard: mujoco.MjData | None = None  # the last update's, which are of this model
@@ -150,6 +155,11 @@ class ThermalTouch:
     def objects(self) -> tuple[str, ...]:
         """Their names."""
         return tuple(shape.name for shape in self._shapes)
+
+    @property
+    def elements(self) -> tuple[str, ...]:
+        """Those that are glued on objects, "OBJECT:NUMBER", in the order of a reading's rows of elements."""
+        return tuple(element.label for element in self._glued)
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -265,7 +275,7 @@ class ThermalTouch:
 
     def set_state(self, state: TouchState) -> None:
         """Puts it into a state taken by `state` of a ThermalTouch made alike."""
-        if state.sums[0].shape != self._reader.touches.shape:
+        if state.sums[0].shape != self._reader.touches.shape or state.signal[2].shape != self._voltage.shape:
             raise InvalidValueError(
                 f"the state is of other fingertips, objects or worlds: {state.sums[0].shape[:3]} in place of "
                 f"{self._reader.touches.shape[:3]}"
@@ -281,7 +291,7 @@ class ThermalTouch:
 
     def _rest(self, rows: Sequence[int]) -> None:
         """Those worlds' electronics as if at rest for as long as a reading reaches back."""
-        tips = len(self._pads)
+        tips = self._voltage.shape[1]
         for w in rows:
             own = slice(w * tips, (w + 1) * tips)
             sent = self._heat.sent[w][:, None]  # nothing, or what a divider sends of a sensor at rest
@@ -366,7 +376,7 @@ class ThermalTouch:
         """A whole sample has passed: heat, then the converter."""
         reader = self._reader
         self._heat.advance(reader.touches, reader.substeps)
-        noise = [rng.standard_normal(len(self._pads)) for rng in self._rngs]
+        noise = [rng.standard_normal(self._voltage.shape[1]) for rng in self._rngs]
         _close_sample(
             reader.touches,
             reader.beside,
@@ -391,17 +401,18 @@ class ThermalTouch:
         names, broken = self._names, self._reader.broken
         force, beside, most = _close_reading(self._pressed, self._off, self._substeps, len(self._shapes))
         warmth = self._heat.object_temperature
-        volts, drop = self._voltage.copy(), self._heat.drop.copy()
+        volts, drop, tips = self._voltage.copy(), self._heat.drop.copy(), len(self._pads)
         touching = tuple([tuple([names[t] for t in own]) for own in most.tolist()])
         if not self._many:
             means = dict(zip(names, warmth[0].tolist(), strict=False))
-            now = self._time.item()
-            return TouchReading(now, volts[0], drop[0], force[0], beside[0], touching[0], means, False)
+            now, volts, drop = self._time.item(), volts[0], drop[0]
+            felt = volts[:tips], drop[:tips], force[0], beside[0], touching[0]
+            return TouchReading(now, *felt, means, False, volts[tips:], drop[tips:])
         for array in (volts, drop, force, beside, warmth):
             array[broken] = np.nan
         columns = dict(zip(names, warmth.T, strict=False))
-        now = self._time.copy()
-        return TouchReading(now, volts, drop, force, beside, touching, columns, broken.copy())
+        felt = volts[:, :tips], drop[:, :tips], force, beside, touching
+        return TouchReading(self._time.copy(), *felt, columns, broken.copy(), volts[:, tips:], drop[:, tips:])
 
 
 @njit(cache=True, error_model="numpy")
@@ -416,15 +427,16 @@ def _close_sample(touches, beside, pressed, off, chains, filtered, last, late, d
                 pressed[w, f, t] += touches[w, f, t, FORCE]
                 for k in range(touches.shape[3]):
                     touches[w, f, t, k] = 0.0
-    rows = worlds * tips
+    sensors = voltage.shape[1]
+    rows = worlds * sensors
     measure_rows(
         chains, filtered, last, late, drop.reshape((rows, 1, 1)), noise.reshape((rows, 1, 1)), sampled
     )
     for w in range(worlds):
-        for f in range(tips):
+        for f in range(sensors):
             for k in range(voltage.shape[2] - 1):
                 voltage[w, f, k] = voltage[w, f, k + 1]
-            voltage[w, f, voltage.shape[2] - 1] = sampled[w * tips + f, 0, 0]
+            voltage[w, f, voltage.shape[2] - 1] = sampled[w * sensors + f, 0, 0]
 
 
 @njit(cache=True, error_model="numpy")

@@ -16,6 +16,7 @@ What other rooms build on:
   depend on what it touches, so that its field stays when it goes from one object to another.
 - `touch_sides` makes both for one touch alone: rates and patterns are its own, so that fewer serve and errors are a
   tenth. Nothing of its fields but the elements' slowest states means anything to another touch.
+- `glued_element` is the element of O mode: glued on the object, touched by a thermostat on its other face.
 - Outputs are rows on the states: a stack of other layers, read out across any of them, is another `SensorStack`.
 
 What is left out: the film is one for all faces; patches are parallel to the faces' sides; O mode, cylinders, spheres
@@ -26,6 +27,7 @@ from .box import BoxSamples, Patches, box_samples
 from .contact import Resolution, Side, Tip, box_side, tip
 from .coverage import contact_patterns
 from .element import Rectangle
+from .glued import GluedElement, glued_element
 from .samples import MOMENTS
 from .touch import Detail, touch_sides
 
@@ -33,6 +35,7 @@ __all__ = [
     "MOMENTS",
     "BoxSamples",
     "Detail",
+    "GluedElement",
     "Patches",
     "Rectangle",
     "Resolution",
@@ -42,6 +45,7 @@ __all__ = [
     "box_samples",
     "box_side",
     "contact_patterns",
+    "glued_element",
     "tip",
     "touch_sides",
 ]

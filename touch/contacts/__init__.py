@@ -1,6 +1,7 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
+from .glued import GluedContacts
 from .reader import ContactReader
 from .sensors import SensorPlaces, prepare, sensor_places
 
@@ -11,6 +12,7 @@ __all__ = [
     "NORMAL",
     "PLACE",
     "ContactReader",
+    "GluedContacts",
     "SensorPlaces",
     "prepare",
     "sensor_places",

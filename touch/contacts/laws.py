@@ -24,7 +24,7 @@ from ...thermal import (
 )
 from ..scene import BodyShape, PadPlace
 
-_SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
+SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
 _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 
@@ -76,5 +76,5 @@ def constrictions(pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.n
     conducting = [shape.material.conductivity for shape in shapes]
     conducting += [pad.stack.layers[-1].conductivity for pad in pads]
     return np.array(
-        [[_SQUARE * (1 / pad.stack.layers[-1].conductivity + 1 / k) for k in conducting] for pad in pads]
+        [[SQUARE * (1 / pad.stack.layers[-1].conductivity + 1 / k) for k in conducting] for pad in pads]
     )

@@ -9,13 +9,13 @@ n: states, M: patterns of a contact, N: places.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from ...thermal import Material
-from ...thermal.kernels import Patches, Resolution, Side, Tip, box_side, tip
+from ...thermal.kernels import Patches, Resolution, Side, Tip, box_side, glued_element, tip
 from ..scene import BodyShape, PadPlace
 
 NEAR = 0.25  # of the sensor's width: a pad that is as near to a known place is on it
@@ -33,10 +33,30 @@ def resolution(tolerance: float) -> Resolution:
     return next(level for least, level in _LEVELS if tolerance >= least)
 
 
-def fingertip_field(pad: PadPlace, level: Resolution) -> Tip:
-    """The network of a fingertip's whole face."""
+@dataclass(frozen=True, slots=True, eq=False)
+class TipField:
+    """A fingertip's or a glued element's network. tip: of its whole face. face: (n, M) sqrt(K/J), its ports for another
+    fingertip that touches it. uniform: (n,) states of one that is 1 K warm throughout."""
+
+    tip: Tip
+    face: np.ndarray
+    uniform: np.ndarray
+
+
+def tip_field(pad: PadPlace, level: Resolution) -> TipField:
+    """The network of a fingertip's whole face, of an element that is glued on, or of a bare thermostat, which has no
+    states and stays as warm as it is."""
+    if pad.glued is not None:
+        element = glued_element(pad.stack, level)
+        return TipField(element.bond, element.top, element.uniform)
     whole = (0.0, pad.stack.width)
-    return tip(pad.stack, (whole, whole), level)
+    made = tip(pad.stack, (whole, whole), level)
+    if pad.bare:
+        none = np.zeros(0)
+        made = replace(
+            made, side=Side(none, np.zeros((0, level.patterns)), {"drop": none, "element": none}, 0.0)
+        )
+    return TipField(made, made.side.ports, made.uniform)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...thermal.stack import CoreState
-from ..contacts import FORCE
+from ..contacts import FORCE, GluedContacts
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack
 from .fields import (
@@ -27,9 +27,9 @@ from .fields import (
     BodyField,
     Place,
     carried,
-    fingertip_field,
     near,
     resolution,
+    tip_field,
     touched,
     untouched,
 )
@@ -42,7 +42,8 @@ MOST_SYSTEMS = 4096
 
 class HeatBalance(NamedTuple):
     """J since the start. given (F, O): from each fingertip to each object, and passed (F, F): from each to each later
-    fingertip. air: from all objects to the air. elements (F,) and objects (O,): gained."""
+    fingertip. air: from all objects to the air. elements (F,) and objects (O,): gained, an object with what is glued on
+    it."""
 
     given: np.ndarray
     passed: np.ndarray
@@ -69,11 +70,14 @@ class HeatState:
 
 
 class JoinedHeat:
-    """Heat of pads and objects in steps of dt s. tolerance: K. film: W/(m2 K) of the air at `ambient` °C."""
+    """Heat of pads, objects and the elements that are glued on them, in steps of dt s. Elements count as fingertips
+    behind the others, S = F + E sensors in all, and are always on their objects. tolerance: K. film: W/(m2 K) of the
+    air at `ambient` °C."""
 
     def __init__(
         self,
-        pads: Sequence[PadPlace],
+        fingertips: Sequence[PadPlace],
+        glued: Sequence[PadPlace],
         shapes: Sequence[BodyShape],
         *,
         worlds: int,
@@ -82,10 +86,13 @@ class JoinedHeat:
         film: float,
         ambient: float,
     ) -> None:
-        self._pads, self._shapes = tuple(pads), tuple(shapes)
+        pads = (*fingertips, *glued)
+        self._pads, self._shapes = pads, tuple(shapes)
+        self._glued = GluedContacts(fingertips, glued, len(shapes), worlds) if glued else None
         self._dt, self._film, self._ambient = dt, film, ambient
         self._level = resolution(tolerance)
-        self._tips = tuple(fingertip_field(pad, self._level) for pad in pads)
+        self._tip_fields = tuple(tip_field(pad, self._level) for pad in pads)
+        self._tips = tuple(field.tip for field in self._tip_fields)
         self._widths = np.array([pad.stack.width for pad in pads])
         self._boxes = np.array(
             [np.concatenate((s.size, s.extent, s.centre, s.axes.ravel())) for s in self._shapes]
@@ -97,6 +104,8 @@ class JoinedHeat:
         self._warm = np.tile(np.array([pad.temperature for pad in pads]) - ambient, (worlds, 1))
         self._rows = _padded([tip.side.outputs["drop"] for tip in self._tips])
         self._elements = _padded([tip.side.outputs["element"] for tip in self._tips])
+        self._uniform = _padded([field.uniform for field in self._tip_fields])
+        self._on = np.array([-1 if pad.glued is None else pad.glued for pad in pads])
         self._fields = [list(self._bare) for _ in range(worlds)]
         self._current = np.full((worlds, count, objects), -1)
         self._faces = np.full((worlds, count, objects), -1)
@@ -110,7 +119,7 @@ class JoinedHeat:
         self._x = np.zeros((worlds, fields, max(self._rows.shape[1], 1)))
         self._started = np.zeros((worlds, objects))
         self.drop = np.zeros((worlds, count))
-        """(W, F) K over the sensed layers, mean over the face."""
+        """(W, S) K over the sensed layers, mean over the face."""
         self._backs = tuple(
             HeatedBack(pad, f, self._tips[f], worlds=worlds, dt=dt, ambient=ambient)
             for f, pad in enumerate(self._pads)
@@ -126,6 +135,9 @@ class JoinedHeat:
             self._fields[w] = list(self._bare)
             self._x[w] = 0.0
             self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by
+            for e in np.flatnonzero(self._on >= 0).tolist():
+                warm = celsius[self._on[e]] - self._ambient
+                self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
             self._renumber(w)
         rows = list(worlds)
         for back in self._backs:
@@ -137,7 +149,9 @@ class JoinedHeat:
         self._started[rows] = self._held()[rows]
 
     def advance(self, touches: np.ndarray, substeps: int) -> None:
-        """One step of dt. touches: (W, F, T, COLUMNS), sums over so many substeps."""
+        """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps."""
+        if self._glued is not None:
+            touches = self._glued.felt(touches, substeps)
         moved, stale = settle(
             touches,
             self._boxes,
@@ -191,7 +205,7 @@ class JoinedHeat:
 
     @property
     def sent(self) -> np.ndarray:
-        """(W, F) what the electronics take: K of drop, or V of the dividers of sensors with heaters of their own."""
+        """(W, S) what the electronics take: K of drop, or V of the dividers of sensors with heaters of their own."""
         if not self._backs:
             return self.drop
         found = self.drop.copy()
@@ -216,16 +230,17 @@ class JoinedHeat:
     def balance(self, world: int) -> HeatBalance:
         """Where a world's heat has gone."""
         objects = len(self._shapes)
-        own = self._x[world, objects:, : self._elements.shape[1]]
-        given = self._given[world]
-        elements = (self._elements * own).sum(axis=1)
+        given, elements = self._given[world].copy(), self._in_tips()[world]
         for back in self._backs:
             elements[back.tip] += back.gained[world]
+        tips = int((self._on < 0).sum())
+        for e, o in enumerate(self._on[tips:].tolist(), tips):
+            given[:, o] += given[:, objects + e]
         return HeatBalance(
-            given[:, :objects].copy(),
-            given[:, objects:].copy(),
+            given[:tips, :objects],
+            given[:tips, objects : objects + tips],
             float(self._air[world]),
-            elements,
+            elements[:tips],
             (self._held() - self._started)[world],
         )
 
@@ -260,9 +275,16 @@ class JoinedHeat:
             self._place(w, f, o)
         self._forget()
 
+    def _in_tips(self) -> np.ndarray:
+        """(W, S) J in the sensors' elements."""
+        return (self._x[:, len(self._shapes) :, : self._elements.shape[1]] * self._elements).sum(axis=2)
+
     def _held(self) -> np.ndarray:
-        """(W, O) J in the objects, counted from the air's temperature."""
-        return self._x[:, : len(self._shapes), 0] * self._held_by
+        """(W, O) J in the objects and what is glued on them, counted from the air's temperature."""
+        held, within = self._x[:, : len(self._shapes), 0] * self._held_by, self._in_tips()
+        for e in np.flatnonzero(self._on >= 0).tolist():
+            held[:, self._on[e]] += within[:, e]
+        return held
 
     def _field(self, o: int, places: tuple[Place, ...]) -> BodyField:
         if (o, places) not in self._known:
@@ -276,7 +298,8 @@ class JoinedHeat:
 
     def _forget(self) -> None:
         """Systems are made anew when they are wanted."""
-        self._pool = SystemPool(self._tips, len(self._shapes), self._level.patterns, self._dt)
+        faces = [field.face for field in self._tip_fields]
+        self._pool = SystemPool(self._tips, faces, len(self._shapes), self._level.patterns, self._dt)
         self._numbers: dict[BodyField, int] = {}
         self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
         in_use = {field for fields in self._fields for field in fields}

@@ -43,10 +43,14 @@ def groups(pairs: Sequence[Pair], objects: int) -> list[tuple[Pair, ...]]:
 
 
 class SystemPool:
-    """Systems of groups, each made once. starts: where each one's integers begin."""
+    """Systems of groups, each made once. faces: (n, patterns) ports of each tip for another that touches it. starts:
+    where each one's integers begin."""
 
-    def __init__(self, tips: Sequence[Tip], objects: int, patterns: int, dt: float) -> None:
-        self._tips, self._objects, self._patterns, self._dt = tuple(tips), objects, patterns, dt
+    def __init__(
+        self, tips: Sequence[Tip], faces: Sequence[np.ndarray], objects: int, patterns: int, dt: float
+    ) -> None:
+        self._tips, self._faces, self._objects = tuple(tips), tuple(faces), objects
+        self._patterns, self._dt = patterns, dt
         self._known: dict[tuple[object, ...], int] = {}
         self.starts = np.zeros(0, np.int64)
         self.integers, self.numbers = np.zeros(0, np.int64), np.zeros(0)
@@ -80,14 +84,15 @@ class SystemPool:
             taking = (
                 fields[target].port(current[pair], patterns)
                 if target < self._objects
-                else self._tips[target - self._objects].side.ports
+                else self._faces[target - self._objects]
             )
             ports[begin[target] : begin[target] + len(taking), own] = taking
         for o, field in fields.items():
             watched[begin[o] : begin[o] + len(field.loss)] = field.loss
         # each tip by itself on what all share, where that is so
         of_objects = sum(sizes[: len(fields)])
-        apart = len(tips) == len(pairs) and len(set(sizes[len(fields) :])) == 1
+        on_objects = all(target < self._objects for _, target in pairs)
+        apart = on_objects and len(tips) == len(pairs) and len(set(sizes[len(fields) :])) == 1
         shared, own = (of_objects, sizes[-1]) if apart else (total, 0)
         steps = propagator(np.concatenate(rates), ports, self._dt)
         header = [total, ports.shape[1], shared, own, len(members), len(pairs)]

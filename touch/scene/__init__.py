@@ -1,6 +1,7 @@
 """What stands in somebody's MuJoCo model: fingertips with their pads, and the objects that they may touch."""
 
-from .bodies import PREFIX, BodyShape, ThermalBody, bodies
+from .bodies import PREFIX, BodyShape, SensorElement, ThermalBody, bodies
+from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, rotation, triangles
 from .fingertips import Fingertip, PadPlace, pads
 from .names import find, geom_label, geoms_of
@@ -12,12 +13,14 @@ __all__ = [
     "Face",
     "Fingertip",
     "PadPlace",
+    "SensorElement",
     "ThermalBody",
     "bodies",
     "find",
     "flat_faces",
     "geom_label",
     "geoms_of",
+    "glued_elements",
     "largest_face",
     "pads",
     "refuse_overlap",

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -14,7 +14,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius
 
-from ...thermal import Material
+from ...thermal import Material, SensorStack
 from ...thermal import material as named_material
 from .faces import rotation, triangles
 from .names import find, geom_label, geoms_of
@@ -28,12 +28,33 @@ _DISC = math.sqrt(math.pi) / 2  # side of the square of a disc's area, of its di
 
 
 @dataclass(frozen=True, slots=True)
+class SensorElement:
+    """A sensor's element that is glued on an object (O mode), and a place: position (3,) m, the middle of the face that
+    is glued, and normal (3,), outward, both in the body's frame. sensor: a preset's name, a .toml file or a
+    SensorStack; its first layer, on the thermostat's side, looks outward."""
+
+    position: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    sensor: str | SensorStack = "seed"
+
+    def __post_init__(self) -> None:
+        for field in ("position", "normal"):
+            value = getattr(self, field)
+            if np.shape(value) != (3,) or not np.isfinite(value).all():
+                raise InvalidValueError(f"SensorElement: {field} must be 3 finite numbers, got {value!r}")
+        if not np.linalg.norm(self.normal) > 0:
+            raise InvalidValueError("SensorElement: its normal must not be zero")
+
+
+@dataclass(frozen=True, slots=True)
 class ThermalBody:
     """What an object is to heat. material: a name of thermal.materials() or a Material. temperature: °C at the start,
-    None for that of the air."""
+    None for that of the air. elements: sensor elements that are glued on it, on an object that is one box; they start
+    as warm as it."""
 
     material: str | Material
     temperature: float | None = None
+    elements: Sequence[SensorElement] = ()
 
     def __post_init__(self) -> None:
         if self.temperature is not None:
@@ -46,7 +67,7 @@ class BodyShape:
 
     name: as it was asked for. body: number of the MuJoCo body. geoms: their numbers. material. temperature: °C. size
     (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the body's frame. extent
-    (3,) m: the object's true size along them. surface: m2 that the air touches.
+    (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on it.
 
     A box stands as it is; a round, hollow or composed object is a box of its volume and proportions."""
 
@@ -60,6 +81,7 @@ class BodyShape:
     axes: np.ndarray
     extent: np.ndarray
     surface: float
+    elements: tuple[SensorElement, ...] = ()
 
     @property
     def heat_capacity(self) -> float:
@@ -140,6 +162,7 @@ def _body(
         axes,
         extent,
         surface,
+        tuple(thing.elements),
     )
 
 

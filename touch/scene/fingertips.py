@@ -14,13 +14,14 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, positive
 
-from ...thermal import SensorStack
+from ...thermal import SensorStack, material
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
 from .faces import flat_faces, largest_face, rotation, triangles
 from .names import find, geom_label, geoms_of, names
 
 SMALLEST = 4e-6  # m2, of a face that can be a pad
+_METAL = 1.74e-3  # m, of the seed's thermostat plate
 _STEP = 0.01  # s; what is in front of a heater does not depend on it
 _DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
 
@@ -28,7 +29,8 @@ _DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
 @dataclass(frozen=True, slots=True)
 class Fingertip:
     """A fingertip that feels heat. name: of a geom, a site or a body. sensor: a preset's name, a .toml file or a
-    SensorStack, or a HeatedStack, whose heater follows its own law. temperature: °C of its thermostat, or of a heated
+    SensorStack, or a HeatedStack, whose heater follows its own law; None for a bare thermostat, which touches elements
+    that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated
     sensor before anything is touched.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
@@ -40,7 +42,7 @@ class Fingertip:
     position: tuple[float, float, float] | None = None
     normal: tuple[float, float, float] | None = None
     size: tuple[float, float] | None = None
-    sensor: str | SensorStack | HeatedStack = "seed"
+    sensor: str | SensorStack | HeatedStack | None = "seed"
     temperature: float = 36.0
 
     def __post_init__(self) -> None:
@@ -66,7 +68,8 @@ class PadPlace:
     """A fingertip's pad. label: the fingertip's. body: number of the MuJoCo body that carries it; geoms: whose contacts
     are its. position (3,) m and axes (3, 3), columns normal, y and z, in the body's frame. size (2,) m along y and z.
     stack: the sensor, or what of it is in front of its heater. temperature: °C of the thermostat or, at first, of the
-    heater's place. heated: the whole sensor, where it has a heater of its own."""
+    heater's place. heated: the whole sensor, where it has a heater of its own. bare: the thermostat
+    itself, no sensor. glued: the number of the object that it is an element on, None for a fingertip."""
 
     label: str
     body: int
@@ -77,6 +80,8 @@ class PadPlace:
     stack: SensorStack
     temperature: float
     heated: HeatedStack | None = None
+    bare: bool = False
+    glued: int | None = None
 
 
 def pads(
@@ -155,7 +160,7 @@ def _pad(
     turn = data.xmat[body].reshape(3, 3)
     if one.position is not None:
         normal = np.asarray(one.normal, float)
-        found = np.asarray(one.position, float), _frame(normal / np.linalg.norm(normal)), np.full(2, _DEFAULT)
+        found = np.asarray(one.position, float), frame(normal / np.linalg.norm(normal)), np.full(2, _DEFAULT)
     elif kind == "site":
         size = model.site_size[number]
         flat = model.site_type[number] == mujoco.mjtGeom.mjGEOM_BOX
@@ -180,11 +185,19 @@ def _pad(
     position, axes, size = found
     if one.size is not None:
         size = np.asarray(one.size, float)
-    stack = any_sensor(one.sensor)
+    stack = bare_thermostat(size) if one.sensor is None else any_sensor(one.sensor)
     heated = None
     if isinstance(stack, HeatedStack):
         heated, stack = stack, heated_core(stack, _STEP).element
-    return PadPlace(label, body, geoms, position, axes, size, stack, float(one.temperature), heated)
+    return PadPlace(
+        label, body, geoms, position, axes, size, stack, float(one.temperature), heated, one.sensor is None
+    )
+
+
+def bare_thermostat(size: np.ndarray) -> SensorStack:
+    """What stands for the sensor of a fingertip without one, of size (2,) m: its metal."""
+    metal = (material("aluminium").layer(_METAL),)
+    return SensorStack("none", metal, width=float(np.sqrt(size.prod())), sensed=0, seebeck=1e-3)
 
 
 def _face(
@@ -194,7 +207,7 @@ def _face(
     parts = [(str(geom), triangles(model, geom)) for geom in geoms]
     face = largest_face(flat_faces([part for part in parts if len(part[1])], direction), direction)
     if face is not None and face.area >= SMALLEST:
-        axes = _frame(face.normal)
+        axes = frame(face.normal)
         flat = (face.corners - face.centre) @ axes[:, 1:]
         # the side lengths along the axes in which the face is narrowest
         angles = np.radians(np.arange(0, 90, 1.0))
@@ -232,11 +245,11 @@ def _round(
         point = own / np.sqrt(np.sum((own / size) ** 2))
         out = point / size**2
         out, wide = out / np.linalg.norm(out), np.array([1.6 * float(size.min())] * 2)
-    return model.geom_pos[geom] + turn @ point, _frame(turn @ out), wide
+    return model.geom_pos[geom] + turn @ point, frame(turn @ out), wide
 
 
-def _frame(normal: np.ndarray) -> np.ndarray:
-    """(3, 3), columns the normal, y and z, along the body's axes where it can be."""
+def frame(normal: np.ndarray) -> np.ndarray:
+    """(3, 3) of a unit vector: columns the normal, y and z, along the body's axes where it can be."""
     z = np.eye(3)[2] if abs(normal[2]) < 0.9 else np.eye(3)[0]
     z = z - (z @ normal) * normal
     z = z / np.linalg.norm(z)
