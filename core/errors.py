@@ -8,10 +8,25 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
 
 _ABSOLUTE_ZERO = -273.15  # °C
+HOTTEST = 250.0
+"""°C that anything here may have: the materials' properties are those near room temperature."""
+LONGEST = 5.0
+"""m, the longest side of an object that a hand may touch."""
+_MISTAKEN: dict[str, tuple[str, float, Callable[[float], float]]] = {
+    "°C": ("kelvin", -_ABSOLUTE_ZERO - 100.0, lambda kelvin: kelvin + _ABSOLUTE_ZERO),
+    "m": ("millimetres", 1.0, lambda mm: mm / 1000),
+    "m/s": ("mm/s", 1.0, lambda rate: rate / 1000),
+    "N": ("millinewtons", 1000.0, lambda mn: mn / 1000),
+}
+"""For a unit, another one that numbers are given in by mistake, from which number on, and how it is converted."""
 
 
 class ThermograspError(Exception):
@@ -96,13 +111,57 @@ def non_negative(name: str, value: object) -> float:
 
 
 def celsius(name: str, value: object) -> float:
-    """The value as a float. Raises InvalidValueError unless it is a temperature in °C that something can have."""
+    """The value as a float. Raises InvalidValueError, which asks about kelvin, unless it is a temperature in °C from
+    absolute zero to HOTTEST."""
     number = _number(name, value)
-    if not (math.isfinite(number) and number >= _ABSOLUTE_ZERO):
+    if not _ABSOLUTE_ZERO <= number <= HOTTEST:
         raise InvalidValueError(
-            f"{name} must be a temperature in °C, {_ABSOLUTE_ZERO} or above, got {value!r}"
+            f"{name} must be a temperature in °C, {_ABSOLUTE_ZERO} to {HOTTEST:g}, got {value!r}"
+            + likely_unit(number, _ABSOLUTE_ZERO, HOTTEST, "°C")
         )
     return number
+
+
+def length(name: str, value: object) -> float:
+    """The value as a float. Raises InvalidValueError, which asks about millimetres, unless it is a length in m above 0
+    and at most LONGEST."""
+    number = positive(name, value)
+    if number > LONGEST:
+        raise InvalidValueError(
+            f"{name} must be a length in m, at most {LONGEST:g}, got {value!r}"
+            + likely_unit(number, 0.0, LONGEST, "m")
+        )
+    return number
+
+
+def within(name: str, value: Any, low: float, high: float, unit: str) -> np.ndarray:
+    """The value or values as an array of floats. Raises InvalidValueError, which names the first that is not in low ..
+    high up to round-off, and the unit that it is likely to have been given in."""
+    import numpy as np  # commands that need no arrays start without it
+
+    values, slack = np.asarray(value, float), 1e-6 * high
+    wrong = values[~((values >= low - slack) & (values <= high + slack))]
+    if wrong.size:
+        given = float(wrong.flat[0])
+        hint = likely_unit(given, low, high, unit)
+        raise InvalidValueError(f"{name} {given:g} {unit}: give {low:g} to {high:g} {unit}{hint}")
+    return values
+
+
+def likely_unit(value: float, low: float, high: float, unit: str) -> str:
+    """The end of a message about a value that is not in low .. high: what to give if it was in another unit, or nothing
+    where that is not in low .. high either."""
+    if unit not in _MISTAKEN:
+        return ""
+    mistaken, least, convert = _MISTAKEN[unit]
+    meant = convert(value)
+    likely = abs(value) >= least and low <= meant <= high
+    return f"; {value:.6g} looks like {mistaken}: give {meant:.6g}" if likely else ""
+
+
+def install(extra: str) -> str:
+    """The end of a message about a package that one of our extras brings: commands that install it."""
+    return f"pip install 'thermograsp[{extra}]', or in a clone pip install -e '.[{extra}]'"
 
 
 def _number(name: str, value: object) -> float:

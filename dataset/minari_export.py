@@ -25,6 +25,7 @@ from thermograsp.errors import (
     MissingDependencyError,
     ThermograspError,
     UnknownNameError,
+    install,
 )
 from thermograsp.files import write_error
 from thermograsp.thermal import material
@@ -143,5 +144,5 @@ def _minari() -> Any:
         import minari  # pyright: ignore[reportMissingImports]
         import minari.namespace  # pyright: ignore[reportMissingImports]
     except ImportError as error:
-        raise MissingDependencyError("the export needs Minari: pip install 'thermograsp[minari]'") from error
+        raise MissingDependencyError(f"the export needs Minari: {install('minari')}") from error
     return minari

@@ -11,7 +11,7 @@ from typing import Any
 
 from thermograsp.dataset.plan import Plan, Shard
 from thermograsp.dataset.shards import shard_bytes
-from thermograsp.errors import InvalidValueError, MissingDependencyError, SimulationError
+from thermograsp.errors import InvalidValueError, MissingDependencyError, SimulationError, install
 
 _STORE = 256 * 2**20  # bytes for shards on their way: each is a few MB
 _PATIENCE = 10.0  # s
@@ -53,7 +53,7 @@ def ray_package() -> Any:
         import ray  # pyright: ignore[reportMissingImports]
     except ImportError as error:
         raise MissingDependencyError(
-            "a Ray address needs Ray: pip install 'thermograsp[ray]', or leave it out for processes of this machine"
+            f"a Ray address needs Ray: {install('ray')}, or leave it out for processes of this machine"
         ) from error
     return ray
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from thermograsp.dataset.schema import arrow, shape_of
 from thermograsp.dataset.shards import whole
-from thermograsp.errors import InvalidValueError, MissingDependencyError, unknown_name
+from thermograsp.errors import InvalidValueError, MissingDependencyError, install, unknown_name
 
 Library = Literal["numpy", "torch"]
 
@@ -198,9 +198,7 @@ def _tensors(library: Library) -> Any:
     try:
         import torch  # pyright: ignore[reportMissingImports]
     except ImportError as error:
-        raise MissingDependencyError(
-            "torch tensors need PyTorch: pip install 'thermograsp[torch]'"
-        ) from error
+        raise MissingDependencyError(f"torch tensors need PyTorch: {install('torch')}") from error
     return lambda values: values if values.dtype.kind == "U" else torch.from_numpy(values)
 
 

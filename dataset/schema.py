@@ -19,7 +19,7 @@ import gymnasium
 import numpy as np
 
 from thermograsp.dataset.plan import Plan
-from thermograsp.errors import InvalidValueError, MissingDependencyError
+from thermograsp.errors import InvalidValueError, MissingDependencyError, install
 
 Per = Literal["episode", "step", "observation"]
 KEY = b"thermograsp"
@@ -105,7 +105,7 @@ def arrow() -> Any:
         import pyarrow
         import pyarrow.parquet
     except ImportError as error:
-        raise MissingDependencyError("datasets need PyArrow: pip install 'thermograsp[dataset]'") from error
+        raise MissingDependencyError(f"datasets need PyArrow: {install('dataset')}") from error
     return pyarrow
 
 

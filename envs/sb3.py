@@ -12,7 +12,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from thermograsp.errors import InvalidValueError, MissingDependencyError
+from thermograsp.errors import InvalidValueError, MissingDependencyError, install
 
 from .gym import TouchVectorEnv
 from .spaces import SIZE, Observation, Senses
@@ -20,9 +20,7 @@ from .spaces import SIZE, Observation, Senses
 try:
     from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 except ImportError as error:
-    raise MissingDependencyError(
-        "stable-baselines3 is not installed: pip install 'thermograsp[rl]'"
-    ) from error
+    raise MissingDependencyError(f"stable-baselines3 is not installed: {install('rl')}") from error
 
 Adjust = Callable[[Observation, np.ndarray], np.ndarray]
 

@@ -15,9 +15,12 @@ from thermograsp.errors import (
     WriteError,
     celsius,
     finite,
+    install,
+    length,
     non_negative,
     positive,
     unknown_name,
+    within,
 )
 
 
@@ -61,6 +64,39 @@ def test_zero_and_below() -> None:
     for check, value in ((positive, 0.0), (positive, -1), (non_negative, -1e-300), (celsius, -274)):
         with pytest.raises(InvalidValueError, match=f"width must be .*, got {value!r}"):
             check("width", value)
+
+
+@pytest.mark.parametrize(
+    ("refused", "told"),
+    [
+        (lambda: celsius("t", 309.15), "309.15 looks like kelvin: give 36"),
+        (lambda: length("size", 40), "40 looks like millimetres: give 0.04"),
+        (lambda: within("opening", [0.01, 40.0], 0.0, 0.085, "m"), "40 looks like millimetres: give 0.04"),
+        (lambda: within("rate", 100, -0.1, 0.1, "m/s"), "100 looks like mm/s: give 0.1"),
+        (lambda: within("force", 20_000, 0.0, 40.0, "N"), "20000 looks like millinewtons: give 20"),
+    ],
+)
+def test_a_number_in_another_unit_is_asked_about(refused, told) -> None:
+    with pytest.raises(InvalidValueError) as error:
+        refused()
+    assert str(error.value).endswith("; " + told)
+
+
+def test_a_number_that_no_other_unit_explains_is_only_refused() -> None:
+    for refused in (
+        lambda: celsius("t", 900.0),
+        lambda: within("force", 41.0, 0.0, 40.0, "N"),
+        lambda: length("size", 1e5),
+        lambda: within("force", -1.0, 0.0, 40.0, "N"),
+        lambda: within("position", 300, 0, 255, "counts"),
+    ):
+        with pytest.raises(InvalidValueError) as error:
+            refused()
+        assert "looks like" not in str(error.value)
+
+
+def test_what_installs_an_extra_works_in_a_clone_too() -> None:
+    assert install("rl") == "pip install 'thermograsp[rl]', or in a clone pip install -e '.[rl]'"
 
 
 def test_an_unknown_name_comes_with_near_ones() -> None:

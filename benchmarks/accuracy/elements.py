@@ -13,7 +13,7 @@ import numpy as np
 from scipy import sparse
 
 from thermograsp.bench.accuracy.semi_discrete import SemiDiscrete
-from thermograsp.errors import MissingDependencyError
+from thermograsp.errors import MissingDependencyError, install
 from thermograsp.thermal import PressProblem
 
 
@@ -35,9 +35,7 @@ def element_press(problem: PressProblem, cells: int) -> SemiDiscrete:
     try:
         from skfem import Basis, ElementHex2, MeshHex
     except ImportError as error:
-        raise MissingDependencyError(
-            "finite elements need scikit-fem: pip install 'thermograsp[bench]'"
-        ) from error
+        raise MissingDependencyError(f"finite elements need scikit-fem: {install('bench')}") from error
     assert not callable(problem.conductance) and problem.air == 0
     half, size = problem.stack.width / 2, problem.object_size
     toward = (1 - np.linspace(1, 0, cells + 1) ** 2) * half  # elements shrink toward the edge

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from thermograsp.bench.accuracy.semi_discrete import uniform
-from thermograsp.errors import MissingDependencyError
+from thermograsp.errors import MissingDependencyError, install
 from thermograsp.thermal import PressProblem
 
 _NOTHING = 1e-12  # W/(m K), of the filling
@@ -36,7 +36,7 @@ def fipy_press(problem: PressProblem, spacing: float, count: int, cell: float) -
     try:
         fipy: Any = importlib.import_module("fipy")  # its types are inferred, and wrong
     except ImportError as error:
-        raise MissingDependencyError("this method needs FiPy: pip install 'thermograsp[bench]'") from error
+        raise MissingDependencyError(f"this method needs FiPy: {install('bench')}") from error
     assert not callable(problem.conductance) and problem.air == 0
     face, plate = problem.stack.face_area, problem.object_size[0] * problem.object_size[1]
     inner = uniform(0.0, np.sqrt(face / np.pi), cell)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from thermograsp.bench.identify.touches import Touches, times
-from thermograsp.errors import MissingDependencyError
+from thermograsp.errors import MissingDependencyError, install
 
 _COMPONENTS = 12
 _PENALTIES, _WIDTHS = (1e2, 1e3, 1e4), (0.03, 0.1)
@@ -25,9 +25,7 @@ def support_vectors(train: Touches, test: Touches, seconds: float) -> np.ndarray
         from sklearn.pipeline import make_pipeline
         from sklearn.svm import SVC
     except ImportError as error:
-        raise MissingDependencyError(
-            "the SVM needs scikit-learn: pip install 'thermograsp[bench]'"
-        ) from error
+        raise MissingDependencyError(f"the SVM needs scikit-learn: {install('bench')}") from error
     count = len(times(seconds))
     model = make_pipeline(PCA(_COMPONENTS, whiten=True, random_state=0), SVC())
     search = GridSearchCV(model, {"svc__C": _PENALTIES, "svc__gamma": _WIDTHS}, cv=3)
@@ -43,9 +41,7 @@ def recurrent_net(
     try:
         import torch  # pyright: ignore[reportMissingImports]
     except ImportError as error:
-        raise MissingDependencyError(
-            "the recurrent net needs PyTorch: pip install 'thermograsp[torch]'"
-        ) from error
+        raise MissingDependencyError(f"the recurrent net needs PyTorch: {install('torch')}") from error
     torch.manual_seed(seed)
     mean, spread = train.voltage.mean(), train.voltage.std()
 

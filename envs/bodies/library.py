@@ -16,13 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    ThermograspError,
-    finite,
-    positive,
-    unknown_name,
-)
+from thermograsp.errors import InvalidValueError, ThermograspError, celsius, finite, positive, unknown_name
 from thermograsp.files import cached_file
 
 from ...assets import asset
@@ -99,7 +93,7 @@ class ObjectPreset:
 
     def __post_init__(self) -> None:
         material(self.material)
-        finite("temperature (°C)", self.temperature)
+        celsius("temperature (°C)", self.temperature)
         if self.mass is not None:
             positive("mass (kg)", self.mass)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermograsp.errors import MeshError, MissingDependencyError, positive
+from thermograsp.errors import MeshError, MissingDependencyError, install, positive
 
 from .mesh_files import FORMATS, read_surface
 
@@ -116,7 +116,7 @@ def _hulls(mesh, pieces: int) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
             ]
         except ImportError as error:
             raise MissingDependencyError(
-                "convex pieces need vhacdx: pip install 'thermograsp[mesh]', or use pieces=1"
+                f"convex pieces need vhacdx: {install('mesh')}, or use pieces=1"
             ) from error
     return tuple((np.array(p.vertices, dtype=float), np.array(p.faces, dtype=np.int32)) for p in parts)
 

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from thermograsp.errors import (
+    LONGEST,
     InvalidValueError,
     celsius,
     finite,
     non_negative,
     positive,
     unknown_name,
+    within,
 )
 
 from ...thermal import Material, material
@@ -93,7 +95,7 @@ class ObjectSpec:
                 "along x, which no pad meets then; swap its width and depth in place of the turn, or use mode T"
             )
         for value in self.position:
-            finite("position", value)
+            within("position", finite("position", value), -LONGEST, LONGEST, "m")
         set_ = object.__setattr__
         extents = self.geometry.extents if self.mesh else self.size
         set_(self, "size", checked_size(self.shape, extents))

@@ -12,12 +12,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    non_negative,
-    positive,
-    unknown_name,
-)
+from thermograsp.errors import InvalidValueError, length, non_negative, positive, unknown_name
 
 from .solids import (
     Triangles,
@@ -180,7 +175,7 @@ RECIPES: Mapping[str, Callable[..., Solid]] = MappingProxyType(
 
 
 def _size(size: Sequence[float]) -> tuple[float, float, float]:
-    x, y, z = (positive("size (m)", side) for side in size)
+    x, y, z = (length("size (m)", side) for side in size)
     return x, y, z
 
 

@@ -7,12 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermograsp.compiled import njit
-from thermograsp.errors import (
-    InvalidValueError,
-    finite,
-    non_negative,
-    positive,
-)
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
 
 WATER_SPECIFIC_HEAT = (
     4182.0  # J/(kg K) at 20 °C (Incropera et al., Fundamentals of Heat and Mass Transfer, table A.6)
@@ -67,7 +62,7 @@ class Reservoir:
             non_negative(f"reservoir: {name}", getattr(self, name))
         for name in ("temperature", "setpoint", "melting"):
             if getattr(self, name) is not None:
-                finite(f"reservoir: {name} (°C)", getattr(self, name))
+                celsius(f"reservoir: {name} (°C)", getattr(self, name))
         if np.isinf(self.heat_capacity) and (self.power or self.latent_heat):
             raise InvalidValueError(
                 "reservoir: one of infinite heat_capacity is held at its temperature and takes no power or latent_heat"

@@ -12,7 +12,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from thermograsp.errors import GripperError, InvalidValueError, positive
+from thermograsp.errors import GripperError, InvalidValueError, length
 
 from .file import Source, compiled
 from .fingers import Pad, named_pair, of_one_hand, pairs
@@ -49,7 +49,7 @@ def load_gripper(
     """
     if isinstance(source, Gripper):
         return source
-    positive("parallel_at (m)", parallel_at)
+    length("parallel_at (m)", parallel_at)
     if len(pads) != 2:
         raise InvalidValueError(f"pads {pads!r}: give two, None for one that is to be found")
     name, model = compiled(source)

@@ -131,6 +131,10 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         """One control step; what becomes of environments that ended before, or end now, says autoreset_mode."""
         self.batch.require_open("step")
         actions = np.asarray(actions)
+        if actions.shape != self.action_space.shape:
+            raise InvalidValueError(
+                f"step takes actions of shape {self.action_space.shape}, one of each environment; got {actions.shape}"
+            )
         starting = self._ended.copy()
         if not starting.any():
             step = self._advance(actions)

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from thermograsp.errors import (
+    LONGEST,
     InvalidValueError,
     celsius,
     non_negative,
     positive,
     unknown_keyword,
+    within,
 )
 
 from ...thermal import (
@@ -113,6 +115,7 @@ class SimulationConfig:
             celsius("ambient_temperature", self.ambient_temperature)
         for value in self.placement:
             non_negative("placement (m, degree)", value)
+        within("placement", self.placement[0], 0.0, LONGEST, "m")
         checked(self.randomize)
         _ = self.tactile  # checks it
         if self.face_temperature is not None:

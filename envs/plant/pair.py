@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, unknown_name
+from thermograsp.errors import InvalidValueError, celsius, unknown_name
 
 from ..bodies import DEFAULT_FRICTION, DEFAULT_MASS, ObjectSpec
 from ..footprint import GraspBody
@@ -51,7 +51,7 @@ class PairConfig:
             raise InvalidValueError(
                 f"mode {self.simulation.mode!r}: elements glued to the objects can't be sorted by touch; give 'T'"
             )
-        cooler, hotter = (finite("object_temperature (°C)", value) for value in self.temperatures)
+        cooler, hotter = (celsius("object_temperature (°C)", value) for value in self.temperatures)
         if not (cooler < hotter if self.goal == "hotter" else cooler == hotter):
             raise InvalidValueError(
                 f"object_temperature {self.temperatures} °C: give one for goal 'material', and for 'hotter' two, the "

@@ -9,7 +9,7 @@ from __future__ import annotations
 import gymnasium
 import numpy as np
 
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, within
 from thermograsp.plant import Command
 
 from ..limits import MAX_FORCE, MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
@@ -68,7 +68,7 @@ def sliding_action_of(
 ) -> np.ndarray:
     """The action (4,) of a command in m, N and m/s. Raises InvalidValueError for one that the gripper or its arm does
     not have."""
-    _within("lateral_rate", lateral_rate, -MAX_LATERAL_RATE, MAX_LATERAL_RATE, "m/s")
+    within("lateral_rate", lateral_rate, -MAX_LATERAL_RATE, MAX_LATERAL_RATE, "m/s")
     return np.append(action_of(opening, force_limit, lift_rate), np.float32(lateral_rate / MAX_LATERAL_RATE))
 
 
@@ -77,20 +77,8 @@ def action_of(
 ) -> np.ndarray:
     """The action (3,) of a command in m, N and m/s, or (3, B) of arrays (B,). Raises InvalidValueError for one that the
     gripper does not have: an action beyond -1 .. 1 is clipped, and would do what nobody asked for."""
-    _within("opening", opening, 0.0, MAX_OPENING, "m")
-    _within("force_limit", force_limit, 0.0, MAX_FORCE, "N")
-    _within("lift_rate", lift_rate, -MAX_LIFT_RATE, MAX_LIFT_RATE, "m/s")
+    within("opening", opening, 0.0, MAX_OPENING, "m")
+    within("force_limit", force_limit, 0.0, MAX_FORCE, "N")
+    within("lift_rate", lift_rate, -MAX_LIFT_RATE, MAX_LIFT_RATE, "m/s")
     scaled = (2 * opening / MAX_OPENING - 1, 2 * force_limit / MAX_FORCE - 1, lift_rate / MAX_LIFT_RATE)
     return np.array(scaled, np.float32)
-
-
-def _within(name: str, value: float | np.ndarray, low: float, high: float, unit: str) -> None:
-    """Raises InvalidValueError, which asks about millimetres where these would fit, for a value that is not in low ..
-    high up to round-off."""
-    values, slack = np.asarray(value, float), 1e-6 * high
-    wrong = values[~((values >= low - slack) & (values <= high + slack))]
-    if wrong.size:
-        given = float(wrong.flat[0])
-        in_metres = unit != "N" and low <= given / 1000 <= high
-        hint = f"; did you mean {given / 1000:g} {unit} ({given:g} m{unit})?" if in_metres else ""
-        raise InvalidValueError(f"{name} {given:g} {unit}: give {low:g} to {high:g} {unit}{hint}")

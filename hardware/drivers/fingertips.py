@@ -9,6 +9,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from thermograsp.errors import celsius
+
 from ..errors import (
     CommandRefusedError,
     DeviceError,
@@ -115,7 +117,7 @@ class Fingertips:
         self._settings = settings or LinkSettings()
         self._clock = clock
         self._rate = rate
-        self._wish = _Wish(None if setpoint is None else (setpoint, setpoint))
+        self._wish = _Wish(None if setpoint is None else (celsius("setpoint (°C)", setpoint),) * 2)
         self._held: _Wish | None = None  # what the device has confirmed
         self._held_since = 0.0
         self._asking = 0  # threads that set a setpoint
@@ -185,7 +187,7 @@ class Fingertips:
         """°C of each thermostat; None turns its heater off. Both off goes before what other threads have asked for.
         Where it raises, a heater that was to be off is not turned on again, by a reconnect or otherwise, until it is
         asked for; StoppedError: another thread has set another one meanwhile."""
-        a, b = (math.nan if value is None else float(value) for value in (left, right))
+        a, b = (math.nan if value is None else celsius("setpoint (°C)", value) for value in (left, right))
         wish = _Wish((a, b))
         with self._wishing:
             before, self._wish = self._wish.setpoint, wish

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from thermograsp.errors import MissingDependencyError
+from thermograsp.errors import MissingDependencyError, install
 
 from ..errors import (
     CommandRefusedError,
@@ -199,7 +199,7 @@ def _client(pipe: _Pipe) -> Any:
         from pymodbus.transport import CommParams, CommType
     except ImportError:
         raise MissingDependencyError(
-            "a Modbus gripper needs pymodbus, which is not installed: pip install 'thermograsp[hardware]'"
+            f"a Modbus gripper needs pymodbus, which is not installed: {install('hardware')}"
         ) from None
 
     logging.getLogger("pymodbus").addHandler(logging.NullHandler())  # our errors tell what its log would

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.errors import InvalidValueError, finite, positive, within
 
 TOP = 255  # highest count of every quantity
 _MOST_STROKE = 1.0  # m; the widest of Robotiq's two-fingered grippers opens .142 m
@@ -52,7 +52,7 @@ class RobotiqUnits:
     def position_counts(self, opening: Any) -> np.ndarray:
         """rPR nearest to an opening, m; what is 0 or full is sent as 255 or 0, so that the fingers reach their ends.
         Raises InvalidValueError outside 0 .. stroke."""
-        metres = _within("opening (m)", opening, 0.0, self.stroke)
+        metres = within("opening", opening, 0.0, self.stroke, "m")
         span = self.closed_count - self.open_count
         counts = np.rint(self.closed_count - metres * (span / self.stroke))
         counts = np.where(counts >= self.closed_count, TOP, counts)
@@ -67,7 +67,7 @@ class RobotiqUnits:
     def speed_counts(self, speed: Any) -> np.ndarray:
         """rSP nearest to a speed, m/s. One below the slowest is taken as that. Raises InvalidValueError outside 0 ..
         fastest."""
-        metres = _within("speed (m/s)", speed, 0.0, self.fastest)
+        metres = within("speed", speed, 0.0, self.fastest, "m/s")
         return np.rint(
             (np.maximum(metres, self.slowest) - self.slowest) * TOP / (self.fastest - self.slowest)
         ).astype(int)
@@ -79,7 +79,7 @@ class RobotiqUnits:
     def force_counts(self, force: Any) -> np.ndarray:
         """rFR of a force limit, N: the highest that is not above it. The gripper cannot press with less than its
         weakest, which any lower limit becomes. Raises InvalidValueError outside 0 .. strongest."""
-        newtons = _within("force (N)", force, 0.0, self.strongest)
+        newtons = within("force", force, 0.0, self.strongest, "N")
         part = (np.maximum(newtons, self.weakest) - self.weakest) / (self.strongest - self.weakest)
         return np.floor(part * TOP + 1e-9).astype(int)
 
@@ -96,13 +96,5 @@ class RobotiqUnits:
         )
 
 
-def _within(name: str, value: Any, low: float, high: float) -> np.ndarray:
-    values = np.asarray(value, dtype=float)
-    wrong = ~((values >= low) & (values <= high * (1 + 1e-9)))  # speed(255) may round to above fastest
-    if wrong.any():
-        raise InvalidValueError(f"{name} {values[wrong].flat[0]:g}: give {low:g} to {high:g}")
-    return values
-
-
 def _counts(name: str, value: Any) -> np.ndarray:
-    return _within(f"{name} (counts)", value, 0, TOP)
+    return within(name, value, 0, TOP, "counts")

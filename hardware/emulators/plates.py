@@ -23,7 +23,7 @@ from ..protocol import (
 
 _CONTROL = 0.02  # s, period of the controllers
 _OFF_SETPOINT = 1.0  # K
-_OFF = -1000.0  # °C, a setpoint at which no heater works
+_OFF = -273.15  # °C, a setpoint at which no heater works
 _RUNAWAY_ENERGY = 30.0  # J that must have warmed a plate
 _RUNAWAY_RISE = 0.5  # K by that much
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from thermograsp.errors import MissingDependencyError
+from thermograsp.errors import MissingDependencyError, install
 
 from ..errors import (
     LinkLostError,
@@ -32,7 +32,7 @@ def _serial() -> Any:
         import serial
     except ImportError:
         raise MissingDependencyError(
-            "a serial port needs pyserial, which is not installed: pip install 'thermograsp[hardware]'"
+            f"a serial port needs pyserial, which is not installed: {install('hardware')}"
         ) from None
     return serial
 

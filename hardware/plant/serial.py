@@ -15,7 +15,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.errors import InvalidValueError, finite, positive, within
 from thermograsp.plant import Command, Reading
 
 from ..drivers import Fingertips, Gripper, GripperStatus, open_gripper
@@ -324,10 +324,7 @@ class SerialPlant:
     def _within(self, opening: Any) -> Any:
         """m; a gripper of a shorter stroke than a command may ask for opens as far as it can. Raises InvalidValueError
         for what no command may ask for."""
-        asked = np.asarray(opening, float)
-        wrong = asked[~((asked >= 0) & (asked <= MOST_OPENING * (1 + 1e-6)))]
-        if wrong.size:
-            raise InvalidValueError(f"opening {wrong.flat[0]:g} m: give 0 to {MOST_OPENING:g} m")
+        within("opening", opening, 0.0, MOST_OPENING, "m")
         return np.minimum(opening, self._widest)
 
     def _let_go(self, why: str) -> None:

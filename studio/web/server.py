@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Any
 
-from thermograsp.errors import InvalidValueError, MissingDependencyError, SimulationError
+from thermograsp.errors import InvalidValueError, MissingDependencyError, SimulationError, install
 from thermograsp.studio.control import Choices, Stock
 from thermograsp.studio.web.access import (
     LARGEST,
@@ -29,7 +29,7 @@ try:
     from websockets.exceptions import ConnectionClosed
     from websockets.http11 import Request, Response
 except ImportError as error:
-    raise MissingDependencyError("the studio needs websockets: pip install 'thermograsp[view]'") from error
+    raise MissingDependencyError(f"the studio needs websockets: {install('view')}") from error
 
 FRAMES = 30.0  # a second
 SOCKET = "socket"  # its path

@@ -19,12 +19,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    finite,
-    non_negative,
-    positive,
-)
+from thermograsp.errors import InvalidValueError, celsius, length, non_negative, positive
 
 from ..contact import (
     LAPPED_ALUMINA,
@@ -216,8 +211,8 @@ def array_fingertips(
     positive("dt (s)", dt)
     non_negative("air (W/(m2 K))", air)
     positive("tolerance (K)", tolerance)
-    difference = finite("sensor_temperature (°C)", sensor_temperature)
-    difference -= finite("object_temperature (°C)", object_temperature)
+    difference = celsius("sensor_temperature (°C)", sensor_temperature)
+    difference -= celsius("object_temperature (°C)", object_temperature)
     if mode not in ("T", "O") or fingertips not in (1, 2):
         raise InvalidValueError(
             f"mode must be 'T' or 'O' and fingertips 1 or 2, got {mode!r} and {fingertips!r}"
@@ -266,7 +261,7 @@ def _size(size: Size) -> Size:
             f"object_size must be (width, depth, thickness) in m, or a list of these, got {size!r}: a cube of 0.04 m "
             "is (0.04, 0.04, 0.04)"
         )
-    width, depth, thickness = (positive("object_size (m)", each) for each in size)
+    width, depth, thickness = (length("object_size (m)", each) for each in size)
     return width, depth, thickness
 
 

@@ -10,12 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    finite,
-    non_negative,
-    positive,
-)
+from thermograsp.errors import InvalidValueError, finite, length, non_negative
 
 from ..matter import Material
 
@@ -62,7 +57,7 @@ class KnownTouch:
                 f"{_LEAST_DIFFERENCE:g} K at least, better by 10"
             )
         for size in self.object_size:
-            positive(f"{self.name}: object_size (m)", size)
+            length(f"{self.name}: object_size (m)", size)
         non_negative(f"{self.name}: touch_error (s)", self.touch_error)
         if self.fingertips not in (1, 2):
             raise InvalidValueError(f"{self.name}: fingertips must be 1 or 2, got {self.fingertips!r}")

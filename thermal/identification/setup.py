@@ -7,12 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    finite,
-    non_negative,
-    positive,
-)
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
 
 from ..matter import Material, Mode, SensorStack, Shape, sensor
 from ..plates import Geometry
@@ -61,7 +56,7 @@ class TouchSetup:
             raise InvalidValueError(f"conductance must be (lowest, highest), got {self.conductance!r}")
         for name in ("object_temperature", "sensor_temperature"):
             mean, deviation = getattr(self, name)
-            finite(f"{name}: mean (°C)", mean)
+            celsius(f"{name}: mean (°C)", mean)
             non_negative(f"{name}: standard deviation (K)", deviation)
         positive("standard deviation of the temperature difference (K)", self.difference[1])
         non_negative("model_error", self.model_error)

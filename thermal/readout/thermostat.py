@@ -9,12 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    finite,
-    non_negative,
-    positive,
-)
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
 
 # The seed's plate, 20 x 20 x 1.74 mm, in aluminium: 2700 kg/m3 x 897 J/(kg K); in copper it is 2.40 J/K.
 _PLATE_HEAT_CAPACITY = 0.020 * 0.020 * 1.74e-3 * 2700.0 * 897.0
@@ -45,8 +40,8 @@ class Thermostat:
     loss: float = 0.008
 
     def __post_init__(self) -> None:
-        finite("thermostat: setpoint (°C)", self.setpoint)
-        finite("thermostat: ambient (°C)", self.ambient)
+        celsius("thermostat: setpoint (°C)", self.setpoint)
+        celsius("thermostat: ambient (°C)", self.ambient)
         if not self.heat_capacity > 0:
             raise InvalidValueError(
                 f"thermostat: heat_capacity must be above 0 J/K, got {self.heat_capacity!r}"

@@ -7,12 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermograsp.errors import (
-    InvalidValueError,
-    finite,
-    non_negative,
-    positive,
-)
+from thermograsp.errors import InvalidValueError, celsius, length, non_negative, positive
 
 from ..matter import Material, Mode, SensorStack, Shape
 from ..readout import Thermostat
@@ -72,7 +67,7 @@ class PressProblem:
                 f"object_size must be (width, depth, thickness) in m, got {self.object_size!r}"
             )
         for axis, size in zip(("width", "depth", "thickness"), self.object_size, strict=True):
-            positive(f"object_size: {axis} (m)", size)
+            length(f"object_size: {axis} (m)", size)
         side = self.stack.width
         if min(self.object_size[:2]) < side * (1 - 1e-9):
             raise InvalidValueError(
@@ -84,8 +79,8 @@ class PressProblem:
             raise InvalidValueError(
                 f"sensor {self.heated.name!r} has a heater of its own: leave thermostat out, and mode at 'T'"
             )
-        finite("sensor_temperature (°C)", self.sensor_temperature)
-        finite("object_temperature (°C)", self.object_temperature)
+        celsius("sensor_temperature (°C)", self.sensor_temperature)
+        celsius("object_temperature (°C)", self.object_temperature)
 
     @property
     def plain(self) -> bool:

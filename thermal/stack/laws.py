@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thermograsp.errors import finite, non_negative, positive
+from thermograsp.errors import celsius, non_negative, positive
 
 
 class Drive(NamedTuple):
@@ -133,7 +133,7 @@ class Pid:
     cut: float | None = None
 
     def __post_init__(self) -> None:
-        finite("heater: setpoint (°C)", self.setpoint)
+        celsius("heater: setpoint (°C)", self.setpoint)
         positive("heater: limit (W/m2)", self.limit)
         for name in ("proportional", "integral", "derivative"):
             non_negative(f"heater: {name}", getattr(self, name))

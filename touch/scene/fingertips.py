@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, celsius, positive
+from thermograsp.errors import InvalidValueError, celsius, length
 
 from ...thermal import SensorStack, material
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
@@ -58,7 +58,7 @@ class Fingertip:
                     f"fingertip {self.name!r}: {field} must be {count} finite numbers, got {value!r}"
                 )
         for side in self.size or ():
-            positive(f"fingertip {self.name!r}: size (m)", side)
+            length(f"fingertip {self.name!r}: size (m)", side)
         if self.normal is not None and not np.linalg.norm(self.normal) > 0:
             raise InvalidValueError(f"fingertip {self.name!r}: its normal must not be zero")
 

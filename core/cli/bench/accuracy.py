@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from thermograsp.bench import Record
 from thermograsp.cli.shared import Output
+from thermograsp.errors import install
 
 
 def report(record: Record, output: Output) -> None:
     """Prints a table for each two cases, and how often `auto` kept its tolerance."""
     for name in (name for name, installed in record["installed"].items() if not installed):
-        output.warn(f"{name} was not installed, so its points are left out: pip install thermograsp[bench]")
+        output.warn(f"{name} was not installed, so its points are left out: {install('bench')}")
     points = record["points"]
     cases = list(dict.fromkeys((p["material"], p["mode"]) for p in points))
     found = {(p["material"], p["mode"], p["method"], p["setting"]): p for p in points}

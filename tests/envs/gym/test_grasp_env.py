@@ -150,8 +150,10 @@ def test_bad_keywords_say_what_to_do():
         GraspEnv(mode="X")
     with pytest.raises(InvalidValueError, match="tolerance"):
         GraspEnv(tolerance=-1.0)
-    with pytest.raises(InvalidValueError, match="300 °C: a fingertip reads -20 to 100"):
-        GraspEnv(sensor_temperature=300)
+    with pytest.raises(InvalidValueError, match="150 °C: a fingertip reads -20 to 100"):
+        GraspEnv(sensor_temperature=150)
+    with pytest.raises(InvalidValueError, match="309.15 looks like kelvin: give 36$"):
+        GraspEnv(sensor_temperature=309.15)
     with pytest.raises(InvalidValueError, match="ambient_temperature must be a temperature in °C"):
         GraspEnv(ambient_temperature=-300)
     with pytest.raises(InvalidValueError, match="hold_seconds"):

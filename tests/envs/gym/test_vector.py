@@ -132,3 +132,14 @@ def test_what_is_no_state_is_refused() -> None:
         with pytest.raises(InvalidValueError, match=r"what state\(\) returned, got dict"):
             env.set_state({})  # pyright: ignore[reportArgumentType]
         env.close()
+
+
+@pytest.mark.parametrize("action", [np.zeros(3), np.zeros((2, 3)), np.zeros((3, 4)), None])
+def test_actions_of_another_shape_are_refused_and_change_nothing(action: object) -> None:
+    env = GraspVectorEnv(3, material="glass")
+    env.reset(seed=0)
+    before = env.state()
+    with pytest.raises(InvalidValueError, match=r"step takes actions of shape \(3, 3\), one of each environment; got"):
+        env.step(action)  # pyright: ignore[reportArgumentType]
+    assert np.array_equal(env.state().batch.history, before.batch.history)
+    env.close()

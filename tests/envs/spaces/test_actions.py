@@ -24,11 +24,11 @@ def test_actions_of_many_environments() -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ((40.0, 10.0, 0.0), r"opening 40 m: give 0 to 0\.085 m; did you mean 0\.04 m \(40 mm\)\?"),
+        ((40.0, 10.0, 0.0), r"opening 40 m: give 0 to 0\.085 m; 40 looks like millimetres: give 0.04"),
         ((-0.001, 10.0, 0.0), "opening -0.001 m: give 0 to 0.085 m$"),
-        ((0.09, 10.0, 0.0), "opening 0.09 m"),
+        ((0.09, 10.0, 0.0), "opening 0.09 m: give 0 to 0.085 m$"),
         ((0.0, 41.0, 0.0), "force_limit 41 N: give 0 to 40 N$"),
-        ((0.0, 10.0, 20.0), r"lift_rate 20 m/s: .* did you mean 0\.02 m/s \(20 mm/s\)\?"),
+        ((0.0, 10.0, 20.0), r"lift_rate 20 m/s: .* 20 looks like mm/s: give 0.02"),
         ((float("nan"), 10.0, 0.0), "opening nan m"),
     ],
 )
