@@ -6,15 +6,25 @@
 import importlib.util
 import pickle
 from pathlib import Path
+from typing import Literal
 
 import mujoco
 import numpy as np
 import pytest
 
 from thermograsp.errors import InvalidValueError, SimulationError, UnknownNameError
-from thermograsp.thermal import LAPPED_ALUMINA, Surface, contact_conductance, joint, material, press
+from thermograsp.thermal import (
+    LAPPED_ALUMINA,
+    THERMOSTAT_FACE,
+    Surface,
+    Thermostat,
+    contact_conductance,
+    joint,
+    material,
+    press,
+)
 from thermograsp.thermal.stack import heated_core, heated_stack
-from thermograsp.touch import Fingertip, ThermalBody, ThermalTouch
+from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch
 from thermograsp.touch.contacts import COLUMNS, CONDUCTANCE, NORMAL, PLACE
 from thermograsp.touch.heat.joined import JoinedHeat
 
@@ -451,3 +461,67 @@ def test_a_fingertip_that_starts_inside_its_object_is_refused() -> None:
     mujoco.mj_step(model, data)
     with pytest.raises(InvalidValueError, match="inside object 'block'"):
         touch.update(data)
+
+
+@pytest.mark.parametrize(("name", "mode"), [("glass", "T"), ("aluminium", "T"), ("aluminium", "O")])
+def test_a_thermostat_of_finite_power_cools_as_in_a_press(name: str, mode: Literal["T", "O"]) -> None:
+    model = mujoco.MjModel.from_xml_string(ONE_PRESS.format(cone="elliptic"))
+    data = mujoco.MjData(model)
+    weak = Thermostat(power_limit=0.3, heat_capacity=1.0)
+    glued = [SensorElement((0, 0, 0.02), (0, 0, 1))] if mode == "O" else []
+    tip = Fingertip("tip", sensor=None if mode == "O" else "seed", thermostat=weak)
+    objects = {"block": ThermalBody(name, elements=glued)}
+    touch = ThermalTouch(model, fingertips={"tip": tip}, objects=objects, air=0.0, chain="ideal")
+    data.ctrl[0] = 10.0
+    drops, times = [], []
+    for _ in range(3000):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+        if (times or reading.touching[0]) and reading.time not in times:
+            times.append(reading.time)
+            drops.append(reading.element_drop[0] if mode == "O" else reading.temperature_drop[0])
+    if mode == "O":
+        h = float(contact_conductance(joint(LAPPED_ALUMINA, THERMOSTAT_FACE), 10.0 / 0.009**2))
+    else:
+        h = float(contact_conductance(joint(LAPPED_ALUMINA, Surface.of(material(name))), 10.0 / 0.02**2))
+    size = (0.04, 0.04, 0.04)
+    curves, ideal = (
+        press(
+            name,
+            mode=mode,
+            conductance=h,
+            thermostat=kind,
+            object_size=size,
+            seconds=6.0,
+            tolerance=0.01,
+            rung="network",
+        )
+        for kind in (weak, None)
+    )
+    since = np.array(times) - times[0] + 0.02
+    expected = np.interp(since, curves.t, curves.temperature_drop)
+    apart = np.abs(np.array(drops) - expected)[since > 0.3].max()
+    # the ideal one would be far off, and what is left is that of the networks
+    assert ideal.temperature_drop[-1] - expected[-1] > 0.3
+    assert apart < 0.07
+    first = touch.reset()
+    assert first.temperature_drop[0] == 0.0
+
+
+def test_thermostats_are_remembered_and_refused_beside_a_heater() -> None:
+    model, data = hand.hand()
+    weak = Thermostat(power_limit=0.3, heat_capacity=1.0)
+    tips = {name: Fingertip(pad, thermostat=weak) for name, pad in PADS.items()}
+    one, two = (ThermalTouch(model, fingertips=tips, objects={"can": "aluminium"}, seed=1) for _ in range(2))
+    hand.press(data, 10.0)
+    run(model, data, one, 0.5)
+    two.set_state(pickle.loads(pickle.dumps(one.state())))
+    for _ in range(100):
+        mujoco.mj_step(model, data)
+        both = one.update(data), two.update(data)
+        assert (both[0].voltage == both[1].voltage).all()
+    given, balance = one.balance.given.sum(), one.balance
+    assert abs(balance.objects.sum() + balance.air - given) < 1e-10 * np.abs(balance.given).sum()
+    heated = Fingertip("thumb_pad", sensor="heated_thermistor", thermostat=weak)
+    with pytest.raises(InvalidValueError, match="heater of its own"):
+        ThermalTouch(model, fingertips={"thumb": heated}, objects={"can": "aluminium"})

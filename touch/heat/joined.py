@@ -12,14 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...thermal.stack import CoreState
 from ..contacts import FORCE, GluedContacts
 from ..scene import BodyShape, PadPlace
-from .backs import HeatedBack
+from .backs import HeatedBack, ThermostatBack
 from .fields import (
     GRID,
     MOST_PLACES,
@@ -56,8 +55,8 @@ class HeatBalance(NamedTuple):
 class HeatState:
     """What the heat remembers. fields: (W, O) the objects' networks; current (W, F, O): each pair's place among its
     object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted from the air's
-    temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with heaters of
-    their own."""
+    temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with thermostats of
+    finite power or heaters of their own."""
 
     fields: tuple[tuple[BodyField, ...], ...]
     current: np.ndarray
@@ -66,7 +65,7 @@ class HeatState:
     given: np.ndarray
     air: np.ndarray
     drop: np.ndarray
-    backs: tuple[CoreState, ...]
+    backs: tuple[tuple[Any, np.ndarray], ...]
 
 
 class JoinedHeat:
@@ -121,9 +120,7 @@ class JoinedHeat:
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face."""
         self._backs = tuple(
-            HeatedBack(pad, f, self._tips[f], worlds=worlds, dt=dt, ambient=ambient)
-            for f, pad in enumerate(self._pads)
-            if pad.heated
+            self._back(f, pad, worlds) for f, pad in enumerate(pads) if pad.heated or pad.thermostat
         )
         self._busy = np.zeros(fields, bool)
         self._forget()
@@ -210,14 +207,20 @@ class JoinedHeat:
             return self.drop
         found = self.drop.copy()
         for back in self._backs:
-            found[:, back.tip] = back.voltage
+            found[:, back.tip] = back.sent(self.drop[:, back.tip])
         return found
 
-    def _field_of(self, back: HeatedBack) -> np.ndarray:
+    def _back(self, f: int, pad: PadPlace, worlds: int) -> HeatedBack | ThermostatBack:
+        field = self._tip_fields[f]
+        if pad.thermostat is not None:
+            return ThermostatBack(pad, f, field, worlds=worlds, dt=self._dt)
+        return HeatedBack(pad, f, field, worlds=worlds, dt=self._dt, ambient=self._ambient)
+
+    def _field_of(self, back: HeatedBack | ThermostatBack) -> np.ndarray:
         """(W, K) states of its element."""
         return self._x[:, len(self._shapes) + back.tip]
 
-    def _passed(self, back: HeatedBack) -> np.ndarray:
+    def _passed(self, back: HeatedBack | ThermostatBack) -> np.ndarray:
         """(W,) J out of its face so far."""
         own = len(self._shapes) + back.tip
         return self._given[:, back.tip].sum(axis=1) - self._given[:, :, own].sum(axis=1)

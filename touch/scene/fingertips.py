@@ -14,7 +14,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, length
 
-from ...thermal import SensorStack, material
+from ...thermal import SensorStack, Thermostat, material
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
 from .faces import flat_faces, largest_face, rotation, triangles
@@ -30,8 +30,8 @@ _DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
 class Fingertip:
     """A fingertip that feels heat. name: of a geom, a site or a body. sensor: a preset's name, a .toml file or a
     SensorStack, or a HeatedStack, whose heater follows its own law; None for a bare thermostat, which touches elements
-    that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated
-    sensor before anything is touched.
+    that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated sensor before anything is
+    touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
     objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it. A site's
@@ -44,6 +44,7 @@ class Fingertip:
     size: tuple[float, float] | None = None
     sensor: str | SensorStack | HeatedStack | None = "seed"
     temperature: float = 36.0
+    thermostat: Thermostat | None = None
 
     def __post_init__(self) -> None:
         celsius(f"fingertip {self.name!r}: temperature (°C)", self.temperature)
@@ -69,7 +70,8 @@ class PadPlace:
     are its. position (3,) m and axes (3, 3), columns normal, y and z, in the body's frame. size (2,) m along y and z.
     stack: the sensor, or what of it is in front of its heater. temperature: °C of the thermostat or, at first, of the
     heater's place. heated: the whole sensor, where it has a heater of its own. bare: the thermostat
-    itself, no sensor. glued: the number of the object that it is an element on, None for a fingertip."""
+    itself, no sensor. glued: the number of the object that it is an element on, None for a fingertip. thermostat: of
+    finite power, None for an ideal one."""
 
     label: str
     body: int
@@ -82,6 +84,7 @@ class PadPlace:
     heated: HeatedStack | None = None
     bare: bool = False
     glued: int | None = None
+    thermostat: Thermostat | None = None
 
 
 def pads(
@@ -188,9 +191,25 @@ def _pad(
     stack = bare_thermostat(size) if one.sensor is None else any_sensor(one.sensor)
     heated = None
     if isinstance(stack, HeatedStack):
+        if one.thermostat is not None:
+            raise InvalidValueError(
+                f"fingertip {label!r}: {stack.name!r} has a heater of its own in place of a thermostat: leave "
+                "thermostat out"
+            )
         heated, stack = stack, heated_core(stack, _STEP).element
     return PadPlace(
-        label, body, geoms, position, axes, size, stack, float(one.temperature), heated, one.sensor is None
+        label,
+        body,
+        geoms,
+        position,
+        axes,
+        size,
+        stack,
+        float(one.temperature),
+        heated,
+        one.sensor is None,
+        None,
+        one.thermostat,
     )
 
 
