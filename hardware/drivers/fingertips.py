@@ -117,7 +117,8 @@ class Fingertips:
         self._settings = settings or LinkSettings()
         self._clock = clock
         self._rate = rate
-        self._wish = _Wish(None if setpoint is None else (celsius("setpoint (°C)", setpoint),) * 2)
+        held = None if setpoint is None else celsius("setpoint (°C)", setpoint)
+        self._wish = _Wish(None if held is None else (held, held))
         self._held: _Wish | None = None  # what the device has confirmed
         self._held_since = 0.0
         self._asking = 0  # threads that set a setpoint
