@@ -36,7 +36,7 @@ test-ray: build/.ray
 test-backends: build/.backends
 	$(PY) -m pytest $(TEST_FLAGS) tests/backends
 
-# What needs stable-baselines3; without it `make test` skips it.
+# What needs stable-baselines3, PyTorch and TorchRL; without them `make test` skips it.
 test-rl: build/.rl
 	$(PY) -m pytest $(TEST_FLAGS) tests/rl
 
@@ -125,7 +125,7 @@ build/.backends: PINS := torch==2.13.0
 build/.view: EXTRA := [test]
 build/.view: PINS := playwright
 build/.rl: EXTRA := [test,rl]
-build/.rl: PINS := torch==2.13.0
+build/.rl: PINS := torch==2.13.0 torchrl
 build/.grippers: EXTRA := [test,grippers]
 # Of robosuite only the files are read, and what it depends on holds numpy back.
 build/.grippers: ALONE := robosuite==1.5.2

@@ -31,7 +31,10 @@ CODE = [
 ]
 LINES = [(page, line) for page in PAGES for line in commands(page)]
 KNOWN = {"toml", "python", "python hardware", "sh", "math", "golden", "bibtex", "{toctree}", "{eval-rst}"}
-ELSEWHERE = {"docs/datasets.md": {"python torch", "python minari"}, "docs/howto.md": {"python rl"}}
+ELSEWHERE = {
+    "docs/datasets.md": {"python torch", "python minari"},
+    "docs/howto.md": {"python rl", "python torchrl"},
+}
 """Kinds of blocks that tests of other folders run, by page."""
 PORTS = {"/dev/ttyACM0": "tips", "/dev/ttyUSB0": "gripper"}
 """What stands in a page for a real gripper's ports, and the emulated ones' names here."""

@@ -23,3 +23,12 @@ def test_the_block_runs_and_trains(block: str) -> None:
     observation, _ = env.reset(seed=0)
     actions, _ = model.predict(observation)
     assert actions.shape == env.action_space.shape and env.action_space.contains(actions)
+
+
+@pytest.mark.parametrize(
+    "block", re.findall(r"```python torchrl\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+)
+def test_the_block_runs_in_torchrl(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("torchrl", reason="needs TorchRL: make test-rl")
+    exec(compile(block, PAGE.name, "exec"), {"__name__": "__main__"})
+    assert "torch.Size([4, 20])" in capsys.readouterr().out
