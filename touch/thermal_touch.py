@@ -23,7 +23,16 @@ from ..thermal.stack import converter
 from .contacts import FORCE, ContactReader, sensor_places
 from .draw import draw_fingertips
 from .heat import HeatBalance, HeatState, JoinedHeat
-from .scene import Fingertip, PadPlace, ThermalBody, bodies, glued_elements, pads, refuse_overlap
+from .scene import (
+    Fingertip,
+    Objects,
+    PadPlace,
+    bodies,
+    glued_elements,
+    materials_by_world,
+    pads,
+    refuse_overlap,
+)
 
 SAMPLES = 16
 """Of the voltage that a reading holds."""
@@ -57,11 +66,12 @@ class TouchReading:
 @dataclass(frozen=True, slots=True, eq=False)
 class TouchState:
     """What a ThermalTouch remembers, picklable. It holds at `time` (W,) s and no other; started: whether an update or
-    a reset has said what time it is."""
+    a reset has said what time it is. first: (W, O) °C, what a reset begins with."""
 
     time: np.ndarray
     started: bool
     heat: HeatState
+    first: np.ndarray
     signal: tuple[np.ndarray, np.ndarray, np.ndarray]
     sums: tuple[np.ndarray, np.ndarray, np.ndarray, int]
     period: tuple[np.ndarray, np.ndarray, int]
@@ -73,11 +83,12 @@ class ThermalTouch:
     """Fingertips that feel heat in a MuJoCo model of any make; nothing in it is changed.
 
     fingertips: label -> name of a geom, site or body, or a Fingertip. objects: name of a body or geom -> material or
-    ThermalBody; those that the MJCF describes (<custom><text name="thermograsp:NAME" data="aluminium 5.0"/>) need not
-    be named. dt: s between readings, whole steps of the model. tolerance: K of temperature drop that the heat models
-    are made for. ambient: °C, and air: W/(m2 K), of the air round the objects. chain: the electronics, a
-    SignalChain or one of thermal.SIGNAL_CHAINS. seed: of their noise, until the first reset. worlds: how many, of
-    recorded contact sensors (touch.prepare); None for the one of an MjData. World w's noise is that of seed + w.
+    ThermalBody, or of many worlds a list of one for each; those that the MJCF describes (<custom><text
+    name="thermograsp:NAME" data="aluminium 5.0"/>) need not be named. dt: s between readings, whole steps of the model.
+    tolerance: K of temperature drop that the heat models are made for. ambient: °C, and air: W/(m2 K), of the air round
+    the objects. chain: the electronics, a SignalChain or one of thermal.SIGNAL_CHAINS. seed: of their noise, until the
+    first reset. worlds: how many, of recorded contact sensors (touch.prepare); None for the one of an MjData. World w's
+    noise is that of seed + w.
 
     Heat is advanced once per sample of the converter, a hundredth of a second or the nearest whole part of dt. What two
     fingertips feel through an object follows its box (BodyShape).
@@ -89,7 +100,7 @@ class ThermalTouch:
         model: mujoco.MjModel,
         *,
         fingertips: Mapping[str, str | Fingertip],
-        objects: Mapping[str, str | Material | ThermalBody] | None = None,
+        objects: Objects | None = None,
         dt: float = 0.02,
         tolerance: float = 0.05,
         ambient: float = 24.0,
@@ -114,6 +125,9 @@ class ThermalTouch:
         self._glued = glued_elements(model, self._shapes, ambient)
         self._names = (*self.objects, *self.fingertips, "")
         self._many, count = worlds is not None, worlds or 1
+        self._materials = [tuple(shape.material for shape in self._shapes)] * count
+        self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
+        self._ambient = ambient
         self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
         self._reader = ContactReader(model, self._pads, self._shapes, count)
         self._heat = JoinedHeat(
@@ -141,6 +155,8 @@ class ThermalTouch:
         self._fresh = (
             True  # nothing has been updated since the start: whether pads are inside objects is not known
         )
+        self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
+        self._heat.reset(range(count), self._first)
         first = np.random.SeedSequence().entropy if seed is None else seed
         self._rngs = [np.random.default_rng(first + w) for w in range(count)]  # pyright: ignore[reportOperatorIssue]
         self._rest(range(count))
@@ -205,19 +221,23 @@ class ThermalTouch:
         seed: int | Sequence[int] | None = None,
         temperatures: Mapping[str, float | np.ndarray] | None = None,
         worlds: Sequence[int] | np.ndarray | None = None,
+        objects: Objects | None = None,
     ) -> TouchReading:
         """Everything at its first temperature, at the data's time (without, at that of the next update). seed: of the
         electronics' noise, one for each world or the first world's; None goes on with it. temperatures: °C of objects
-        by name, for this time, one or one for each world. worlds: which, by number or as (W,) booleans; None for
-        all."""
+        by name, for this time, one or one for each of these worlds. worlds: which, by number or as (W,) booleans; None
+        for all. objects: what some are made of and how warm they start from now on, in these worlds, in the
+        constructor's form: one of them or a list of one for each."""
         rows = self._rows(worlds)
         if data is not None:
             if self._many:
                 raise InvalidValueError("many worlds have no MjData: reset(worlds=...)")
             self._check(data)
-        self._fresh = True
         names = self.objects
-        first = np.tile([shape.temperature for shape in self._shapes], (len(rows), 1))
+        made_of, warm = materials_by_world(objects or {}, self._shapes, len(rows), self._ambient)
+        first = self._first[rows]
+        for name, own in warm.items():
+            first[:, names.index(name)] = own
         for name, value in (temperatures or {}).items():
             if name not in names:
                 raise unknown_name("object", name, names)
@@ -228,13 +248,15 @@ class ThermalTouch:
             for one in np.ravel(value):
                 celsius(f"temperatures[{name!r}] (°C)", float(one))
             first[:, names.index(name)] = value
-        self._heat.reset(rows, first)
         if seed is not None:
             seeds = [seed + w for w in rows] if isinstance(seed, int | np.integer) else list(seed)
             if len(seeds) != len(rows):
                 raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
             for w, own in zip(rows, seeds, strict=True):
                 self._rngs[w] = np.random.default_rng(own)
+        self._fresh = True
+        self._make(rows, made_of, warm)
+        self._heat.reset(rows, first)
         reader = self._reader
         reader.touches[rows], reader.beside[rows], reader.broken[rows] = 0.0, 0.0, False
         self._pressed[rows], self._off[rows] = 0.0, 0.0
@@ -266,6 +288,7 @@ class ThermalTouch:
             self._time.copy(),
             self._started,
             self._heat.state(),
+            self._first.copy(),
             (self._filtered.copy(), self._last.copy(), self._voltage.copy()),
             (reader.touches.copy(), reader.beside.copy(), reader.broken.copy(), reader.substeps),
             (self._pressed.copy(), self._off.copy(), self._count),
@@ -282,12 +305,32 @@ class ThermalTouch:
             )
         self._time[:], self._started, self._reading = state.time, state.started, state.reading
         self._heat.set_state(state.heat)
+        self._materials, self._first[:] = list(state.heat.materials), state.first
+        self._reader.set_materials(range(len(self._time)), self._materials)
         reader = self._reader
         reader.touches[:], reader.beside[:], reader.broken[:], reader.substeps = state.sums
         self._filtered[:], self._last[:], self._voltage[:] = state.signal
         self._pressed[:], self._off[:], self._count = state.period
         for rng, own in zip(self._rngs, state.generators, strict=True):
             rng.bit_generator.state = own
+
+    def _make(
+        self, rows: Sequence[int], materials: dict[str, list[Material]], temperatures: dict[str, np.ndarray]
+    ) -> None:
+        """What objects of those worlds are made of, and how warm they start, (rows,) °C, from the next reset on."""
+        if not materials:
+            return
+        names = self.objects
+        for name, own in temperatures.items():
+            self._first[rows, names.index(name)] = own
+        for i, w in enumerate(rows):
+            self._materials[w] = tuple(
+                materials[name][i] if name in materials else known
+                for name, known in zip(names, self._materials[w], strict=True)
+            )
+        chosen = [self._materials[w] for w in rows]
+        self._heat.set_materials(rows, chosen)
+        self._reader.set_materials(rows, chosen)
 
     def _rest(self, rows: Sequence[int]) -> None:
         """Those worlds' electronics as if at rest for as long as a reading reaches back."""

@@ -11,8 +11,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from thermograsp.errors import InvalidValueError, MissingDependencyError
-from thermograsp.touch import ThermalTouch, prepare
+from thermograsp.errors import InvalidValueError, MissingDependencyError, UnknownNameError
+from thermograsp.touch import ThermalBody, ThermalTouch, prepare
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
@@ -138,3 +138,80 @@ def test_a_mujoco_without_contact_sensors_is_told(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("thermograsp.touch.contacts.sensors._SENSOR", None)
     with pytest.raises(MissingDependencyError, match=r"need MuJoCo 3\.3\.5"):
         prepare(mujoco.MjSpec.from_string(hand.scene()), PADS, OBJECTS)
+
+
+def test_worlds_have_materials_and_temperatures_of_their_own(
+    model: mujoco.MjModel, record: np.ndarray
+) -> None:
+    made = ["aluminium", ThermalBody("wood", temperature=5.0), "glass"]
+    record = record[[0, 0, 1]]
+    touch = ThermalTouch(model, fingertips=PADS, objects={"can": made}, worlds=3, seed=5)
+    first = touch.update(record[:, :200])
+    assert first.object_temperature["can"][1] < 10.0  # pyright: ignore[reportIndexIssue]
+    touch.reset(
+        worlds=[0, 2], objects={"can": ["glass", "wood"]}, temperatures={"can": np.array([60.0, 5.0])}
+    )
+    # from then on, also where a reset says nothing of it
+    touch.reset(worlds=[2], seed=9)
+    second = touch.update(record[:, 200:])
+    for world, one in enumerate(made):
+        alone = ThermalTouch(model, fingertips=PADS, objects={"can": one}, worlds=1, seed=5 + world)
+        reading = alone.update(record[world : world + 1, :200])
+        np.testing.assert_array_equal(reading.voltage[0], first.voltage[world])
+        if world == 0:
+            alone.reset(objects={"can": "glass"}, temperatures={"can": 60.0})
+        elif world == 2:
+            alone.reset(objects={"can": "wood"}, temperatures={"can": 5.0})
+            alone.reset(seed=9 + 2)
+        reading = alone.update(record[world : world + 1, 200:])
+        np.testing.assert_array_equal(reading.voltage[0], second.voltage[world])
+        np.testing.assert_array_equal(reading.temperature_drop[0], second.temperature_drop[world])
+    kept = pickle.loads(pickle.dumps(touch.state()))
+    again = many(model, 3)
+    again.set_state(kept)
+    np.testing.assert_array_equal(again.update(record).voltage, touch.update(record).voltage)
+    for balance in touch.balance:  # pyright: ignore[reportGeneralTypeIssues]
+        error = balance.objects.sum() + balance.air - balance.given.sum()
+        assert abs(error) <= 1e-10 * np.abs(balance.given).sum()
+
+
+@pytest.mark.parametrize(
+    ("objects", "error", "said"),
+    [
+        ({"can": ["wood", "glass"]}, InvalidValueError, "3 worlds, got 2"),
+        ({"can": []}, InvalidValueError, "got 0|empty"),
+        ({"can": ["wood", 1.0, "glass"]}, InvalidValueError, "got 1.0"),
+        ({"cann": "wood"}, UnknownNameError, "can"),
+    ],
+)
+def test_materials_that_do_not_fit_are_refused(
+    model: mujoco.MjModel, objects: dict, error: type[Exception], said: str
+) -> None:
+    touch = many(model, 3, seed=1)
+    kept = pickle.dumps(touch.state())
+    with pytest.raises(error, match=said):
+        ThermalTouch(model, fingertips=PADS, objects=objects, worlds=3)
+    with pytest.raises(error, match=said):
+        touch.reset(objects=objects, seed=3)
+    assert pickle.dumps(touch.state()) == kept
+
+
+def test_one_world_changes_its_objects_at_a_reset() -> None:
+    model, data = hand.hand()
+    touch = ThermalTouch(model, fingertips=PADS, objects={"can": "wood"}, chain="ideal")
+    drops = []
+    for objects in ({}, {"can": "aluminium"}):
+        mujoco.mj_resetData(model, data)
+        touch.reset(data, objects=objects)
+        hand.press(data, 10.0)
+        for _ in range(500):
+            mujoco.mj_step(model, data)
+            touch.update(data)
+        drops.append(touch.reading.temperature_drop[0])
+    fresh = ThermalTouch(model, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal")
+    mujoco.mj_resetData(model, data)
+    hand.press(data, 10.0)
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+        fresh.update(data)
+    assert drops[1] == fresh.reading.temperature_drop[0] > drops[0] + 1.0

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -18,6 +19,7 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, SimulationError
 
+from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import CYLINDER, FLAT, conductance, contact
 from ..scene import BodyShape, PadPlace
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
@@ -56,17 +58,35 @@ class ContactReader:
         met = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]
         met += [(objects + f, -1, pad.body) for f, pad in enumerate(pads)]
         self._met = np.array(met, np.int64)
-        self._laws = pair_laws(model, pads, shapes)
-        self._small = constrictions(pads, shapes)
+        self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
+        # of each combination of the objects' materials that there is, and which of them each world has
+        self._known: dict[tuple[Material, ...], int] = {}
+        self._laws, self._small = np.zeros((0, 0, 0, 3), CONTACT_LAW), np.zeros((0, 0, 0))
+        self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
         self._pyramidal = int(model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
-        self._own = (
-            *(self._role, self._pads, self._met, self._laws, self._small, self._pushed),
-            *(self.touches[0], self.beside[0], self._pyramidal),
-        )
+        self.set_materials(range(worlds), [tuple(shape.material for shape in shapes)] * worlds)
         self._of: mujoco.MjData | None = None
         empty = np.zeros((0, 3))
         self._poses = (empty, empty, empty, empty)
+
+    def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
+        """What those worlds' objects are made of from now on."""
+        for w, own in zip(worlds, materials, strict=True):
+            if own not in self._known:
+                self._known[own] = len(self._known)
+                shapes = [replace(s, material=m) for s, m in zip(self._shapes, own, strict=True)]
+                laws = pair_laws(self._model, self._of_pads, shapes)[None]
+                small = constrictions(self._of_pads, shapes)[None]
+                first = len(self._known) == 1
+                self._laws = laws if first else np.concatenate((self._laws, laws))
+                self._small = small if first else np.concatenate((self._small, small))
+            self._which[w] = self._known[own]
+        first = self._which[0]
+        self._own = (
+            *(self._role, self._pads, self._met, self._laws[first], self._small[first], self._pushed),
+            *(self.touches[0], self.beside[0], self._pyramidal),
+        )
 
     def read(self, data: mujoco.MjData, weight: float = 1.0) -> None:
         """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
@@ -110,6 +130,7 @@ class ContactReader:
             self._met,
             self._laws,
             self._small,
+            self._which,
             self._pushed,
             self.touches,
             self.beside,
@@ -177,7 +198,7 @@ def _read(
 @njit(cache=True, error_model="numpy")
 def _sense(
     record, pairs, poses, geoms, turns, offsets, bodies, all_geoms,
-    pads, met, laws, small, pushed, touches, beside, broken,
+    pads, met, laws, small, which, pushed, touches, beside, broken,
 ):  # fmt: skip
     """_read of recorded sensors, world by world."""
     tips, things = len(pads), len(met)
@@ -235,7 +256,8 @@ def _sense(
                 any_met = True
             _press(data, at, pads, frames, f, thing, things, pushed, beside[w])
         if any_met:
-            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, pushed, touches[w], 1.0)
+            own, few = laws[which[w]], small[which[w]]
+            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, own, few, pushed, touches[w], 1.0)
 
 
 @njit(cache=True, error_model="numpy")

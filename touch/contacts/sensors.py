@@ -19,8 +19,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, MissingDependencyError
 
-from ...thermal import Material
-from ..scene import BodyShape, Fingertip, PadPlace, ThermalBody, bodies, pads, rotation
+from ..scene import BodyShape, Fingertip, Objects, PadPlace, bodies, pads, rotation
 
 _SENSOR = getattr(mujoco.mjtSensor, "mjSENS_CONTACT", None)  # from MuJoCo 3.3.5 on
 _CONTACT = (19, 3, 1)  # found, force and pos; their net force; one slot
@@ -48,7 +47,7 @@ class SensorPlaces(NamedTuple):
 def prepare(
     spec: mujoco.MjSpec,
     fingertips: Mapping[str, str | Fingertip],
-    objects: Mapping[str, str | Material | ThermalBody] | None = None,
+    objects: Objects | None = None,
 ) -> mujoco.MjModel:
     """Adds to the spec the contact sensors that ThermalTouch.update reads from recorded sensordata, and returns the
     compiled model. Nothing else changes, but geoms without a name get one. Raises what ThermalTouch does, and

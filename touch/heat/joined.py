@@ -11,11 +11,12 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact (objects, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...thermal import Material
 from ..contacts import FORCE, GluedContacts
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
@@ -53,12 +54,13 @@ class HeatBalance(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeatState:
-    """What the heat remembers. fields: (W, O) the objects' networks; current (W, F, O): each pair's place among its
-    object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted from the air's
+    """What the heat remembers. fields: (W, O) the objects' networks; materials: (W, O); current (W, F, O): each pair's
+    place among its object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted from the air's
     temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with thermostats of
     finite power or heaters of their own."""
 
     fields: tuple[tuple[BodyField, ...], ...]
+    materials: tuple[tuple[Material, ...], ...]
     current: np.ndarray
     states: np.ndarray
     started: np.ndarray
@@ -97,15 +99,16 @@ class JoinedHeat:
             [np.concatenate((s.size, s.extent, s.centre, s.axes.ravel())) for s in self._shapes]
         )
         count, objects, fields = len(pads), len(shapes), len(shapes) + len(pads)
-        self._known: dict[tuple[int, tuple[Place, ...]], BodyField] = {}
-        self._bare = tuple(self._field(o, ()) for o in range(objects))
-        self._held_by = np.array([field.heat[0] for field in self._bare])
+        self._known: dict[tuple[int, Material, tuple[Place, ...]], BodyField] = {}
+        self._materials = [tuple(shape.material for shape in shapes)] * worlds
+        bare = self._bare(self._materials[0])
+        self._held_by = np.tile([field.heat[0] for field in bare], (worlds, 1))
         self._warm = np.tile(np.array([pad.temperature for pad in pads]) - ambient, (worlds, 1))
         self._rows = _padded([tip.side.outputs["drop"] for tip in self._tips])
         self._elements = _padded([tip.side.outputs["element"] for tip in self._tips])
         self._uniform = _padded([field.uniform for field in self._tip_fields])
         self._on = np.array([-1 if pad.glued is None else pad.glued for pad in pads])
-        self._fields = [list(self._bare) for _ in range(worlds)]
+        self._fields = [list(bare) for _ in range(worlds)]
         self._current = np.full((worlds, count, objects), -1)
         self._faces = np.full((worlds, count, objects), -1)
         self._middles = np.zeros((worlds, count, objects, 2))
@@ -129,9 +132,10 @@ class JoinedHeat:
     def reset(self, worlds: Sequence[int], temperatures: np.ndarray) -> None:
         """Those worlds' fields at their first temperatures; the objects' (rows, O) in °C."""
         for w, celsius in zip(worlds, temperatures, strict=True):
-            self._fields[w] = list(self._bare)
+            self._fields[w] = self._bare(self._materials[w])
+            self._held_by[w] = [field.heat[0] for field in self._fields[w]]
             self._x[w] = 0.0
-            self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by
+            self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by[w]
             for e in np.flatnonzero(self._on >= 0).tolist():
                 warm = celsius[self._on[e]] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
@@ -144,6 +148,11 @@ class JoinedHeat:
         self._closed[rows], self._stale[rows] = False, False
         self._given[rows], self._air[rows], self.drop[rows] = 0.0, 0.0, 0.0
         self._started[rows] = self._held()[rows]
+
+    def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
+        """What those worlds' objects are made of from now on; a reset of these worlds must follow."""
+        for w, own in zip(worlds, materials, strict=True):
+            self._materials[w] = own
 
     def advance(self, touches: np.ndarray, substeps: int) -> None:
         """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps."""
@@ -251,6 +260,7 @@ class JoinedHeat:
         """A copy of what it remembers."""
         return HeatState(
             tuple(tuple(fields) for fields in self._fields),
+            tuple(self._materials),
             self._current.copy(),
             self._x.copy(),
             self._started.copy(),
@@ -262,11 +272,11 @@ class JoinedHeat:
 
     def set_state(self, state: HeatState) -> None:
         """Puts it into a state taken by `state`."""
-        for o, field in ((o, field) for fields in state.fields for o, field in enumerate(fields)):
-            self._known.setdefault((o, field.places), field)
-        self._fields = [
-            [self._known[o, field.places] for o, field in enumerate(fields)] for fields in state.fields
-        ]
+        self._materials = list(state.materials)
+        for w, (own, materials) in enumerate(zip(state.fields, state.materials, strict=True)):
+            keys = [(o, materials[o], field.places) for o, field in enumerate(own)]
+            self._fields[w] = [self._known.setdefault(*known) for known in zip(keys, own, strict=True)]
+            self._held_by[w] = [field.heat[0] for field in self._fields[w]]
         self._current[:] = state.current
         self._x = state.states.copy()
         self._given[:], self._air[:], self._started[:] = state.given, state.air, state.started
@@ -289,15 +299,19 @@ class JoinedHeat:
             held[:, self._on[e]] += within[:, e]
         return held
 
-    def _field(self, o: int, places: tuple[Place, ...]) -> BodyField:
-        if (o, places) not in self._known:
-            shape = self._shapes[o]
-            self._known[o, places] = (
+    def _bare(self, materials: tuple[Material, ...]) -> list[BodyField]:
+        """Objects of those materials that nothing has touched."""
+        return [self._field(o, own, ()) for o, own in enumerate(materials)]
+
+    def _field(self, o: int, material: Material, places: tuple[Place, ...]) -> BodyField:
+        if (o, material, places) not in self._known:
+            shape = replace(self._shapes[o], material=material)
+            self._known[o, material, places] = (
                 touched(shape, self._film, places, self._tips, self._level)
                 if places
                 else untouched(shape, self._film)
             )
-        return self._known[o, places]
+        return self._known[o, material, places]
 
     def _forget(self) -> None:
         """Systems are made anew when they are wanted."""
@@ -306,7 +320,7 @@ class JoinedHeat:
         self._numbers: dict[BodyField, int] = {}
         self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
         in_use = {field for fields in self._fields for field in fields}
-        self._known = {key: field for key, field in self._known.items() if field in in_use or not key[1]}
+        self._known = {key: field for key, field in self._known.items() if field in in_use or not key[2]}
         for w in range(len(self._fields)):
             self._renumber(w)
         self._plan[:] = -1
@@ -369,7 +383,7 @@ class JoinedHeat:
         idle = [number for number in kept if number not in used]
         if len(idle) > MOST_PLACES:
             kept.remove(idle[0])
-        after = self._field(o, (*(before.places[number] for number in kept), place))
+        after = self._field(o, self._materials[w][o], (*(before.places[number] for number in kept), place))
         own = carried(before, after, self._level.patterns) @ self._x[w, o, : len(before.rates)]
         current[:] = [kept.index(known) if known in kept else -1 for known in current.tolist()]
         current[place.fingertip] = len(after.places) - 1

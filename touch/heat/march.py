@@ -79,9 +79,9 @@ def march(
 
     touches: (W, F, T, columns), sums over so many substeps. warm: (W, F) K, the thermostats above the air. plan: (W, C)
     the groups' systems, -1 behind the last. fade: (networks, K), what a state keeps in a step alone; nets: (W, T) which
-    of them each field is. held: (O,) J of the mean's state. rows: (F, K) of the drop. x: (W, T, K), given: (W, F, T) J
-    and air: (W,) J go on in place; drop: (W, F) K is filled. busy: room (T,)."""
-    worlds, fields, objects = x.shape[0], x.shape[1], len(held)
+    of them each field is. held: (W, O) J of the mean's state. rows: (F, K) of the drop. x: (W, T, K), given: (W, F, T)
+    J and air: (W,) J go on in place; drop: (W, F) K is filled. busy: room (T,)."""
+    worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
     most, wide = 1, 1
     for w in range(worlds):
         for c in range(plan.shape[1]):
@@ -150,7 +150,7 @@ def march(
             for k in range(x.shape[2]):
                 x[w, b, k] *= fade[nets[w, b], k]
             if b < objects:
-                air[w] += held[b] * (before - x[w, b, 0])
+                air[w] += held[w, b] * (before - x[w, b, 0])
         for f in range(len(rows)):
             total = 0.0
             for k in range(rows.shape[1]):

@@ -1,6 +1,6 @@
 """What stands in somebody's MuJoCo model: fingertips with their pads, and the objects that they may touch."""
 
-from .bodies import PREFIX, BodyShape, SensorElement, ThermalBody, bodies
+from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodies, materials_by_world
 from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, rotation, triangles
 from .fingertips import Fingertip, PadPlace, pads
@@ -12,6 +12,7 @@ __all__ = [
     "BodyShape",
     "Face",
     "Fingertip",
+    "Objects",
     "PadPlace",
     "SensorElement",
     "ThermalBody",
@@ -22,6 +23,7 @@ __all__ = [
     "geoms_of",
     "glued_elements",
     "largest_face",
+    "materials_by_world",
     "pads",
     "refuse_overlap",
     "rotation",

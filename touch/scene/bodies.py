@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, celsius
+from thermograsp.errors import InvalidValueError, celsius, unknown_name
 
 from ...thermal import Material, SensorStack
 from ...thermal import material as named_material
@@ -89,13 +89,23 @@ class BodyShape:
         return float(np.prod(self.size)) * self.material.volumetric_heat_capacity
 
 
-def bodies(
-    model: mujoco.MjModel, objects: Mapping[str, str | Material | ThermalBody] | None, ambient: float
-) -> tuple[BodyShape, ...]:
-    """The objects of a model: those asked for, and those that its MJCF names. Raises UnknownNameError and
-    InvalidValueError."""
-    wanted: dict[str, str | Material | ThermalBody] = dict(written(model))
-    wanted.update(objects or {})
+Made = str | Material | ThermalBody
+"""What an object is made of."""
+Objects = Mapping[str, Made | Sequence[Made]]
+"""By name; a sequence has one for each world."""
+
+
+def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tuple[BodyShape, ...]:
+    """The objects of a model: those asked for, and those that its MJCF names; of many worlds, the first one's. Raises
+    UnknownNameError and InvalidValueError."""
+    wanted: dict[str, Made] = dict(written(model))
+    for name, one in (objects or {}).items():
+        every = one if isinstance(one, list | tuple) else [one]
+        if not every:
+            raise InvalidValueError(
+                f"object {name!r}: its list of materials is empty: give one for each world"
+            )
+        wanted[name] = every[0]
     if not wanted:
         raise InvalidValueError(
             'objects: none given; say what may be touched, such as {"can": "aluminium"}, or write '
@@ -110,6 +120,40 @@ def bodies(
                     f"objects {owner[geom]!r} and {shape.name!r} share geom {geom_label(model, geom)}: name it once"
                 )
     return tuple(found)
+
+
+def materials_by_world(
+    told: Objects, shapes: Sequence[BodyShape], worlds: int, ambient: float
+) -> tuple[dict[str, list[Material]], dict[str, np.ndarray]]:
+    """By name of the objects told of: their materials in each world, and their first temperatures (worlds,) °C. shapes:
+    what they are otherwise. Raises InvalidValueError and UnknownNameError."""
+    known = {shape.name: shape for shape in shapes}
+    materials, temperatures = {}, {}
+    for name, one in told.items():
+        if name not in known:
+            raise unknown_name("object", name, known)
+        every = list(one) if isinstance(one, list | tuple) else [one] * worlds
+        if len(every) != worlds:
+            raise InvalidValueError(
+                f"object {name!r}: give one material or one for each of {worlds} worlds, got {len(every)}"
+            )
+        bodies_ = [_thermal_body(name, each) for each in every]
+        if any(tuple(body.elements) != known[name].elements for body in bodies_ if body.elements):
+            raise InvalidValueError(f"object {name!r}: its elements must be the same in every world")
+        materials[name] = [named_material(body.material) for body in bodies_]
+        first = [ambient if body.temperature is None else float(body.temperature) for body in bodies_]
+        temperatures[name] = np.array(first)
+    return materials, temperatures
+
+
+def _thermal_body(name: str, told: object) -> ThermalBody:
+    if isinstance(told, ThermalBody):
+        return told
+    if not isinstance(told, str | Material):
+        raise InvalidValueError(
+            f"object {name!r}: give a material's name, a Material or a ThermalBody, got {told!r}"
+        )
+    return ThermalBody(told)
 
 
 def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
@@ -134,17 +178,9 @@ def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
     return found
 
 
-def _body(
-    model: mujoco.MjModel, name: str, told: str | Material | ThermalBody | None, ambient: float
-) -> BodyShape:
+def _body(model: mujoco.MjModel, name: str, told: Made, ambient: float) -> BodyShape:
     kind, number = find(model, name, ("body", "geom"), "object")
-    thing = told if isinstance(told, ThermalBody) else None
-    if thing is None:
-        if not isinstance(told, str | Material):
-            raise InvalidValueError(
-                f"object {name!r}: give a material's name, a Material or a ThermalBody, got {told!r}"
-            )
-        thing = ThermalBody(told)
+    thing = _thermal_body(name, told)
     geoms = geoms_of(model, kind, number)
     if not geoms:
         raise InvalidValueError(
