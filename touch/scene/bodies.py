@@ -100,12 +100,7 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
     UnknownNameError and InvalidValueError."""
     wanted: dict[str, Made] = dict(written(model))
     for name, one in (objects or {}).items():
-        every = one if isinstance(one, list | tuple) else [one]
-        if not every:
-            raise InvalidValueError(
-                f"object {name!r}: its list of materials is empty: give one for each world"
-            )
-        wanted[name] = every[0]
+        wanted[name] = _first(name, one)
     if not wanted:
         raise InvalidValueError(
             'objects: none given; say what may be touched, such as {"can": "aluminium"}, or write '
@@ -120,6 +115,14 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
                     f"objects {owner[geom]!r} and {shape.name!r} share geom {geom_label(model, geom)}: name it once"
                 )
     return tuple(found)
+
+
+def _first(name: str, told: Made | Sequence[Made]) -> Made:
+    if isinstance(told, str | Material | ThermalBody) or not isinstance(told, list | tuple):
+        return told  # pyright: ignore[reportReturnType]
+    if not told:
+        raise InvalidValueError(f"object {name!r}: its list of materials is empty: give one for each world")
+    return told[0]
 
 
 def materials_by_world(
