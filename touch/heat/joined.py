@@ -56,8 +56,8 @@ class HeatBalance(NamedTuple):
 class HeatState:
     """What the heat remembers. fields: (W, O) the objects' networks; materials: (W, O); current (W, F, O): each pair's
     place among its object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted
-    from the air's temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with thermostats of
-    finite power or heaters of their own."""
+    from the air's temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with
+    thermostats of finite power or heaters of their own."""
 
     fields: tuple[tuple[BodyField, ...], ...]
     materials: tuple[tuple[Material, ...], ...]

@@ -1,0 +1,97 @@
+"""What mujoco.rollout and mujoco.batch record of a prepared model, beside a loop over mj_step."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+import importlib
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from thermograsp.touch import ThermalTouch, prepare
+
+_spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
+assert _spec and _spec.loader
+hand = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(hand)
+
+PADS = {name: f"{name}_pad" for name in hand.FINGERS}
+OBJECTS = {"can": "aluminium"}
+FORCES = (10.0, 4.0)  # N of each world
+STEPS, CHUNK = 400, 50
+
+
+@pytest.fixture(scope="module")
+def model() -> mujoco.MjModel:
+    if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
+        pytest.skip("this MuJoCo has no contact sensors: it needs 3.3.5")
+    return prepare(mujoco.MjSpec.from_string(hand.scene()), PADS, OBJECTS)
+
+
+@pytest.fixture(scope="module")
+def looped(model: mujoco.MjModel) -> tuple[np.ndarray, np.ndarray]:
+    """Of a plain loop, (worlds, fingertips, samples) V and (worlds, fingertips) K."""
+    volts, drops = [], []
+    for force in FORCES:
+        data = mujoco.MjData(model)
+        touch = ThermalTouch(model, fingertips=PADS, objects=OBJECTS, chain="ideal")
+        hand.press(data, force)
+        for _ in range(STEPS):
+            mujoco.mj_step(model, data)
+            touch.update(data)
+        volts.append(touch.reading.voltage)
+        drops.append(touch.reading.temperature_drop)
+    return np.array(volts), np.array(drops)
+
+
+def controls(model: mujoco.MjModel) -> np.ndarray:
+    """(worlds, actuators)."""
+    found = []
+    for force in FORCES:
+        data = mujoco.MjData(model)
+        hand.press(data, force)
+        found.append(data.ctrl.copy())
+    return np.array(found)
+
+
+def agrees(touch: ThermalTouch, looped: tuple[np.ndarray, np.ndarray]) -> None:
+    """A contact sensor tells the net force of a pair, at its place: the heat is that of single contacts to 1 %."""
+    volts, drops = looped
+    reading = touch.reading
+    assert reading.time == pytest.approx(STEPS * touch.model.opt.timestep)
+    assert (drops > 1.0).all() and (reading.touching == (("can",) * 3,) * 2)
+    np.testing.assert_allclose(reading.temperature_drop, drops, rtol=0.01)
+    np.testing.assert_allclose(reading.voltage, volts, rtol=0.01, atol=1e-5)
+
+
+def test_rollout_records_what_a_loop_feels(
+    model: mujoco.MjModel, looped: tuple[np.ndarray, np.ndarray]
+) -> None:
+    rollout: Any = importlib.import_module("mujoco.rollout")
+    whole = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    start, data = np.empty(mujoco.mj_stateSize(model, whole)), mujoco.MjData(model)
+    mujoco.mj_getState(model, data, start, whole)
+    state, control = np.tile(start, (len(FORCES), 1)), controls(model)[:, None]
+    touch = ThermalTouch(model, fingertips=PADS, objects=OBJECTS, worlds=len(FORCES), chain="ideal")
+    for _ in range(STEPS // CHUNK):
+        states, record = rollout.rollout(model, data, state, np.repeat(control, CHUNK, axis=1))
+        state = states[:, -1]
+        touch.update(record)
+    agrees(touch, looped)
+
+
+def test_batch_records_what_a_loop_feels(
+    model: mujoco.MjModel, looped: tuple[np.ndarray, np.ndarray]
+) -> None:
+    batch = pytest.importorskip("mujoco.batch", reason="mujoco.batch needs MuJoCo 4.0")
+    worlds = batch.Batch(model, len(FORCES), 1)
+    worlds.bind("ctrl")[:] = controls(model)
+    touch = ThermalTouch(model, fingertips=PADS, objects=OBJECTS, worlds=len(FORCES), chain="ideal")
+    for _ in range(STEPS // CHUNK):
+        record = worlds.rollout(nstep=CHUNK, record=("sensordata",))["sensordata"]
+        touch.update(record)
+    agrees(touch, looped)
