@@ -10,6 +10,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from thermograsp.errors import InvalidValueError, unknown_name
+from thermograsp.opengl import has_display
 
 from ..spaces import Observation
 from ..tasks import Task
@@ -40,7 +41,13 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
             raise unknown_name("render_mode", render_mode, RENDER_MODES)
         check_keywords(type(self), config)
         self.batch = GraspBatch(1, task=task, **config)
-        self.metadata = {**self.metadata, "render_fps": frames_per_second(self.batch.dt)}
+        # an instance lists what can be drawn here, which Gymnasium's check_env tries
+        modes = [mode for mode in RENDER_MODES if mode in ("rgb_array", render_mode) or has_display()]
+        self.metadata = {
+            **self.metadata,
+            "render_modes": modes,
+            "render_fps": frames_per_second(self.batch.dt),
+        }
         self.observation_space: gymnasium.spaces.Dict = self.batch.observation_space  # pyright: ignore
         self.action_space = self.batch.action_space
         self.render_mode = render_mode

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+import gymnasium
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.utils.seeding import np_random
@@ -41,23 +42,29 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
     autoreset_mode: what becomes of an environment that ended, one of Gymnasium's, or its value. NEXT_STEP: the next
     step resets it and ignores its action. SAME_STEP: it is reset at once; its last observation and info are in
     info["final_obs"] and info["final_info"]. DISABLED: it is to be reset with options={"reset_mask": ...} before the
-    next step. max_episode_steps: truncates sooner than the task does.
+    next step. max_episode_steps: truncates sooner than the task does. render_mode: "rgb_array" or None; camera, width,
+    height: of each environment's picture.
     """
 
-    metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": []}  # noqa: RUF012
+    metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": ["rgb_array"]}  # noqa: RUF012
 
     def __init__(
         self,
         task: Task,
         num_envs: int = 1,
         *,
-        render_mode: None = None,
+        render_mode: str | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         max_episode_steps: int | None = None,
+        camera: str = "overview",
+        width: int = 480,
+        height: int = 360,
         **config: Any,
     ) -> None:
-        if render_mode is not None:
-            raise InvalidValueError("the vector environment draws nothing: use the single one to render")
+        if render_mode not in (None, "rgb_array"):
+            raise InvalidValueError(
+                f"render_mode {render_mode!r}: a vector environment draws pictures, 'rgb_array', and opens no windows"
+            )
         if num_envs < 1:
             raise InvalidValueError(f"num_envs must be at least 1, got {num_envs}")
         if max_episode_steps is not None and max_episode_steps < 1:
@@ -80,6 +87,9 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         self._ended, self._steps = np.zeros(num_envs, bool), np.zeros(num_envs, int)
         self._spec: EnvSpec | None = None
         self._attributes: dict[str, list[Any]] = {}
+        self.render_mode = render_mode
+        self._picture = (camera, width, height)
+        self._renderer: Any = None
 
     @property
     def spec(self) -> EnvSpec | None:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -212,9 +222,28 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
             )
         return tuple(one(*args, **keywords) if callable(one) else one for one in found)
 
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """A picture (height, width, 3) uint8 of each environment, as the single one's. Raises MissingDependencyError,
+        naming the packages, where there is no GL library, and InvalidValueError before the first reset."""
+        self.batch.require_open("render")
+        if self.render_mode is None:
+            gymnasium.logger.warn("render() without a render_mode: give render_mode='rgb_array'")
+            return None
+        if self.batch.reading is None:
+            raise InvalidValueError("call reset before render")
+        if self._renderer is None:
+            from ..pictures import GraspPicture  # loads GL
+
+            self._renderer = GraspPicture(self.batch.plant, self.render_mode, *self._picture)
+        frames = (self._renderer.draw(self.batch.reading, row) for row in range(self.num_envs))
+        return tuple(frames)
+
     def close_extras(self, **kwargs: Any) -> None:
-        """Releases the plant."""
+        """Frees the pictures' buffers and releases the plant."""
         del kwargs
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
         self.batch.close()
 
     def _restart(

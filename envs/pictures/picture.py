@@ -16,7 +16,7 @@ from .render import Renderer, Window
 
 
 class GraspPicture:
-    """Draws environment 0 of a simulated plant. mode: "rgb_array" or "human". Raises MissingDependencyError where there
+    """Draws environments of a simulated plant. mode: "rgb_array" or "human". Raises MissingDependencyError where there
     is no GL library or, for "human", no display."""
 
     def __init__(self, plant: Any, mode: str, camera: str, width: int, height: int) -> None:
@@ -26,14 +26,14 @@ class GraspPicture:
         self._window = Window(plant.mechanics) if mode == "human" else None
         self._renderer = Renderer(plant.mechanics, width=width, height=height) if mode != "human" else None
 
-    def draw(self, reading: Reading | None) -> np.ndarray | None:
-        """(height, width, 3) uint8, or None where a window shows it."""
-        celsius = temperatures(reading, self._plant.mechanics.names)
+    def draw(self, reading: Reading | None, row: int = 0) -> np.ndarray | None:
+        """(height, width, 3) uint8 of the environment `row`, or None where a window shows the first."""
+        celsius = temperatures(reading, self._plant.mechanics.names, row)
         if self._window is not None:
             self._window.show(temperatures=celsius)
             return None
         assert self._renderer is not None
-        return self._renderer.frame(camera=self._camera, temperatures=celsius)
+        return self._renderer.frame(row, camera=self._camera, temperatures=celsius)
 
     def close(self) -> None:
         """Frees window and buffers."""

@@ -77,8 +77,7 @@ def test_a_closed_environment_says_so(env: Any):
     shut = closed(env())
     action = shut.action_space.sample()
     calls = {"step": lambda: shut.step(action), "reset": lambda: shut.reset(seed=1)}
-    if not isinstance(shut, gymnasium.vector.VectorEnv):
-        calls["render"] = shut.render
+    calls["render"] = shut.render
     for name, call in calls.items():
         with pytest.raises(gymnasium.error.ClosedEnvironmentError, match=f"{name} .*closed: make a new one"):
             call()
@@ -106,6 +105,16 @@ def test_closed_before_the_first_reset():
             env.reset(seed=0)
         with pytest.raises(gymnasium.error.ClosedEnvironmentError):
             env.step(env.action_space.sample())
+
+
+@pytest.mark.parametrize("env_id", ["Grasp", "Identify", "Sort"])
+def test_gymnasiums_full_check_passes_without_a_display(env_id: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("thermograsp.envs.gym.single.has_display", lambda: False)
+    env = gymnasium.make(f"thermograsp/{env_id}-v0", seconds=0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(env.unwrapped)
+    env.close()
 
 
 def test_an_environment_is_made_again_from_its_spec():

@@ -145,3 +145,25 @@ def test_actions_of_another_shape_are_refused_and_change_nothing(action: object)
         env.step(action)  # pyright: ignore[reportArgumentType]
     assert np.array_equal(env.state().batch.history, before.batch.history)
     env.close()
+
+
+def test_a_picture_of_each_environment_is_the_single_ones() -> None:
+    size = {"width": 64, "height": 48, "seconds": 0.1, "render_mode": "rgb_array"}
+    vector = GraspVectorEnv(2, **size)
+    vector.reset(seed=4)
+    vector.step(np.zeros((2, 3), np.float32))
+    frames = vector.render()
+    assert frames is not None and len(frames) == 2
+    for row, frame in enumerate(frames):
+        single = GraspEnv(**size)
+        single.reset(seed=4 + row)
+        single.step(np.zeros(3, np.float32))
+        assert frame.shape == (48, 64, 3) and np.array_equal(frame, single.render())
+        single.close()
+    assert not np.array_equal(*frames)
+    vector.close()
+
+
+def test_a_vector_opens_no_window() -> None:
+    with pytest.raises(InvalidValueError, match="opens no windows"):
+        GraspVectorEnv(2, render_mode="human")
