@@ -38,7 +38,7 @@ test-backends: build/.backends
 
 # What needs stable-baselines3, PyTorch and TorchRL; without them `make test` skips it.
 test-rl: build/.rl
-	$(PY) -m pytest $(TEST_FLAGS) tests/rl
+	THERMOGRASP_SLOW=1 $(PY) -m pytest $(TEST_FLAGS) tests/rl tests/docs/test_notebooks.py
 
 # Grippers from other packages; without them `make test` skips them.
 test-grippers: build/.grippers
