@@ -1,6 +1,7 @@
 """Boxes under fingertips: their networks from heat kernels, made as they are touched, and what goes on in them.
 
-An object remembers MOST_PLACES places, those under fingertips among them; what heat did elsewhere is in its mean.
+An object remembers MOST_PLACES places, those under fingertips among them; what flowed elsewhere counts as if through
+the nearest of them, or is in its mean.
 
 B: rows, F: fingertips, S: substeps.
 """
@@ -15,6 +16,7 @@ from threadpoolctl import ThreadpoolController
 
 from ...thermal import Material, SensorStack
 from ...thermal.batch import (
+    FIXED_LEVEL,
     HELD,
     POLE_HEAT,
     WHERE,
@@ -37,7 +39,7 @@ from .places import BOX_ROW, MOST_PLACES, Place, Rectangle, Touched, place_of, s
 
 MOST_DIFFERENCE = 15.5
 """K between sensor and object up to which a tolerance is meant to be kept."""
-_LEVEL = Resolution(10, 3)
+_SOON = 1.0  # s, how warm a place will be then decides whether it is remembered
 _KEPT = 512  # networks
 
 _BLAS = ThreadpoolController()
@@ -47,7 +49,7 @@ class BoxHeat:
     """The boxes among `rows` rows. dt: s of a heat sample. tolerance: K."""
 
     def __init__(self, rows: int, tolerance: float, dt: float) -> None:
-        self._level = _LEVEL if tolerance >= LEAST_TOLERANCE else None
+        self._level = FIXED_LEVEL if tolerance >= LEAST_TOLERANCE else None
         self._dt = dt
         self._tips = 0
         self._stack: SensorStack | None = None
@@ -87,7 +89,7 @@ class BoxHeat:
                 len(self._rows), self._tips, MOST_PLACES, level.patterns, whole, self._dt
             )
         self._bodies[row] = body, film
-        self._touched[row] = Touched((), (-1,) * self._tips, ())
+        self._touched[row] = Touched((), (-1,) * self._tips)
         mine = self._rows[row]
         mine["size"], mine["face"], mine["boxed"] = body.spec.size, -1, 1
         mine["normal"] = 3 - int(body.law["across"].sum())
@@ -129,10 +131,14 @@ class BoxHeat:
         for f in (*fingertips, *new):
             place = place_of(mine, width, middles[f])
             if place is not None:
-                idle = [not state[self._field(k)].any() for k in range(len(touched.places))]
-                touched, gone = touched.moved(f, place, idle, size, width)
-                if gone is not None:
+                warmth = [self._warmth(row, k, state) for k in range(len(touched.places))]
+                touched, given_up = touched.moved(f, place, warmth, size, width)
+                if given_up is not None:
+                    gone, heir = given_up
+                    field = state[self._field(gone)].copy()
                     state[self._field(gone)] = 0.0
+                    if heir >= 0:
+                        state[self._field(heir)] += field
         if not touched.places:
             return
         tips = [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)]
@@ -188,6 +194,13 @@ class BoxHeat:
         each = self.tables.patterns * self.tables.rates.shape[1]
         first = 1 + self.tables.rates.shape[1] + place * each
         return slice(first, first + each)
+
+    def _warmth(self, row: int, place: int, state: np.ndarray) -> float:
+        """K at a place, _SOON from now, from what has flowed through it alone. A place that is being made has none."""
+        tables = self.tables
+        most, even = tables.places * tables.patterns, place * tables.patterns
+        field = state[self._field(place)][: tables.rates.shape[1]] * np.exp(-_SOON * tables.rates[0])
+        return abs(float((tables.body[row, even * (most + 1)] * field).sum()))
 
     def _keep_heat(self, state: np.ndarray, before: np.ndarray, after: np.ndarray) -> None:
         """Puts the heat that a fingertip's states (n,) have by one row and not by the other into its slowest."""

@@ -14,12 +14,13 @@ from thermograsp.compiled import njit
 
 MOST_PLACES = 4
 """Of a box that are remembered, those under fingertips among them."""
-NEAR, EDGE = 1 / 4, 1 / 15
+NEAR, EDGE = 1 / 9, 1 / 15
 """Of the sensor's width: how far a fingertip may slide, and an edge of what is covered of its face, on one place."""
 _LEAST = 1 / 16  # of the sensor's width, that a place covers at least where the box is as wide
-_LATTICE, _FINE_LATTICE = 2e-3, 1e-4
-"""m, on which later grasps share a network: of places half a sensor's width and more from their face's edges, counted
-from its middle, where the coarse one changes drops by under .005 K, and of others."""
+_LATTICE, _FINE_LATTICE = 5e-4, 1e-4
+"""m, on which later grasps share a network. Coarse: of places half a sensor's width and more from their face's edges,
+counted from its middle, in a box that nothing has warmed. How far a place is from a warm one counts for .1 K a mm in
+glass."""
 
 Rectangle = tuple[tuple[float, float], tuple[float, float]]
 """(low, high) along both axes of a face."""
@@ -70,34 +71,50 @@ class Place:
 @dataclass(frozen=True, slots=True)
 class Touched:
     """Where a box has been touched; picklable. places: by number. contacts: (F,) the number of each fingertip's, -1 for
-    none. order: of the numbers, first that which was taken up the longest ago."""
+    none."""
 
     places: tuple[Place, ...]
     contacts: tuple[int, ...]
-    order: tuple[int, ...]
 
-    def moved(self, fingertip: int, place: Place, idle: Sequence[bool], size: Sequence[float], width: float):
-        """(the same with the fingertip there, the number whose field is lost or None). Its place is one that serves; or
-        replaces its last if that is idle, its field and all; or the one taken up the longest ago by nobody who is
-        still there, if there would be too many."""
+    def moved(
+        self, fingertip: int, place: Place, warmth: Sequence[float], size: Sequence[float], width: float
+    ) -> tuple[Touched, tuple[int, int] | None]:
+        """(the same with the fingertip there, numbers of a place that is given up and of its heir, or None). Its place
+        is one that serves; or replaces its last if nothing has flowed there; or another that no fingertip is on, if
+        there would be too many. That is the one whose heat is least far from its heir by warmth, the nearest on its
+        face; the heir is -1 where none is within a sensor's width, and the place itself where it is the new one that
+        has taken its number. warmth: K of each place, 0 where nothing has flowed."""
         contacts, places = list(self.contacts), list(self.places)
         others = {number for f, number in enumerate(contacts) if f != fingertip}
-        last, lost = contacts[fingertip], None
+        last, given_up = contacts[fingertip], None
         free = [number for number in range(len(places)) if number not in others]
         serving = [number for number in free if places[number].serves(place, size, width)]
         if serving:
             number = serving[0]
-        elif last in free and idle[last]:
+        elif last in free and warmth[last] == 0:
             number = last
         elif len(places) < MOST_PLACES:
             number = len(places)
         else:
-            number = lost = next(number for number in self.order if number in free)
+            heirs = {number: _heir(number, places, place, width) for number in free}
+            number = min(free, key=lambda number: warmth[number] * heirs[number][0] ** 2)
+            given_up = number, heirs[number][1]
         if not serving:
-            places[number : number + 1] = [_on_lattice(place, size, width)]
+            places[number : number + 1] = [_on_lattice(place, size, width, coarse=not any(warmth))]
         contacts[fingertip] = number
-        order = (*(each for each in self.order if each != number), number)
-        return Touched(tuple(places), tuple(contacts), order), lost
+        return Touched(tuple(places), tuple(contacts)), given_up
+
+
+def _heir(number: int, places: Sequence[Place], new: Place, width: float) -> tuple[float, int]:
+    """(m, at most a sensor's width, and whose) of the place nearest to that one on its face, with the new one in its
+    number."""
+    given_up, rest = places[number], [*places[:number], new, *places[number + 1 :]]
+    nearest = width, -1
+    for other, place in enumerate(rest):
+        if place.face == given_up.face:
+            apart = float(np.hypot(*np.subtract(place.middle, given_up.middle)))
+            nearest = min(nearest, (apart, other))
+    return nearest
 
 
 def place_of(row: np.void, width: float, middle: np.ndarray) -> Place | None:
@@ -115,13 +132,13 @@ def place_of(row: np.void, width: float, middle: np.ndarray) -> Place | None:
     return Place(2 * normal + int(middle[normal] > 0), (along[0], along[1]))
 
 
-def _on_lattice(place: Place, size: Sequence[float], width: float) -> Place:
-    """Where the sensor's face lies well within the box's, its distance to edges hardly counts."""
+def _on_lattice(place: Place, size: Sequence[float], width: float, *, coarse: bool) -> Place:
+    """coarse: that one is asked for, where the sensor's face lies well within the box's."""
     along = []
     for at, side in zip(place.middle, place.sides(size), strict=True):
         off, room = at - side / 2, side / 2 - width
-        coarse, fine = (side / 2 + step * round(off / step) for step in (_LATTICE, _FINE_LATTICE))
-        along.append(coarse if abs(coarse - side / 2) <= room and abs(off) <= room else fine)
+        rough, fine = (side / 2 + step * round(off / step) for step in (_LATTICE, _FINE_LATTICE))
+        along.append(rough if coarse and abs(rough - side / 2) <= room and abs(off) <= room else fine)
     return Place(place.face, (along[0], along[1]))
 
 

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from .face import CELLS, FaceField, cosine_means, face_field, face_means, face_state, step_face
     from .fingertips import ArrayFingertips, FingertipState, array_fingertips
     from .fixed_rates import (
+        FIXED_LEVEL,
         HELD,
         POLE_HEAT,
         RATES,
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CELLS",
+    "FIXED_LEVEL",
     "HELD",
     "LEAST_STATES",
     "POLE_HEAT",
@@ -116,6 +118,7 @@ __getattr__ = opened(
             "array_fingertips",
         ),
         "fixed_rates": (
+            "FIXED_LEVEL",
             "HELD",
             "POLE_HEAT",
             "RATES",

@@ -20,23 +20,23 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..kernels import Side
+from ..kernels import Resolution, Side
 from ..network import POLES, WEIGHTS
 from ..numerics import FAST
 from .carry import TipRows
-from .residues import residues
-from .residues import rows as shared_rows
+from .residues import summed
 
-SHARED = np.geomspace(0.01, 1e3, 10)
-"""1/s: the rates of all networks, on which an impedance is within 3e-4 of the whole contact's."""
-_CONTACT = 0.4  # K/W of a good contact with a sensor's face, beside which errors of impedances are weighed
+FIXED_LEVEL = Resolution(12, 3, slowest=2e-3)
+"""Of all networks; slower ones than a touch lasts, since in sheets of poor conductors heat stays where it is."""
+SHARED = FIXED_LEVEL.decay
+"""1/s: the rates of all networks."""
 _PAIRS = len(POLES)
 _FADING, _SEEN, _PUSHED = 1, 2, 2 + 2 * _PAIRS
 _TOLD = 2 + 4 * _PAIRS  # of a rate: itself, how it fades in a step, how it is seen and pushed at the poles
 HELD = _TOLD  # of the slowest state of a box: sqrt(J K) of heat in it
 _PORT, _DROP, POLE_HEAT = _TOLD, _TOLD + 1, _TOLD + 2  # of an element's pole
-RATES, POLES_KEPT, LANES = 12, 8, 4
-"""Of a level, of an element's slow poles, and of the step's poles, at most: loops of a length that the compiler knows
+RATES, POLES_KEPT, LANES = len(SHARED), 8, 4
+"""Of a level, and at most of an element's slow poles and of the step's poles: loops of a length that the compiler knows
 are faster, and what is left over is zero."""
 USED, AIRED, WHERE = 0, 1, 2  # of FixedTables.links; then a fingertip's place each, then its element
 
@@ -84,8 +84,7 @@ def fixed_tables(
     poles[:_TOLD, :slow] = _told(whole.rates[:slow], dt)
     seen = whole.ports[:, 0], whole.outputs["drop"], whole.outputs["element"]
     poles[_PORT, :slow], poles[_DROP, :slow], poles[POLE_HEAT, :slow] = (row[:slow] for row in seen)
-    rates[:, : len(SHARED)] = _told(SHARED, dt)
-    rates[_FADING, len(SHARED) :] = 1.0  # what is left over stays 0
+    rates[:] = _told(SHARED, dt)
     ports = places * patterns
     tables = FixedTables(
         dt,
@@ -163,15 +162,13 @@ def _told(rates: np.ndarray, dt: float) -> np.ndarray:
 
 
 def tip_residues(side: Side) -> np.ndarray:
-    """(P P + 2 P + 2, K) of an element: a row of FixedTables.tips."""
+    """(P P + 2 P + 2, K) of an element at FIXED_LEVEL's rates: a row of FixedTables.tips."""
     slow, patterns = _slow(side), side.ports.shape[1]
     rates, ports = side.rates[slow:], side.ports[slow:]
     drop, heat = side.outputs["drop"][slow:, None], side.outputs["element"][slow:, None]
-    columns = np.concatenate((ports * drop, ports * heat, drop * heat, heat * heat), axis=1)
-    found = np.zeros((patterns**2 + columns.shape[1], RATES))
-    found[: patterns**2, : len(SHARED)] = residues(rates, ports, SHARED, _CONTACT).reshape(len(SHARED), -1).T
-    found[patterns**2 :, : len(SHARED)] = shared_rows(rates, columns, SHARED).T
-    return found
+    squares = (ports[:, :, None] * ports[:, None]).reshape(-1, patterns**2)
+    columns = np.concatenate((squares, ports * drop, ports * heat, drop * heat, heat * heat), axis=1)
+    return summed(rates, columns, SHARED).T
 
 
 class BodyResidues(NamedTuple):
@@ -187,17 +184,19 @@ class BodyResidues(NamedTuple):
 
 
 def body_residues(box: Side, capacity: float, aired: bool) -> BodyResidues:
-    """Of a box's network, its slowest state first. capacity: J/K of the box. aired: the air takes heat."""
-    heat, count, shared = box.outputs["object"], box.ports.shape[1], len(SHARED)
+    """Of a box's network at FIXED_LEVEL's rates, its slowest state first. capacity: J/K of the box. aired: the air
+    takes heat."""
+    heat, count = box.outputs["object"], box.ports.shape[1]
     rates, fast, held = box.rates[1:], box.ports[1:], heat[1:, None]
-    found, warmed, still = np.zeros((count, count, RATES)), np.zeros((count, RATES)), np.zeros(RATES)
-    found[..., :shared] = residues(rates, fast, SHARED, _CONTACT).transpose(1, 2, 0)
+    squares = (fast[:, :, None] * fast[:, None]).reshape(-1, count**2)
+    found = summed(rates, squares, SHARED).T.reshape(count, count, RATES)
+    warmed, still = np.zeros((count, RATES)), np.zeros(RATES)
     if aired:
-        warmed[:, :shared] = shared_rows(rates, held * fast, SHARED).T
+        warmed[:] = summed(rates, held * fast, SHARED).T
         # what the ports hardly see of the heat is hardly known from them: all of it together is the box's
-        own = np.maximum(shared_rows(rates, held * held, SHARED)[:, 0], 0.0)
+        own = summed(rates, held * held, SHARED)[:, 0]
         if own.any():
-            still[:shared] = own * max(capacity - heat[0] ** 2, 0.0) / own.sum()
+            still[:] = own * max(capacity - heat[0] ** 2, 0.0) / own.sum()
     return BodyResidues(float(box.rates[0]), box.ports[0], float(heat[0]), found, warmed, still)
 
 

@@ -12,7 +12,8 @@ from thermograsp.envs import EVERYTHING, GraspBatch, GraspBody, GraspTask, Objec
 from thermograsp.envs.limits import LEAST_TOLERANCE
 from thermograsp.envs.sensing import boxes as boxes_module
 from thermograsp.envs.sensing.heat import GraspHeat
-from thermograsp.envs.sensing.places import MOST_PLACES
+from thermograsp.envs.sensing.places import MOST_PLACES, Place, Touched
+from thermograsp.thermal.kernels import Detail, Patches, touch_sides
 from thermograsp.thermal.network.coupling import propagator, step
 
 from ..scripted import grasp_action
@@ -114,6 +115,92 @@ def test_a_field_that_slides_away_is_found_where_it_was():
     told = press(heat, 0.5, left, left, left, left)
     warm, slid, fresh, other = (told[-1].drop[row, -1, 0] for row in range(4))
     assert fresh - warm > 0.1 and other - slid > 0.1
+
+
+def networks_of(name: str, size: tuple[float, float, float], along: list[float], plan, conductance: float):
+    """Drops (n,) K of one fingertip every STEP / 2 while it is at one of the places (or None) for so many seconds, by a
+    network that is exact at ten moments and has states of its own for just these places. along: m, of the places on the
+    first face, from its first edge, in the middle of its height."""
+    count, p = len(along), 3
+    middles = np.array([[each, size[2] / 2] for each in along])
+    patches = Patches(np.zeros(count, int), middles, np.full((count, 2), STACK.width / 2))
+    face = (0.0, STACK.width), (0.0, STACK.width)
+    tips, box = touch_sides(
+        thermal.material(name),
+        size,
+        0.0,
+        patches,
+        [(STACK, face)] * count,
+        Detail(10, p, 1 / 60),
+        shared=True,
+    )
+    element = tips[0].side
+    rates, own = np.concatenate((box.rates, element.rates)), len(box.rates)
+    drop = np.concatenate((np.zeros(own), element.outputs["drop"]))
+    x, found = np.zeros((1, len(rates))), []
+    for seconds, place in plan:
+        ports, felt = np.zeros((len(rates), p)), np.zeros((1, p))
+        ports[own:] = -element.ports
+        if place is not None:
+            ports[:own] = box.ports[:, place * p : (place + 1) * p]
+            felt[:] = conductance * STACK.face_area
+        of_step = propagator(rates, ports, STEP / 2)
+        for _ in range(round(2 * seconds / STEP)):
+            x, _flow = step(of_step, x, felt, np.array([[12.0, 0.0, 0.0]]))
+            found.append(drop @ x[0])
+    return np.array(found)
+
+
+def boxes_of(name: str, size: tuple[float, float, float], along: list[float], plan):
+    """(the same by the environments' network, W/(m2 K) of the contact)."""
+    heat = heat_of(thing(ObjectSpec(size=size, mass=0.1, friction=0.8), name, fingertips=1))
+    found, felt = [], 0.0
+    for seconds, place in plan:
+        at = None if place is None else np.array([[-size[0] / 2, along[place] - size[1] / 2, 0.0], [9.0] * 3])
+        for told in press(heat, seconds, at):
+            found += told.drop[0, :, 0].tolist()
+            felt = max(felt, float(told.told["conductance"][0, 0]))
+    return np.array(found), felt
+
+
+@pytest.mark.parametrize("name", ["glass", "wood"])
+@pytest.mark.parametrize("apart", [0.0011, 0.0043, 0.0091])
+def test_a_second_touch_beside_a_warm_place_is_right(name, apart):
+    """Neither place is on the lattice of fresh ones. A model that knew the mean temperature alone would be .08 K off at
+    the least."""
+    size, along = (0.01, 0.06, 0.024), [0.0282, 0.0282 + apart]
+    plan = [(4.0, 0), (1.0, None), (1.5, 1)]
+    found, felt = boxes_of(name, size, along, plan)
+    expected = networks_of(name, size, along, plan, felt)
+    fresh = boxes_of(name, size, along[1:], [(1.5, 0)])[0]
+    again = slice(-140, None)
+    assert np.abs(found - expected)[again].max() < 0.03
+    assert np.abs(fresh[-140:] - expected[again]).max() > 0.08
+
+
+def test_heat_stays_where_a_fingertip_slides_over_more_places_than_are_remembered():
+    size, along = (0.01, 0.06, 0.024), (0.0255 + 0.00101 * np.arange(8)).tolist()
+    plan = [(2.0, 0), *((0.1, place) for place in range(1, 8)), (1.0, None), (1.0, 0)]
+    found, felt = boxes_of("glass", size, along, plan)
+    expected = networks_of("glass", size, along, plan, felt)
+    back = slice(-90, None)
+    assert np.abs(found - expected)[back].max() < 0.05
+    fresh = boxes_of("glass", size, along[:1], [(1.0, 0)])[0]
+    assert np.abs(fresh[-90:] - expected[back]).max() > 0.5
+
+
+def test_the_place_given_up_is_the_one_nearest_to_its_heir_by_warmth():
+    size, width = (0.01, 0.07, 0.024), STACK.width
+    places = [Place(0, (y, 0.012)) for y in (0.02, 0.03, 0.0312, 0.05)]
+    touched = Touched(tuple(places), (3, -1))
+    new = Place(0, (0.06, 0.012))
+    moved, given_up = touched.moved(0, new, (5.0, 2.0, 1.0, 3.0), size, width)
+    assert given_up == (2, 1) and moved.contacts == (2, -1)
+    assert moved.places[2].middle == pytest.approx(new.middle)
+    _, alone = touched.moved(0, new, (1e-3, 2.0, 50.0, 3.0), size, width)
+    assert alone == (0, -1)  # so little that it does not matter that nothing is near
+    _, near = touched.moved(0, Place(0, (0.0216, 0.012)), (0.1, 2.0, 50.0, 3.0), size, width)
+    assert near == (0, 0)
 
 
 def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
