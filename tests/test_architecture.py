@@ -86,7 +86,7 @@ ROOMS = {
         "senses",
         "taxels",
     ),
-    "touch": ("scene", "contacts", "heat", "draw", "thermal_touch", "wrappers"),
+    "touch": ("scene", "contacts", "heat", "draw", "thermal_touch", "engine", "wrappers"),
     "hardware": ("errors", "protocol", "lines", "drivers", "recordings", "emulators", "plant"),
     "studio": ("control", "sources", "session", "web"),
     "reports": ("demo", "paper"),

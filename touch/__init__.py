@@ -11,6 +11,7 @@ from thermograsp.doors import opened
 
 if TYPE_CHECKING:
     from .contacts import prepare
+    from .engine import install, load_plugin
     from .heat import HeatBalance
     from .scene import (
         Face,
@@ -35,7 +36,9 @@ __all__ = [
     "TouchReading",
     "TouchState",
     "flat_faces",
+    "install",
     "largest_face",
+    "load_plugin",
     "prepare",
     "rotation",
     "triangles",
@@ -45,6 +48,7 @@ __getattr__ = opened(
     __name__,
     {
         "contacts": ("prepare",),
+        "engine": ("install", "load_plugin"),
         "heat": ("HeatBalance",),
         "scene": (
             "Face",

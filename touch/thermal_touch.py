@@ -117,8 +117,8 @@ class ThermalTouch:
         celsius("ambient (°C)", ambient)
         non_negative("air (W/(m2 K))", air)
         positive("tolerance (K)", tolerance)
-        self._substeps = _whole_steps(positive("dt (s)", dt), self._step)
-        self._samples = _samples(self._substeps, dt)
+        self._substeps = whole_steps(positive("dt (s)", dt), self._step)
+        self._samples = samples_in(self._substeps, dt)
         self._sample_steps = self._substeps // self._samples
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
@@ -509,7 +509,8 @@ def _close_reading(pressed, off, substeps, objects):
     return force, beside, most
 
 
-def _whole_steps(dt: float, step: float) -> int:
+def whole_steps(dt: float, step: float) -> int:
+    """Steps of the model, s, in a dt."""
     count = round(dt / step)
     if count < 1 or abs(dt / step - count) > _WHOLE * count:
         nearest = max(count, 1) * step
@@ -519,7 +520,7 @@ def _whole_steps(dt: float, step: float) -> int:
     return count
 
 
-def _samples(substeps: int, dt: float) -> int:
+def samples_in(substeps: int, dt: float) -> int:
     """Of a reading: as many as divide its substeps, at most one each SAMPLE_TIME."""
     most = max(int(dt / SAMPLE_TIME * (1 + _WHOLE)), 1)
     return max(count for count in range(1, most + 1) if substeps % count == 0)

@@ -1,7 +1,19 @@
 """From normal force to contact: area, conductance, and both as one compiled law."""
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
-from .law import CONTACT_LAW, CYLINDER, FLAT, conductance, contact, cylinder_law, flat_law, sphere_law
+from .law import (
+    CONTACT_LAW,
+    CYLINDER,
+    FLAT,
+    LOG_LEAST,
+    LOG_MOST,
+    SEPARATION,
+    conductance,
+    contact,
+    cylinder_law,
+    flat_law,
+    sphere_law,
+)
 from .rough_faces import (
     AIR,
     LAPPED_ALUMINA,
@@ -21,6 +33,9 @@ __all__ = [
     "CYLINDER",
     "FLAT",
     "LAPPED_ALUMINA",
+    "LOG_LEAST",
+    "LOG_MOST",
+    "SEPARATION",
     "THERMOSTAT_FACE",
     "ContactArea",
     "Gas",

@@ -56,8 +56,8 @@ CONTACT_LAW = np.dtype(
 
 # Mean planes' distance over roughness, sqrt(2) erfc^-1(x), in powers of where sqrt(-log x) is between LOW and HIGH; the
 # series' first terms, good to 1e-11.
-_LOG_LEAST, _LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
-_SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
+LOG_LEAST, LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
+SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
 _NEWTON_STEPS = 8
 
 
@@ -157,11 +157,11 @@ def conductance(law, pressure):
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _separation(log_share):
-    y = math.sqrt(-min(max(log_share, _LOG_LEAST), _LOG_MOST))
+    y = math.sqrt(-min(max(log_share, LOG_LEAST), LOG_MOST))
     z = (2 * y - LOW - HIGH) / (HIGH - LOW)
     total = 0.0
-    for i in range(len(_SEPARATION) - 1, -1, -1):
-        total = total * z + _SEPARATION[i]
+    for i in range(len(SEPARATION) - 1, -1, -1):
+        total = total * z + SEPARATION[i]
     return total
 
 

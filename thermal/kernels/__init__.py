@@ -28,11 +28,20 @@ from .contact import Resolution, Side, Tip, box_side, tip
 from .coverage import contact_patterns
 from .element import Rectangle
 from .glued import GluedElement, glued_element
-from .samples import MOMENTS
+from .patterns import ALONG, GRAM, JUMPS, NODES
+from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
 from .touch import Detail, touch_sides
 
 __all__ = [
+    "ALONG",
+    "GRAM",
+    "GRASP",
+    "JUMPS",
     "MOMENTS",
+    "NODES",
+    "OF_GRASP",
+    "TIMES",
+    "TO_MOMENTS",
     "BoxSamples",
     "Detail",
     "GluedElement",
@@ -41,7 +50,7 @@ __all__ = [
     "Resolution",
     "Side",
     "Tip",
-    "Tip",
+    "before",
     "box_samples",
     "box_side",
     "contact_patterns",

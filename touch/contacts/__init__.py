@@ -2,6 +2,7 @@
 
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
 from .glued import GluedContacts
+from .laws import constrictions, pair_laws
 from .reader import ContactReader
 from .sensors import SensorPlaces, prepare, sensor_places
 
@@ -14,6 +15,8 @@ __all__ = [
     "ContactReader",
     "GluedContacts",
     "SensorPlaces",
+    "constrictions",
+    "pair_laws",
     "prepare",
     "sensor_places",
 ]

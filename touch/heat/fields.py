@@ -24,7 +24,7 @@ MOST_PLACES = 2
 """Of an object that are remembered besides those in use."""
 
 _LEVELS = ((0.04, Resolution(8, 3)), (0.015, Resolution(12, 4)), (0.0, Resolution(18, 5)))
-_TIMES = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
+AFTERWARDS = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
 _LEAST = 1e-3  # singular values below that share of the largest are left out
 
 
@@ -138,7 +138,7 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     """(n after, n before): the field on the states of a network with other places.
 
     The field on the new states is the one that the places of both will see alike from then on, left alone: their
-    temperatures at _TIMES, by least squares. Heat stays the same, since it is all in the mean temperature's state."""
+    temperatures at AFTERWARDS, by least squares. Heat stays the same, since it is all in the mean temperature's state."""
     matrix = np.zeros((len(after.rates), len(before.rates)))
     matrix[0, 0] = 1.0
     common = [place for place in before.places if place in after.places]
@@ -150,8 +150,8 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
 
 
 def _future(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
-    """(temperatures, n - 1) of the places' patterns at _TIMES, each weighted by the time that it stays."""
+    """(temperatures, n - 1) of the places' patterns at AFTERWARDS, each weighted by the time that it stays."""
     at = [field.places.index(place) for place in common]
     ports = np.concatenate([field.port(place, patterns) for place in at], axis=1)[1:]
-    faded = np.exp(-np.outer(field.rates[1:], _TIMES)) * np.sqrt(np.maximum(_TIMES, _TIMES[1]))
+    faded = np.exp(-np.outer(field.rates[1:], AFTERWARDS)) * np.sqrt(np.maximum(AFTERWARDS, AFTERWARDS[1]))
     return (ports[:, :, None] * faded[:, None, :]).reshape(len(ports), -1).T

@@ -1,0 +1,291 @@
+/* The network of a box that is seen through patches on its faces: the heat kernel between the patches' patterns as in
+thermal/kernels/axis.py and box.py with adiabatic faces, and the passive network of fixed rates as in contact.py and
+exponentials.py. */
+
+#include <math.h>
+#include <string.h>
+
+#include "heat.h"
+
+enum { MODES = 12, STEPS = 20 };
+#define SWITCH 0.03   /* diffusion length squared over length squared from which eigenfunctions serve */
+#define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
+#define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
+#define RIDGE 1e-4    /* of the first guess, without constraint */
+#define RELAXED 1.6
+static const double pi = 3.14159265358979323846;
+
+/* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. told: with eigenfunctions. */
+typedef struct {
+  int order, which;
+  double places[NODES], told[FUNCTIONS][MODES];
+} Along;
+
+/* Products with normalised eigenfunctions. */
+static void overlaps(const Numbers* numbers, double length, Along* along) {
+  for (int m = 0; m < MODES; m++) {
+    double phase = m * pi / 2, wave = 2 * phase / length, norm = length / 2, waved[NODES];
+    if (m > 0) norm *= 1 + (1 - 2 * (m % 2)) * sin(wave * length) / (wave * length);
+    else norm *= 2;
+    int nodes = along->order ? NODES : 1, functions = along->order ? FUNCTIONS : 1;
+    for (int k = 0; k < nodes; k++) {
+      double x = along->places[k] - length / 2;
+      if (!along->order) waved[k] = cos(wave * x - phase);
+      else waved[k] = m > 0 ? sin(wave * x - phase) / wave : x;
+    }
+    for (int f = 0; f < functions; f++) {
+      double total = 0;
+      for (int k = 0; k < nodes; k++) total += (along->order ? numbers->jumps[f * NODES + k] : 1) * waved[k];
+      along->told[f][m] = total / sqrt(norm);
+    }
+  }
+}
+
+/* Antiderivative of that order of the free kernel at distance d, less what it becomes far off. scale: 2 sqrt(tau). */
+static double beyond(double d, double side, double scale, int order) {
+  double r = fabs(d) / scale;
+  if (r > REACH) return 0;
+  if (order == 0) return exp(-r * r) / (scale * sqrt(pi));
+  if (order == 1) return -0.5 * side * erfc(r);
+  return 0.5 * scale * (exp(-r * r) / sqrt(pi) - r * erfc(r));
+}
+
+static double unbounded(double d, double scale, int order) {
+  double side = d >= 0 ? 1 : -1, far = beyond(d, side, scale, order);
+  return order == 2 ? far + 0.5 * fabs(d) : order == 1 ? far + 0.5 * side : far;
+}
+
+static double images(double one, double other, int other_order, int order, double length, double scale) {
+  double near = one - other, far = one + other;
+  double value = unbounded(near, scale, order) + beyond(near - 2 * length, -1, scale, order) +
+                 beyond(near + 2 * length, 1, scale, order);
+  return (other_order ? -value : value) + beyond(far, 1, scale, order) + beyond(far - 2 * length, -1, scale, order);
+}
+
+/* The axis's kernel between the functions of two patches. */
+static void between(const Numbers* numbers, const Along* a, const Along* b, double length, double tau,
+                    double out[FUNCTIONS][FUNCTIONS]) {
+  int mine = a->order ? FUNCTIONS : 1, others = b->order ? FUNCTIONS : 1;
+  if (tau > SWITCH * length * length) {
+    memset(out, 0, FUNCTIONS * FUNCTIONS * sizeof(double));
+    for (int w = 0; w < MODES; w++) {
+      double wave = w * pi / length, decay = exp(-wave * wave * tau);
+      if (decay < 1e-17) return;
+      for (int f = 0; f < mine; f++)
+        for (int g = 0; g < others; g++) out[f][g] += decay * a->told[f][w] * b->told[g][w];
+    }
+    return;
+  }
+  double table[NODES][NODES], scale = 2 * sqrt(tau);
+  int rows = a->order ? NODES : 1, columns = b->order ? NODES : 1;
+  for (int k = 0; k < rows; k++)
+    for (int q = 0; q < columns; q++)
+      table[k][q] = a == b && q > k ? 0 : images(a->places[k], b->places[q], b->order, a->order + b->order, length, scale);
+  for (int k = 0; a == b && k < rows; k++)
+    for (int q = k + 1; q < columns; q++) table[k][q] = table[q][k];
+  for (int f = 0; f < mine; f++) {
+    double half[NODES];
+    for (int q = 0; q < columns; q++) {
+      half[q] = 0;
+      for (int k = 0; k < rows; k++) half[q] += (a->order ? numbers->jumps[f * NODES + k] : 1) * table[k][q];
+    }
+    for (int g = 0; g < others; g++) {
+      out[f][g] = 0;
+      for (int q = 0; q < columns; q++) out[f][g] += (b->order ? numbers->jumps[g * NODES + q] : 1) * half[q];
+    }
+  }
+}
+
+static int function(const Numbers* numbers, const Along* along, int pattern) {
+  return along->order ? (int)numbers->along[2 * pattern + along->which] : 0;
+}
+
+/* out (M, M) += scale * left^T table right, of two fingertips' bases (PATTERNS, M) */
+static void project(int patterns, const double* left, double table[PATTERNS][PATTERNS], const double* right, double scale,
+                    double* out, int stride) {
+  for (int i = 0; i < PATTERNS; i++) {
+    for (int q = 0; q < patterns; q++) {
+      double half = 0;
+      for (int j = 0; j < PATTERNS; j++) half += table[i][j] * right[j * patterns + q];
+      for (int p = 0; p < patterns; p++) out[p * stride + q] += scale * left[i * patterns + p] * half;
+    }
+  }
+}
+
+/* rest (MOMENTS, W, W) K/W between the patches' patterns, less the mean temperature's part, and its port (W,) */
+static void impedance(const Numbers* numbers, int object, const Network* network, double* port, double* rest, double* room) {
+  const double* box = numbers->boxes + object * BOX;
+  int count = network->count, patterns = numbers->patterns, wide = count * patterns;
+  double capacity = box[CAPACITY], area[count];
+  Along* along = (Along*)room; /* (3, count) */
+  memset(rest, 0, sizeof(double) * MOMENTS * wide * wide);
+  for (int n = 0; n < count; n++) {
+    const double* place = network->places + n * SLOT;
+    int facing = (int)place[FACE] / 2, tip = (int)place[TIP];
+    area[n] = 4;
+    double seen[PATTERNS];
+    for (int i = 0; i < PATTERNS; i++) seen[i] = 1;
+    for (int axis = 0; axis < 3; axis++) {
+      Along* own = &along[axis * count + n];
+      own->order = axis != facing;
+      own->which = axis < facing ? axis : axis - 1;
+      if (own->order) {
+        double half = fmin(sqrt(numbers->tip_area[tip]), box[axis]) / 2;
+        area[n] *= half;
+        for (int k = 0; k < NODES; k++) own->places[k] = place[MIDDLE + own->which] + half * numbers->nodes[k];
+      } else {
+        own->places[0] = box[axis] * ((int)place[FACE] % 2);
+      }
+      overlaps(numbers, box[axis], own);
+      for (int i = 0; i < PATTERNS; i++) seen[i] *= own->told[function(numbers, own, i)][0];
+    }
+    for (int p = 0; p < patterns; p++) {
+      double total = 0;
+      for (int i = 0; i < PATTERNS; i++) total += numbers->tip_basis[(tip * PATTERNS + i) * patterns + p] * seen[i];
+      port[n * patterns + p] = total / (area[n] * sqrt(capacity));
+    }
+  }
+  for (int n = 0; n < count; n++) {
+    const double* left = numbers->tip_basis + (size_t)network->places[n * SLOT + TIP] * PATTERNS * patterns;
+    for (int m = 0; m <= n; m++) {
+      const double* right = numbers->tip_basis + (size_t)network->places[m * SLOT + TIP] * PATTERNS * patterns;
+      double block[patterns * patterns];
+      for (int t = 0; t < TIMES; t++) {
+        double kernels[3][FUNCTIONS][FUNCTIONS], table[PATTERNS][PATTERNS];
+        for (int axis = 0; axis < 3; axis++)
+          between(numbers, &along[axis * count + n], &along[axis * count + m], box[axis],
+                  box[CONDUCTIVITY] / capacity * numbers->times[t], kernels[axis]);
+        for (int i = 0; i < PATTERNS; i++) {
+          for (int j = 0; j < PATTERNS; j++) {
+            table[i][j] = 1;
+            for (int axis = 0; axis < 3; axis++)
+              table[i][j] *= kernels[axis][function(numbers, &along[axis * count + n], i)]
+                                    [function(numbers, &along[axis * count + m], j)];
+          }
+        }
+        for (int i = 0; i < patterns * patterns; i++)
+          block[i] = -port[n * patterns + i / patterns] * port[m * patterns + i % patterns];
+        project(patterns, left, table, right, 1 / (area[n] * area[m] * capacity), block, patterns);
+        for (int s = 0; s < MOMENTS; s++)
+          for (int i = 0; i < patterns * patterns; i++)
+            rest[((size_t)s * wide + n * patterns + i / patterns) * wide + m * patterns + i % patterns] +=
+                numbers->to_moments[s * TIMES + t] * block[i];
+      }
+    }
+    double even[PATTERNS][PATTERNS];
+    memcpy(even, numbers->gram, sizeof even);
+    for (int s = 0; s < MOMENTS; s++)
+      project(patterns, left, even, left, box[EARLY] / area[n],
+              rest + ((size_t)s * wide + n * patterns) * wide + n * patterns, wide);
+  }
+  for (int s = 0; s < MOMENTS; s++)
+    for (int i = 0; i < wide; i++)
+      for (int j = 0; j < i; j++) rest[((size_t)s * wide + j) * wide + i] = rest[((size_t)s * wide + i) * wide + j];
+}
+
+/* inside (K, W, W) positive semidefinite, whose sum with the columns (MOMENTS, K) is nearest to wanted (MOMENTS, W, W):
+thermal/numerics/passive_residues.py. */
+static void residues(int rates, int wide, double* columns, const double* wanted, double* inside, double* room) {
+  int square = wide * wide;
+  size_t whole = (size_t)rates * square;
+  double *seen = room, *dual = seen + whole, *pulled = dual + whole, *one = pulled + whole, *turn = one + square;
+  double size[rates], normal[rates * rates], solve[rates * rates], guess[rates * rates];
+  for (int k = 0; k < rates; k++) {
+    size[k] = 0;
+    for (int s = 0; s < MOMENTS; s++) size[k] += columns[s * rates + k] * columns[s * rates + k];
+    size[k] = sqrt(size[k]);
+    for (int s = 0; s < MOMENTS; s++) columns[s * rates + k] /= size[k];
+  }
+  for (int ridge = 0; ridge < 2; ridge++) {
+    for (int k = 0; k < rates; k++) {
+      for (int m = 0; m < rates; m++) {
+        double total = k == m ? (ridge ? RIDGE : PENALTY) : 0;
+        for (int s = 0; s < MOMENTS; s++) total += columns[s * rates + k] * columns[s * rates + m];
+        normal[k * rates + m] = total;
+      }
+    }
+    heat_inverse(rates, normal, ridge ? guess : solve);
+  }
+  memset(seen, 0, sizeof(double) * 2 * whole); /* dual too */
+  memset(inside, 0, sizeof(double) * whole);
+  for (int k = 0; k < rates; k++)
+    for (int s = 0; s < MOMENTS; s++)
+      for (int i = 0; i < square; i++) seen[k * square + i] += columns[s * rates + k] * wanted[s * square + i];
+  for (int k = 0; k < rates; k++)
+    for (int m = 0; m < rates; m++)
+      for (int i = 0; i < square; i++) inside[k * square + i] += guess[k * rates + m] * seen[m * square + i];
+  for (int step = 0; step < STEPS; step++) {
+    for (size_t i = 0; i < whole; i++) pulled[i] = seen[i] + PENALTY * (inside[i] - dual[i]);
+    for (int k = 0; k < rates; k++) {
+      double *own = inside + (size_t)k * square, *left = dual + (size_t)k * square;
+      for (int i = 0; i < wide; i++) {
+        for (int j = 0; j <= i; j++) {
+          double free = 0;
+          for (int m = 0; m < rates; m++) free += solve[k * rates + m] * pulled[(size_t)m * square + i * wide + j];
+          one[i * wide + j] = RELAXED * free + (1 - RELAXED) * own[i * wide + j] + left[i * wide + j];
+          one[j * wide + i] = one[i * wide + j];
+        }
+      }
+      memcpy(left, one, sizeof(double) * square);
+      heat_diagonalise(wide, one, turn);
+      for (int i = 0; i < wide; i++) {
+        for (int j = 0; j < wide; j++) {
+          double value = 0;
+          for (int m = 0; m < wide; m++)
+            if (one[m * wide + m] > 0) value += turn[i * wide + m] * one[m * wide + m] * turn[j * wide + m];
+          own[i * wide + j] = value;
+          left[i * wide + j] -= value;
+        }
+      }
+    }
+  }
+  for (size_t i = 0; i < whole; i++) inside[i] /= size[i / square];
+}
+
+size_t heat_network_room(const Numbers* numbers) {
+  size_t wide = (size_t)numbers->places * numbers->patterns, square = wide * wide;
+  size_t along = 3 * (size_t)numbers->places * (sizeof(Along) / sizeof(double) + 1);
+  return along + wide + MOMENTS * (square + 1 + numbers->rates) + 4 * numbers->rates * square + 2 * square;
+}
+
+/* Makes the network of the places that stand in it. */
+void heat_network(const Numbers* numbers, int object, Network* network, double* room) {
+  const double* box = numbers->boxes + object * BOX;
+  int count = network->count, patterns = numbers->patterns, wide = count * patterns, rates = numbers->rates;
+  size_t square = (size_t)wide * wide;
+  double *port = room + 3 * (size_t)count * (sizeof(Along) / sizeof(double) + 1), *rest = port + wide;
+  double *weight = rest + MOMENTS * square, *columns = weight + MOMENTS, *found = columns + MOMENTS * rates;
+  network->n = 1;
+  network->rates[0] = box[LOSS];
+  if (count) {
+    impedance(numbers, object, network, port, rest, room);
+    for (int s = 0; s < MOMENTS; s++) {
+      double moment = numbers->moments[s], most = INFINITY;
+      for (int n = 0; n < count; n++) {
+        double even = port[n * patterns];
+        double own = 1 / numbers->tip_weight[(size_t)network->places[n * SLOT + TIP] * MOMENTS + s];
+        own += rest[((size_t)s * wide + n * patterns) * wide + n * patterns] + even * even / moment;
+        most = fmin(most, 1 / own);
+      }
+      weight[s] = most;
+      for (int k = 0; k < rates; k++) columns[s * rates + k] = most / (moment + numbers->decay[k]);
+      for (size_t i = 0; i < square; i++) rest[s * square + i] *= most;
+    }
+    residues(rates, wide, columns, rest, found, found + rates * square);
+    double *turn = found + rates * square, least = numbers->least / weight[MOMENTS - 1];
+    for (int j = 0; j < wide; j++) network->ports[(size_t)j * numbers->states] = port[j];
+    for (int k = 0; k < rates; k++) {
+      double* own = found + k * square;
+      heat_diagonalise(wide, own, turn);
+      for (int m = 0; m < wide; m++) {
+        double value = own[m * wide + m];
+        if (!(value / numbers->decay[k] > least)) continue;
+        network->rates[network->n] = numbers->decay[k];
+        for (int j = 0; j < wide; j++)
+          network->ports[(size_t)j * numbers->states + network->n] = turn[j * wide + m] * sqrt(value);
+        network->n++;
+      }
+    }
+  }
+  for (int i = 0; i < network->n; i++) network->fade[i] = exp(-numbers->dt * network->rates[i]);
+}

@@ -1,0 +1,156 @@
+/* Contacts of a step as conductances, as touch/contacts/reader.py. */
+
+#include <math.h>
+#include <string.h>
+
+#include "contacts.h"
+
+#define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it */
+#define RIM 0.0005   /* m beyond the pad's sides */
+#define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
+
+/* A pad in the world: its middle and its axes in columns. */
+typedef struct {
+  double middle[3], axes[9];
+} Pose;
+
+static Pose pose(const Numbers* numbers, const Work* work, const mjData* d, int f) {
+  int body = work->body[numbers->geoms + f];
+  const double *pad = numbers->pads + f * PAD, *turn = d->xmat + 9 * body;
+  Pose found;
+  for (int k = 0; k < 3; k++) {
+    found.middle[k] = d->xpos[3 * body + k];
+    for (int j = 0; j < 3; j++) found.middle[k] += turn[3 * k + j] * pad[j];
+    for (int a = 0; a < 3; a++) {
+      found.axes[3 * k + a] = 0;
+      for (int j = 0; j < 3; j++) found.axes[3 * k + a] += turn[3 * k + j] * pad[AXES + 3 * j + a];
+    }
+  }
+  return found;
+}
+
+/* Whether a contact is on a pad and looks at it, and where, m along its y and z. */
+static bool lies(const double* pad, const Pose* at, const mjContact* contact, double sign, double* y, double* z) {
+  double x = 0, along = 0;
+  *y = *z = 0;
+  for (int k = 0; k < 3; k++) {
+    double away = contact->pos[k] - at->middle[k];
+    along += sign * at->axes[3 * k] * contact->frame[k];
+    x += away * at->axes[3 * k];
+    *y += away * at->axes[3 * k + 1];
+    *z += away * at->axes[3 * k + 2];
+  }
+  return along >= LOOKING && fabs(x) <= DEPTH && fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
+}
+
+/* Share of an interval of half width reach round `at` that is within -half to half. */
+static double kept(double at, double reach, double half) {
+  return fmin(fmax(fmin(half, at + reach) - fmax(-half, at - reach), 0) / (2 * reach), 1);
+}
+
+/* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. */
+static void feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
+                 double* touch) {
+  Pose at = pose(numbers, work, d, f);
+  int geom = work->geom[g], body = work->body[g], axis = 0;
+  double force = pushed[0], half = numbers->pads[f * PAD + WIDTH] / 2, place[3] = {0}, most = 0, area, share;
+  const double* turn = geom >= 0 ? d->geom_xmat + 9 * geom : NULL;
+  if (turn) {
+    for (int i = 0; i < 3; i++) {
+      double looking = 0;
+      for (int k = 0; k < 3; k++) {
+        looking += turn[3 * k + i] * at.axes[3 * k];
+        place[i] += turn[3 * k + i] * (at.middle[k] - d->geom_xpos[3 * geom + k]);
+      }
+      if (fabs(looking) > most) {
+        most = fabs(looking);
+        axis = i;
+      }
+    }
+  } else { /* another fingertip: how far the pads' middles are apart along this one's sides */
+    Pose other = pose(numbers, work, d, g - numbers->geoms);
+    for (int k = 0; k < 3; k++)
+      for (int j = 1; j < 3; j++) place[j] += (at.middle[k] - other.middle[k]) * at.axes[3 * k + j];
+  }
+  const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
+  int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
+  heat_contact(law, force, place, &area, &share);
+  if (area > 0 && share > 0) {
+    double pressure = share / area;
+    if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
+      double along_y = 0, along_z = 0, across = 0;
+      for (int k = 0; k < 3; k++) {
+        along_y += at.axes[3 * k + 1] * turn[3 * k + 2];
+        along_z += at.axes[3 * k + 2] * turn[3 * k + 2];
+      }
+      double length = sqrt(along_y * along_y + along_z * along_z);
+      if (length > 0) across = (pushed[1] * along_z - pushed[2] * along_y) / (force * length);
+      area *= kept(across, area / (2 * law->face_length), half);
+    } else if (law->shape == SHAPE_SPHERE) {
+      double reach = sqrt(area) / 2;
+      area *= kept(pushed[1] / force, reach, half);
+      area *= kept(pushed[2] / force, reach, half);
+    }
+    if (area > 0) {
+      double side = sqrt(fmin(area, 4 * half * half));
+      double series = 1 / (heat_conductance(law, numbers, pressure) * area);
+      series += numbers->small[f * numbers->targets + target] * (1 / side - 1 / (2 * half));
+      touch[CONDUCTANCE] += 1 / series;
+    }
+  }
+  touch[FORCE] += force;
+  const double *rotation = d->xmat + 9 * body, *origin = d->xpos + 3 * body;
+  for (int i = 0; i < 3; i++) {
+    touch[PLACE + i] = touch[NORMAL + i] = 0;
+    for (int k = 0; k < 3; k++) {
+      touch[PLACE + i] += rotation[3 * k + i] * (at.middle[k] - origin[k]);
+      touch[NORMAL + i] += rotation[3 * k + i] * at.axes[3 * k];
+    }
+  }
+}
+
+/* Adds the contacts of the step that was just taken to the touches. A force that is not finite is left out: MuJoCo resets
+the simulation then. */
+void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches) {
+  int tips = numbers->tips, things = numbers->things;
+  bool any = false;
+  double* pushed = work->room; /* (F, N, 3) */
+  for (int c = 0; c < d->ncon; c++) {
+    const mjContact* contact = &d->contact[c];
+    if (contact->geom[0] < 0 || contact->geom[1] < 0 || contact->efc_address < 0) continue;
+    int first = work->role[contact->geom[0]], second = work->role[contact->geom[1]];
+    if (first < 0 || second < 0 || first == second) continue;
+    double sign = 1, y, z, unused;
+    if (first >= tips || (second < tips && second < first)) {
+      int other = first;
+      first = second;
+      second = other;
+      sign = -1;
+    }
+    if (first >= tips) continue;
+    double force = d->efc_force[contact->efc_address];
+    if (m->opt.cone == mjCONE_PYRAMIDAL)
+      for (int k = 1; k < 2 * (contact->dim - 1); k++) force += d->efc_force[contact->efc_address + k];
+    if (!(force > 0 && isfinite(force))) continue;
+    if (!any) memset(pushed, 0, sizeof(double) * tips * things * 3);
+    any = true;
+    int thing = second >= tips ? second - tips : numbers->geoms + second;
+    Pose at = pose(numbers, work, d, first);
+    bool on = lies(numbers->pads + first * PAD, &at, contact, sign, &y, &z);
+    if (second < tips) {
+      Pose other = pose(numbers, work, d, second);
+      on = lies(numbers->pads + second * PAD, &other, contact, -sign, &unused, &unused) && on;
+    }
+    if (!on) continue;
+    double* own = pushed + (first * things + thing) * 3;
+    own[0] += force;
+    own[1] += force * y;
+    own[2] += force * z;
+  }
+  for (int i = 0; any && i < tips * things; i++) {
+    int f = i / things, g = i % things;
+    int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
+    if (pushed[3 * i] > 0)
+      feel(numbers, work, d, f, g, pushed + 3 * i, touches + (f * numbers->targets + target) * COLUMNS);
+  }
+}

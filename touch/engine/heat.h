@@ -1,0 +1,103 @@
+/* Heat of fingertips and objects inside MuJoCo's step: the numbers that Python hands over, and the parts of a sample.
+
+The laws, their sources and their constants are those of the Python package, which stays the reference: contacts/ and
+heat/ of touch, contact/, kernels/ and network/ of thermal. A file here names the one that it follows.
+
+F: fingertips, O: objects, G: geoms of the objects, N = G + F: what a pad may meet, T = O + F: targets of a contact and
+fields, M: patterns of a contact, K: rates, P: places of an object. */
+
+#ifndef THERMOGRASP_HEAT_H
+#define THERMOGRASP_HEAT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* columns of a touch: conductance W/K and force N, sums over substeps; place m and normal, of the last one */
+enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, COLUMNS = 8 };
+/* a pad: position m, axes, half sides m and its sensor's width m */
+enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
+/* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air, first state, early K s^.5 */
+enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, FIRST, EARLY, BOX };
+/* a place: face of the box, middle m along its two axes, fingertip */
+enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
+enum { SHAPE_FLAT, SHAPE_CYLINDER, SHAPE_SPHERE };
+
+typedef struct {
+  double area, share, size[2], across[2], stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
+      gas, jump, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
+} Law;
+
+enum {
+  NODES = 13,     /* of the strips of a pattern */
+  FUNCTIONS = 7,  /* along an axis of a patch */
+  PATTERNS = 13,  /* that are known */
+  TIMES = 33,     /* at which a box's kernel is taken */
+  MOMENTS = 16,   /* at which networks are fitted */
+  POLES = 3,      /* pairs, of a step */
+  SERIES = 13,    /* terms of the separation of rough faces */
+  AFTERWARDS = 15 /* times over which a field is followed to a new place */
+};
+
+typedef struct {
+  int rates, places, states;     /* K, P, and most states of an object */
+  int tips, objects, geoms, targets, things, patterns, tip_states, sample_steps;
+  int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
+  double timestep, dt, least;
+  const double *roles, *pads, *boxes, *owner, *small, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
+  const double *seebeck, *warm;  /* V/K; K above the air */
+  const double* laws;            /* Law of each pad on each thing, by the axis of its frame */
+  const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
+  const double *separation, *separation_range;
+  double* all; /* what the others point into */
+} Numbers;
+
+/* An object's network of its places: x' = -rates x + ports q. ports: of each pattern of each place, `states` apart. */
+typedef struct {
+  int count, n;
+  double *places, *rates, *ports, *fade;
+} Network;
+
+/* Contacts that share a field, and what their step needs. */
+typedef struct {
+  int pairs, members, n;
+  int *pair, *member;
+  double *rates, *ports, *scale, *gram, *room;
+} Group;
+
+typedef struct {
+  Network* networks;
+  Group* groups;
+  int count;                     /* groups, -1 where they are to be made anew */
+  double *closed, *current;      /* what they were made of */
+  double *pool;                  /* their numbers, and room for a step of one */
+  size_t pool_size;
+  double *room, *fade;
+  int *role, *geom, *body;       /* of the model's geoms, as Numbers.roles or -1; of what a pad may meet */
+} Work;
+
+/* The state of an instance, numbers in MuJoCo's plugin_state. */
+typedef struct {
+  double *count, *touches, *places, *used, *current, *x;
+} State;
+
+const char* heat_parse(Numbers* numbers, const char* text);
+size_t heat_states(const Numbers* numbers);
+State heat_state(const Numbers* numbers, double* at);
+void heat_reset(const Numbers* numbers, double* at);
+bool heat_valid(const Numbers* numbers, const State* state);
+void heat_settle(const Numbers* numbers, Work* work, State* state);
+bool heat_march(const Numbers* numbers, Work* work, State* state);
+double heat_voltage(const Numbers* numbers, const State* state, int tip);
+
+double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
+void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
+
+void heat_network(const Numbers* numbers, int object, Network* network, double* room);
+size_t heat_network_room(const Numbers* numbers);
+void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room);
+size_t heat_carry_room(const Numbers* numbers);
+
+void heat_diagonalise(int n, double* matrix, double* turn);
+void heat_inverse(int n, double* matrix, double* inverse);
+
+#endif

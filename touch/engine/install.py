@@ -1,0 +1,92 @@
+"""Heat in a scene's spec: one instance of the plugin, whose sensor holds the voltages of all fingertips."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import mujoco
+
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
+
+from ...thermal import Material
+from ..scene import Fingertip, ThermalBody, bodies, pads
+from ..thermal_touch import samples_in, whole_steps
+from .library import load_plugin
+from .numbers import packed
+
+PLUGIN = "thermograsp.heat"
+_UNNAMED = "thermograsp:heat:"
+
+
+def install(
+    spec: mujoco.MjSpec,
+    *,
+    fingertips: Mapping[str, str | Fingertip],
+    objects: Mapping[str, str | Material | ThermalBody] | None = None,
+    name: str = "heat",
+    dt: float = 0.02,
+    tolerance: float = 0.05,
+    ambient: float = 24.0,
+    air: float = 5.0,
+) -> mujoco.MjModel:
+    """Adds a sensor of that name to the spec and returns the compiled model: its data are the fingertips' voltages (F,)
+    V, in their order, before low-pass, noise and converter. The heat is advanced in mj_step, and what it remembers is
+    part of the simulation's state (mjSTATE_PLUGIN).
+
+    The arguments are those of ThermalTouch, and so are the voltages'. The pads, objects and the timestep are those that
+    the spec has now: install after everything else. Geoms without a name get one. Raises what ThermalTouch and
+    load_plugin do, and InvalidValueError
+    for what the plugin does not serve: sensors with heaters of their own, bare thermostats, and glued elements."""
+    if not isinstance(spec, mujoco.MjSpec):
+        raise InvalidValueError(f"spec must be a mujoco.MjSpec, got {type(spec).__name__}")
+    celsius("ambient (°C)", ambient)
+    non_negative("air (W/(m2 K))", air)
+    positive("tolerance (K)", tolerance)
+    load_plugin()
+    model = spec.compile()
+    substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
+    shapes = bodies(model, objects, ambient)
+    found = pads(model, fingertips, shapes)
+    for pad in found:
+        if pad.heated is not None or pad.bare:
+            what = "a bare thermostat" if pad.bare else "a sensor with a heater of its own"
+            raise InvalidValueError(
+                f"fingertip {pad.label!r}: {what} is not served inside MuJoCo's step; give it a sensor on a thermostat, "
+                "or use ThermalTouch"
+            )
+    for shape in shapes:
+        if shape.elements:
+            raise InvalidValueError(
+                f"object {shape.name!r}: glued elements are not served inside MuJoCo's step; use ThermalTouch"
+            )
+    numbers = packed(
+        model,
+        found,
+        shapes,
+        steps=substeps // samples_in(substeps, dt),
+        tolerance=tolerance,
+        film=air,
+        ambient=ambient,
+    )
+    geoms = [geom for pad in found for geom in pad.geoms] + [geom for shape in shapes for geom in shape.geoms]
+    spec.activate_plugin(PLUGIN)
+    plugin = spec.add_plugin(name=name, plugin_name=PLUGIN, active=True)
+    plugin.config = {"geoms": ",".join(_names(spec, geoms)), "numbers": numbers}
+    sensor = spec.add_sensor(name=name, type=mujoco.mjtSensor.mjSENS_PLUGIN)
+    sensor.plugin.active, sensor.plugin.name, sensor.plugin.plugin_name = True, name, PLUGIN
+    return spec.compile()
+
+
+def _names(spec: mujoco.MjSpec, geoms: list[int]) -> list[str]:
+    named, found = {geom.id: geom for geom in spec.geoms}, []
+    for number in geoms:
+        geom = named[number]
+        if not geom.name:
+            geom.name = f"{_UNNAMED}{number}"
+        if "," in geom.name:
+            raise InvalidValueError(f"geom {geom.name!r}: rename it, as the plugin reads names between commas")
+        found.append(geom.name)
+    return found

@@ -1,0 +1,109 @@
+/* The attribute "numbers": float64 in sixteen hexadecimal digits each, in the order of touch/engine/numbers.py. */
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "heat.h"
+
+enum { VERSION = 1, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
+
+static int digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+static bool decode(const char* text, size_t count, double* out) {
+  for (size_t i = 0; i < count; i++) {
+    uint64_t bits = 0;
+    for (int k = 0; k < 16; k++) {
+      int value = digit(text[16 * i + k]);
+      if (value < 0) return false;
+      bits = bits << 4 | (uint64_t)value;
+    }
+    memcpy(out + i, &bits, sizeof bits);
+    if (!isfinite(out[i])) return false;
+  }
+  return true;
+}
+
+static bool within(const double* values, size_t count, size_t stride, double least, double most) {
+  for (; count; count--, values += stride)
+    if (!(*values >= least && *values <= most)) return false;
+  return true;
+}
+
+/* Fills the numbers, whose `all` is to be freed. Returns what is wrong with the text, or NULL. */
+const char* heat_parse(Numbers* n, const char* text) {
+  static const double most[HEADER] = {VERSION,    MOST_TIPS, MOST_OBJECTS, MOST_GEOMS, PATTERNS, MOST_RATES,
+                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS};
+  memset(n, 0, sizeof *n);
+  size_t length = text ? strlen(text) : 0;
+  double* at = n->all = malloc(length / 2 + sizeof(double));
+  if (!at) return "there is no memory";
+  if (length % 16 || length < 16 * HEADER || !decode(text, length / 16, at))
+    return "the attribute \"numbers\" is broken or missing: write it with thermograsp.touch.install";
+  for (int i = 0; i < HEADER; i++)
+    if (!(at[i] >= (i > 7 && i < 11 ? DBL_MIN : 1) && at[i] <= most[i] && (at[i] == floor(at[i]) || (i > 7 && i < 11))))
+      return "the attribute \"numbers\" is of another version or broken: write it with thermograsp.touch.install";
+  int tips = n->tips = (int)at[1], objects = n->objects = (int)at[2], geoms = n->geoms = (int)at[3];
+  int patterns = n->patterns = (int)at[4], states = n->tip_states = (int)at[6], things = n->things = tips + geoms;
+  n->rates = (int)at[5];
+  n->sample_steps = (int)at[7];
+  n->timestep = at[8];
+  n->dt = at[9];
+  n->least = at[10];
+  n->named = (int)at[11];
+  n->targets = tips + objects;
+  n->places = tips + 2;
+  n->states = 1 + n->rates * patterns * n->places;
+  struct {
+    const double** part;
+    size_t size;
+  } parts[] = {
+      {&n->roles, n->named},
+      {&n->owner, geoms},
+      {&n->pads, (size_t)tips * PAD},
+      {&n->boxes, (size_t)objects * BOX},
+      {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
+      {&n->small, (size_t)tips * n->targets},
+      {&n->seebeck, tips},
+      {&n->warm, tips},
+      {&n->tip_area, tips},
+      {&n->tip_rates, (size_t)tips * states},
+      {&n->tip_ports, (size_t)tips * patterns * states},
+      {&n->tip_drop, (size_t)tips * states},
+      {&n->tip_basis, (size_t)tips * PATTERNS * patterns},
+      {&n->tip_weight, (size_t)tips * MOMENTS},
+      {&n->decay, n->rates},
+      {&n->times, TIMES},
+      {&n->to_moments, MOMENTS * TIMES},
+      {&n->moments, MOMENTS},
+      {&n->nodes, NODES},
+      {&n->jumps, FUNCTIONS * NODES},
+      {&n->along, 2 * PATTERNS},
+      {&n->gram, PATTERNS * PATTERNS},
+      {&n->poles, 2 * POLES},
+      {&n->weights, 2 * POLES},
+      {&n->afterwards, AFTERWARDS},
+      {&n->separation, SERIES},
+      {&n->separation_range, 4},
+  };
+  size_t total = HEADER;
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i].part = n->all + total;
+    total += parts[i].size;
+    if (total > length / 16) break;
+  }
+  if (total != length / 16) return "the attribute \"numbers\" has another length than it says itself";
+  size_t law = sizeof(Law) / sizeof(double), laws = (size_t)tips * things * 3;
+  const double* across = n->laws + offsetof(Law, across) / sizeof(double);
+  /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
+  if (!within(n->roles, n->named, 1, 0, things - 1) || !within(n->owner, geoms, 1, 0, objects - 1) ||
+      !within(across, laws, law, 0, 2) || !within(across + 1, laws, law, 0, 2) ||
+      !within(n->along, 2 * PATTERNS, 1, 0, FUNCTIONS - 1))
+    return "the attribute \"numbers\" names something that is not there";
+  return NULL;
+}

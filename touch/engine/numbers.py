@@ -1,0 +1,93 @@
+"""What the plugin is told: fingertips, objects, laws and tables as one row of float64, in the order that numbers.c reads.
+
+F: fingertips, O: objects, G: geoms of the objects, N = G + F: what a pad may meet, T = O + F: targets, M: patterns.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from ...thermal.contact import LOG_LEAST, LOG_MOST, SEPARATION
+from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES, TO_MOMENTS, before
+from ...thermal.network import POLES, WEIGHTS
+from ...thermal.numerics import HIGH, LOW
+from ..contacts import constrictions, pair_laws
+from ..heat import AFTERWARDS, resolution, tip_field, untouched
+from ..scene import BodyShape, PadPlace
+
+_VERSION = 1
+
+
+def packed(
+    model: mujoco.MjModel,
+    pads: Sequence[PadPlace],
+    shapes: Sequence[BodyShape],
+    *,
+    steps: int,
+    tolerance: float,
+    film: float,
+    ambient: float,
+) -> str:
+    """The attribute "numbers". steps: of the model in a sample of heat. tolerance: K. film: W/(m2 K) of the air at
+    `ambient` °C."""
+    level = resolution(tolerance)
+    tips = [tip_field(pad, level).tip for pad in pads]
+    most = max(len(tip.side.rates) for tip in tips)
+    owner = [o for o, shape in enumerate(shapes) for _ in shape.geoms]
+    roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
+    roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
+    timestep = float(model.opt.timestep)
+    header = (
+        *(_VERSION, len(pads), len(shapes), len(owner), level.patterns, level.rates, most, steps),
+        *(timestep, timestep * steps, level.least, len(roles)),
+    )
+    laws = pair_laws(model, pads, shapes)
+    every = (
+        header,
+        roles,
+        owner,
+        *((*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width) for pad in pads),
+        *(_box(shape, film, ambient) for shape in shapes),
+        np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
+        constrictions(pads, shapes),
+        [pad.stack.seebeck for pad in pads],
+        [pad.temperature - ambient for pad in pads],
+        [tip.area for tip in tips],
+        [_row(tip.side.rates, most) for tip in tips],
+        *([_row(port, most) for port in tip.side.ports.T] for tip in tips),
+        [_row(tip.side.outputs["drop"], most) for tip in tips],
+        *(tip.basis for tip in tips),
+        *(tip.weight for tip in tips),
+        level.decay,
+        *(TIMES, TO_MOMENTS[OF_GRASP], GRASP, NODES, JUMPS, ALONG, GRAM),
+        *(_pairs(POLES), _pairs(WEIGHTS), AFTERWARDS),
+        *(SEPARATION, (LOW, HIGH, LOG_LEAST, LOG_MOST)),
+    )
+    return np.concatenate([np.ravel(part) for part in every]).astype(">f8").tobytes().hex()
+
+
+def _box(shape: BodyShape, film: float, ambient: float) -> tuple[float, ...]:
+    bare, matter = untouched(shape, film), shape.material
+    diffusivity = matter.conductivity / matter.volumetric_heat_capacity
+    return (
+        *(*shape.size, *shape.extent, *shape.centre, *shape.axes.ravel()),
+        *(matter.conductivity, matter.volumetric_heat_capacity),
+        *(bare.rates[0], (shape.temperature - ambient) * bare.heat[0]),
+        before(diffusivity) / matter.volumetric_heat_capacity,
+    )
+
+
+def _row(values: np.ndarray, length: int) -> np.ndarray:
+    """With zeros behind it."""
+    return np.pad(values, (0, length - len(values)))
+
+
+def _pairs(values: np.ndarray) -> np.ndarray:
+    """Real and imaginary parts in turn."""
+    return np.stack((values.real, values.imag), axis=1)

@@ -1,0 +1,214 @@
+/* thermograsp.heat: a sensor plugin of MuJoCo. Its data are the voltages of a model's fingertips, V before low-pass, noise
+and converter; its state holds the fields and the places of all fingertips and objects.
+
+Attributes: "geoms", names with commas between, and "numbers", see numbers.c; thermograsp.touch.install writes both. What
+is kept beside the state follows from the state alone: the networks of the places that objects have now. */
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contacts.h"
+
+typedef struct {
+  Numbers numbers;
+  Work work;
+  void* block;
+} Heat;
+
+static Heat* heat_of(const mjData* d, int instance) { return (Heat*)d->plugin_data[instance]; }
+
+static int failed(const char* what) {
+  mju_warning("thermograsp.heat: %s", what);
+  return -1;
+}
+
+/* Says where the parts of the work stand in the block, and returns its size in doubles; each part begins on a line of the
+processor's cache. */
+static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* block) {
+  size_t used = 0, ports = (size_t)n->places * n->patterns, contacts = (size_t)n->tips * n->targets;
+#define PART(name, count, type)                                       \
+  do {                                                                \
+    if (block) (name) = (type*)(block + used);                        \
+    used += ((count) * sizeof(type) + 63) / 64 * (64 / sizeof(double)); \
+  } while (0)
+  PART(work->networks, n->objects + 1, Network); /* one for the network before a new place */
+  for (int o = 0; o <= n->objects; o++) {
+    Network none, *network = block ? &work->networks[o] : &none;
+    PART(network->places, (size_t)n->places * SLOT, double);
+    PART(network->rates, n->states, double);
+    PART(network->ports, ports * n->states, double);
+    PART(network->fade, n->states, double);
+  }
+  PART(work->groups, n->targets, Group);
+  for (int g = 0; g < n->targets; g++) {
+    Group none, *group = block ? &work->groups[g] : &none;
+    PART(group->pair, 2 * contacts, int);
+    PART(group->member, n->targets, int);
+  }
+  PART(work->closed, contacts, double);
+  PART(work->current, (size_t)n->tips * n->objects, double);
+  PART(work->fade, (size_t)n->tips * n->tip_states, double);
+  PART(work->role, m->ngeom, int);
+  PART(work->geom, n->things, int);
+  PART(work->body, n->things, int);
+  size_t room = heat_network_room(n), other = heat_carry_room(n), forces = (size_t)n->tips * n->things * 3;
+  room = room > other ? room : other;
+  PART(work->room, room > forces ? room : forces, double);
+#undef PART
+  return used;
+}
+
+/* Finds the geoms by their names. */
+static const char* find(const Numbers* n, Work* work, const mjModel* m, const char* names) {
+  if (!names) return "the attribute \"geoms\" is missing: write it with thermograsp.touch.install";
+  for (int g = 0; g < m->ngeom; g++) work->role[g] = -1;
+  for (int g = 0; g < n->things; g++) work->geom[g] = work->body[g] = -1;
+  for (int i = 0; i < n->named; i++) {
+    char name[512];
+    size_t length = strcspn(names, ",");
+    if (length >= sizeof name) return "a name in the attribute \"geoms\" is too long";
+    memcpy(name, names, length);
+    name[length] = 0;
+    names += length + (names[length] == ',');
+    int geom = mj_name2id(m, mjOBJ_GEOM, name), role = (int)n->roles[i];
+    if (geom < 0) return "the attribute \"geoms\" names a geom that the model does not have";
+    int thing = role < n->tips ? n->geoms + role : role - n->tips;
+    work->role[geom] = role;
+    work->body[thing] = m->geom_bodyid[geom];
+    if (role >= n->tips) work->geom[thing] = geom;
+  }
+  if (*names) return "the attribute \"geoms\" has more names than there are numbers for";
+  for (int g = 0; g < n->things; g++)
+    if (work->body[g] < 0) return "the attribute \"geoms\" lacks a name";
+  if (fabs(m->opt.timestep - n->timestep) > 1e-9 * n->timestep)
+    return "the model's timestep has changed since thermograsp.touch.install: install again";
+  return NULL;
+}
+
+static int nstate(const mjModel* m, int instance) {
+  Numbers numbers;
+  const char* wrong = heat_parse(&numbers, mj_getPluginConfig(m, instance, "numbers"));
+  int count = wrong ? failed(wrong) : (int)heat_states(&numbers);
+  free(numbers.all);
+  return count;
+}
+
+static int nsensordata(const mjModel* m, int instance, int sensor) {
+  (void)sensor;
+  Numbers numbers;
+  int count = heat_parse(&numbers, mj_getPluginConfig(m, instance, "numbers")) ? 0 : numbers.tips; /* nstate tells */
+  free(numbers.all);
+  return count;
+}
+
+static void destroy(mjData* d, int instance) {
+  Heat* heat = heat_of(d, instance);
+  if (!heat) return;
+  free(heat->work.pool);
+  free(heat->numbers.all);
+  free(heat->block);
+  free(heat);
+  d->plugin_data[instance] = 0;
+}
+
+static int init(const mjModel* m, mjData* d, int instance) {
+  Heat* heat = calloc(1, sizeof *heat);
+  d->plugin_data[instance] = (uintptr_t)heat;
+  if (!heat) return failed("there is no memory");
+  Numbers* n = &heat->numbers;
+  const char* wrong = heat_parse(n, mj_getPluginConfig(m, instance, "numbers"));
+  if (!wrong) {
+    size_t size = 64 + lay_out(n, &heat->work, m, NULL) * sizeof(double);
+    heat->block = calloc(1, size);
+    if (!heat->block) wrong = "there is no memory";
+  }
+  if (!wrong) {
+    lay_out(n, &heat->work, m, (double*)(((uintptr_t)heat->block + 63) / 64 * 64));
+    wrong = find(n, &heat->work, m, mj_getPluginConfig(m, instance, "geoms"));
+  }
+  if (wrong) {
+    destroy(d, instance);
+    return failed(wrong);
+  }
+  heat->work.count = -1;
+  for (int o = 0; o < n->objects; o++) heat->work.networks[o].count = -1;
+  for (int i = 0; i < n->tips * n->tip_states; i++) heat->work.fade[i] = exp(-n->dt * n->tip_rates[i]);
+  heat_reset(n, d->plugin_state + m->plugin_stateadr[instance]);
+  return 0;
+}
+
+static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int instance) {
+  (void)m, (void)instance;
+  Heat* heat = plugin_data;
+  if (heat) heat_reset(&heat->numbers, plugin_state);
+}
+
+/* The networks go with a copy: making them again would take milliseconds. */
+static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance) {
+  (void)m;
+  const Heat* from = heat_of(src, instance);
+  Heat* to = heat_of(dest, instance);
+  if (!from || !to) return;
+  const Numbers* n = &from->numbers;
+  to->work.count = -1;
+  for (int o = 0; o < n->objects; o++) {
+    const Network* one = &from->work.networks[o];
+    Network* other = &to->work.networks[o];
+    other->count = one->count;
+    other->n = one->n;
+    memcpy(other->places, one->places, sizeof(double) * n->places * SLOT);
+    memcpy(other->rates, one->rates, sizeof(double) * n->states);
+    memcpy(other->ports, one->ports, sizeof(double) * n->states * n->places * n->patterns);
+    memcpy(other->fade, one->fade, sizeof(double) * n->states);
+  }
+}
+
+static void compute(const mjModel* m, mjData* d, int instance, int capability) {
+  (void)capability;
+  const Heat* heat = heat_of(d, instance);
+  State state = heat_state(&heat->numbers, d->plugin_state + m->plugin_stateadr[instance]);
+  for (int s = 0; s < m->nsensor; s++) {
+    if (m->sensor_type[s] != mjSENS_PLUGIN || m->sensor_plugin[s] != instance) continue;
+    for (int f = 0; f < heat->numbers.tips; f++)
+      d->sensordata[m->sensor_adr[s] + f] = heat_voltage(&heat->numbers, &state, f);
+  }
+}
+
+static void advance(const mjModel* m, mjData* d, int instance) {
+  Heat* heat = heat_of(d, instance);
+  const Numbers* n = &heat->numbers;
+  double* at = d->plugin_state + m->plugin_stateadr[instance];
+  State state = heat_state(n, at);
+  if (!(*state.count >= 0 && *state.count < n->sample_steps)) heat_reset(n, at);
+  heat_read(n, &heat->work, m, d, state.touches);
+  if (++*state.count < n->sample_steps) return;
+  *state.count = 0;
+  if (heat_valid(n, &state)) {
+    heat_settle(n, &heat->work, &state);
+    if (!heat_march(n, &heat->work, &state)) failed("there is no memory: a sample of heat is left out");
+    memset(state.touches, 0, sizeof(double) * n->tips * n->targets * COLUMNS);
+  } else {
+    heat_reset(n, at);
+  }
+}
+
+__attribute__((constructor)) static void enter(void) {
+  static const char* attributes[] = {"geoms", "numbers"};
+  mjpPlugin plugin;
+  mjp_defaultPlugin(&plugin);
+  plugin.name = "thermograsp.heat";
+  plugin.nattribute = 2;
+  plugin.attributes = attributes;
+  plugin.capabilityflags = mjPLUGIN_SENSOR;
+  plugin.needstage = mjSTAGE_POS;
+  plugin.nstate = nstate;
+  plugin.nsensordata = nsensordata;
+  plugin.init = init;
+  plugin.destroy = destroy;
+  plugin.copy = copy;
+  plugin.reset = reset;
+  plugin.compute = compute;
+  plugin.advance = advance;
+  mjp_registerPlugin(&plugin);
+}
