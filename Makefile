@@ -13,7 +13,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs touch thermal assets hardware agents figures dataset studio twin reports benchmarks
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engines test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
+.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engine test-engines test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -43,6 +43,10 @@ test-rl: build/.rl
 # Grippers from other packages; without them `make test` skips them.
 test-grippers: build/.grippers
 	$(PY) -m pytest $(TEST_FLAGS) tests/grippers
+
+# Heat inside MuJoCo's step: the sanitizers, and a million random steps.
+test-engine: build/.test
+	THERMOGRASP_ENGINE=1 $(PY) -m pytest -rs $(TEST_FLAGS) tests/touch/test_engine.py
 
 # Environments of other packages, in an environment of their own with the MuJoCo that all of them run on. A package that
 # cannot be installed says so, and its tests are skipped. Of robosuite what it needs comes by hand: its list holds numpy back.

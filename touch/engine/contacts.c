@@ -120,7 +120,7 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
     if (contact->geom[0] < 0 || contact->geom[1] < 0 || contact->efc_address < 0) continue;
     int first = work->role[contact->geom[0]], second = work->role[contact->geom[1]];
     if (first < 0 || second < 0 || first == second) continue;
-    double sign = 1, y, z, unused;
+    double sign = 1, y, z, other_y, other_z;
     if (first >= tips || (second < tips && second < first)) {
       int other = first;
       first = second;
@@ -139,7 +139,7 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
     bool on = lies(numbers->pads + first * PAD, &at, contact, sign, &y, &z);
     if (second < tips) {
       Pose other = pose(numbers, work, d, second);
-      on = lies(numbers->pads + second * PAD, &other, contact, -sign, &unused, &unused) && on;
+      on = lies(numbers->pads + second * PAD, &other, contact, -sign, &other_y, &other_z) && on;
     }
     if (!on) continue;
     double* own = pushed + (first * things + thing) * 3;

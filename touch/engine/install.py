@@ -54,8 +54,8 @@ def install(
         if pad.heated is not None or pad.bare:
             what = "a bare thermostat" if pad.bare else "a sensor with a heater of its own"
             raise InvalidValueError(
-                f"fingertip {pad.label!r}: {what} is not served inside MuJoCo's step; give it a sensor on a thermostat, "
-                "or use ThermalTouch"
+                f"fingertip {pad.label!r}: {what} is not served inside MuJoCo's step; give it a sensor on a "
+                "thermostat, or use ThermalTouch"
             )
     for shape in shapes:
         if shape.elements:
@@ -87,6 +87,8 @@ def _names(spec: mujoco.MjSpec, geoms: list[int]) -> list[str]:
         if not geom.name:
             geom.name = f"{_UNNAMED}{number}"
         if "," in geom.name:
-            raise InvalidValueError(f"geom {geom.name!r}: rename it, as the plugin reads names between commas")
+            raise InvalidValueError(
+                f"geom {geom.name!r}: rename it, as the plugin reads names between commas"
+            )
         found.append(geom.name)
     return found

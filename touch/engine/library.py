@@ -22,7 +22,7 @@ from thermograsp.notice import busy
 
 _FOLDER = Path(__file__).parent
 _OPTIONS = ("-std=c11", "-O3", "-fPIC", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra")
-# Sums may be reassociated, the same way wherever the one library runs; nothing is fused that another processor would not.
+# Sums may be reassociated: one library does it one way. Nothing is fused, which processors would differ in.
 _SUMS = (
     "-fno-math-errno",
     "-fno-trapping-math",
@@ -52,11 +52,13 @@ def _loaded() -> Path:
 
 def library() -> Path:
     """The built library in the cache."""
-    sources = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(_FOLDER.glob("*.[ch]"))}
+    sources = {
+        path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(_FOLDER.glob("*.[ch]"))
+    }
     key = {
         "sources": sources,
         "mujoco": mujoco.__version__,
-        "folder": str(Path(mujoco.__file__).parent),
+        "folder": str(Path(mujoco.__path__[0])),
         "machine": platform.machine(),
         "compiler": os.environ.get("CC", "cc"),
     }
@@ -65,7 +67,7 @@ def library() -> Path:
 
 def build(path: Path, *options: str) -> None:
     """Compiles the plugin to that path, with more options of the compiler."""
-    home = Path(mujoco.__file__).parent
+    home = Path(mujoco.__path__[0])
     found = sorted(home.glob("libmujoco.so*")) + sorted(home.glob("libmujoco*.dylib"))
     if not found:
         raise MissingDependencyError(f"there is no libmujoco in {home}: install mujoco from its wheel")

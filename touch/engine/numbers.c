@@ -29,9 +29,10 @@ static bool decode(const char* text, size_t count, double* out) {
   return true;
 }
 
-static bool within(const double* values, size_t count, size_t stride, double least, double most) {
+/* Whether all are whole numbers from 0 to the most. */
+static bool within(const double* values, size_t count, size_t stride, double most) {
   for (; count; count--, values += stride)
-    if (!(*values >= least && *values <= most)) return false;
+    if (!(*values >= 0 && *values <= most && *values == floor(*values))) return false;
   return true;
 }
 
@@ -101,9 +102,9 @@ const char* heat_parse(Numbers* n, const char* text) {
   size_t law = sizeof(Law) / sizeof(double), laws = (size_t)tips * things * 3;
   const double* across = n->laws + offsetof(Law, across) / sizeof(double);
   /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
-  if (!within(n->roles, n->named, 1, 0, things - 1) || !within(n->owner, geoms, 1, 0, objects - 1) ||
-      !within(across, laws, law, 0, 2) || !within(across + 1, laws, law, 0, 2) ||
-      !within(n->along, 2 * PATTERNS, 1, 0, FUNCTIONS - 1))
+  if (!within(n->roles, n->named, 1, things - 1) || !within(n->owner, geoms, 1, objects - 1) ||
+      !within(across, laws, law, 2) || !within(across + 1, laws, law, 2) ||
+      !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

@@ -73,6 +73,7 @@ static const char* find(const Numbers* n, Work* work, const mjModel* m, const ch
     names += length + (names[length] == ',');
     int geom = mj_name2id(m, mjOBJ_GEOM, name), role = (int)n->roles[i];
     if (geom < 0) return "the attribute \"geoms\" names a geom that the model does not have";
+    if (work->role[geom] >= 0) return "the attribute \"geoms\" names a geom twice";
     int thing = role < n->tips ? n->geoms + role : role - n->tips;
     work->role[geom] = role;
     work->body[thing] = m->geom_bodyid[geom];

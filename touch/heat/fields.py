@@ -138,7 +138,7 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     """(n after, n before): the field on the states of a network with other places.
 
     The field on the new states is the one that the places of both will see alike from then on, left alone: their
-    temperatures at AFTERWARDS, by least squares. Heat stays the same, since it is all in the mean temperature's state."""
+    temperatures at AFTERWARDS, by least squares. Heat stays the same: it is all in the mean temperature's state."""
     matrix = np.zeros((len(after.rates), len(before.rates)))
     matrix[0, 0] = 1.0
     common = [place for place in before.places if place in after.places]

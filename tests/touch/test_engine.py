@@ -1,0 +1,323 @@
+"""Heat inside MuJoCo's step: the same numbers as ThermalTouch, in whatever way the steps are taken."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+import copy
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import mujoco
+import mujoco.rollout
+import numpy as np
+import pytest
+
+from thermograsp.errors import InvalidValueError, MissingDependencyError, ThermograspError
+from thermograsp.thermal import IDEAL
+from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch, install, load_plugin
+
+pytestmark = pytest.mark.skipif(
+    shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler to build the plugin"
+)
+TIER = pytest.mark.skipif(
+    not os.environ.get("THERMOGRASP_ENGINE"), reason="takes minutes and gcc's sanitizers: make test-engine"
+)
+ROUND_OFF = 1e-9  # K; the two sum in another order
+
+_spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
+assert _spec and _spec.loader
+hand = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(hand)
+
+PADS = {name: f"{name}_pad" for name in hand.FINGERS}
+OBJECTS = {"can": ThermalBody("aluminium", 5.0), "ball": "glass"}
+ORDERS = (10.0, 0.0, 0.0), (10.0, 0.015, 0.0), (-5.0, 0.0, 0.0), (10.0, -0.015, 0.01), (6.0, 0.0, -0.005)
+"""Forces N, and places m of the palm, each for a while: touches, slips, lets go, comes back elsewhere."""
+FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS
+
+
+@pytest.fixture(scope="module")
+def model() -> mujoco.MjModel:
+    return install(mujoco.MjSpec.from_string(hand.scene()), fingertips=PADS, objects=OBJECTS)
+
+
+def order(data: mujoco.MjData, force: float, x: float, z: float, fingers: tuple[str, ...] = ()) -> None:
+    hand.press(data, force, *fingers)
+    data.actuator("palm").ctrl[0], data.actuator("palm_z").ctrl[0] = x, z
+
+
+def orders(steps: int) -> np.ndarray:
+    """(steps * len(ORDERS), 5) controls."""
+    rows = [[force, force, force, x, z] for force, x, z in ORDERS]
+    return np.repeat(np.array(rows), steps, axis=0)
+
+
+def states(model: mujoco.MjModel, data: mujoco.MjData, kind: mujoco.mjtState = FULL) -> np.ndarray:
+    found = np.empty(mujoco.mj_stateSize(model, kind))
+    mujoco.mj_getState(model, data, found, kind)
+    return found
+
+
+def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
+    mujoco.mj_forward(model, data)
+    return data.sensor("heat").data.copy()
+
+
+@pytest.mark.parametrize("tolerance", [0.05, 0.02])
+def test_its_voltages_are_those_of_thermal_touch(tolerance: float) -> None:
+    words = {"fingertips": PADS, "objects": OBJECTS, "tolerance": tolerance}
+    model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    seebeck = np.array([pad.stack.seebeck for pad in touch._pads])
+    felt, places = set(), 0
+    for number, (force, x, z) in enumerate(ORDERS):
+        order(data, force, x, z, hand.FINGERS[: 2 + number % 2])
+        for n in range(150):
+            mujoco.mj_step(model, data)
+            reading = touch.update(data)
+            if n % 10 == 9:
+                drop = voltages(model, data) / seebeck
+                assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
+                felt.add(reading.touching)
+        places = max(places, *(len(field.places) for field in touch._heat._fields[0]))
+    assert len(felt) > 2 and places == len(PADS) + 2  # places have gone again
+
+
+def test_fingertips_on_one_another_and_other_shapes() -> None:
+    """Two pads that meet, a ball, a turned box, pyramidal cones."""
+    spec = mujoco.MjSpec.from_string("""
+    <mujoco><option timestep=".002" cone="pyramidal"/><worldbody>
+      <body name="low"><geom name="low" type="box" size=".01 .01 .004"/></body>
+      <body name="high" pos=".002 0 .03"><joint name="high" type="slide" axis="0 0 -1" damping="20"/>
+        <geom name="high" type="box" size=".01 .01 .004" mass=".1"/></body>
+      <body name="ball" pos=".2 0 0"><geom type="sphere" size=".03"/></body>
+      <body name="on_ball" pos=".203 0 .05"><joint name="on_ball" type="slide" axis="0 0 -1" damping="20"/>
+        <geom name="on_ball" type="box" size=".01 .01 .004" mass=".1"/></body>
+      <body name="box" pos="-.2 0 0" euler="0 0 20"><geom type="box" size=".02 .03 .02"/></body>
+      <body name="on_box" pos="-.19 0 .04"><joint name="on_box" type="slide" axis="0 0 -1" damping="20"/>
+        <geom name="on_box" type="box" size=".01 .01 .004" mass=".1"/></body>
+    </worldbody><actuator><motor joint="high"/><motor joint="on_ball"/><motor joint="on_box"/></actuator></mujoco>""")
+    down, up = {"normal": (0, 0, -1), "position": (0, 0, -0.004), "size": (0.02, 0.02)}, (0, 0, 1)
+    words = {
+        "fingertips": {
+            "low": Fingertip("low", (0, 0, 0.004), up, (0.02, 0.02), temperature=30.0),
+            **{name: Fingertip(name, **down) for name in ("high", "on_ball", "on_box")},
+        },
+        "objects": {"ball": "glass", "box": "aluminium"},
+    }
+    model = install(spec, **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    data.ctrl[:], reading = 5.0, touch.reading
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+    drop = voltages(model, data) / np.array([pad.stack.seebeck for pad in touch._pads])
+    assert reading.touching == ("high", "low", "ball", "box")
+    assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
+    assert np.abs(drop).min() > 0.1
+
+
+def test_threads_of_rollout_do_as_one_does(model: mujoco.MjModel) -> None:
+    data = mujoco.MjData(model)
+    start, controls = states(model, data), np.stack([orders(60) * s for s in (1.0, 0.8, 0.6, 0.9)])
+    starts, runs = np.tile(start, (4, 1)), []
+    for threads in (1, 3):
+        rooms = [mujoco.MjData(model) for _ in range(threads)]
+        ends, felt = map(np.asarray, mujoco.rollout.rollout(model, rooms, starts, controls))
+        runs.append((ends, felt))
+    for one, other in zip(*runs, strict=True):
+        assert np.array_equal(one, other)
+    assert np.abs(runs[0][1][:, -1]).max() > 1e-4
+    for row in controls[0]:
+        data.ctrl[:] = row
+        mujoco.mj_step(model, data)
+    assert np.array_equal(states(model, data), runs[0][0][0, -1])
+
+
+def test_a_batch_does_as_steps_do(model: mujoco.MjModel) -> None:
+    batch = pytest.importorskip("mujoco.batch", reason="mujoco.batch exists from MuJoCo 4.0 on")
+    many = batch.Batch(model, nsim=3, nthread=2)
+    data = mujoco.MjData(model)
+    controls, felt = np.asarray(many.bind("ctrl")), np.asarray(many.bind("sensordata"))
+    for row in orders(40):
+        controls[:], data.ctrl[:] = row, row
+        many.step()
+        mujoco.mj_step(model, data)
+    assert np.abs(data.sensordata).max() > 1e-4
+    assert (felt == data.sensordata).all()
+
+
+def test_a_state_that_comes_back_goes_on_alike(model: mujoco.MjModel) -> None:
+    first = mujoco.MjData(model)
+    for row in orders(60):
+        first.ctrl[:] = row
+        mujoco.mj_step(model, first)
+    kind = mujoco.mjtState.mjSTATE_INTEGRATION
+    saved, second, third = states(model, first, kind), mujoco.MjData(model), copy.copy(first)
+    mujoco.mj_setState(model, second, saved, kind)
+    for data in (first, second, third):
+        for row in orders(30):
+            data.ctrl[:] = row
+            mujoco.mj_step(model, data)
+    assert np.array_equal(states(model, first), states(model, second))
+    assert np.array_equal(states(model, first), states(model, third))
+    mujoco.mj_resetData(model, first)
+    assert not voltages(model, first).any()
+    assert np.array_equal(first.plugin_state, mujoco.MjData(model).plugin_state)
+
+
+def test_the_model_is_written_and_read_again(model: mujoco.MjModel, tmp_path: Path) -> None:
+    spec = mujoco.MjSpec.from_string(hand.scene())
+    install(spec, fingertips=PADS, objects=OBJECTS)
+    again = mujoco.MjModel.from_xml_string(spec.to_xml())
+    mujoco.mj_saveModel(model, str(tmp_path / "hand.mjb"), None)
+    binary = mujoco.MjModel.from_binary_path(str(tmp_path / "hand.mjb"))
+    ends = []
+    for one in (again, binary):
+        data = mujoco.MjData(one)
+        hand.press(data, 10.0)
+        mujoco.mj_step(one, data, 200)
+        ends.append(voltages(one, data))
+    assert np.abs(ends[0]).min() > 1e-4
+    assert np.allclose(ends[0], ends[1], rtol=1e-6)
+
+
+def broken() -> Iterator[dict[str, str]]:
+    spec = mujoco.MjSpec.from_string(hand.scene())
+    install(spec, fingertips=PADS, objects=OBJECTS)
+    good = dict(spec.plugins[-1].config)
+    numbers, huge = good["numbers"], np.array([1e300], ">f8").tobytes().hex()
+    yield {}
+    yield {"geoms": good["geoms"]}
+    yield {"numbers": numbers}
+    yield {**good, "geoms": ""}
+    yield {**good, "geoms": good["geoms"] + ",table"}
+    yield {**good, "geoms": good["geoms"].replace("thumb_pad", "nothing")}
+    yield {**good, "geoms": good["geoms"].replace("thumb_pad", "index_pad")}
+    yield {**good, "numbers": "heat"}
+    yield {**good, "numbers": numbers[:-1]}
+    yield {**good, "numbers": numbers[:-16]}
+    yield {**good, "numbers": numbers + numbers[:16]}
+    yield {**good, "numbers": numbers.replace("0", "O", 1)}
+    for at in range(14):  # what says how much there is, and the first roles
+        for value in (huge, "0" * 16, "7ff8" + "0" * 12, "bff0" + "0" * 12, "3fe0" + "0" * 12):
+            if (at, value) == (12, "0" * 16):
+                continue  # the first fingertip is number 0
+            if at not in (8, 9, 10) or value[:2] in ("7f", "bf"):
+                yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}
+
+
+def test_broken_attributes_are_refused() -> None:
+    tried = 0
+    for config in broken():
+        spec = mujoco.MjSpec.from_string(hand.scene())
+        spec.activate_plugin("thermograsp.heat")
+        spec.add_plugin(name="heat", plugin_name="thermograsp.heat", active=True).config = config
+        sensor = spec.add_sensor(name="heat", type=mujoco.mjtSensor.mjSENS_PLUGIN)
+        sensor.plugin.active, sensor.plugin.name, sensor.plugin.plugin_name = True, "heat", "thermograsp.heat"
+        with pytest.raises((ValueError, mujoco.FatalError)):
+            mujoco.MjData(spec.compile())
+        tried += 1
+    assert tried > 50
+
+
+def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
+    rng, data = np.random.default_rng(1), mujoco.MjData(model)
+    for scale in (1.0, 10.0, 1e9, np.nan, np.inf):
+        for share in (0.02, 1.0):
+            hit = rng.random(model.npluginstate) < share
+            data.plugin_state[hit] = scale * rng.standard_normal(hit.sum())
+            mujoco.mj_step(model, data, 20)
+    mujoco.mj_resetData(model, data)
+    hand.press(data, 10.0)
+    mujoco.mj_step(model, data, 200)
+    assert np.abs(voltages(model, data)).min() > 1e-4
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"fingertips": {"tip": Fingertip("thumb_pad", sensor="heated_thermistor")}}, "heater of its own"),
+        ({"fingertips": {"tip": Fingertip("thumb_pad", sensor=None)}}, "bare thermostat"),
+        ({"dt": 0.0031}, "whole number"),
+        ({"air": -1.0}, "air"),
+        (
+            {"objects": {"crate": ThermalBody("glass", elements=(SensorElement((0, 0, 0.02), (0, 0, 1)),))}},
+            "glued",
+        ),
+    ],
+)
+def test_what_is_not_served_is_refused(words: dict, message: str) -> None:
+    crate = '<body name="crate" pos="0 .3 .02"><geom type="box" size=".02 .02 .02"/></body>'
+    spec = mujoco.MjSpec.from_string(hand.scene(objects=crate))
+    with pytest.raises(InvalidValueError, match=message):
+        install(spec, **{"fingertips": PADS, "objects": OBJECTS, **words})
+
+
+def test_without_a_compiler_it_says_what_is_missing(tmp_path: Path) -> None:
+    code = (
+        "import thermograsp\nfrom thermograsp.touch import load_plugin\n"
+        "try:\n    load_plugin()\nexcept thermograsp.errors.MissingDependencyError as e:\n    print(e)"
+    )
+    there = os.environ | {"CC": "no-such-compiler", "THERMOGRASP_CACHE": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], env=there, capture_output=True, text=True, check=True)
+    assert "there is no 'no-such-compiler'" in done.stdout
+    there["CC"] = "false"
+    done = subprocess.run([sys.executable, "-c", code], env=there, capture_output=True, text=True)
+    assert "ThermograspError" in done.stderr and "failed" in done.stderr
+    assert issubclass(MissingDependencyError, ThermograspError) and list(tmp_path.iterdir()) == []
+
+
+@TIER
+def test_processes_that_build_at_once_load_the_same(tmp_path: Path) -> None:
+    there = os.environ | {"THERMOGRASP_CACHE": str(tmp_path)}
+    code = "from thermograsp.touch import load_plugin; print(load_plugin())"
+    both = [
+        subprocess.Popen([sys.executable, "-c", code], env=there, stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    paths = {one.communicate()[0] for one in both}
+    assert [one.returncode for one in both] == [0, 0] and len(paths) == 1
+    assert len(list(tmp_path.glob("*.so"))) == 1
+
+
+@TIER
+def test_sanitizers_find_nothing(tmp_path: Path) -> None:
+    """This file again, in a process whose plugin is built with gcc's sanitizers."""
+    asan = subprocess.run(["cc", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
+    code = f"""
+import sys
+from pathlib import Path
+from thermograsp.touch.engine import library
+path = Path({str(tmp_path / "heat.so")!r})
+library.build(path, "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-Werror")
+library.library = lambda: path
+import pytest
+sys.exit(pytest.main(["-q", "-x", "-p", "no:cacheprovider", {__file__!r}]))
+"""
+    there = os.environ | {
+        "LD_PRELOAD": asan.stdout.strip(),
+        "ASAN_OPTIONS": "detect_leaks=0:handle_segv=0",
+    }
+    there.pop("THERMOGRASP_ENGINE")
+    done = subprocess.run([sys.executable, "-c", code], env=there, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+
+@TIER
+def test_a_million_random_steps(model: mujoco.MjModel) -> None:
+    rng, data = np.random.default_rng(7), mujoco.MjData(model)
+    for n in range(20_000):
+        order(data, rng.uniform(-5.0, 12.0), *rng.uniform(-0.03, 0.03, 2))
+        mujoco.mj_step(model, data, 50)
+        if n % 10 == 0:
+            assert np.isfinite(data.plugin_state).all() and np.abs(voltages(model, data)).max() < 0.1
+
+
+def test_loading_twice_is_loading_once() -> None:
+    assert load_plugin() == load_plugin()
