@@ -12,7 +12,7 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from .contacts import prepare
     from .engine import install, load_plugin
-    from .heat import HeatBalance
+    from .heat import FixedPlaces, HeatBalance
     from .scene import (
         Face,
         Fingertip,
@@ -29,6 +29,7 @@ __all__ = [
     "SAMPLES",
     "Face",
     "Fingertip",
+    "FixedPlaces",
     "HeatBalance",
     "SensorElement",
     "ThermalBody",
@@ -49,7 +50,7 @@ __getattr__ = opened(
     {
         "contacts": ("prepare",),
         "engine": ("install", "load_plugin"),
-        "heat": ("HeatBalance",),
+        "heat": ("FixedPlaces", "HeatBalance"),
         "scene": (
             "Face",
             "Fingertip",

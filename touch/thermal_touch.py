@@ -18,11 +18,12 @@ from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name
 
 from ..thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
+from ..thermal.numerics import Array
 from ..thermal.readout import chain_numbers, measure_rows
 from ..thermal.stack import converter
 from .contacts import FORCE, ContactReader, sensor_places
 from .draw import draw_fingertips
-from .heat import HeatBalance, HeatState, JoinedHeat
+from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
 from .scene import (
     Fingertip,
     Objects,
@@ -269,6 +270,14 @@ class ThermalTouch:
         self._rest(rows)
         self._reading = self._read()
         return self._reading
+
+    def fixed_places(self, like: Array, *, world: int = 0) -> FixedPlaces:
+        """Its fingertips on the places where they have touched so far, as they are now, for a pure step of arrays:
+        `advance(state, conductance)`, once per sample of the converter. like: an array of floating-point numbers whose
+        kind (NumPy, PyTorch, JAX), dtype and device are taken. Raises InvalidValueError where nothing has been touched,
+        and beside thermostats of finite power, heated sensors and glued elements."""
+        (row,) = self._rows([world])
+        return self._heat.fixed_places(row, like)
 
     def draw(self, scene: mujoco.MjvScene, data: mujoco.MjData, *, world: int = 0) -> int:
         """Adds what each fingertip feels to a scene of MuJoCo's viewer (viewer.user_scn) or Renderer (renderer.scene):

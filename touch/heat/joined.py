@@ -16,7 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from thermograsp.errors import InvalidValueError
+
 from ...thermal import Material
+from ...thermal.numerics import Array
 from ..contacts import FORCE, GluedContacts
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
@@ -33,6 +36,7 @@ from .fields import (
     touched,
     untouched,
 )
+from .fixed_places import FixedPlaces, fixed_places
 from .march import march, settle
 from .systems import Pair, SystemPool, groups
 
@@ -208,6 +212,51 @@ class JoinedHeat:
             out = self._passed(back) - passed
             back.step(self._field_of(back), held, out, self.drop[:, f], force / substeps)
             self._warm[:, f] = back.temperature - self._ambient
+
+    def fixed_places(self, w: int, like: Array) -> FixedPlaces:
+        """World w's fingertips on the places that they have, and on other fingertips that they touch."""
+        if self._backs or self._glued is not None:
+            raise InvalidValueError(
+                "fixed places know fingertips on ideal thermostats alone: leave out thermostat=, heated sensors and "
+                "elements that are glued on"
+            )
+        objects, patterns = len(self._shapes), self._level.patterns
+        at = np.concatenate((self._current[w] >= 0, self._closed[w, :, objects:]), axis=1)
+        pairs: list[Pair] = [(f, t) for f, t in np.argwhere(at).tolist()]
+        if not pairs:
+            raise InvalidValueError(
+                f"no fingertip of world {w} has touched anything: there are no places yet"
+            )
+        used = sorted({t for _, t in pairs} | {objects + f for f, _ in pairs})
+        rates = [
+            self._tips[b - objects].side.rates if b >= objects else self._fields[w][b].rates for b in used
+        ]
+        begin = dict(zip(used, np.cumsum([0, *map(len, rates)]).tolist(), strict=False))
+        flat = np.concatenate(rates)
+        ports, drop = np.zeros((len(flat), patterns * len(pairs))), np.zeros((len(pairs), len(flat)))
+        for n, (f, t) in enumerate(pairs):
+            own, first = slice(n * patterns, (n + 1) * patterns), begin[objects + f]
+            side = self._tips[f].side
+            ports[first : first + len(side.rates), own] = -side.ports
+            drop[n, first : first + len(side.rates)] = side.outputs["drop"]
+            taking = (
+                self._fields[w][t].port(int(self._current[w, f, t]), patterns)
+                if t < objects
+                else self._tips[t - objects].side.ports
+            )
+            ports[begin[t] : begin[t] + len(taking), own] = taking
+        names = (*(shape.name for shape in self._shapes), *(pad.label for pad in self._pads))
+        warm = np.append(np.zeros(objects), self._warm[w])
+        return fixed_places(
+            [(self._pads[f].label, names[t]) for f, t in pairs],
+            flat,
+            ports,
+            drop,
+            np.array([warm[objects + f] - warm[t] for f, t in pairs]),
+            np.concatenate([self._x[w, b, : len(r)] for b, r in zip(used, rates, strict=True)]),
+            self._dt,
+            like,
+        )
 
     @property
     def sent(self) -> np.ndarray:
