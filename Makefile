@@ -13,7 +13,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs touch thermal assets hardware agents figures dataset studio twin reports benchmarks
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engine test-engines test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
+.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engine test-engines test-mjlab test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -60,6 +60,21 @@ test-engines: build/.files
 	  $(ENGINE_INSTALL) $$packages $(ENGINE_MUJOCO) || echo "test-engines: $$packages cannot be installed here"; done
 	$(ENGINE_INSTALL) --no-deps robosuite==1.5.2 || echo "test-engines: robosuite cannot be installed here"
 	THERMOGRASP_ENGINES=1 MUJOCO_GL=egl $(ENGINES)/bin/python -m pytest -rs $(TEST_FLAGS) tests/engines
+
+# mjlab's worlds with heat, in an environment of their own: 2.5 GB with PyTorch for the CPU alone, else 7 GB. mujoco-warp's
+# kernels are compiled into it at the first run.
+MJLAB := build/mjlab
+MJLAB_INSTALL := $(MJLAB)/bin/python -m pip install --disable-pip-version-check -q
+MJLAB_ROOM := 8000000
+test-mjlab: build/.files
+	@if [ ! -e $(MJLAB)/.installed ] && [ $$(df -Pk . | awk 'NR == 2 {print $$4}') -lt $(MJLAB_ROOM) ]; then \
+	  echo "test-mjlab: skipped, mjlab needs 8 GB of room"; \
+	elif $(MAKE) --no-print-directory $(MJLAB)/.created VENV=$(MJLAB) && { [ -e $(MJLAB)/.installed ] || \
+	  $(MJLAB_INSTALL) mjlab==1.6.0 'mujoco-warp==3.11.*' torch==2.13.0 pytest; }; then \
+	  touch $(MJLAB)/.installed && $(MJLAB_INSTALL) --no-build-isolation -e . && \
+	  THERMOGRASP_MJLAB=1 WARP_CACHE_PATH=$(CURDIR)/$(MJLAB)/warp $(MJLAB)/bin/python -m pytest -rs $(TEST_FLAGS) tests/mjlab; \
+	else \
+	  echo "test-mjlab: skipped, mjlab cannot be installed here"; fi
 
 # The oldest packages that setup.cfg allows, in an environment of their own: touch on the oldest MuJoCo, and the
 # environments on the oldest that they run on.

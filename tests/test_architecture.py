@@ -32,6 +32,7 @@ FOLDERS = {
     "reports": "reports",
     "bench": "benchmarks",
     "studio": "studio",
+    "mjlab": "core/mjlab",
     "cli": "core/cli",
 }
 """Folder of each package below the root."""
@@ -49,6 +50,7 @@ MAY_IMPORT = {
     "reports": ("assets", "thermal", "touch", "envs", "figures", "agents"),
     "bench": ("assets", "thermal", "touch", "envs", "figures", "agents"),
     "studio": ("assets", "thermal", "touch", "envs", "hardware", "figures", "agents", "twin"),
+    "mjlab": ("assets", "thermal", "touch"),
     "cli": tuple(folder for folder in FOLDERS if folder != "cli"),
 }
 """Folder -> the other folders that it may import; all may import the leaves."""

@@ -63,6 +63,8 @@ CASES = (
     Case("hardware/lines/serial_port.py", "serial", "hardware", "device list"),
     Case("hardware/lines/serial_port.py", "serial", "hardware", "device monitor /dev/null"),
     Case("hardware/drivers/modbus_line.py", "pymodbus", "hardware", "device gripper robotiq:///dev/null"),
+    Case("core/mjlab/sensor.py", "mjlab", "mjlab", call("mjlab:ThermalTouchCfg", "touch")),
+    Case("core/mjlab/sensor.py", "torch", "mjlab", call("mjlab:ThermalTouchCfg", "touch")),
     Case("dataset/schema.py", "pyarrow", "dataset", "dataset --episodes 1 --out made"),
     Case(
         "dataset/on_ray.py", "ray", "ray", "dataset --episodes 1 --workers 1 --ray-address local --out made"

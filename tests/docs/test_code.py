@@ -33,6 +33,7 @@ LINES = [(page, line) for page in PAGES for line in commands(page)]
 KNOWN = {"toml", "python", "python hardware", "sh", "math", "golden", "bibtex", "{toctree}", "{eval-rst}"}
 ELSEWHERE = {
     "docs/datasets.md": {"python torch", "python minari"},
+    "docs/engines.md": {"python mjlab"},
     "docs/howto.md": {"python rl", "python torchrl"},
 }
 """Kinds of blocks that tests of other folders run, by page."""

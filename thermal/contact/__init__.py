@@ -1,6 +1,7 @@
 """From normal force to contact: area, conductance, and both as one compiled law."""
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
+from .array_law import ArrayLaws, array_conductance, array_contact, array_laws
 from .law import (
     CONTACT_LAW,
     CYLINDER,
@@ -30,6 +31,7 @@ from .rough_faces import (
 __all__ = [
     "AIR",
     "CONTACT_LAW",
+    "ArrayLaws",
     "CYLINDER",
     "FLAT",
     "LAPPED_ALUMINA",
@@ -42,6 +44,9 @@ __all__ = [
     "Joint",
     "Pad",
     "Surface",
+    "array_conductance",
+    "array_contact",
+    "array_laws",
     "conductance",
     "contact",
     "contact_conductance",

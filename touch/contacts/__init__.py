@@ -1,5 +1,6 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
+from .array_contacts import ArrayContacts, array_contacts
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
 from .glued import GluedContacts
 from .laws import constrictions, pair_laws
@@ -8,6 +9,7 @@ from .sensors import SensorPlaces, prepare, sensor_places
 
 __all__ = [
     "COLUMNS",
+    "ArrayContacts",
     "CONDUCTANCE",
     "FORCE",
     "NORMAL",
@@ -15,6 +17,7 @@ __all__ = [
     "ContactReader",
     "GluedContacts",
     "SensorPlaces",
+    "array_contacts",
     "constrictions",
     "pair_laws",
     "prepare",

@@ -1,0 +1,294 @@
+"""The sensor: contact sensors of mjlab in, heat, voltages out, all on the simulation's device."""
+
+# mjlab is installed in the environment of make test-mjlab alone, and pyright takes this folder for it
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false, reportGeneralTypeIssues=false
+# pyright: reportIndexIssue=false, reportInvalidTypeForm=false, reportCallIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import mujoco
+
+from thermograsp.errors import (
+    InvalidValueError,
+    MissingDependencyError,
+    celsius,
+    non_negative,
+    positive,
+    unknown_name,
+)
+from thermograsp.thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
+from thermograsp.thermal import material as named_material
+from thermograsp.touch.contacts import array_contacts
+from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads
+
+from .heat import PairHeat
+
+try:
+    import torch
+    from mjlab.sensor import ContactMatch, ContactSensor, ContactSensorCfg, Sensor, SensorCfg
+except ImportError as error:
+    raise MissingDependencyError("thermograsp.mjlab needs mjlab: pip install 'thermograsp[mjlab]'") from error
+
+_WHOLE = 1e-6
+Worlds = torch.Tensor | slice | None
+
+
+@dataclass
+class ThermalTouchCfg(SensorCfg):
+    """Fingertips that feel heat, in the scene of an mjlab task.
+
+    fingertips: label -> name of a geom, site or body of the scene (`robot/left_finger`), or a Fingertip; one, or two of
+    the same sensor. objects: name of a body or geom -> a material, or several of which each world has the first until
+    randomize_material draws another. dt: s between samples, whole steps of the simulation. samples: of the voltage that
+    the data hold. tolerance: K of temperature drop that the heat models are made for. ambient: °C of the air and of the
+    objects at first. air: W/(m2 K), of the air round the objects. chain: the electronics.
+    """
+
+    fingertips: Mapping[str, str | Fingertip] = field(default_factory=dict)
+    objects: Mapping[str, str | Material | Sequence[str | Material]] = field(default_factory=dict)
+    dt: float = 0.02
+    samples: int = 16
+    tolerance: float = 0.05
+    ambient: float = 24.0
+    air: float = 5.0
+    chain: SignalChain | str = ADS1115
+
+    def build(self) -> ThermalTouchSensor:
+        """The sensor. Raises InvalidValueError and UnknownNameError for values that cannot be."""
+        return ThermalTouchSensor(self)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ThermalTouchData:
+    """Tensors on the simulation's device, the same ones after every step. voltage: (worlds, fingertips, samples) V as
+    the driver reports it, oldest first. temperature_drop: (worlds, fingertips) K over the sensed layer. force: (worlds,
+    fingertips) N normal on the pads and conductance: (worlds, fingertips) W/K, means over the last dt, of the object
+    that is pressed hardest. touching: (worlds, fingertips) that object's number, -1 for none."""
+
+    voltage: torch.Tensor
+    temperature_drop: torch.Tensor
+    force: torch.Tensor
+    conductance: torch.Tensor
+    touching: torch.Tensor
+
+
+class ThermalTouchSensor(Sensor[ThermalTouchData]):
+    """Made by ThermalTouchCfg.build."""
+
+    def __init__(self, cfg: ThermalTouchCfg) -> None:
+        super().__init__()
+        positive("dt (s)", cfg.dt)
+        positive("tolerance (K)", cfg.tolerance)
+        celsius("ambient (°C)", cfg.ambient)
+        non_negative("air (W/(m2 K))", cfg.air)
+        if not isinstance(cfg.samples, int) or cfg.samples < 1:
+            raise InvalidValueError(f"samples must be a whole number from 1 on, got {cfg.samples!r}")
+        if isinstance(cfg.chain, str) and cfg.chain not in SIGNAL_CHAINS:
+            raise unknown_name("signal chain", cfg.chain, SIGNAL_CHAINS)
+        self.cfg = cfg
+        self._chain = SIGNAL_CHAINS[cfg.chain] if isinstance(cfg.chain, str) else cfg.chain
+        self._materials = {name: _several(name, told) for name, told in cfg.objects.items()}
+        if not self._materials:
+            raise InvalidValueError(
+                'objects: none given; say what may be touched, such as {"cube/cube": "wood"}'
+            )
+        self._sensors: list[ContactSensor] = []
+        self._count = 0
+
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """Their names; `touching` counts along them."""
+        return tuple(self._materials)
+
+    def materials(self, name: str) -> tuple[Material, ...]:
+        """Those that an object may be of; a world's number counts along them. Raises UnknownNameError."""
+        self._object(name)
+        return self._materials[name]
+
+    def edit_spec(self, scene_spec: mujoco.MjSpec, entities: dict[str, Any]) -> None:
+        """Adds a net-force contact sensor for each fingertip on each geom of the objects; geoms without a name get one.
+        Raises UnknownNameError and InvalidValueError for fingertips and objects that cannot be."""
+        model = scene_spec.compile()
+        shapes = self._shapes(model)
+        pads(model, self.cfg.fingertips, shapes)
+        bearers = [self._bearer(model, label) for label in self.cfg.fingertips]
+        if len({mode for mode, _ in bearers}) > 1:
+            raise InvalidValueError(
+                f"fingertips: name all by geoms, or all by bodies or sites, got {bearers}"
+            )
+        named = {geom.id: geom for geom in scene_spec.geoms}
+        for shape in shapes:
+            for number in shape.geoms:
+                geom = named[number]
+                if not geom.name:
+                    geom.name = f"{self.cfg.name}:{number}"
+                wanted = ContactSensorCfg(
+                    name=f"{self.cfg.name}:{geom.name}",
+                    primary=ContactMatch(mode=bearers[0][0], pattern=tuple(name for _, name in bearers)),
+                    secondary=ContactMatch(mode="geom", pattern=geom.name),
+                    fields=("force", "pos"),
+                    reduce="netforce",
+                )
+                sensor = wanted.build()
+                sensor.edit_spec(scene_spec, entities)
+                self._sensors.append(sensor)
+
+    def initialize(self, mj_model: mujoco.MjModel, model: Any, data: Any, device: str) -> None:
+        """Finds pads and objects in the compiled model and makes the state of all worlds on the device."""
+        cfg = self.cfg
+        self._substeps = _whole_steps(cfg.dt, float(mj_model.opt.timestep))
+        for sensor in self._sensors:
+            sensor.cfg.history_length = self._substeps
+            sensor.initialize(mj_model, model, data, device)
+        kinds = self._kinds(mj_model)
+        shapes = kinds[0]
+        tips = pads(mj_model, cfg.fingertips, shapes)
+        worlds = data.time.shape[0]
+        like = torch.zeros(worlds, device=device)
+        self._contacts = array_contacts(mj_model, tips, kinds, like)
+        self._heat = PairHeat(
+            tips,
+            kinds,
+            dt=cfg.dt,
+            samples=cfg.samples,
+            tolerance=cfg.tolerance,
+            ambient=cfg.ambient,
+            air=cfg.air,
+            chain=self._chain,
+            like=like,
+        )
+
+        def numbers(values: Sequence[int]) -> torch.Tensor:
+            return torch.tensor(list(values), device=device)
+
+        owner = [o for o, shape in enumerate(shapes) for _ in shape.geoms]
+        self._tip_bodies = numbers([pad.body for pad in tips])
+        self._geoms = numbers([geom for shape in shapes for geom in shape.geoms])
+        self._object_bodies = numbers([shape.body for shape in shapes])
+        self._owner = numbers(owner)
+        self._of_object = torch.nn.functional.one_hot(self._owner, len(shapes)).to(like.dtype)  # (G, O)
+        self._mj_data = data
+        self._material = torch.zeros((worlds, len(shapes)), dtype=torch.long, device=device)
+        none = torch.zeros((worlds, len(tips)), device=device)
+        self._read = ThermalTouchData(
+            self._heat.voltage, self._heat.drop, none, none.clone(), none.long() - 1
+        )
+
+    def update(self, dt: float) -> None:
+        """After every substep; the heat goes on once every cfg.dt."""
+        super().update(dt)
+        for sensor in self._sensors:
+            sensor.update(dt)
+        self._count += 1
+        if self._count == self._substeps:
+            self._count = 0
+            self._advance()
+
+    def reset(self, env_ids: Worlds = None) -> None:
+        """Those worlds' heat and electronics as at first; their materials stay."""
+        super().reset(env_ids)
+        for sensor in self._sensors:
+            sensor.reset(env_ids)
+        worlds = slice(None) if env_ids is None else env_ids
+        self._heat.reset(worlds)
+        self._read.force[worlds], self._read.conductance[worlds], self._read.touching[worlds] = 0.0, 0.0, -1
+
+    def set_material(self, name: str, numbers: torch.Tensor | int, env_ids: Worlds = None) -> None:
+        """What an object is of in those worlds, by numbers of `materials`, from a fresh start. A tensor is trusted, so
+        that nothing is copied to the host. Raises UnknownNameError, and InvalidValueError for an int that is none."""
+        several = self.materials(name)
+        if isinstance(numbers, int) and not 0 <= numbers < len(several):
+            raise InvalidValueError(
+                f"object {name!r} has the materials 0 to {len(several) - 1}, got {numbers}"
+            )
+        worlds = slice(None) if env_ids is None else env_ids
+        self._material[worlds, self._object(name)] = numbers
+        self.reset(env_ids)
+
+    @property
+    def material(self) -> torch.Tensor:
+        """(worlds, objects) numbers of `materials`."""
+        return self._material
+
+    def _compute_data(self) -> ThermalTouchData:
+        return self._read
+
+    def _advance(self) -> None:
+        data, heat = self._mj_data, self._heat
+        told = [sensor.data for sensor in self._sensors]
+        force = torch.stack([one.force_history for one in told], 2)  # (B, F, G, H, 3)
+        place = torch.stack([one.pos for one in told], 2)
+        tip_turn = data.xmat[:, self._tip_bodies]
+        conductance, pressed = self._contacts.read(
+            force,
+            place,
+            data.xpos[:, self._tip_bodies],
+            tip_turn,
+            data.geom_xpos[:, self._geoms],
+            data.geom_xmat[:, self._geoms],
+            self._material[:, self._owner],
+        )
+        conducts = (conductance.mean(-1)[..., None] * self._of_object).sum(2)  # (B, F, O)
+        presses = (pressed.mean(-1)[..., None] * self._of_object).sum(2)
+        normal = (tip_turn * self._contacts.axes[:, None, :, 0]).sum(-1)
+        noise = torch.randn_like(heat.drop) if self._chain.noise else 0.0
+        heat.advance(conducts, presses, self._material, data.xmat[:, self._object_bodies], normal, noise)
+        most = heat.touching.clamp(min=0)[:, None, None].expand(-1, heat.drop.shape[1], 1)
+        self._read.force.copy_(presses.gather(2, most)[..., 0])
+        self._read.conductance.copy_(conducts.gather(2, most)[..., 0])
+        self._read.touching.copy_(
+            torch.where(self._read.force > 0, heat.touching[:, None], torch.full_like(most[..., 0], -1))
+        )
+
+    def _object(self, name: str) -> int:
+        if name not in self._materials:
+            raise unknown_name("object", name, self._materials)
+        return self.objects.index(name)
+
+    def _bearer(self, model: mujoco.MjModel, label: str) -> tuple[str, str]:
+        """How a contact sensor names a fingertip: by its geom, or by the body that carries it."""
+        told = self.cfg.fingertips[label]
+        name = told.name if isinstance(told, Fingertip) else told
+        kind, number = find(model, name, ("geom", "site", "body"), f"fingertip {label!r}")
+        return ("geom", name) if kind == "geom" else ("body", _body_name(model, kind, number))
+
+    def _shapes(self, model: mujoco.MjModel) -> tuple[BodyShape, ...]:
+        """The objects, of their first materials; those that the MJCF itself names are left out."""
+        told = {name: several[0] for name, several in self._materials.items()}
+        return tuple(shape for shape in bodies(model, told, self.cfg.ambient) if shape.name in told)
+
+    def _kinds(self, model: mujoco.MjModel) -> list[tuple[BodyShape, ...]]:
+        """The objects once for each number of a material; one of fewer materials has its last one there."""
+        first = self._shapes(model)
+        most = max(map(len, self._materials.values()))
+        return [
+            tuple(
+                replace(shape, material=several[min(v, len(several) - 1)])
+                for shape, several in zip(first, self._materials.values(), strict=True)
+            )
+            for v in range(most)
+        ]
+
+
+def _several(name: str, told: str | Material | Sequence[str | Material]) -> tuple[Material, ...]:
+    found = (told,) if isinstance(told, str | Material) else tuple(told)
+    if not found:
+        raise InvalidValueError(f"object {name!r}: give a material, or several, got none")
+    return tuple(map(named_material, found))
+
+
+def _body_name(model: mujoco.MjModel, kind: str, number: int) -> str:
+    return model.body(number if kind == "body" else model.site_bodyid[number]).name
+
+
+def _whole_steps(dt: float, step: float) -> int:
+    count = round(dt / step)
+    if count < 1 or abs(dt / step - count) > _WHOLE * count:
+        raise InvalidValueError(
+            f"dt={dt:g} s is not a whole number of the simulation's steps of {step:g} s: give {max(count, 1) * step:g}"
+        )
+    return count

@@ -1,0 +1,76 @@
+"""Contacts read in arrays are those that the compiled reader reads."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+from thermograsp.touch import Fingertip, prepare
+from thermograsp.touch.contacts import CONDUCTANCE, FORCE, ContactReader, array_contacts, sensor_places
+from thermograsp.touch.scene import bodies, pads
+
+OBJECTS = {
+    "box": '<geom type="box" size=".02 .015 .02" mass=".2"/>',
+    "turned box": '<geom type="box" size=".02 .02 .02" euler="0 0 30" mass=".2"/>',
+    "ball": '<geom type="sphere" size=".02" mass=".2"/>',
+    "can": '<geom type="cylinder" size=".02 .03" mass=".2"/>',
+    "lying can": '<geom type="cylinder" size=".02 .02" euler="0 90 0" mass=".2"/>',
+    "egg": '<geom type="ellipsoid" size=".02 .02 .03" mass=".2"/>',
+}
+SCENE = """
+<mujoco><option timestep=".002" cone="elliptic" impratio="10"/><worldbody>
+  <body name="thing" euler="3 5 20"><joint type="ball" damping=".02"/>{}</body>
+  <body name="left" pos="-.045 .004 .003"><joint name="left" type="slide" axis="1 0 0" damping="20"/>
+    <geom name="left_pad" type="box" size=".004 .008 .008" mass=".05"/></body>
+  <body name="right" pos=".045 -.006 0"><joint name="right" type="slide" axis="-1 0 0" damping="20"/>
+    <geom name="right_pad" type="box" size=".004 .008 .008" mass=".05"/></body>
+</worldbody><actuator><motor joint="left" gear="6"/><motor joint="right" gear="9"/></actuator></mujoco>"""
+PADS = {
+    side: Fingertip(f"{side}_pad", position=(at, 0, 0), normal=(at, 0, 0), size=(0.016, 0.016))
+    for side, at in (("left", 0.004), ("right", -0.004))
+}
+
+
+@pytest.mark.parametrize("shape", OBJECTS)
+def test_it_reads_what_the_compiled_reader_reads(shape: str) -> None:
+    if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
+        pytest.skip("this MuJoCo has no contact sensors")
+    materials = ("wood", "aluminium")
+    model = prepare(mujoco.MjSpec.from_string(SCENE.format(OBJECTS[shape])), PADS, {"thing": materials[0]})
+    kinds = [bodies(model, {"thing": name}, 24.0) for name in materials]
+    tips = pads(model, PADS, kinds[0])
+    contacts = array_contacts(model, tips, kinds, np.zeros(0))
+    places = sensor_places(model, tips, kinds[0])
+    readers = [ContactReader(model, tips, shapes, 1) for shapes in kinds]
+    data, touched = mujoco.MjData(model), 0
+    data.ctrl[:] = 1.0
+    bearers, geom = [pad.body for pad in tips], kinds[0][0].geoms[0]
+    for _ in range(150):
+        mujoco.mj_step(model, data)
+        force, place = np.zeros((2, 2, 1, 1, 3)), np.zeros((2, 2, 1, 3))
+        for f, thing, at in places.pairs:
+            if thing < 1:  # of the object, not of the other fingertip
+                force[:, f, 0, 0] = data.sensordata[at + 1 : at + 4]
+                place[:, f, 0] = data.sensordata[at + 4 : at + 7]
+        conducts, pressed = contacts.read(
+            force,
+            place,
+            np.tile(data.xpos[bearers], (2, 1, 1)),
+            np.tile(data.xmat[bearers].reshape(1, 2, 3, 3), (2, 1, 1, 1)),
+            np.tile(data.geom_xpos[[geom]], (2, 1, 1)),
+            np.tile(data.geom_xmat[[geom]].reshape(1, 1, 3, 3), (2, 1, 1, 1)),
+            np.array([[0], [1]]),
+        )
+        for world, reader in enumerate(readers):
+            reader.clear()
+            reader.sense(data.sensordata[None], places)
+            np.testing.assert_allclose(pressed[world, :, 0, 0], reader.touches[0, :, 0, FORCE], rtol=1e-6)
+            np.testing.assert_allclose(
+                conducts[world, :, 0, 0], reader.touches[0, :, 0, CONDUCTANCE], rtol=1e-6
+            )
+        touched += (conducts > 0).all()
+    assert touched > 50

@@ -1,0 +1,143 @@
+"""The compiled contact law as a pure function of arrays: NumPy, PyTorch, JAX.
+
+What law.py's `contact` and `conductance` compute, without a branch on data, so that it runs on any device and can be
+traced. Every array has the records' leading axes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics import HIGH, LOW, Array, as_like, namespace_of
+from .law import CYLINDER, FLAT, LOG_LEAST, LOG_MOST, SEPARATION, SPHERE
+
+_NEWTON_STEPS = 8
+_LEAST_FORCE = 1e-9  # N, of a contact that is apart: any at which the law has a value
+
+
+class ArrayLaws(NamedTuple):
+    """CONTACT_LAW records as arrays, (...) each but for sizes (..., 2) m. select: (..., 2, 3), 1 at the axes that
+    `across` names. flat, cylinder, sphere: 1 for laws of that shape, else 0; follows: 1 for a flat law that follows its
+    pad."""
+
+    area: Array
+    share: Array
+    size: Array
+    select: Array
+    stiffness: Array
+    half_pad: Array
+    half_face: Array
+    pad_length: Array
+    face_length: Array
+    spot_scale: Array
+    spot_power: Array
+    gas: Array
+    jump: Array
+    roughness: Array
+    log_hardness: Array
+    log_elastic_hardness: Array
+    elastic_share: Array
+    flat: Array
+    cylinder: Array
+    sphere: Array
+    follows: Array
+
+    def at(self, index: Array) -> ArrayLaws:
+        """Those of the given indices along the first axis."""
+        return ArrayLaws(*(table[index] for table in self))
+
+
+def array_laws(records: np.ndarray, like: Array) -> ArrayLaws:
+    """CONTACT_LAW records in the kind, dtype and device of the array `like`, which holds floating-point numbers."""
+    own = {name: records[name] for name in ArrayLaws._fields if name in (records.dtype.names or ())}
+    # Laws of one shape lack the others' numbers; with these, what is not chosen is finite.
+    curved = records["shape"] != FLAT
+    own["stiffness"] = np.where(curved, records["stiffness"], 1.0)
+    for name in ("pad_length", "face_length"):
+        own[name] = np.where(records["shape"] == CYLINDER, records[name], 1.0)
+    own["select"] = np.eye(3)[records["across"]]
+    for name, shape in (("flat", FLAT), ("cylinder", CYLINDER), ("sphere", SPHERE)):
+        own[name] = (records["shape"] == shape).astype(float)
+    own["follows"] = (records["size"][..., 0] > 0).astype(float)
+    return ArrayLaws(*(as_like(own[name], like) for name in ArrayLaws._fields))
+
+
+def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, Array]:
+    """(area m2 on the face, its force N) at normal forces N on the pads, of the laws' shape; those not above 0 count as
+    none. place: (..., 3) m, the pad's middle from the object's in the object's frame."""
+    xp = namespace_of(force)
+    pressed = force.clip(_LEAST_FORCE, None)
+    offset = abs((laws.select * place[..., None, :]).sum(-1))
+    half = laws.size / 2
+
+    def covered(reach: Array) -> Array:
+        sides = xp.minimum(reach, half - offset) + xp.minimum(reach, half + offset)
+        return sides.clip(0.0, None).prod(-1)
+
+    on_pad, on_face = covered(laws.half_pad[..., None]), covered(laws.half_face[..., None])
+    part = on_face / xp.where(on_pad > 0, on_pad, on_pad + 1.0)
+    flat_area = xp.where(laws.follows > 0, on_face, laws.area)
+    flat_force = xp.where(laws.follows > 0, part, laws.share) * pressed
+
+    side = laws.half_face
+    load = pressed / (laws.stiffness * laws.pad_length)
+    narrow = (0.75 * load) ** (1 / 3)
+    wide = (load / laws.half_pad + 2 / 3 * laws.half_pad**2) / 2
+    square = xp.where(narrow <= laws.half_pad, narrow * narrow, wide)
+    across = xp.minimum(square**0.5, side)
+    cylinder_area = laws.face_length * 2 * across
+    cylinder_force = laws.stiffness * cylinder_area * (square - across * across / 3)
+
+    u = _square_inverse(xp, pressed / (laws.stiffness * laws.half_pad**4)) * (laws.half_pad / side) ** 2
+    sphere_area = side * side * _square_area(xp, u)
+    sphere_force = laws.stiffness * side**4 * _square_load(xp, u)
+
+    touching = force > 0
+    area = xp.where(laws.flat > 0, flat_area, xp.where(laws.cylinder > 0, cylinder_area, sphere_area))
+    carried = xp.where(laws.flat > 0, flat_force, xp.where(laws.cylinder > 0, cylinder_force, sphere_force))
+    return area * touching, carried * touching
+
+
+def array_conductance(laws: ArrayLaws, pressure: Array) -> Array:
+    """W/(m2 K) at pressures Pa > 0 of the laws' shape, solid spots and gas together."""
+    xp = namespace_of(pressure)
+    log_pressure = xp.log(pressure)
+    solid = xp.exp(laws.spot_scale + laws.spot_power * log_pressure)
+    plastic = _separation(xp, log_pressure + (math.log(2.0) - laws.log_hardness))
+    elastic = _separation(xp, log_pressure + (math.log(4.0) - laws.log_elastic_hardness))
+    separation = (1 - laws.elastic_share) * plastic + laws.elastic_share * elastic
+    return solid + laws.gas / (laws.roughness * separation + laws.jump)
+
+
+def _separation(xp, log_share):
+    y = (-log_share.clip(LOG_LEAST, LOG_MOST)) ** 0.5
+    z = (2 * y - (LOW + HIGH)) / (HIGH - LOW)
+    total = 0.0 * z
+    for coefficient in SEPARATION[::-1].tolist():
+        total = total * z + coefficient
+    return total
+
+
+def _square_area(xp, u):
+    """As law.py's: pi u up to 1, 4 from 2 on."""
+    v = u.clip(1.0, 2.0)
+    between = math.pi * v - 4 * (v * xp.acos(v**-0.5) - (v - 1) ** 0.5)
+    return xp.where(u <= 1.0, math.pi * u, xp.where(u >= 2.0, 4.0 + 0.0 * u, between))
+
+
+def _square_load(xp, u):
+    v = u.clip(1.0, 2.0)
+    root, turned = (v - 1) ** 0.5, xp.acos(v**-0.5)
+    between = math.pi / 2 * v * v - 2 * v * v * turned + 2 * root * v + 4 / 3 * root**3
+    return xp.where(u <= 1.0, math.pi / 2 * u * u, xp.where(u >= 2.0, 4 * u - 8 / 3, between))
+
+
+def _square_inverse(xp, load):
+    narrow = (2 * load / math.pi) ** 0.5
+    u = xp.maximum(narrow, (load + 8 / 3) / 4)
+    for _ in range(_NEWTON_STEPS):
+        u = u - (_square_load(xp, u) - load) / _square_area(xp, u)
+    return xp.where(load <= math.pi / 2, narrow, u)

@@ -1,0 +1,153 @@
+"""Contacts as conductances in the arrays of a simulation of many worlds: NumPy, PyTorch, JAX.
+
+What reader.py's `sense` does with recorded contact sensors, as a pure function without a branch on data. It knows
+contacts of fingertips with objects; those of fingertips with one another it leaves aside.
+
+B: worlds, F: fingertips, G: geoms of the objects, H: substeps, V: materials.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ...thermal.contact import ArrayLaws, array_conductance, array_contact, array_laws
+from ...thermal.numerics import Array, as_integers, as_like, namespace_of
+from ..scene import BodyShape, PadPlace
+from .laws import constrictions, pair_laws
+from .reader import DEPTH, RIM
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayContacts:
+    """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
+    half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
+    and axis of the geom's frame. small: (V, F, G) K m/W. numbers: (F, G) integers, the laws' of the first material."""
+
+    position: Array
+    axes: Array
+    half: Array
+    width: Array
+    laws: ArrayLaws
+    small: Array
+    numbers: Array
+
+    def read(
+        self,
+        force: Array,
+        place: Array,
+        tip_position: Array,
+        tip_turn: Array,
+        geom_position: Array,
+        geom_turn: Array,
+        material: Array,
+    ) -> tuple[Array, Array]:
+        """(conductance W/K, force N on the pad), (B, F, G, H) each; a contact beside its pad has neither.
+
+        force: (B, F, G, H, 3) N net on each geom from each fingertip, in each substep, and place: (B, F, G, 3) m where
+        it acts in the last of them, in the world's frame. tip_position (B, F, 3) m and tip_turn (B, F, 3, 3): of the
+        bodies that carry the pads; geom_position (B, G, 3) m and geom_turn (B, G, 3, 3): of the geoms, all at the last
+        substep. material: (B, G) integers. Substeps before the last are taken to act where the last one does, and on
+        the pad where the last one does not touch."""
+        xp = namespace_of(force)
+        tips, geoms = self.numbers.shape
+        axes = _product(tip_turn, self.axes)  # (B, F, 3, 3), columns normal, y and z
+        middle = tip_position + _rotated(tip_turn, self.position)
+        normal = axes[..., 0]
+        pressed = (force * normal[:, :, None, None, :]).sum(-1)
+        at = _seen(axes[:, :, None], place - middle[:, :, None])  # (B, F, G, 3) along the pad's axes
+        last = pressed[..., 0] > 0
+        sides = (abs(at[..., 1:]) <= self.half[:, None] + RIM).all(-1)
+        on = (sides & (abs(at[..., 0]) <= DEPTH)) | ~last
+        pressed = xp.where(on[..., None] & ~(pressed <= 0), pressed, 0.0 * pressed)
+
+        looking = _seen(geom_turn[:, None], normal[:, :, None])  # (B, F, G, 3) in the geom's frame
+        axis = abs(looking).argmax(-1)
+        from_geom = _seen(geom_turn[:, None], middle[:, :, None] - geom_position[:, None])
+        law = self.laws.at(as_integers((material[:, None] * (tips * geoms) + self.numbers) * 3 + axis))
+        law = ArrayLaws(*(table[:, :, :, None] for table in law))
+        area, share = array_contact(law, pressed, from_geom[..., None, :])
+        whole = xp.where(area > 0, area, area + self.width[:, None, None] ** 2)
+        pressure = share / whole
+        off = xp.where(last[..., None], at[..., 1:], 0.0 * at[..., 1:])
+        area = area * self._kept(law, area, off, axes, geom_turn)
+        closed = (area > 0) & (pressure > 0)
+        safe = xp.where(closed, area, area * 0 + self.width[:, None, None] ** 2)
+        width = self.width[:, None, None]
+        side = xp.minimum(safe**0.5, width)
+        small = self._small(material)[..., None]
+        h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
+        series = 1 / (h * safe) + small * (1 / side - 1 / width)
+        # 0 where nothing conducts, but what is not a number stays so, for its world alone
+        return xp.where(closed, 1 / series, 0.0 * pressed), pressed
+
+    def _small(self, material: Array) -> Array:
+        """(B, F, G) K m/W of each world's materials."""
+        tips, geoms = self.numbers.shape
+        flat = self.small.reshape(-1)
+        return flat[as_integers(material[:, None] * (tips * geoms) + self.numbers)]
+
+    def _kept(self, law: ArrayLaws, area: Array, off: Array, axes: Array, geom_turn: Array) -> Array:
+        """Share of a round object's contact that is on the sensor's face; 1 of a flat one's. off: (B, F, G, 2) m."""
+        xp = namespace_of(area)
+        half = self.width[:, None, None] / 2
+        line = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])[
+            ..., 1:
+        ]  # a cylinder's axis along y and z
+        length = (line * line).sum(-1) ** 0.5
+        across = (off[..., 0] * line[..., 1] - off[..., 1] * line[..., 0]) / xp.where(
+            length > 0, length, length + 1
+        )
+
+        def share(at: Array, reach: Array) -> Array:
+            reach = xp.where(reach > 0, reach, reach + half)
+            both = xp.minimum(half, at + reach) - xp.maximum(-half, at - reach)
+            return (both.clip(0.0, None) / (2 * reach)).clip(None, 1.0)
+
+        of_line = share(across[..., None], area / (2 * law.face_length))
+        reach = area**0.5 / 2
+        of_spot = share(off[..., None, 0], reach) * share(off[..., None, 1], reach)
+        return xp.where(law.flat > 0, 1.0 + 0.0 * area, xp.where(law.cylinder > 0, of_line, of_spot))
+
+
+def array_contacts(
+    model: mujoco.MjModel, pads: Sequence[PadPlace], kinds: Sequence[Sequence[BodyShape]], like: Array
+) -> ArrayContacts:
+    """Of a model's pads and objects, in the kind, dtype and device of the array `like`. kinds: the objects once for
+    each number that a world's `material` may be, alike but for their materials."""
+    laws = np.stack([pair_laws(model, pads, shapes)[:, : _geoms(shapes)] for shapes in kinds])
+    owner = [o for o, shape in enumerate(kinds[0]) for _ in shape.geoms]
+    small = np.stack([constrictions(pads, shapes)[:, owner] for shapes in kinds])
+    numbers = np.arange(len(pads) * len(owner)).reshape(len(pads), len(owner))
+    return ArrayContacts(
+        position=as_like(np.array([pad.position for pad in pads]), like),
+        axes=as_like(np.array([pad.axes for pad in pads]), like),
+        half=as_like(np.array([pad.size / 2 for pad in pads]), like),
+        width=as_like(np.array([pad.stack.width for pad in pads]), like),
+        laws=array_laws(laws.reshape(-1), like),
+        small=as_like(small, like),
+        numbers=as_integers(as_like(numbers.astype(float), like)),
+    )
+
+
+def _geoms(shapes: Sequence[BodyShape]) -> int:
+    return sum(len(shape.geoms) for shape in shapes)
+
+
+def _rotated(turn: Array, vector: Array) -> Array:
+    return (turn * vector[..., None, :]).sum(-1)
+
+
+def _seen(turn: Array, vector: Array) -> Array:
+    """A vector along the columns of a turn."""
+    return (turn * vector[..., :, None]).sum(-2)
+
+
+def _product(first: Array, second: Array) -> Array:
+    return (first[..., :, :, None] * second[..., None, :, :]).sum(-2)
