@@ -312,9 +312,9 @@ sys.exit(pytest.main(["-q", "-x", "-p", "no:cacheprovider", {__file__!r}]))
 @TIER
 def test_a_million_random_steps(model: mujoco.MjModel) -> None:
     rng, data = np.random.default_rng(7), mujoco.MjData(model)
-    for n in range(20_000):
+    for n in range(2_000):
         order(data, rng.uniform(-5.0, 12.0), *rng.uniform(-0.03, 0.03, 2))
-        mujoco.mj_step(model, data, 50)
+        mujoco.mj_step(model, data, 500)
         if n % 10 == 0:
             assert np.isfinite(data.plugin_state).all() and np.abs(voltages(model, data)).max() < 0.1
 

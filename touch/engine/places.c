@@ -59,15 +59,16 @@ bool heat_valid(const Numbers* numbers, const State* state) {
   return true;
 }
 
-/* rows of temperatures at both of some places, afterwards: (rows, n - 1) */
-static void future(const Numbers* numbers, const Network* network, int common, const int* at, double* out) {
+/* rows of temperatures at some places, afterwards: (n - 1, rows), a state's `stride` behind the one before */
+static void future(const Numbers* numbers, const Network* network, int common, const int* at, double* out,
+                   int stride) {
   int patterns = numbers->patterns, columns = network->n - 1;
   for (int p = 0; p < common * patterns; p++) {
     const double* port = network->ports + (size_t)(at[p / patterns] * patterns + p % patterns) * numbers->states + 1;
     for (int l = 0; l < AFTERWARDS; l++) {
       double later = numbers->afterwards[l], weight = sqrt(fmax(later, numbers->afterwards[1]));
       for (int i = 0; i < columns; i++)
-        out[((size_t)p * AFTERWARDS + l) * columns + i] = port[i] * exp(-network->rates[i + 1] * later) * weight;
+        out[(size_t)i * stride + p * AFTERWARDS + l] = port[i] * exp(-network->rates[i + 1] * later) * weight;
     }
   }
 }
@@ -91,38 +92,37 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
     }
   }
   int columns = after->n - 1, rows = common * numbers->patterns * AFTERWARDS, old = before->n - 1;
-  double *wanted = room, *seen = wanted + rows, *turn;
-  future(numbers, before, common, from, seen);
-  for (int r = 0; r < rows; r++) {
-    wanted[r] = 0;
-    for (int i = 0; i < old; i++) wanted[r] += seen[(size_t)r * old + i] * x[i + 1];
-  }
+  int stride = rows + columns; /* behind what is seen of a state stands how it is turned */
+  double *wanted = room, *seen = wanted + rows;
+  future(numbers, before, common, from, seen, rows);
+  memset(wanted, 0, sizeof(double) * rows);
+  for (int i = 0; i < old; i++)
+    for (int r = 0; r < rows; r++) wanted[r] += seen[(size_t)i * rows + r] * x[i + 1];
   memset(x + 1, 0, sizeof(double) * (numbers->states - 1));
   if (!common) return;
-  future(numbers, after, common, to, seen);
-  turn = seen + (size_t)rows * columns;
+  future(numbers, after, common, to, seen, stride);
   double largest = 0;
-  for (int i = 0; i < columns * columns; i++) turn[i] = i % (columns + 1) == 0;
+  for (int i = 0; i < columns * columns; i++) seen[(size_t)(i / columns) * stride + rows + i % columns] = i % (columns + 1) == 0;
   for (int sweep = 0; sweep < 30; sweep++) {
     bool turned = false;
     for (int p = 0; p < columns - 1; p++) {
       for (int q = p + 1; q < columns; q++) {
+        double *restrict left = seen + (size_t)p * stride, *restrict right = seen + (size_t)q * stride;
         double a = 0, b = 0, c = 0;
         for (int r = 0; r < rows; r++) {
-          double left = seen[(size_t)r * columns + p], right = seen[(size_t)r * columns + q];
-          a += left * left;
-          b += right * right;
-          c += left * right;
+          a += left[r] * left[r];
+          b += right[r] * right[r];
+          c += left[r] * right[r];
         }
         largest = fmax(largest, fmax(a, b));
         if (fabs(c) <= 1e-14 * sqrt(a * b) || fmax(a, b) < 1e-4 * LEAST * LEAST * largest) continue;
         turned = true;
         double ratio = (b - a) / (2 * c), tangent = copysign(1 / (fabs(ratio) + sqrt(ratio * ratio + 1)), ratio);
         double cosine = 1 / sqrt(tangent * tangent + 1), sine = tangent * cosine;
-        for (int r = 0; r < rows + columns; r++) { /* turn stands behind the rows */
-          double *left = seen + (size_t)r * columns + p, *right = seen + (size_t)r * columns + q, one = *left;
-          *left = cosine * one - sine * *right;
-          *right = sine * one + cosine * *right;
+        for (int r = 0; r < stride; r++) {
+          double one = left[r];
+          left[r] = cosine * one - sine * right[r];
+          right[r] = sine * one + cosine * right[r];
         }
       }
     }
@@ -131,15 +131,15 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
   largest = 0;
   for (int pass = 0; pass < 2; pass++) {
     for (int p = 0; p < columns; p++) {
+      const double* column = seen + (size_t)p * stride;
       double size = 0, met = 0;
       for (int r = 0; r < rows; r++) {
-        double one = seen[(size_t)r * columns + p];
-        size += one * one;
-        met += one * wanted[r];
+        size += column[r] * column[r];
+        met += column[r] * wanted[r];
       }
       if (pass == 0) largest = fmax(largest, size);
       else if (size > LEAST * LEAST * largest)
-        for (int i = 0; i < columns; i++) x[i + 1] += turn[(size_t)i * columns + p] * met / size;
+        for (int i = 0; i < columns; i++) x[i + 1] += column[rows + i] * met / size;
     }
   }
 }
