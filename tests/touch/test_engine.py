@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from thermograsp.errors import InvalidValueError, MissingDependencyError, ThermograspError
-from thermograsp.thermal import IDEAL
+from thermograsp.thermal import IDEAL, Thermostat
 from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch, install, load_plugin
 
 pytestmark = pytest.mark.skipif(
@@ -244,6 +244,7 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
     [
         ({"fingertips": {"tip": Fingertip("thumb_pad", sensor="heated_thermistor")}}, "heater of its own"),
         ({"fingertips": {"tip": Fingertip("thumb_pad", sensor=None)}}, "bare thermostat"),
+        ({"fingertips": {"tip": Fingertip("thumb_pad", thermostat=Thermostat())}}, "finite power"),
         ({"dt": 0.0031}, "whole number"),
         ({"air": -1.0}, "air"),
         (

@@ -525,3 +525,24 @@ def test_thermostats_are_remembered_and_refused_beside_a_heater() -> None:
     heated = Fingertip("thumb_pad", sensor="heated_thermistor", thermostat=weak)
     with pytest.raises(InvalidValueError, match="heater of its own"):
         ThermalTouch(model, fingertips={"thumb": heated}, objects={"can": "aluminium"})
+
+
+@pytest.mark.parametrize("name", ["wood", "aluminium"])
+def test_a_smaller_tolerance_is_nearer_to_a_press(name: str) -> None:
+    model = mujoco.MjModel.from_xml_string(ONE_PRESS.format(cone="elliptic"))
+    conductance = 3e4  # W/(m2 K), from the start on
+    curves = press(
+        name, conductance=conductance, object_size=(0.04, 0.04, 0.04), seconds=5.0, dt=0.01, tolerance=0.003
+    )
+    for tolerance in (0.05, 0.02):
+        touch = ThermalTouch(
+            model, fingertips={"tip": "tip"}, objects={"block": name}, air=0.0, tolerance=tolerance
+        )
+        touches, drops = np.zeros((1, 1, 2, COLUMNS)), []
+        touches[0, 0, 0, CONDUCTANCE] = conductance * 81e-6
+        touches[0, 0, 0, PLACE : PLACE + 3], touches[0, 0, 0, NORMAL : NORMAL + 3] = (0, 0, 0.02), (0, 0, -1)
+        for _ in range(500):
+            touch._heat.advance(touches, 1)
+            drops.append(touch._heat.drop[0, 0])
+        error = np.abs(np.array(drops) - curves.temperature_drop[1:])[4:].max()
+        assert error < tolerance / 3

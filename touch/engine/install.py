@@ -38,8 +38,8 @@ def install(
 
     The arguments are those of ThermalTouch, and so are the voltages'. The pads, objects and the timestep are those that
     the spec has now: install after everything else. Geoms without a name get one. Raises what ThermalTouch and
-    load_plugin do, and InvalidValueError
-    for what the plugin does not serve: sensors with heaters of their own, bare thermostats, and glued elements."""
+    load_plugin do, and InvalidValueError for what the plugin does not serve: sensors with heaters of their own,
+    thermostats that are bare or of finite power, and glued elements."""
     if not isinstance(spec, mujoco.MjSpec):
         raise InvalidValueError(f"spec must be a mujoco.MjSpec, got {type(spec).__name__}")
     celsius("ambient (°C)", ambient)
@@ -51,11 +51,17 @@ def install(
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
     for pad in found:
-        if pad.heated is not None or pad.bare:
-            what = "a bare thermostat" if pad.bare else "a sensor with a heater of its own"
+        if pad.heated is not None or pad.bare or pad.thermostat is not None:
+            what = (
+                "a sensor with a heater of its own"
+                if pad.heated is not None
+                else "a thermostat of finite power"
+            )
+            if pad.bare:
+                what = "a bare thermostat"
             raise InvalidValueError(
-                f"fingertip {pad.label!r}: {what} is not served inside MuJoCo's step; give it a sensor on a "
-                "thermostat, or use ThermalTouch"
+                f"fingertip {pad.label!r}: {what} is not served inside MuJoCo's step; give it a sensor on an "
+                "ideal thermostat, or use ThermalTouch"
             )
     for shape in shapes:
         if shape.elements:
