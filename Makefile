@@ -56,9 +56,10 @@ ENGINE_INSTALL := $(ENGINES)/bin/python -m pip install --disable-pip-version-che
 test-engines: build/.files
 	$(MAKE) --no-print-directory $(ENGINES)/.created VENV=$(ENGINES)
 	$(ENGINE_INSTALL) --no-build-isolation -e . $(ENGINE_MUJOCO) pytest
-	for packages in gymnasium-robotics==1.4.2 dm_control==1.0.34 "h5py opencv-python-headless termcolor tqdm pynput"; do \
+	for packages in gymnasium-robotics==1.4.2 dm_control==1.0.34 "h5py opencv-python-headless termcolor tqdm pynput imageio"; do \
 	  $(ENGINE_INSTALL) $$packages $(ENGINE_MUJOCO) || echo "test-engines: $$packages cannot be installed here"; done
 	$(ENGINE_INSTALL) --no-deps robosuite==1.5.2 || echo "test-engines: robosuite cannot be installed here"
+	$(ENGINE_INSTALL) --no-deps metaworld==3.1.1 || echo "test-engines: metaworld cannot be installed here"
 	THERMOGRASP_ENGINES=1 MUJOCO_GL=egl $(ENGINES)/bin/python -m pytest -rs $(TEST_FLAGS) tests/engines
 
 # mjlab's worlds with heat, in an environment of their own: 2.5 GB with PyTorch for the CPU alone, else 7 GB. mujoco-warp's

@@ -1,4 +1,4 @@
-"""robosuite's Lift feels aluminium colder than wood."""
+"""robosuite's Lift and Stack feel aluminium colder than wood."""
 
 # pyright: reportMissingImports=false
 
@@ -14,11 +14,11 @@ robosuite = pytest.importorskip("robosuite")
 PADS = {f"finger{n}": f"gripper0_right_finger{n}_pad_collision" for n in (1, 2)}
 
 
-def lifted(material: str) -> Any:
-    """The touch after a scripted grasp of the cube."""
+def grasped(task: str, seen: str, objects: dict[str, str]) -> Any:
+    """The touch after a scripted grasp of a cube, whose place is observed by that name."""
     env = thermograsp.wrappers.RobosuiteThermalWrapper(
         robosuite.make(
-            "Lift",
+            task,
             robots="Panda",
             has_renderer=False,
             has_offscreen_renderer=False,
@@ -27,12 +27,12 @@ def lifted(material: str) -> Any:
             seed=0,
         ),
         fingertips=PADS,
-        objects={"cube_main": material},
+        objects=objects,
         chain="ideal",
     )
     observation, info = env.reset(), {}
     for step in range(80):
-        away = observation["cube_pos"] - observation["robot0_eef_pos"]
+        away = observation[seen] - observation["robot0_eef_pos"]
         if step < 25:
             away = away + (0.0, 0.0, 0.08)
         action = np.concatenate((np.clip(10 * away, -1, 1), np.zeros(3), [-1.0 if step < 45 else 1.0]))
@@ -42,7 +42,16 @@ def lifted(material: str) -> Any:
 
 
 def test_lift_feels_aluminium_colder_than_wood() -> None:
-    metal, wood = lifted("aluminium"), lifted("wood")
+    metal, wood = (grasped("Lift", "cube_pos", {"cube_main": name}) for name in ("aluminium", "wood"))
     assert metal.touching == ("cube_main", "cube_main")
+    assert (metal.temperature_drop > 2.0).all()
+    assert (metal.temperature_drop > 2 * wood.temperature_drop).all()
+
+
+def test_stack_feels_which_of_its_cubes_is_aluminium() -> None:
+    both = {"cubeA_main": "aluminium", "cubeB_main": "wood"}
+    metal, wood = grasped("Stack", "cubeA_pos", both), grasped("Stack", "cubeB_pos", both)
+    assert metal.touching == ("cubeA_main",) * 2
+    assert wood.touching == ("cubeB_main",) * 2
     assert (metal.temperature_drop > 2.0).all()
     assert (metal.temperature_drop > 2 * wood.temperature_drop).all()
