@@ -84,7 +84,8 @@ def body(grid: Grid) -> Body:
     rows, columns, values = [], [], []
 
     def joined(one: np.ndarray, other: np.ndarray, through: np.ndarray) -> None:
-        rows.append(one.ravel()), columns.append(other.ravel())
+        rows.append(one.ravel())
+        columns.append(other.ravel())
         values.append(np.broadcast_to(through, one.shape).ravel())
 
     resist = dx / (2 * grid.k)
@@ -113,7 +114,7 @@ def body(grid: Grid) -> Body:
 def lines(start: float, end: float, count: int, first: float) -> np.ndarray:
     """From start to end, count cells that grow evenly from the first one's length m."""
     length = abs(end - start)
-    low, high = 1e-6, 100.0
+    low, high, ratio = 1e-6, 100.0, 1.0
     if count * first >= length:
         return np.linspace(start, end, count + 1)
     for _ in range(200):
@@ -149,13 +150,13 @@ def element(half_y: np.ndarray, half_z: np.ndarray, refine: float) -> Grid:
 def block(name: str, size: tuple[float, float, float], refine: float, thick: int) -> Grid:
     """A quarter of a box, touched in the middle of the faces at the first axis' ends."""
     half = face(refine)
-    sides = [
+    y, z = (
         np.concatenate((half, lines(HALF, side / 2, round(5 * refine), HALF / (16 * refine))[1:]))
         for side in size[1:]
-    ]
+    )
     near = lines(0.0, size[0] / 2, round(thick * refine), 1e-4 / refine)
     x = np.concatenate((near, (size[0] - near[:-1])[::-1]))
-    return _solid(name, (x, *sides))
+    return _solid(name, (x, y, z))
 
 
 def can(

@@ -1,4 +1,4 @@
-"""ThermalTouch beside finite volumes that are driven with the conductances it recorded: the bounds of docs/plugin.md."""
+"""ThermalTouch beside finite volumes driven with the conductances that it recorded: the bounds of docs/plugin.md."""
 
 from __future__ import annotations
 
