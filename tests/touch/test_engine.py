@@ -68,7 +68,7 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     return data.sensor("heat").data.copy()
 
 
-@pytest.mark.parametrize("tolerance", [0.05, 0.02])
+@pytest.mark.parametrize("tolerance", [0.05, pytest.param(0.02, marks=TIER)])
 def test_its_voltages_are_those_of_thermal_touch(tolerance: float) -> None:
     words = {"fingertips": PADS, "objects": OBJECTS, "tolerance": tolerance}
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
