@@ -12,6 +12,9 @@ from pathlib import Path
 
 import pytest
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+"""Processes of a run that each bring BLAS threads for all cores wait for one another most of the time."""
+
 TIERS = {
     "bench": ("THERMOGRASP_BENCH", "runs all benchmarks for minutes: make test-bench"),
     "studies": ("THERMOGRASP_BENCH", "compares with elements in 3-D for minutes: make test-bench"),
