@@ -19,7 +19,7 @@ from ...thermal import (
 )
 from .rows import OVER_TEMPERATURE
 
-_OFF = -1000.0  # °C, a setpoint at which no heater works
+_OFF = -273.15  # °C, a setpoint at which no heater works
 
 
 class Thermostats:

@@ -20,6 +20,7 @@ def test_actor_and_critic_learn_from_whole_and_cut_episodes() -> None:
     envs = gymnasium.wrappers.vector.FlattenObservation(envs)
     envs = gymnasium.wrappers.vector.RecordEpisodeStatistics(envs)
     torch.manual_seed(0)
+    assert envs.single_observation_space.shape and envs.single_action_space.shape
     (width,), (many,) = envs.single_observation_space.shape, envs.single_action_space.shape
     actor, critic = torch.nn.Linear(width, many), torch.nn.Linear(width, 1)
     first = actor.weight.detach().clone()

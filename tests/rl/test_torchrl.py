@@ -16,12 +16,12 @@ from torchrl.envs import (  # pyright: ignore[reportMissingImports]
 )
 
 IDS = sorted(name for name in gymnasium.registry if name.startswith("thermograsp/"))
-SHORT = {"seconds": 0.2}  # 10 control steps
+SECONDS = 0.2  # 10 control steps
 
 
 @pytest.mark.parametrize("env_id", IDS)
 def test_an_environment_by_its_name(env_id: str) -> None:
-    env = GymEnv(env_id, **SHORT)
+    env = GymEnv(env_id, seconds=SECONDS)
     check_env_specs(env)
     rollout = env.rollout(30)
     (steps,) = rollout.batch_size
@@ -30,7 +30,7 @@ def test_an_environment_by_its_name(env_id: str) -> None:
 
 
 def test_an_environment_of_gymnasium_goes_on_with_the_next_episode() -> None:
-    env = GymWrapper(gymnasium.make("thermograsp/Grasp-v0", **SHORT))
+    env = GymWrapper(gymnasium.make("thermograsp/Grasp-v0", seconds=SECONDS))
     check_env_specs(env)
     rollout = env.rollout(25, break_when_any_done=False)
     assert rollout["next", "truncated"].flatten().nonzero().flatten().tolist() == [9, 19]
@@ -43,7 +43,7 @@ def test_a_vector_resets_what_has_ended_when_torchrl_asks_for_it() -> None:
         num_envs=3,
         vectorization_mode="vector_entry_point",
         autoreset_mode="Disabled",
-        **SHORT,
+        seconds=SECONDS,
     )
     env = GymWrapper(envs)
     check_env_specs(env)

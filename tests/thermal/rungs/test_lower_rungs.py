@@ -49,7 +49,7 @@ def test_layered_becomes_the_closed_form(mode: str, material: Material) -> None:
     not even that."""
     t = np.geomspace(0.05, 100, 20)
     problem = press(
-        stack=ONE_LAYER, mode=mode, material=material, conductance=PERFECT, object_size=(0.04, 0.04, 10.0)
+        stack=ONE_LAYER, mode=mode, material=material, conductance=PERFECT, object_size=(0.04, 0.04, 5.0)
     )
     exact, layers = closed_form.solve(problem, t), layered.solve(problem, t)
     for name in ("temperature_drop", "heat_flow", "sensor_surface", "object_surface", "stored_heat"):
@@ -100,7 +100,7 @@ def test_layered_keeps_the_books(mode: str) -> None:
 
 def test_layered_t_mode_books_at_the_thermostat() -> None:
     """The element, cooled from the thermostat's temperature, ends at the mean of its linear profile."""
-    problem = press(stack=ONE_LAYER, material=Material("sink", 1e5, 1e4, 1e4), object_size=(0.04, 0.04, 10.0))
+    problem = press(stack=ONE_LAYER, material=Material("sink", 1e5, 1e4, 1e4), object_size=(0.04, 0.04, 5.0))
     curves = layered.solve(problem, np.array([200.0]))
     mean_fall = (36.0 - curves.sensor_surface[0]) / 2
     assert curves.stored_heat[0, 0] == pytest.approx(-ONE_LAYER.heat_capacity * mean_fall, rel=1e-3)
