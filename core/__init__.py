@@ -21,7 +21,7 @@ __getattr__ = opened(
     __name__, {"touch": ("Fingertip", "ThermalBody", "ThermalTouch"), "touch.wrappers": ("wrappers",)}
 )
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 logging.getLogger(__name__).addHandler(logging.NullHandler())  # quiet until an application listens
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import pickle
+import subprocess
+import sys
 import warnings
 from typing import Any, cast
 
@@ -315,3 +317,18 @@ def test_an_unknown_keyword_is_a_type_error_that_names_the_nearest(kind: Any, ke
     if kind is GraspEnv:
         with pytest.raises(TypeError, match=keyword):
             gymnasium.make("thermograsp/Grasp-v0", **cast(Any, {keyword: 1.0}))
+
+
+def test_nothing_is_loaded_that_only_draws():
+    """A simulation without pictures loads neither matplotlib nor rich nor Pillow."""
+    code = (
+        "import sys, gymnasium, thermograsp, thermograsp.envs\n"
+        "env = gymnasium.make('thermograsp/Grasp-v0', material='glass')\n"
+        "envs = gymnasium.make_vec('thermograsp/Grasp-v0', 2, 'vector_entry_point', material='glass')\n"
+        "for one in (env, envs):\n"
+        "    one.reset(seed=0)\n"
+        "    one.step(one.action_space.sample())\n"
+        "print([name for name in ('matplotlib', 'rich', 'PIL') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
