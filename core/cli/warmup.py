@@ -48,6 +48,7 @@ def stages() -> dict[str, Callable[[], None]]:
         "Grasp-v0 in O mode": lambda: _close("Grasp-v0", SEED_MATERIALS, mode="O"),
         "Identify-v0": lambda: _close("Identify-v0"),
         "Sort-v0": lambda: _close("Sort-v0"),
+        "many at once": lambda: _close("Grasp-v0", many=2),
         "maps of pressure and temperature": lambda: _close(
             "Grasp-v0", taxels=(4, 4), face_temperature=(4, 4)
         ),
@@ -55,12 +56,17 @@ def stages() -> dict[str, Callable[[], None]]:
     }
 
 
-def _close(env_id: str, materials: Sequence[str] = (), **config: Any) -> None:
-    """Makes an environment, resets it on each material (none: on what it draws), and closes the fingers."""
+def _close(env_id: str, materials: Sequence[str] = (), many: int = 0, **config: Any) -> None:
+    """Makes an environment, resets it on each material (none: on what it draws), and closes the fingers. many: how many
+    environments a vector of them has, 0 for a single one."""
     import gymnasium
     import numpy as np
 
-    env = gymnasium.make(f"thermograsp/{env_id}", **config)
+    env: Any = (
+        gymnasium.make_vec(f"thermograsp/{env_id}", many, "vector_entry_point", **config)
+        if many
+        else gymnasium.make(f"thermograsp/{env_id}", **config)
+    )
     try:
         env.reset(seed=0)
         for name in materials:
@@ -68,10 +74,10 @@ def _close(env_id: str, materials: Sequence[str] = (), **config: Any) -> None:
         shape = env.action_space.shape
         assert shape is not None
         action = np.zeros(shape, np.float32)
-        action[0] = 1.0 if env_id == "Identify-v0" else -1.0  # closes the fingers
+        action[..., 0] = 1.0 if env_id == "Identify-v0" else -1.0  # closes the fingers
         for _ in range(_CLOSING):
             _, _, terminated, truncated, _ = env.step(action)
-            if terminated or truncated:
+            if np.all(terminated) or np.all(truncated):
                 break
     finally:
         env.close()
