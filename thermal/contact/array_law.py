@@ -34,8 +34,10 @@ class ArrayLaws(NamedTuple):
     face_length: Array
     spot_scale: Array
     spot_power: Array
+    spot_most: Array
     gas: Array
     jump: Array
+    flatness: Array
     roughness: Array
     log_hardness: Array
     log_elastic_hardness: Array
@@ -105,11 +107,14 @@ def array_conductance(laws: ArrayLaws, pressure: Array) -> Array:
     """W/(m2 K) at pressures Pa > 0 of the laws' shape, solid spots and gas together."""
     xp = namespace_of(pressure)
     log_pressure = xp.log(pressure)
-    solid = xp.exp(laws.spot_scale + laws.spot_power * log_pressure)
+    solid = xp.exp(xp.minimum(laws.spot_scale + laws.spot_power * log_pressure, laws.spot_most))
     plastic = _separation(xp, log_pressure + (math.log(2.0) - laws.log_hardness))
     elastic = _separation(xp, log_pressure + (math.log(4.0) - laws.log_elastic_hardness))
     separation = (1 - laws.elastic_share) * plastic + laws.elastic_share * elastic
-    return solid + laws.gas / (laws.roughness * separation + laws.jump)
+    gap = laws.roughness * separation + laws.jump
+    widens = laws.flatness / gap
+    mean = xp.where(widens > 0, xp.log1p(widens) / xp.where(widens > 0, widens, 1 + widens), 1 + widens)
+    return solid + laws.gas / gap * mean
 
 
 def _separation(xp, log_share):

@@ -7,6 +7,7 @@ The laws are those of area.py and conductance.py, which stay the reference: a ro
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -39,12 +40,14 @@ CONTACT_LAW = np.dtype(
         ("half_face", "f8"),
         ("pad_length", "f8"),
         ("face_length", "f8"),
-        # solid spots: h = exp(spot_scale + spot_power log p)
+        # solid spots: h = exp(min(spot_scale + spot_power log p, spot_most))
         ("spot_scale", "f8"),
         ("spot_power", "f8"),
-        # gas: h = gas / (roughness separation + jump), separation by hardnesses Pa
+        ("spot_most", "f8"),
+        # gas: the mean of gas / (roughness separation + jump + w) over 0 <= w <= flatness, separation by hardnesses Pa
         ("gas", "f8"),
         ("jump", "f8"),
+        ("flatness", "f8"),
         ("roughness", "f8"),
         ("log_hardness", "f8"),
         ("log_elastic_hardness", "f8"),
@@ -59,6 +62,7 @@ CONTACT_LAW = np.dtype(
 LOG_LEAST, LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
 SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
 _NEWTON_STEPS = 8
+_ENDLESS = 80.0  # logarithm of a conductance W/(m2 K) that nothing reaches, finite in 32 bits too
 
 
 def flat_law(
@@ -90,14 +94,16 @@ def _stiffness(pad: Pad, radius: float) -> float:
 
 def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
     law = np.zeros(1, CONTACT_LAW)
-    scale, higher = solid_conductance(joint, np.array([1.0, np.e]))
+    scale, higher = solid_conductance(replace(joint, solid_most=np.inf), np.array([1.0, np.e]))
     numbers |= {
         "half_pad": pad.width / 2,
         "half_face": pad.face / 2,
         "spot_scale": float(np.log(scale)),
         "spot_power": float(np.log(higher / scale)),
+        "spot_most": min(float(np.log(joint.solid_most)), _ENDLESS),
         "gas": float(joint.gas_conductivity),
         "jump": float(joint.jump),
+        "flatness": float(joint.flatness),
         "roughness": float(joint.roughness),
         "log_hardness": float(np.log(joint.hardness)),
         "log_elastic_hardness": float(np.log(joint.elastic_hardness)),
@@ -146,13 +152,16 @@ def contact(law, force, place):
 def conductance(law, pressure):
     """W/(m2 K) at a pressure Pa > 0, solid spots and gas together."""
     log_pressure = math.log(pressure)
-    solid = math.exp(law.spot_scale + law.spot_power * log_pressure)
+    solid = math.exp(min(law.spot_scale + law.spot_power * log_pressure, law.spot_most))
     share, separation = law.elastic_share, 0.0
     if share < 1.0:
         separation += (1 - share) * _separation(log_pressure + math.log(2.0) - law.log_hardness)
     if share > 0.0:
         separation += share * _separation(log_pressure + math.log(4.0) - law.log_elastic_hardness)
-    return solid + law.gas / (law.roughness * separation + law.jump)
+    gap = law.roughness * separation + law.jump
+    if law.flatness > 0.0:
+        return solid + law.gas / law.flatness * math.log1p(law.flatness / gap)
+    return solid + law.gas / gap
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)

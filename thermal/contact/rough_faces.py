@@ -13,9 +13,21 @@ Solid spots and the gas around them conduct in parallel: h = h_solid + h_gas. So
   a gripper's 1e-6 to 1e-5 it is 10 to 20 % high, so the relation itself is used.
   M = alpha beta Lambda, the temperature jump at both faces in a rarefied gas (Yovanovich 1981).
 
-All hold for 2 <= Y/sigma <= 4.75 (Yovanovich 1982), P/H from 1e-6 to 0.023. Y stays at these ends beyond them: faces
-that touch without force are 4.75 sigma apart, so pressure 0 leaves the gas, the limit of small pressures. Faces that do
-not touch are the caller's business: conductance 0. Radiation, some 6 W/(m2 K), is neglected.
+All hold for 2 <= Y/sigma <= 4.75 (Yovanovich 1982), P/H from 1e-6 to 0.023 and P/H_e to half of that. Y stays at these
+ends beyond them: faces that touch without force are 4.75 sigma apart, so pressure 0 leaves the gas, the limit of small
+pressures. Faces that do not touch are the caller's business: conductance 0. Radiation, some 6 W/(m2 K), is neglected.
+
+Beyond the range, soft bodies: the spots cover P/H or P/H_e of the face, and cannot cover more than all of it. H_e is
+also about the pressure at which a wavy elastic face is in full contact: pi E' D/l for waves of amplitude D and length l
+(Westergaard 1939, J. Appl. Mech. 6:A49; Johnson, Contact Mechanics, section 13.2), whose mean slope is 4 D/l, so pi/4
+E' m against 0.71 E' m. `joint(..., full_contact=True)` keeps the spots' conductance from there on: 1.25 k m/sigma or
+1.55 k m/sigma, which is the resistance of less than one length sigma/m of bulk. A real full contact is no worse.
+
+Faces that are not flat: if the gap between the mean planes widens by `flatness` from where they touch to the rim, evenly
+over the area (a crowned face under a flat one, or a wedge), the mean of k_g/(Y + w + M) over 0 <= w <= flatness is
+k_g/flatness log(1 + flatness/(Y + M)). The spots conduct nearly as before, for their conductance is nearly in proportion
+to the force, wherever it is; the constriction toward where they are is left out. Bodies softer than about pressure *
+width/flatness are pressed flat.
 
 Pressures may be arrays of NumPy, PyTorch or JAX; a joint's arrays are then of the same kind.
 """
@@ -28,12 +40,13 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.errors import InvalidValueError, finite, non_negative, positive
 
 from ..matter import Material
 from ..numerics import FARTHEST, NEAREST, Array, erfc_inverse, namespace_of
 
 _PLASTIC_BELOW, _ELASTIC_ABOVE = 0.33, 3.0
+_PLASTIC_SPOTS, _ELASTIC_SPOTS = 1.25, 1.55
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +155,8 @@ class Joint:
 
     conductivity: W/(m K), harmonic mean. roughness: m, and slope: -, combined. hardness: Pa, the softer face's
     microhardness. elastic_hardness: Pa, E' m/sqrt(2). elastic_share: 0 plastic .. 1 elastic.
-    gas_conductivity: W/(m K), 0 in vacuum. jump: m, the gas parameter M.
+    gas_conductivity: W/(m K), 0 in vacuum. jump: m, the gas parameter M. solid_most: W/(m2 K), what the spots conduct at
+    most, inf where the law goes on. flatness: m, by which the gap widens from where the faces touch to its widest.
     """
 
     conductivity: float | Array
@@ -153,25 +167,41 @@ class Joint:
     elastic_share: float | Array
     gas_conductivity: float | Array
     jump: float | Array
+    solid_most: float | Array = np.inf
+    flatness: float | Array = 0.0
 
 
-def joint(first: Surface, second: Surface, gas: Gas | None = AIR) -> Joint:
-    """The pair's joint; order does not matter. gas: None for vacuum."""
+def joint(
+    first: Surface,
+    second: Surface,
+    gas: Gas | None = AIR,
+    *,
+    full_contact: bool = False,
+    flatness: float = 0.0,
+) -> Joint:
+    """The pair's joint; order does not matter. gas: None for vacuum. full_contact: whether the spots conduct no more
+    than where they cover the whole face; False continues the law of spots, as it was fitted to little of it.
+    flatness: m, by which the gap between the faces widens from where they touch to the rim; 0 for flat ones.
+
+    Raises InvalidValueError for a flatness below 0."""
     slope = float(np.hypot(first.slope, second.slope))
     compliance = sum((1 - face.poisson_ratio**2) / face.youngs_modulus for face in (first, second))
     hardness = min(first.microhardness, second.microhardness)
+    share = _elastic_share(hardness * compliance / slope)
+    conductivity = 2 * first.conductivity * second.conductivity / (first.conductivity + second.conductivity)
+    roughness = float(np.hypot(first.roughness, second.roughness))
+    covered = conductivity * slope / roughness * _PLASTIC_SPOTS ** (1 - share) * _ELASTIC_SPOTS**share
     return Joint(
-        conductivity=2
-        * first.conductivity
-        * second.conductivity
-        / (first.conductivity + second.conductivity),
-        roughness=float(np.hypot(first.roughness, second.roughness)),
+        conductivity=conductivity,
+        roughness=roughness,
         slope=slope,
         hardness=hardness,
         elastic_hardness=slope / compliance / math.sqrt(2),
-        elastic_share=_elastic_share(hardness * compliance / slope),
+        elastic_share=share,
         gas_conductivity=gas.conductivity if gas else 0.0,
         jump=gas.jump if gas else 0.0,
+        solid_most=covered if full_contact else np.inf,
+        flatness=non_negative("flatness (m)", flatness),
     )
 
 
@@ -198,10 +228,10 @@ def contact_conductance(joint: Joint, pressure: Array | float) -> Array:
 def solid_conductance(joint: Joint, pressure: Array | float) -> Array:
     """That of the touching spots, W/(m2 K), elementwise; 0 at pressure 0."""
     pressed = _pressure(pressure)
-    plastic = 1.25 * (pressed / joint.hardness) ** 0.95
-    elastic = 1.55 * (pressed / joint.elastic_hardness) ** 0.94
+    plastic = _PLASTIC_SPOTS * (pressed / joint.hardness) ** 0.95
+    elastic = _ELASTIC_SPOTS * (pressed / joint.elastic_hardness) ** 0.94
     shape = plastic ** (1 - joint.elastic_share) * elastic**joint.elastic_share
-    return joint.conductivity * joint.slope / joint.roughness * shape
+    return (joint.conductivity * joint.slope / joint.roughness * shape).clip(None, joint.solid_most)
 
 
 def gas_conductance(joint: Joint, pressure: Array | float) -> Array:
@@ -210,7 +240,19 @@ def gas_conductance(joint: Joint, pressure: Array | float) -> Array:
     plastic = erfc_inverse((2 * pressed / joint.hardness).clip(FARTHEST, NEAREST))
     elastic = erfc_inverse((4 * pressed / joint.elastic_hardness).clip(FARTHEST, NEAREST))
     separation = math.sqrt(2) * (plastic * (1 - joint.elastic_share) + elastic * joint.elastic_share)
-    return joint.gas_conductivity / (joint.roughness * separation + joint.jump)
+    gap = joint.roughness * separation + joint.jump
+    widens = joint.flatness / gap
+    xp = namespace_of(gap)
+    mean = xp.where(widens > 0, xp.log1p(widens) / xp.where(widens > 0, widens, 1 + widens), 1 + widens)
+    return joint.gas_conductivity / gap * mean
+
+
+def covered_share(joint: Joint, pressure: Array | float) -> Array:
+    """Share of the face that spots cover by their laws, elementwise: P/H, P/H_e or between them as the conductance is.
+    The laws hold up to 0.023 where spots are plastic, 0.011 where they are elastic; above 1 there are no spots."""
+    pressed = _pressure(pressure)
+    plastic, elastic = pressed / joint.hardness, pressed / joint.elastic_hardness
+    return plastic ** (1 - joint.elastic_share) * elastic**joint.elastic_share
 
 
 def _pressure(pressure: Array | float) -> Array:

@@ -24,7 +24,7 @@ enum { SHAPE_FLAT, SHAPE_CYLINDER, SHAPE_SPHERE };
 
 typedef struct {
   double area, share, size[2], across[2], stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
-      gas, jump, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
+      spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
 } Law;
 
 enum {

@@ -9,6 +9,7 @@ from thermograsp.thermal.contact.rough_faces import (
     Joint,
     Surface,
     contact_conductance,
+    covered_share,
     gas_conductance,
     joint,
     solid_conductance,
@@ -154,6 +155,52 @@ def test_smoother_faces_conduct_better() -> None:
         for r in (0.2e-6, 1e-6, 5e-6)
     ]
     assert values[0] > values[1] > values[2]
+
+
+def test_spots_that_cover_the_face_conduct_no_more() -> None:
+    soft = joint(RUBBER, LAPPED_ALUMINA, gas=None, full_contact=True)
+    endless = joint(RUBBER, LAPPED_ALUMINA, gas=None)
+    full = float(soft.elastic_hardness)
+    pressure = full * np.geomspace(1e-3, 1e3, 61)
+    found, spots = contact_conductance(soft, pressure), contact_conductance(endless, pressure)
+    below = pressure <= full
+    np.testing.assert_array_equal(found[below], spots[below])
+    np.testing.assert_allclose(found[~below], contact_conductance(endless, full), rtol=1e-12)
+    np.testing.assert_allclose(covered_share(soft, pressure), pressure / full, rtol=1e-12)
+
+
+def test_full_contact_begins_where_waves_of_that_slope_are_pressed_flat() -> None:
+    """Westergaard 1939: pi E' D/l for waves of amplitude D and length l, mean slope 4 D/l; within 12 % of H_e."""
+    pair = joint(RUBBER, LAPPED_ALUMINA)
+    modulus = pair.elastic_hardness * np.sqrt(2) / pair.slope
+    assert np.pi * modulus * pair.slope / 4 == pytest.approx(pair.elastic_hardness, rel=0.12)
+
+
+def test_full_contact_leaves_the_resistance_of_less_than_a_wave_of_bulk() -> None:
+    """That of 1/1.55 lengths sigma/m, at any pressure beyond; the law of spots falls below any length."""
+    jelly = Surface(0.6, 1e-6, 0.12, 2e3, 0.49)
+    for full_contact, left in ((True, 1 / 1.55), (False, 0.01)):
+        pair = joint(jelly, LAPPED_ALUMINA, gas=None, full_contact=full_contact)
+        assert covered_share(pair, 1e5) > 100
+        lengths = pair.conductivity / float(contact_conductance(pair, 1e5)) * pair.slope / pair.roughness
+        assert lengths == pytest.approx(left, rel=1e-6) if full_contact else lengths < left
+
+
+@pytest.mark.parametrize("widens", [1e-9, 1e-6, 1e-5, 1e-3])
+def test_gas_between_faces_that_are_not_flat_is_its_mean_over_them(widens: float) -> None:
+    """A crowned face: the gap widens with the square of the distance from the middle, by quadrature over the disc."""
+    flat, crowned = (joint(STEEL, LAPPED_ALUMINA, flatness=w) for w in (0.0, widens))
+    gap = AIR.conductivity / float(gas_conductance(flat, 1e4))
+    x, weight = np.polynomial.legendre.leggauss(400)
+    radius = (x + 1) / 2
+    mean = np.sum(weight / 2 * 2 * radius * AIR.conductivity / (gap + widens * radius**2))
+    assert float(gas_conductance(crowned, 1e4)) == pytest.approx(mean, rel=1e-6)
+    assert float(solid_conductance(crowned, 1e4)) == float(solid_conductance(flat, 1e4))
+
+
+def test_refuses_a_flatness_below_none() -> None:
+    with pytest.raises(InvalidValueError, match="flatness"):
+        joint(STEEL, LAPPED_ALUMINA, flatness=-1e-6)
 
 
 def test_a_row_does_not_depend_on_the_others() -> None:

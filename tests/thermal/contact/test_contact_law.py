@@ -44,10 +44,19 @@ def mixed(share: float) -> Joint:
     return Joint(2.0, 1e-6, 0.1, 5e9, 3e8, share, 0.026, 3e-7)
 
 
+def special(name: str) -> Joint | None:
+    """Faces in full contact, and faces that are not flat."""
+    if name == "mixed":
+        return mixed(0.4)
+    if name == "full":
+        return joint(LAPPED_ALUMINA, Surface.of(material("muscle")), full_contact=True)
+    return joint(LAPPED_ALUMINA, Surface.of(material("plastic")), flatness=1e-5) if name == "crowned" else None
+
+
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("name", ["glass", "copper", "cotton", "polyethylene", "mixed"])
+@pytest.mark.parametrize("name", ["glass", "copper", "cotton", "polyethylene", "mixed", "full", "crowned"])
 def test_it_is_the_area_and_conductance_law_over_nine_decades_of_force(shape, name):
-    pair = mixed(0.4) if name == "mixed" else joint(LAPPED_ALUMINA, Surface.of(material(name)))
+    pair = special(name) or joint(LAPPED_ALUMINA, Surface.of(material(name)))
     compiled, reference = SHAPES[shape]
     law, expected = compiled(pair), reference()
     area, load = np.array([contact(law, force, np.zeros(3)) for force in FORCES]).T
