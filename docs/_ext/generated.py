@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from command_reference import command_reference
+from conductance_table import conductance_table
 from environment_tables import environment_tables
 from public_names import name_tables, public_names
 from sphinx.application import Sphinx
@@ -22,6 +23,7 @@ FILE = re.compile(r"\[[\w/-]+\.md\](?=\([\w/-]+\.md(?:#[\w-]+)?\))")
 
 GENERATORS: dict[str, Callable[..., str]] = {
     "commands": command_reference,
+    "conductances": conductance_table,
     "environments": environment_tables,
     "names": name_tables,
 }

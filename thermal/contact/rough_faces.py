@@ -23,11 +23,11 @@ also about the pressure at which a wavy elastic face is in full contact: pi E' D
 E' m against 0.71 E' m. `joint(..., full_contact=True)` keeps the spots' conductance from there on: 1.25 k m/sigma or
 1.55 k m/sigma, which is the resistance of less than one length sigma/m of bulk. A real full contact is no worse.
 
-Faces that are not flat: if the gap between the mean planes widens by `flatness` from where they touch to the rim, evenly
-over the area (a crowned face under a flat one, or a wedge), the mean of k_g/(Y + w + M) over 0 <= w <= flatness is
-k_g/flatness log(1 + flatness/(Y + M)). The spots conduct nearly as before, for their conductance is nearly in proportion
-to the force, wherever it is; the constriction toward where they are is left out. Bodies softer than about pressure *
-width/flatness are pressed flat.
+Faces that are not flat: if the gap between the mean planes widens by `flatness` from where they touch to the rim,
+evenly over the area (a crowned face under a flat one, or a wedge), the mean of k_g/(Y + w + M) over 0 <= w <= flatness
+is k_g/flatness log(1 + flatness/(Y + M)). The spots conduct nearly as before, since their conductance is nearly in
+proportion to the force, wherever it is; the constriction toward where they are is left out. Bodies softer than about
+pressure * width/flatness are pressed flat.
 
 Pressures may be arrays of NumPy, PyTorch or JAX; a joint's arrays are then of the same kind.
 """
@@ -155,8 +155,8 @@ class Joint:
 
     conductivity: W/(m K), harmonic mean. roughness: m, and slope: -, combined. hardness: Pa, the softer face's
     microhardness. elastic_hardness: Pa, E' m/sqrt(2). elastic_share: 0 plastic .. 1 elastic.
-    gas_conductivity: W/(m K), 0 in vacuum. jump: m, the gas parameter M. solid_most: W/(m2 K), what the spots conduct at
-    most, inf where the law goes on. flatness: m, by which the gap widens from where the faces touch to its widest.
+    gas_conductivity: W/(m K), 0 in vacuum. jump: m, the gas parameter M. solid_most: W/(m2 K), what the spots conduct
+    at most, inf where the law goes on. flatness: m, by which the gap widens from where the faces touch to its widest.
     """
 
     conductivity: float | Array

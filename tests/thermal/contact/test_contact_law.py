@@ -50,7 +50,9 @@ def special(name: str) -> Joint | None:
         return mixed(0.4)
     if name == "full":
         return joint(LAPPED_ALUMINA, Surface.of(material("muscle")), full_contact=True)
-    return joint(LAPPED_ALUMINA, Surface.of(material("plastic")), flatness=1e-5) if name == "crowned" else None
+    return (
+        joint(LAPPED_ALUMINA, Surface.of(material("plastic")), flatness=1e-5) if name == "crowned" else None
+    )
 
 
 @pytest.mark.parametrize("shape", SHAPES)
