@@ -15,6 +15,7 @@ from .law import (
     flat_law,
     sphere_law,
 )
+from .rigid import RigidContact, rigid_cylinder, rigid_sphere
 from .rough_faces import (
     AIR,
     LAPPED_ALUMINA,
@@ -44,6 +45,7 @@ __all__ = [
     "Gas",
     "Joint",
     "Pad",
+    "RigidContact",
     "Surface",
     "array_conductance",
     "array_contact",
@@ -57,6 +59,8 @@ __all__ = [
     "flat_contact",
     "flat_law",
     "joint",
+    "rigid_cylinder",
+    "rigid_sphere",
     "sphere_contact",
     "sphere_law",
     "stack_joints",
