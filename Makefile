@@ -32,7 +32,7 @@ test-slow: build/.test
 test-ray: build/.ray
 	$(PY) -m pytest $(TEST_FLAGS) tests/ray
 
-# What needs PyTorch and JAX; without them `make test` skips it.
+# What needs PyTorch, JAX and MJX; without them `make test` skips it.
 test-backends: build/.backends
 	$(PY) -m pytest $(TEST_FLAGS) tests/backends
 
@@ -141,7 +141,7 @@ build/.run: EXTRA :=
 build/.test: EXTRA := [test]
 build/.ray: EXTRA := [test,ray,minari]
 build/.backends: EXTRA := [test,torch,jax]
-build/.backends: PINS := torch==2.13.0
+build/.backends: PINS := torch==2.13.0 mujoco-mjx==3.17.0
 build/.view: EXTRA := [test]
 build/.view: PINS := playwright
 build/.rl: EXTRA := [test,rl]
