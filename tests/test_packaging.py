@@ -76,6 +76,8 @@ def test_the_citation_is_complete_and_of_this_version(setup: configparser.Config
     assert set(about) - known == {"cff-version", "message", "title", "authors"}
     assert about["cff-version"] == "1.2.0" and about["type"] == "software"
     assert about["version"] == thermograsp.__version__
+    bibtex = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
+    assert f"version = {{{thermograsp.__version__}}}" in bibtex
     assert about["license"] == setup["metadata"]["license_expression"]
     assert len(set(about["keywords"])) == len(about["keywords"])
     for one in [about, *about["references"]]:

@@ -34,7 +34,7 @@ KNOWN = {"toml", "python", "python hardware", "sh", "math", "golden", "bibtex", 
 ELSEWHERE = {
     "docs/datasets.md": {"python torch", "python minari"},
     "docs/engines.md": {"python mjlab"},
-    "docs/howto.md": {"python rl", "python torchrl"},
+    "docs/howto.md": {"python rl", "python tensorboard", "python torchrl"},
 }
 """Kinds of blocks that tests of other folders run, by page."""
 PORTS = {"/dev/ttyACM0": "tips", "/dev/ttyUSB0": "gripper"}

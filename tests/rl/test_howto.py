@@ -1,4 +1,4 @@
-"""docs/howto.md: the training runs as it stands."""
+"""docs/howto.md: the trainings run as they are written."""
 
 import re
 from pathlib import Path
@@ -32,3 +32,18 @@ def test_the_block_runs_in_torchrl(block: str, capsys: pytest.CaptureFixture[str
     pytest.importorskip("torchrl", reason="needs TorchRL: make test-rl")
     exec(compile(block, PAGE.name, "exec"), {"__name__": "__main__"})
     assert "torch.Size([4, 20])" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "block", re.findall(r"```python tensorboard\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+)
+def test_the_block_writes_curves(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    loader: Any = pytest.importorskip(
+        "tensorboard.backend.event_processing.event_accumulator", reason="needs tensorboard: make test-rl"
+    )
+    monkeypatch.chdir(tmp_path)
+    exec(compile(block, PAGE.name, "exec"), {"__name__": "__main__"})
+    (run,) = (tmp_path / "runs").iterdir()
+    events = loader.EventAccumulator(str(run))
+    events.Reload()
+    assert {"rollout/ep_rew_mean", "rollout/ep_len_mean"} <= set(events.Tags()["scalars"])
