@@ -17,9 +17,9 @@ ACTIONS: dict[str, tuple[str, ...]] = {
     "thermograsp/Grasp-v0": GRIPPER_ACTION,
     "thermograsp/Sort-v0": (*GRIPPER_ACTION, "sideways rate of the arm"),
     "thermograsp/Identify-v0": (
-        "force: above 0 the fingers close with that share of the most, else they open",
+        "force: above 0 the fingers close with that share of the largest force, else they open",
         "declare: above 0.5 the episode ends with this step's distribution",
-        "distribution over the materials, in their order: its softmax after a factor of 5",
+        "distribution over the materials, in their order: the softmax of 5 times these",
     ),
 }
 """By id, a text for each component; the last one stands for all that follow."""
@@ -38,7 +38,7 @@ OBSERVATIONS: dict[str, tuple[tuple[str, str], ...]] = {
     "voltage": (("heat flux sensors, left and right, after the converter, oldest sample first", "V"),),
     "thermostat": (("temperature of the left and the right thermostat", "°C"),),
     "lateral": (("place of the arm, sideways", "m"),),
-    "goal": (("1 for what is asked, 0 for the others", ""),),
+    "goal": (("1 for what is requested, 0 for the others", ""),),
     "pressure": (("over the left and the right pad: rows up to the wrist, columns across", "Pa"),),
     "face_temperature": (("over the left and the right sensor's face: rows and columns alike", "°C"),),
 }
@@ -60,27 +60,30 @@ OPTIONS: dict[str, dict[str, Any]] = {
 
 INFOS: dict[str, tuple[str, str]] = {
     "success": ("the task is done", ""),
-    "material": ("name of the object's material; of both objects' where there are two", ""),
+    "material": ("name of the object's material; a pair of names if there are two objects", ""),
     "temperature_drop": ("across the sensors, without noise", "K"),
     "contact_area": ("of the patches on the sensors", "m2"),
     "conductance": ("of the contacts", "W/(m2 K)"),
     "rung": ("thermal model that is used", ""),
     "events": ("touches and releases of this step: (kind, fingertip) each", ""),
-    "randomized": ("by name, what `randomize` has drawn for this episode, each in SI units", ""),
-    "dropped": ("True where that ended the episode: the object was lifted, and fell", ""),
-    "crushed": ("True where that ended the episode: a pad pressed harder than the object bears", ""),
-    "slipped": ("True where that ended the episode: further along the pads than `most_slip`", ""),
-    "wrong": ("True where that ended the episode: the other object was lifted", ""),
-    "error": ("why the simulation or the hardware could not go on, where that ended the episode", ""),
+    "randomized": ("values that `randomize` has drawn for this episode, by name, in SI units", ""),
+    "dropped": ("True if this ended the episode: the object was lifted and fell", ""),
+    "crushed": ("True if this ended the episode: a pad pressed harder than the object can bear", ""),
+    "slipped": (
+        "True if this ended the episode: the object slid further along the pads than `most_slip`",
+        "",
+    ),
+    "wrong": ("True if this ended the episode: the other object was lifted", ""),
+    "error": ("why the simulation or the hardware could not go on, if that ended the episode", ""),
     "prediction": ("the declared share of each material", ""),
     "loss": ("-log of the true material's share", ""),
-    "asked": ("number of what is asked, in the observation's goal", ""),
+    "asked": ("the requested material, or 'hotter'", ""),
     "right": ("number of the right object, 0 or 1", ""),
     "object_temperatures": ("mean temperature of each object", "°C"),
     "touched": ("number of the object that each fingertip touches, or touched last", ""),
     "over_temperature": ("a heater is off until the next episode, since its thermostat was too hot", ""),
-    "unknown": ("names of what only a simulation knows", ""),
-    "late": ("by how much the end of this step was missed", "s"),
+    "unknown": ("names of the values that only a simulation knows", ""),
+    "late": ("time by which this step ended too late", "s"),
 }
 
 SOMETIMES = ("error", "randomized")

@@ -83,7 +83,7 @@ def _summary(module: ModuleType, kind: str, name: str, value: object) -> str:
 def _first_sentence(text: str) -> str:
     """Of its first paragraph, as a cell of a table."""
     paragraph = " ".join(text.strip().split("\n\n")[0].split())
-    sentence = re.split(r"(?<=[.:])\s+(?=[A-Z])", paragraph, maxsplit=1)[0]
+    sentence = re.split(r"(?<=\.)\s+(?=[A-Z])", paragraph, maxsplit=1)[0]
     return sentence.replace("|", "\\|").replace("<", "&lt;")
 
 

@@ -25,22 +25,23 @@ class GraspEnv(TouchEnv):
     | voltage | (2, 16) | heat flux sensors after the ADC, oldest first, 100 Hz | V |
     | thermostat | (2,) | temperature of the thermostats | °C |
 
-    Reward: the change of progress, which is 0 unless both fingertips press, and else .2, plus .3 times the share of 5
-    cm reached, plus .5 times the share of hold_seconds held there without a break. Success pays 1 more, less .1 times
-    the share of `seconds` that it took; dropping, crushing and slipping take all progress back and 1 more. Ends with
-    success after hold_seconds at 5 cm, on dropping, crushing and slipping; truncated after `seconds`.
+    Reward: the change of progress. Progress is 0 unless both fingertips press; then it is .2, plus .3 times the
+    reached share of 5 cm, plus .5 times the share of hold_seconds for which the object has been held there without a
+    break. Success adds 1, minus .1 times the share of `seconds` that it took. Dropping, crushing and slipping take
+    back all progress and subtract 1. An episode ends with success after hold_seconds at 5 cm, or when the object is
+    dropped, crushed or slips. It is truncated after `seconds`.
 
     info: success; in simulation also material, temperature_drop (2,) K, contact_area (2,) m2, conductance (2,) W/(m2
-    K), rung, randomized (what randomize drew, by name), events (of this step: (kind, fingertip)); dropped, crushed or
-    slipped where it ended so; error where the simulation broke down.
+    K), rung, randomized (the values that randomize drew, by name), events (of this step: (kind, fingertip)); dropped,
+    crushed or slipped if the episode ended so; error if the simulation broke down.
 
-    Keywords: material (a name, a Material, a list, None = the object's own, else the ten seed materials; drawn per
-    episode), mode ("T", "O"), plant ("simulated" or a URL), objects (an ObjectSpec, a name of the library, or a list to
-    draw from), taxels ((n, m): the observation has pressure (2, n, m) Pa over the pads), face_temperature ((n, m): it
-    has that (2, n, m), °C over the sensors' faces), randomize (records of envs.randomization, what else differs between
-    episodes), tolerance (K), hold_seconds and seconds (s), most_slip (m that the object may slide along the pads; any
-    by default), render_mode ("human", "rgb_array"), and the fields of SimulationConfig. reset(options={"material":
-    name}) fixes one episode's material.
+    Keywords: material (a name, a Material, a list from which each episode draws one, or None for the object's own,
+    else the ten seed materials), mode ("T", "O"), plant ("simulated" or a URL), objects (an ObjectSpec, a name of the
+    library, or a list to draw from), taxels ((n, m) adds pressure (2, n, m) Pa over the pads to the observation),
+    face_temperature ((n, m) adds face_temperature (2, n, m) °C over the sensors' faces), randomize (records such as
+    envs.Roughness, for other differences between episodes), tolerance (K), hold_seconds and seconds (s), most_slip (m
+    that the object may slide along the pads, unlimited by default), render_mode ("human", "rgb_array"), and the
+    fields of SimulationConfig. reset(options={"material": name}) sets one episode's material.
     """
 
     def __init__(

@@ -23,16 +23,16 @@ class IdentifyEnv(TouchEnv):
 
     Observation: as GraspEnv's.
 
-    Reward: -cost_per_second a second; at the end 1 + log p / log K, p the share given to the true material: 1 for
-    certainty, 0 for an even distribution. Ends with a declaration; truncated after `seconds`, when the last
-    distribution counts the same.
+    Reward: -cost_per_second for each second, and at the end 1 + log p / log K, where p is the share of the true
+    material and K the number of materials: 1 for certainty, 0 for an even distribution. An episode ends with a
+    declaration. It is truncated after `seconds`; then the last distribution counts in the same way.
 
     info: as GraspEnv's, without dropped and crushed; success (declared, and right), prediction (K,), the declared
     shares, and loss, -log p. The materials' order: env.unwrapped.batch.task.classes.
 
     Keywords: material (a list of at least two names or Materials, None = the ten seed materials), seconds (s),
-    cost_per_second, and others as GraspEnv's. Two thermostats at different temperatures,
-    sensor_temperature=(36.0, 30.0), tell materials apart even where an object is as warm as one of them.
+    cost_per_second, and others as GraspEnv's. Two thermostats at different temperatures, sensor_temperature=(36.0,
+    30.0), distinguish materials even if an object has the temperature of one of them.
     """
 
     def __init__(

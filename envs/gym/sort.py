@@ -15,8 +15,8 @@ from .vector import TouchVectorEnv
 
 
 class SortEnv(TouchEnv):
-    """Two objects beside each other, of one shape, colour, mass and friction: lift the one of the asked material, or
-    the hotter one.
+    """Lift the one of two objects that has the requested material, or the hotter one; both have the same shape, colour,
+    mass and friction.
 
     Action, Box(-1, 1, (4,)), clipped: target opening 0 .. 85 mm, force limit 0 .. 40 N, lift rate -50 .. 50 mm/s,
     lateral rate -100 .. 100 mm/s. The arm starts between the objects, over neither, and reaches 60 mm to either side.
@@ -32,21 +32,22 @@ class SortEnv(TouchEnv):
     | lateral | (1,) | where the arm is between the objects, object 0 lies below 0, object 1 above | m |
     | goal | (K,) | 1 for the asked one of K materials, in their order; (1,), 1, where the hotter one is asked | 1 |
 
-    Reward: the change of progress, which is 0 unless both fingertips press the right object, and else .3 times the
-    share of 5 cm reached, plus .5 times the share of hold_seconds held there without a break; touching alone gives
-    nothing. Success pays 1 more, less .1 times the share of `seconds` that it took; lifting the other object by
-    2.5 cm, dropping the right one and crushing either take all progress back and 1 more. Ends with any of these;
-    truncated after `seconds`.
+    Reward: the change of progress. Progress is 0 unless both fingertips press the right object; then it is .3 times
+    the reached share of 5 cm, plus .5 times the share of hold_seconds for which the object has been held there
+    without a break. Touching alone gives nothing. Success adds 1, minus .1 times the share of `seconds` that it took.
+    Lifting the other object by 2.5 cm, dropping the right one and crushing either of them take back all progress and
+    subtract 1. An episode ends with any of these, and is truncated after `seconds`.
 
     info: success; material (of object 0 and 1), asked, right (0 or 1), object_temperatures (2,) °C; temperature_drop
     (2,) K, contact_area (2,) m2, conductance (2,) W/(m2 K) and events of the two fingertips, with the object that each
-    touches or touched last; rung (of both), randomized (one draw for both); wrong, dropped or crushed where it ended
-    so; error where the simulation broke down.
+    touches or touched last; rung (of both), randomized (one draw for both); wrong, dropped or crushed if the episode
+    ended so; error if the simulation broke down.
 
-    Keywords: goal ("material", "hotter"), material (a list, None = the ten seed materials; two of them in an episode,
-    for "hotter" one), object_temperature (°C; for "hotter" a pair, the cooler one first, 20 and 28 by default),
-    hold_seconds and seconds (s), objects (an ObjectSpec, or a list to draw from; both are alike, of .1 kg and
-    friction .8 where it says nothing else), render_mode, and others as GraspEnv's, in T mode. The plant is simulated.
+    Keywords: goal ("material", "hotter"), material (a list, or None for the ten seed materials; an episode draws two
+    of them, or one for "hotter"), object_temperature (°C; for "hotter" a pair, the cooler one first, 20 and 28 by
+    default), hold_seconds and seconds (s), objects (an ObjectSpec, or a list to draw from; it applies to both
+    objects, with .1 kg and friction .8 by default), render_mode, and others as GraspEnv's, in T mode. The plant is
+    simulated.
     """
 
     def __init__(

@@ -40,10 +40,10 @@ class GraspTask:
     time limit. most_slip: m that the object may slide down along the pads while both press; inf for any. Raises
     InvalidValueError where one of them is not above 0.
 
-    Reward: a step pays the change of progress, which is 0 unless both fingertips press, and else .2, .3 times the
-    height (as a share of 5 cm) and .5 times the time it has been held there without a break (as a share of
-    hold_seconds). Success pays 1 more, less .1 times the share of `seconds` that it took. Dropping, crushing or
-    slipping takes all progress back and 1 more. See progress.py.
+    Reward: the change of progress. Progress is 0 unless both fingertips press; then it is .2, plus .3 times the height
+    (as a share of 5 cm), plus .5 times the time for which it has been held there without a break (as a share of
+    hold_seconds). Success adds 1, minus .1 times the share of `seconds` that it took. Dropping, crushing or slipping
+    takes back all progress and subtracts 1. See progress.py.
     """
 
     reasons: ClassVar[tuple[str, ...]] = ("dropped", "crushed", "slipped")

@@ -33,11 +33,11 @@ class SortTask:
     """Lift the right object by 5 cm and hold it for hold_seconds without dropping or crushing it. seconds: time limit.
     Raises InvalidValueError where one of them is not above 0.
 
-    Reward: a step pays the change of progress, which is 0 unless both fingertips press the right object, and else .3
-    times the height (as a share of 5 cm) and .5 times the time it has been held there without a break (as a share of
-    hold_seconds). Success pays 1 more, less .1 times the share of `seconds` that it took. Lifting the other one by 2.5
-    cm, dropping the right one or crushing either takes all progress back and 1 more. Touching alone gives nothing. See
-    progress.py.
+    Reward: the change of progress. Progress is 0 unless both fingertips press the right object; then it is .3 times the
+    height (as a share of 5 cm) plus .5 times the time for which it has been held there without a break (as a share of
+    hold_seconds). Success adds 1, minus .1 times the share of `seconds` that it took. Lifting the other object by 2.5
+    cm, dropping the right one or crushing either takes back all progress and subtracts 1. Touching alone gives nothing.
+    See progress.py.
     """
 
     reasons: ClassVar[tuple[str, ...]] = ("wrong", "dropped", "crushed")
