@@ -27,6 +27,8 @@ pytestmark = pytest.mark.skipif(
 TIER = pytest.mark.skipif(
     not os.environ.get("THERMOGRASP_ENGINE"), reason="takes minutes and gcc's sanitizers: make test-engine"
 )
+SPECS_TAKE_PLUGINS = hasattr(mujoco.MjSpec, "activate_plugin")
+NEEDS_SPECS = pytest.mark.skipif(not SPECS_TAKE_PLUGINS, reason="specs take plugins from MuJoCo 3.3.2 on")
 ROUND_OFF = 1e-9  # K; the two sum in another order
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
@@ -43,6 +45,8 @@ FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS
 
 @pytest.fixture(scope="module")
 def model() -> mujoco.MjModel:
+    if not SPECS_TAKE_PLUGINS:
+        pytest.skip("specs take plugins from MuJoCo 3.3.2 on")
     return install(mujoco.MjSpec.from_string(hand.scene()), fingertips=PADS, objects=OBJECTS)
 
 
@@ -68,6 +72,7 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     return data.sensor("heat").data.copy()
 
 
+@NEEDS_SPECS
 @pytest.mark.parametrize("tolerance", [0.05, pytest.param(0.02, marks=TIER)])
 def test_its_voltages_are_those_of_thermal_touch(tolerance: float) -> None:
     words = {"fingertips": PADS, "objects": OBJECTS, "tolerance": tolerance}
@@ -88,6 +93,7 @@ def test_its_voltages_are_those_of_thermal_touch(tolerance: float) -> None:
     assert len(felt) > 2 and places == len(PADS) + 2  # places have gone again
 
 
+@NEEDS_SPECS
 def test_fingertips_on_one_another_and_other_shapes() -> None:
     """Two pads that meet, a ball, a turned box, pyramidal cones."""
     spec = mujoco.MjSpec.from_string("""
@@ -212,6 +218,7 @@ def broken() -> Iterator[dict[str, str]]:
                 yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}
 
 
+@NEEDS_SPECS
 def test_broken_attributes_are_refused() -> None:
     tried = 0
     for config in broken():
@@ -239,6 +246,7 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
     assert np.abs(voltages(model, data)).min() > 1e-4
 
 
+@NEEDS_SPECS
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -318,6 +326,12 @@ def test_a_million_random_steps(model: mujoco.MjModel) -> None:
         mujoco.mj_step(model, data, 500)
         if n % 10 == 0:
             assert np.isfinite(data.plugin_state).all() and np.abs(voltages(model, data)).max() < 0.1
+
+
+@pytest.mark.skipif(SPECS_TAKE_PLUGINS, reason="this MuJoCo's specs take plugins")
+def test_an_older_mujoco_is_named() -> None:
+    with pytest.raises(MissingDependencyError, match=r"mujoco>=3\.3\.2"):
+        install(mujoco.MjSpec.from_string(hand.scene()), fingertips=PADS, objects=OBJECTS)
 
 
 def test_loading_twice_is_loading_once() -> None:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 import mujoco
 
-from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
+from thermograsp.errors import InvalidValueError, MissingDependencyError, celsius, non_negative, positive
 
 from ...thermal import Material
 from ..scene import Fingertip, ThermalBody, bodies, pads
@@ -39,7 +39,12 @@ def install(
     The arguments are those of ThermalTouch, and so are the voltages'. The pads, objects and the timestep are those that
     the spec has now: install after everything else. Geoms without a name get one. Raises what ThermalTouch and
     load_plugin do, and InvalidValueError for what the plugin does not serve: sensors with heaters of their own,
-    thermostats that are bare or of finite power, and glued elements."""
+    thermostats that are bare or of finite power, and glued elements. MissingDependencyError below MuJoCo 3.3.2."""
+    if not hasattr(mujoco.MjSpec, "activate_plugin"):
+        raise MissingDependencyError(
+            "install adds a plugin to the spec, which MuJoCo's Python can do from 3.3.2 on; this is "
+            f"{mujoco.__version__}: pip install 'mujoco>=3.3.2', or call ThermalTouch.update after every step"
+        )
     if not isinstance(spec, mujoco.MjSpec):
         raise InvalidValueError(f"spec must be a mujoco.MjSpec, got {type(spec).__name__}")
     celsius("ambient (°C)", ambient)
