@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
+from thermograsp.thermal.contact import array_conductance, array_contact, array_laws
 
 from ..thermal.heat_cases import Batch, Case, difference_between
 from .conftest import Kind
@@ -54,6 +55,22 @@ def test_the_whole_way_is_one_graph(torch_kind: Kind) -> None:
         state, voltage, _ = step(state, force, which)
         other, same, _ = compiled(other, force, which)
         torch.testing.assert_close(same, voltage, rtol=0, atol=1e-15)
+
+
+def test_the_contact_law_is_one_graph(torch_kind: Kind) -> None:
+    faces = thermal.joint(thermal.LAPPED_ALUMINA, thermal.Surface.of(thermal.material("wood")))
+    records = np.stack([thermal.flat_law(thermal.Pad(), faces, (0.04, 0.04), (1, 2))] * 3)
+    laws = array_laws(records, torch_kind.float64)
+    force, place = torch.tensor([0.0, 2.0, 20.0], dtype=torch.float64), torch.zeros(3, 3, dtype=torch.float64)
+
+    def conducts(force: Any) -> Any:
+        area, pressing = array_contact(laws, force, place)
+        pressure = torch.where(area > 0, pressing / area.clamp(min=1e-9), 1.0)
+        return area * array_conductance(laws, pressure)
+
+    found = torch.compile(conducts, fullgraph=True, backend="aot_eager")(force)
+    torch.testing.assert_close(found, conducts(force), rtol=1e-12, atol=0)
+    assert found[0] == 0 < found[1] < found[2]
 
 
 def test_vmap_over_rows(torch_kind: Kind) -> None:

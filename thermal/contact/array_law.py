@@ -15,6 +15,7 @@ from ..numerics import HIGH, LOW, Array, as_like, namespace_of
 from .law import CYLINDER, FLAT, LOG_LEAST, LOG_MOST, SEPARATION, SPHERE
 
 _NEWTON_STEPS = 8
+_COEFFICIENTS = tuple(SEPARATION[::-1].tolist())  # highest power first, as numbers that compilers can see
 _LEAST_FORCE = 1e-9  # N, of a contact that is apart: any at which the law has a value
 
 
@@ -121,7 +122,7 @@ def _separation(xp, log_share):
     y = (-log_share.clip(LOG_LEAST, LOG_MOST)) ** 0.5
     z = (2 * y - (LOW + HIGH)) / (HIGH - LOW)
     total = 0.0 * z
-    for coefficient in SEPARATION[::-1].tolist():
+    for coefficient in _COEFFICIENTS:
         total = total * z + coefficient
     return total
 
