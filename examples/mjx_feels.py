@@ -1,6 +1,6 @@
 """Grippers in MJX close on cubes of aluminium and of wood and feel which is which: mechanics and heat in one jit."""
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false, reportPossiblyUnboundVariable=false
 
 import jax
 import jax.numpy as jnp

@@ -1,6 +1,6 @@
 """Grippers in mujoco-warp close on cubes of aluminium and of wood, and feel which is which: tensors on one device."""
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false, reportPossiblyUnboundVariable=false
 
 import mujoco
 import mujoco_warp as mjw
