@@ -15,7 +15,7 @@ from thermograsp.figures import FAINT, INK, save_figure, style
 
 _OURS = "#1d4f91"
 _COLORS = ("#c3c9d1", "#8fb3dc", "#d4691e", "#e3b23c", "#1d4f91", "#5b8c5a")
-_WIDTH, _HEIGHT = 10.0, 8.6
+_WIDTH, _HEIGHT = 10.0, 10.6
 
 
 def draw(record: Record, folder: Path, footnote: str) -> list[Path]:
@@ -23,30 +23,41 @@ def draw(record: Record, folder: Path, footnote: str) -> list[Path]:
     speeds, start = record["speeds"], record["start_up"]
     with style(), mpl.rc_context({"font.size": 10}):
         figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=120)
-        grid = figure.subplots(2, 2)
-        figure.subplots_adjust(left=0.1, right=0.96, top=0.82, bottom=0.145, wspace=0.22, hspace=0.48)
+        layout = figure.add_gridspec(
+            3,
+            2,
+            height_ratios=(1, 1, 0.55),
+            left=0.1,
+            right=0.96,
+            top=0.85,
+            bottom=0.125,
+            wspace=0.22,
+            hspace=0.52,
+        )
+        grid = [[figure.add_subplot(layout[i, j]) for j in range(2)] for i in range(2)]
         title = {"x": 0.03, "ha": "left"}
-        figure.text(y=0.955, s="What touch costs beside bare MuJoCo", size=17, weight="semibold", **title)
+        figure.text(y=0.962, s="What touch costs beside bare MuJoCo", size=17, weight="semibold", **title)
         figure.text(
-            y=0.895,
+            y=0.913,
             s="thermograsp/Grasp-v0 as shipped, a box, control steps of 10 x 2 ms, random actions, beside\n"
             "mujoco.batch stepping the same models through the same contacts on as many threads, in the same run.",
             size=10,
             **title,
         )
-        _ratios(grid[0, 0], speeds)
-        _parts(grid[0, 1], speeds, record["parts"])
-        _modes(grid[1, 0], record["modes"])
-        _endurance(grid[1, 1], record["endurance"])
+        _ratios(grid[0][0], speeds)
+        _parts(grid[0][1], speeds, record["parts"])
+        _modes(grid[1][0], record["modes"])
+        _endurance(grid[1][1], record["endurance"])
+        _scenes(figure.add_subplot(layout[2, :]), record["scenes"])
         figure.text(
-            y=0.042,
+            y=0.035,
             s=f"Each environment adds {record['memory']['per_env'] / 1e3:.0f} kB. Importing thermograsp adds "
             f"{1e3 * start['thermograsp']:.1f} ms to Gymnasium's {1e3 * start['gymnasium']:.0f} ms. "
             f"From make to the\nfirst step it takes {start['to_first_step']:.2f} s, from cache.",
             size=10,
             **title,
         )
-        figure.text(y=0.015, s=footnote, size=6.5, color=FAINT, **title)
+        figure.text(y=0.012, s=footnote, size=6.5, color=FAINT, **title)
         return save_figure(figure, folder / "speed", 120)
 
 
@@ -124,3 +135,18 @@ def _endurance(axes: Axes, endurance: Record) -> None:
     axes.set_xlabel(f"control steps, with {endurance['touches']:,} touches in all")
     axes.set_ylabel("cost of a step, first = 1")
     axes.locator_params(axis="x", nbins=5)
+
+
+def _scenes(axes: Axes, scenes: Sequence[Record]) -> None:
+    axes.set_title("Scenes of one's own with thermograsp.touch", pad=12)
+    rows = np.arange(len(scenes))[::-1]
+    axes.barh(rows, [each["ratio"] for each in scenes], 0.62, color=_OURS)
+    for row, each in zip(rows, scenes, strict=True):
+        low, high = each["quartiles"]
+        axes.text(0.01, row, each["scene"], va="center", color="white", size=9)
+        axes.text(high + 0.01, row, f"{each['ratio']:.2f}", va="center", color=INK)
+        axes.plot((low, high), (row, row), color=INK, lw=1.2)
+    axes.axvline(1.0, color=FAINT, lw=1.0, ls=(0, (4, 3)))
+    axes.set_yticks([])
+    axes.set_xlim(0, 1.15)
+    axes.set_xlabel("speed as a share of the same scene's without touch (lines: quartiles of the blocks)")

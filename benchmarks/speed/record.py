@@ -8,17 +8,18 @@ from thermograsp.bench.kinds import Progress, Record
 from thermograsp.bench.speed.endurance import endure
 from thermograsp.bench.speed.measure import ID, LAYERS, PARTS, measure
 from thermograsp.bench.speed.processes import memory, start_up
+from thermograsp.bench.speed.scenes import scenes
 from thermograsp.bench.speed.vector_modes import compare
 
 _COUNTS, _QUICK_COUNTS = (1, 16, 64, 256, 1024), (1, 4)
 
 
 def measured(quick: bool, seed: int, progress: Progress) -> Record:
-    """Speeds by number of environments, ways to run them, an endless episode, memory and start-up."""
+    """Speeds by number of environments, ways to run them, an endless episode, scenes of one's own, memory, start-up."""
     counts = _QUICK_COUNTS if quick else _COUNTS
     plans = {n: _plan(n, quick) for n in counts}
     speeds = []
-    with progress(sum(blocks for blocks, _ in plans.values()) + 20 + 3) as advance:
+    with progress(sum(blocks for blocks, _ in plans.values()) + 20 + 4) as advance:
         # First: beside the memory that the others leave behind, fresh processes start more slowly.
         start = start_up(1 if quick else 5, lambda what: advance(what, 0))
         advance("", 1)
@@ -28,6 +29,7 @@ def measured(quick: bool, seed: int, progress: Progress) -> Record:
         endurance = endure(1_000 if quick else 100_000, seed, lambda: advance("endurance", 1))
         modes = compare(*((2, 2, 10) if quick else (16, 10, 50)), seed, lambda what: advance(what, 0))
         advance("", 1)
+        felt = scenes(quick, seed, advance)
         used = memory((64, 256) if quick else counts, lambda what: advance(what, 0))
         advance("", 1)
     return {
@@ -36,6 +38,7 @@ def measured(quick: bool, seed: int, progress: Progress) -> Record:
         "parts": PARTS,
         "speeds": [{**asdict(s), "ratio_with_resets": s.ratio_with_resets, "parts": s.parts} for s in speeds],
         "modes": [asdict(mode) for mode in modes],
+        "scenes": [asdict(each) for each in felt],
         "endurance": {**asdict(endurance), "growth": endurance.growth},
         "memory": asdict(used),
         "start_up": {**asdict(start), "to_first_step": start.to_first_step},

@@ -50,6 +50,20 @@ def build_scene(
 ) -> mujoco.MjModel:
     """Compile gripper, table and objects; the gripper is down at the first object's grasp height.
 
+    All else is that of `scene_spec`, whose result it compiles."""
+    return scene_spec(objects, library=library, settings=settings, lateral=lateral, gripper=gripper).compile()
+
+
+def scene_spec(
+    objects: Sequence[ObjectSpec] = (ObjectSpec(),),
+    *,
+    library: Iterable[ObjectSpec] = (),
+    settings: SolverSettings = SHIPPED,
+    lateral: bool = False,
+    gripper: GripperModel = SHIPPED_GRIPPER,
+) -> mujoco.MjSpec:
+    """Gripper, table and objects; the gripper is down at the first object's grasp height.
+
     Each object is a free body named after it, with explicit inertia, and has a contact sensor per fingertip
     (names: `contact_sensor`): number of contacts, net force of the tip on the object (world frame, N), and the
     force-weighted centroid (world frame, m). Sensors are ordered by tip, then by object.
@@ -82,7 +96,7 @@ def build_scene(
     spec.body("wrist").pos[:] = gripper.wrist_at(objects[0])
     if lateral:
         _add_slide(spec)
-    return spec.compile()
+    return spec
 
 
 def _add_slide(spec: mujoco.MjSpec) -> None:

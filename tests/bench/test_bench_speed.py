@@ -1,5 +1,7 @@
 """`thermograsp bench speed`: every layer runs the same physics, the document is complete. No timing decides."""
 
+import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +60,19 @@ def test_document_is_complete_and_adds_up(written: tuple[Path, dict]) -> None:
     for suffix in (".png", ".svg"):
         assert (folder / f"speed{suffix}").stat().st_size > 10_000
     assert "seed 3" in (folder / "speed.svg").read_text(encoding="utf-8")
+
+
+def test_scenes_are_those_that_can_be_had_and_their_physics_is_the_same(written: tuple[Path, dict]) -> None:
+    found = written[1]["speed"]["scenes"]
+    names = {each["scene"] for each in found}
+    assert names >= {"three fingers, a loop of mj_step", "three fingers, 64 worlds"}
+    assert ("Grasp-v0's scene, inside mj_step" in names) == (
+        shutil.which(os.environ.get("CC", "cc")) is not None
+    )
+    for each in found:
+        assert each["same"] and each["blocks"] == 2 and each["bare"] > 0 and each["touch"] > 0
+        low, high = each["quartiles"]
+        assert 0 < low <= each["ratio"] <= high
 
 
 def test_memory_and_imports_hold_what_is_promised(written: tuple[Path, dict]) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import thermograsp
+from thermograsp.bench.speed import scenes
 
 gymnasium_robotics = pytest.importorskip("gymnasium_robotics")
 gymnasium.register_envs(gymnasium_robotics)
@@ -63,3 +64,9 @@ def test_a_shadow_hand_feels_aluminium_colder_than_wood() -> None:
     felt = metal > 0.1
     assert felt.any()
     assert (metal[felt] > 1.3 * wood[felt]).all()
+
+
+def test_fetch_is_timed_beside_itself_without_touch() -> None:
+    found = {each.scene: each for each in scenes.scenes(True, 0, lambda what, part: None)}
+    for name in ("FetchPickAndPlace, wrapped", "FetchPickAndPlace's scene, inside mj_step"):
+        assert found[name].same and found[name].ratio > 0

@@ -7,7 +7,8 @@ from thermograsp.cli.shared import Output
 
 
 def report(record: Record, output: Output) -> None:
-    """Prints shares of bare MuJoCo's speed, the ways to run many environments, and what one environment costs."""
+    """Prints shares of bare MuJoCo's speed, the ways to run many environments, scenes of one's own, and what one
+    environment costs."""
     parts, modes, lasting = record["parts"], record["modes"], record["endurance"]
     output.line("share of bare mujoco.batch's speed: median (quartiles), by CPU time; parts of a step's time")
     output.table(
@@ -29,6 +30,20 @@ def report(record: Record, output: Output) -> None:
     output.table(
         (f"{modes[0]['num_envs']} environments", "speed over native", "same bits"),
         [(m["mode"], f"{m['ratio']:.2f}", "yes" if m["same"] else "NO") for m in modes],
+    )
+    output.line()
+    output.table(
+        ("scene", "share of bare", "quartiles", "bare", "same bits"),
+        [
+            (
+                s["scene"],
+                f"{s['ratio']:.3f}",
+                "{:.3f} .. {:.3f}".format(*s["quartiles"]),
+                f"{1e6 * s['bare']:.1f} us for each {s['unit']}",
+                "yes" if s["same"] else "NO",
+            )
+            for s in record["scenes"]
+        ],
     )
     output.line()
     output.line(
