@@ -21,6 +21,7 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
+from numba.core.extending import _Intrinsic
 from numba.core.serialize import dumps
 
 from thermograsp.errors import InvalidValueError
@@ -137,6 +138,9 @@ def _pieces(value: Any, seen: set[int]) -> Iterator[str]:
         if id(value) not in seen:
             seen.add(id(value))
             yield from _function(value, seen)
+    elif isinstance(value, _Intrinsic):
+        yield "intrinsic"
+        yield from _pieces(value._defn, seen)
     elif isinstance(value, np.ndarray) and value.dtype != object:
         content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
         yield f"array {value.dtype.str} {value.shape} {content}"

@@ -12,9 +12,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import mujoco
 import numpy as np
+from numba import carray
 
 from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, SimulationError
@@ -24,6 +26,24 @@ from ...thermal.contact import CYLINDER, FLAT, conductance, contact
 from ..scene import BodyShape, PadPlace
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
 from .laws import constrictions, pair_laws
+from .memory import (
+    CONTACTS,
+    DIM,
+    EFC,
+    FORCES,
+    FRAME,
+    GEOM,
+    GEOM_XMAT,
+    GEOM_XPOS,
+    POS,
+    STRIDE,
+    XMAT,
+    XPOS,
+    ContactMemory,
+    floats,
+    integers,
+    words,
+)
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it
@@ -67,8 +87,7 @@ class ContactReader:
         self._pyramidal = int(model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
         self.set_materials(range(worlds), [tuple(shape.material for shape in shapes)] * worlds)
         self._of: mujoco.MjData | None = None
-        empty = np.zeros((0, 3))
-        self._poses = (empty, empty, empty, empty)
+        self._memory: ContactMemory | None = None
 
     def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
         """What those worlds' objects are made of from now on."""
@@ -82,33 +101,34 @@ class ContactReader:
                 self._laws = laws if first else np.concatenate((self._laws, laws))
                 self._small = small if first else np.concatenate((self._small, small))
             self._which[w] = self._known[own]
-        first = self._which[0]
-        self._own = (
-            *(self._role, self._pads, self._met, self._laws[first], self._small[first], self._pushed),
-            *(self.touches[0], self.beside[0], self._pyramidal),
-        )
+        self._point()
 
-    def read(self, data: mujoco.MjData, weight: float = 1.0) -> None:
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy, whose arrays are elsewhere."""
+        self.__dict__.update(state)
+        self._point()
+
+    def _point(self) -> None:
+        """Says where the first world's arrays are."""
+        first = self._which[0]
+        self._own_laws, self._own_small = self._laws[first], self._small[first]
+        arrays = self._role, self._pads, self._met, self._own_small, self._pushed, self.touches, self.beside
+        sizes = len(self._role), *self.touches.shape[1:3], len(self._met), self._pyramidal
+        self._own = np.array([*(array.ctypes.data for array in arrays), *sizes], np.int64)
+
+    def read(self, data: mujoco.MjData, weight: int = 1) -> None:
         """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
         that are not finite."""
-        self.substeps += int(weight)
-        if data.ncon == 0:
+        self.substeps += weight
+        count = data.ncon
+        if count == 0:
             return
-        if data is not self._of:
-            self._of, self._poses = data, (data.xpos, data.xmat, data.geom_xpos, data.geom_xmat)
-        found = data.contact
-        finite = _read(
-            found.geom,
-            found.pos,
-            found.frame,
-            found.dim,
-            found.efc_address,
-            data.efc_force,
-            *self._poses,
-            *self._own,
-            float(weight),
-        )
-        if not finite:
+        if data is not self._of or self._memory is None:
+            self._of, self._memory = data, ContactMemory(data)
+        memory = self._memory
+        if not memory.follows:
+            memory.refresh()
+        if not _read(count, weight, memory.table, self._own, self._own_laws):
             raise SimulationError(
                 f"a contact force is not finite at {data.time:g} s: the simulation broke down; reset both"
             )
@@ -145,14 +165,31 @@ class ContactReader:
 
 
 @njit(cache=True, error_model="numpy")
-def _read(
-    geom, pos, frame, dim, address, efc, xpos, xmat, geom_xpos, geom_xmat,
-    role, pads, met, laws, small, pushed, touches, beside, pyramidal, weight,
-):  # fmt: skip
-    """Adds to touches and beside. pushed (F, N, 3): room for forces and moments. Returns whether all are finite."""
-    tips, things = len(pads), len(met)
+def _read(count, substeps, memory, own, laws):
+    """Adds `count` contacts to touches and beside. memory: ContactMemory's table. own: addresses and sizes of a
+    ContactReader's arrays, first those that are only read. Returns whether all forces are finite."""
+    tips, targets, things, pyramidal = own[8], own[9], own[10], own[11]
+    role = carray(words(own[0]), own[7])
+    pads = carray(floats(own[1]), (tips, _PAD))
+    met = carray(words(own[2]), (things, 3))
+    small = carray(floats(own[3]), (tips, targets))
+    pushed = carray(floats(own[4]), (tips, things, 3))  # room for forces and moments
+    touches = carray(floats(own[5]), (tips, targets, COLUMNS))
+    beside = carray(floats(own[6]), tips)
+    place = carray(words(memory[CONTACTS]), 1)[0]
+    numbers = carray(floats(place), (count, memory[STRIDE] // 8))
+    whole = carray(integers(place), (count, memory[STRIDE] // 4))
+    efc = carray(floats(carray(words(memory[FORCES]), 1)[0]), 0)  # as many as MuJoCo says
+    xpos, xmat = carray(floats(memory[XPOS]), (1, 3)), carray(floats(memory[XMAT]), (1, 9))
+    geom_xpos, geom_xmat = (
+        carray(floats(memory[GEOM_XPOS]), (1, 3)),
+        carray(floats(memory[GEOM_XMAT]), (1, 9)),
+    )
+    pos, frame = numbers[:, memory[POS] :], numbers[:, memory[FRAME] :]
+    geom, dim, address = whole[:, memory[GEOM] :], whole[:, memory[DIM]], whole[:, memory[EFC]]
+    weight = float(substeps)
     any_met, frames = False, pads  # frames: made once something has met
-    for c in range(len(geom)):
+    for c in range(count):
         first, second = role[geom[c, 0]], role[geom[c, 1]]
         if first < 0 or second < 0 or address[c] < 0 or first == second:
             continue
