@@ -42,13 +42,14 @@ def timed(
 ) -> SceneSpeed:
     """Times blocks of so many steps, bare and with touch in random order, after one that is not counted. By CPU time,
     as other processes of the machine take turns with this one. shown: called after each block."""
-    times, same = np.zeros((blocks + 1, 2)), True
+    times = np.zeros((blocks + 1, 2))
+    same = True
     for block in range(blocks + 1):
         for which in rng.permutation(2):
             begun = time.process_time()
             (pair.bare, pair.touch)[which](steps)
             times[block, which] = (time.process_time() - begun) / steps
-        same &= pair.same()
+        same = same and pair.same()
         shown()
     bare, touch = times[1:].T
     low, middle, high = (float(x) for x in np.percentile(bare / touch, [25, 50, 75]))

@@ -1,6 +1,10 @@
 """Contacts are read where MuJoCo keeps them: those of its bindings, of copies, and where the bindings say less."""
 
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
 import copy
+import ctypes
 import importlib.util
 from pathlib import Path
 
@@ -37,9 +41,7 @@ def test_addresses_are_those_of_the_bindings_arrays() -> None:
     _, data, _ = pressed(200)
     assert data.ncon > 3
     table, found = memory.ContactMemory(data).table, data.contact
-    first, force = (
-        np.ctypeslib.as_array((memory.ctypes.c_int64 * 1).from_address(int(at)))[0] for at in table[:2]
-    )
+    first, force = (np.ctypeslib.as_array((ctypes.c_int64 * 1).from_address(int(at)))[0] for at in table[:2])
     assert force == data.efc_force.ctypes.data
     for name, column in (
         ("pos", memory.POS),

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -54,26 +55,26 @@ class ContactMemory:
         self._said[:] = _contacts(self._data), self._data.efc_force.ctypes.data
 
 
-@intrinsic
-def floats(context, address):
-    """The address of floating-point numbers as what numba.carray takes."""
+def _floats(context, address):
     return types.CPointer(types.float64)(types.int64), _pointer
 
 
-@intrinsic
-def integers(context, address):
-    """Of integers of 32 bits."""
+def _integers(context, address):
     return types.CPointer(types.int32)(types.int64), _pointer
 
 
-@intrinsic
-def words(context, address):
-    """Of integers of 64 bits."""
+def _words(context, address):
     return types.CPointer(types.int64)(types.int64), _pointer
 
 
 def _pointer(context, builder, signature, arguments):
     return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
+
+
+floats: Any = intrinsic(_floats)
+integers: Any = intrinsic(_integers)
+words: Any = intrinsic(_words)
+"""Of an address, what numba.carray takes: of floating-point numbers, of integers of 32 and of 64 bits."""
 
 
 def _contacts(data: mujoco.MjData) -> int:

@@ -16,7 +16,7 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numba import carray
+from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, SimulationError
