@@ -15,6 +15,7 @@ import pytest
 from thermograsp.errors import InvalidValueError, SimulationError, UnknownNameError
 from thermograsp.thermal import (
     LAPPED_ALUMINA,
+    SKINS,
     THERMOSTAT_FACE,
     Surface,
     Thermostat,
@@ -62,19 +63,21 @@ ONE_PRESS = """
 
 
 @pytest.mark.parametrize(
-    ("name", "cone"),
+    ("name", "cone", "skin"),
     [
-        ("wood", "elliptic"),
-        ("glass", "elliptic"),
-        ("glass", "pyramidal"),
-        ("stainless_steel", "elliptic"),
-        ("aluminium", "elliptic"),
+        ("wood", "elliptic", None),
+        ("glass", "elliptic", None),
+        ("glass", "pyramidal", None),
+        ("stainless_steel", "elliptic", None),
+        ("aluminium", "elliptic", None),
+        ("aluminium", "elliptic", "filled_silicone"),
     ],
 )
-def test_one_fingertip_on_a_box_feels_what_a_press_does(name: str, cone: str) -> None:
+def test_one_fingertip_on_a_box_feels_what_a_press_does(name: str, cone: str, skin: str | None) -> None:
     model = mujoco.MjModel.from_xml_string(ONE_PRESS.format(cone=cone))
     data = mujoco.MjData(model)
-    touch = ThermalTouch(model, fingertips={"tip": "tip"}, objects={"block": name}, air=0.0, chain="ideal")
+    tips = {"tip": Fingertip("tip", skin=skin)}
+    touch = ThermalTouch(model, fingertips=tips, objects={"block": name}, air=0.0, chain="ideal")
     data.ctrl[0] = 10.0
     drops, times, reading = [], [], touch.reading
     for _ in range(2000):
@@ -86,9 +89,10 @@ def test_one_fingertip_on_a_box_feels_what_a_press_does(name: str, cone: str) ->
             times.append(reading.time)
             drops.append(reading.temperature_drop[0])
     assert reading.force[0] == pytest.approx(10.0, rel=1e-3)
-    faces = joint(LAPPED_ALUMINA, Surface.of(material(name)))
-    h = float(contact_conductance(faces, 10.0 / 0.02**2))
-    curves = press(name, conductance=h, object_size=(0.04, 0.04, 0.04), seconds=4.0, dt=0.02, tolerance=0.01)
+    face = LAPPED_ALUMINA if skin is None else Surface.of(SKINS[skin].made_of)
+    h = float(contact_conductance(joint(face, Surface.of(material(name))), 10.0 / 0.02**2))
+    size = (0.04, 0.04, 0.04)
+    curves = press(name, skin=skin, conductance=h, object_size=size, seconds=4.0, dt=0.02, tolerance=0.01)
     # the touch began within the first reading, at some force that is still rising
     late = np.array(times) - times[0] > 0.3
     expected = np.interp(np.array(times) - times[0] + 0.02, curves.t, curves.temperature_drop)

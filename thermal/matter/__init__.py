@@ -4,19 +4,23 @@ from .layers import Layer
 from .materials import SEED_MATERIALS, Material, load_materials, material, materials
 from .mounting import Mode, Shape
 from .sensors import SensorStack, load_sensors, sensor, sensors, write_sensor
+from .skins import SKINS, Skin, skin
 
 __all__ = [
     "SEED_MATERIALS",
+    "SKINS",
     "Layer",
     "Material",
     "Mode",
     "SensorStack",
     "Shape",
+    "Skin",
     "load_materials",
     "load_sensors",
     "material",
     "materials",
     "sensor",
     "sensors",
+    "skin",
     "write_sensor",
 ]

@@ -8,8 +8,9 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, positive
 
-from ..matter import Material, Mode, SensorStack, Shape
+from ..matter import Material, Mode, SensorStack, Shape, Skin
 from ..matter import material as named_material
+from ..matter import skin as named_skin
 from ..readout import Thermostat
 from ..stack import HeatedStack, any_sensor, heated_core
 from .ladder import Rung, solve_rung
@@ -48,6 +49,7 @@ def press(
     *,
     mode: Mode = "T",
     sensor: str | SensorStack | HeatedStack = "seed",
+    skin: str | Skin | None = None,
     conductance: Conductance | None = None,
     force: Conductance | None = None,
     area: float | None = None,
@@ -67,16 +69,17 @@ def press(
     """Presses the sensor on the middle of a face of an object, both uniform at first.
 
     material: a name of thermal.materials() or a Material. mode: "T" or "O". sensor: a preset's name, a .toml file of
-    one sensor, a SensorStack or a HeatedStack. conductance: W/(m2 K) of the contact, a number or a function of time
-    in s (0 = apart); None for 1e4, or what a heated sensor's contact conducts at `force`. force: N on a heated
+    one sensor, a SensorStack or a HeatedStack. skin: over the sensor's face, a name of thermal.SKINS or a Skin, None
+    for a bare face; the contact is then the skin's. conductance: W/(m2 K) of the contact, a number or a function of
+    time in s (0 = apart); None for 1e4, or what a heated sensor's contact conducts at `force`. force: N on a heated
     sensor, a number or a function of time in s, None for the one that its contact is stated at. area: m2 of the
     contact, at most the sensor's face, None for 81e-6 or that face where it is smaller. shape: "square" or "round".
-    object_size: (width, depth, thickness) m. air: W/(m2 K) on the object's free faces. Temperatures in °C. seconds,
-    dt: samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of temperature drop from 0.05 s on, which rung="auto"
-    (and "network") keeps. rung: a name of thermal.RUNGS, "auto", "network:ORDERS" as a Rung prints itself, or a Rung.
-    opposite: conductance of a second fingertip of the same kind on the opposite face, None for none; the curves are
-    the first one's. thermostat: one of finite power, at sensor_temperature at first, None for an ideal one. cache:
-    keep networks on disk.
+    object_size: (width, depth, thickness) m. air: W/(m2 K) on the object's free faces. Temperatures in °C. seconds, dt:
+    samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of temperature drop from 0.05 s on, which rung="auto" (and
+    "network") keeps. rung: a name of thermal.RUNGS, "auto", "network:ORDERS" as a Rung prints itself, or a Rung.
+    opposite: conductance of a second fingertip of the same kind on the opposite face, None for none; the curves are the
+    first one's. thermostat: one of finite power, at sensor_temperature at first, None for an ideal one. cache: keep
+    networks on disk.
 
     A heated sensor (one with a `touch` table) has been at sensor_temperature for long, in air of object_temperature,
     and its heater's law goes on from there; a controller's setpoint is that temperature. Its element in front of the
@@ -84,7 +87,11 @@ def press(
 
     Raises UnknownNameError for names and InvalidValueError for values that make no sense, or that the rung cannot do.
     """
-    pressed = pressed_sensor(sensor, conductance, force)
+    if skin is not None and mode == "O":
+        raise InvalidValueError(
+            "a skin is what touches the object, on which the element is glued in mode 'O': leave it out"
+        )
+    pressed = pressed_sensor(sensor, conductance, force, skin)
     problem = PressProblem(
         stack=pressed.stack,
         material=named_material(material),
@@ -150,10 +157,16 @@ class PressedSensor:
 
 
 def pressed_sensor(
-    sensor: str | SensorStack | HeatedStack, conductance: Conductance | None, force: Conductance | None
+    sensor: str | SensorStack | HeatedStack,
+    conductance: Conductance | None,
+    force: Conductance | None,
+    skin: str | Skin | None = None,
 ) -> PressedSensor:
-    """As press takes them, None for what is left to the sensor. Raises UnknownNameError and InvalidValueError."""
-    chosen = any_sensor(sensor)
+    """As press takes them, None for what is left to the sensor, and for a bare face. Raises UnknownNameError and
+    InvalidValueError."""
+    chosen, worn = any_sensor(sensor), named_skin(skin)
+    if worn is not None:
+        chosen = worn.over(chosen)
     if isinstance(chosen, SensorStack):
         if force is not None:
             raise InvalidValueError(

@@ -38,7 +38,8 @@ class GluedContacts:
             self._small[e] = SQUARE / element.stack.layers[0].conductivity
             self._places[e] = (element.glued, width, *element.position, *element.axes.ravel())
             for f, tip in enumerate(fingertips):
-                faces = joint(LAPPED_ALUMINA, THERMOSTAT_FACE if tip.bare else LAPPED_ALUMINA)
+                metal = tip.bare and tip.skin is None
+                faces = joint(LAPPED_ALUMINA, THERMOSTAT_FACE if metal else tip.face)
                 side = float(np.sqrt(tip.size.prod()))
                 pad = Pad(width=side, face=min(tip.stack.width, side))
                 self._laws[f, e] = flat_law(pad, faces, (width, width), (1, 2))

@@ -13,7 +13,6 @@ import numpy as np
 
 from ...thermal import (
     CONTACT_LAW,
-    LAPPED_ALUMINA,
     Joint,
     Pad,
     Surface,
@@ -37,11 +36,11 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         width = float(math.sqrt(pad.size.prod()))
         sheet = Pad(width=width, face=min(pad.stack.width, width))
         for g, (shape, geom) in enumerate(geoms):
-            faces = joint(LAPPED_ALUMINA, Surface.of(shape.material))
+            faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
             for axis in range(3):
                 laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
         for g, other in enumerate(pads, len(geoms)):
-            faces = joint(LAPPED_ALUMINA, LAPPED_ALUMINA)
+            faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = min(other.stack.width, float(math.sqrt(other.size.prod())))
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
     return laws

@@ -14,7 +14,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, length
 
-from ...thermal import SensorStack, Thermostat, material
+from ...thermal import LAPPED_ALUMINA, SensorStack, Skin, Surface, Thermostat, material
+from ...thermal.matter import skin as named_skin
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
 from .faces import flat_faces, largest_face, rotation, triangles
@@ -31,7 +32,9 @@ class Fingertip:
     """A fingertip that feels heat. name: of a geom, a site or a body. sensor: a preset's name, a .toml file or a
     SensorStack, or a HeatedStack, whose heater follows its own law; None for a bare thermostat, which touches elements
     that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated sensor before anything is
-    touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there.
+    touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there. skin:
+    over the sensor's face, a name of thermal.SKINS or a Skin, None for bare alumina. Heat passes it and the contact's
+    conductance is its own; round bodies sink in as into a pad of silicone, with or without it.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
     objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it. A site's
@@ -45,6 +48,7 @@ class Fingertip:
     sensor: str | SensorStack | HeatedStack | None = "seed"
     temperature: float = 36.0
     thermostat: Thermostat | None = None
+    skin: str | Skin | None = None
 
     def __post_init__(self) -> None:
         celsius(f"fingertip {self.name!r}: temperature (°C)", self.temperature)
@@ -71,7 +75,7 @@ class PadPlace:
     stack: the sensor, or what of it is in front of its heater. temperature: °C of the thermostat or, at first, of the
     heater's place. heated: the whole sensor, where it has a heater of its own. bare: the thermostat
     itself, no sensor. glued: the number of the object that it is an element on, None for a fingertip. thermostat: of
-    finite power, None for an ideal one."""
+    finite power, None for an ideal one. skin: over the sensor's face, whose last layer it is, None for a bare one."""
 
     label: str
     body: int
@@ -85,6 +89,12 @@ class PadPlace:
     bare: bool = False
     glued: int | None = None
     thermostat: Thermostat | None = None
+    skin: Skin | None = None
+
+    @property
+    def face(self) -> Surface:
+        """What touches."""
+        return LAPPED_ALUMINA if self.skin is None else Surface.of(self.skin.made_of)
 
 
 def pads(
@@ -189,6 +199,9 @@ def _pad(
     if one.size is not None:
         size = np.asarray(one.size, float)
     stack = bare_thermostat(size) if one.sensor is None else any_sensor(one.sensor)
+    skin = named_skin(one.skin)
+    if skin is not None:
+        stack = skin.over(stack)
     heated = None
     if isinstance(stack, HeatedStack):
         if one.thermostat is not None:
@@ -210,6 +223,7 @@ def _pad(
         one.sensor is None,
         None,
         one.thermostat,
+        skin,
     )
 
 
