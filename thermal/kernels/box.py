@@ -9,6 +9,7 @@ N: patches, P: patterns of each (patterns.py), T: times, S: moments.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from .axis import MODES, SWITCH, images, overlaps, wave_numbers
-from .patterns import ALONG, GRAM, JUMPS, NODES
+from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
 
@@ -52,12 +53,24 @@ class BoxSamples(NamedTuple):
 
 
 def box_samples(
-    size: tuple[float, float, float], conductivity: float, heat_capacity: float, film: float, patches: Patches
+    size: tuple[float, float, float],
+    conductivity: float,
+    heat_capacity: float,
+    film: float,
+    patches: Patches,
+    bases: Sequence[np.ndarray] | None = None,
 ) -> BoxSamples:
-    """size: m. conductivity: W/(m K). heat_capacity: J/(m3 K). film: W/(m2 K), 0 for adiabatic faces.
+    """size: m. conductivity: W/(m K). heat_capacity: J/(m3 K). film: W/(m2 K), 0 for adiabatic faces. bases: (P, M) of
+    each patch, the orthonormal combinations of patterns to tell instead of all P, the even pattern first.
 
     The film covers the patches too: what lies under a fingertip loses no heat to the air, see `shielded`."""
     diffusivity = conductivity / heat_capacity
+    if bases is None:
+        gram = GRAM
+        jumps, terms = np.tile(JUMPS, (len(patches.face), 2, 1, 1)), ALONG[:, None]
+    else:
+        gram = np.eye(bases[0].shape[1])
+        jumps, terms = along_axes(bases)
     kernel, rate, port, whole, held = _kernel(
         np.asarray(size, float),
         film / conductivity,
@@ -66,10 +79,10 @@ def box_samples(
         patches.centre,
         patches.half,
         NODES,
-        JUMPS,
-        ALONG,
+        jumps,
+        np.ascontiguousarray(terms),
     )
-    scale = 1 / np.repeat(patches.areas, len(GRAM))
+    scale = 1 / np.repeat(patches.areas, len(gram))
     kernel *= np.outer(scale, scale) / heat_capacity
     port *= scale / np.sqrt(heat_capacity)
     rate *= diffusivity
@@ -78,8 +91,8 @@ def box_samples(
     slope = np.tensordot(TO_SLOPES, kernel, axes=1)
     early = before(diffusivity) / heat_capacity
     for n, area in enumerate(patches.areas):
-        own = slice(n * len(GRAM), (n + 1) * len(GRAM))
-        impedance[:, own, own] += early / area * GRAM
+        own = slice(n * len(gram), (n + 1) * len(gram))
+        impedance[:, own, own] += early / area * gram
     held = float(held * np.sqrt(heat_capacity))
     if film == 0:
         return BoxSamples(impedance, slope, 0.0, port, held, None)
@@ -89,24 +102,26 @@ def box_samples(
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, taus, face, centre, half, nodes, jumps, along):
+def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
     """Kernel (T, N P, N P) 1/m3 integrated over both patches' patterns; the slowest eigenfunction's squared wave number
     1/m2 and its integrals over the patterns; the kernel (T, N P) integrated over the box and a pattern; the slowest
-    eigenfunction's integral over the box."""
-    count, functions, patterns = len(face), len(jumps), len(along)
+    eigenfunction's integral over the box. jumps: (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2),
+    a pattern is the sum of X products of one function along either axis, -1 for none."""
+    count, functions, patterns = len(face), jumps.shape[2], len(terms)
     total = count * patterns
-    kernel = np.ones((len(taus), total, total))
-    slowest, port = 0.0, np.ones(total)
+    slowest, held = 0.0, 1.0
     places = np.empty((count, len(nodes)))
-    whole, held = np.ones((len(taus), total)), 1.0
     ends, step, inside = np.empty(2), np.array([[-1.0, 1.0]]), np.empty((1, MODES))
     point = np.ones((1, 1))
-    told = np.zeros((count, functions, MODES))
+    told = np.zeros((3, count, functions, MODES))
     room = np.empty(len(nodes))
     table = np.empty((len(nodes), len(nodes)))
     half_done = np.empty((functions, len(nodes)))
-    everywhere = np.empty(functions)
-    between = np.empty((count, functions, count, functions))
+    between = np.empty((len(taus), 3, count, functions, count, functions))
+    everywhere = np.ones((len(taus), 3, count, functions))
+    # by axis: whether it lies in a patch, and which of the patch's two it is
+    orders, which = np.ones((3, count), np.int64), np.zeros((3, count), np.int64)
+    alike = np.empty(count, np.int64)
     for axis in range(3):
         length = size[axis]
         waves = wave_numbers(length, film)
@@ -114,84 +129,125 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, along):
         ends[0], ends[1] = 0.0, length
         overlaps(ends, step, 1, length, waves, room, inside)
         held *= inside[0, 0]
-        orders = np.ones(count, np.int64)
-        which = np.zeros(count, np.int64)
+        order = orders[axis]
         for n in range(count):
             facing = face[n] // 2
             if facing == axis:
-                orders[n] = 0
+                order[n] = 0
                 places[n, 0] = length * (face[n] % 2)
-                overlaps(places[n, :1], point, 0, length, waves, room, told[n])
+                overlaps(places[n, :1], point, 0, length, waves, room, told[axis, n])
             else:
-                which[n] = axis if axis < facing else axis - 1
+                w = axis if axis < facing else axis - 1
+                which[axis, n] = w
                 for k in range(len(nodes)):
-                    places[n, k] = centre[n, which[n]] + half[n, which[n]] * nodes[k]
-                overlaps(places[n], jumps, 1, length, waves, room, told[n])
-        for n in range(count):
-            for i in range(patterns):
-                f = along[i, which[n]] if orders[n] == 1 else 0
-                port[n * patterns + i] *= told[n, f, 0]
+                    places[n, k] = centre[n, w] + half[n, w] * nodes[k]
+                overlaps(places[n], jumps[n, w], 1, length, waves, room, told[axis, n])
+            alike[n] = n
+            for m in range(n):
+                if order[m] == order[n] == 1 and alike[n] == n:
+                    same = jumps[n, which[axis, n]] == jumps[m, which[axis, m]]
+                    if same.all() and (places[n] == places[m]).all():
+                        alike[n] = m
         for t in range(len(taus)):
             tau = taus[t]
             late = tau > SWITCH * length * length
+            now = between[t, axis]
             for n in range(count):
-                mine = functions if orders[n] == 1 else 1
+                mine = functions if order[n] == 1 else 1
+                a = places[n] if order[n] == 1 else places[n, :1]
                 for m in range(n + 1):
-                    others = functions if orders[m] == 1 else 1
+                    others = functions if order[m] == 1 else 1
+                    if alike[n] < n or alike[m] < m:
+                        # opposite fingertips often differ along one axis only
+                        for f in range(mine):
+                            for g in range(others):
+                                if alike[m] <= alike[n]:
+                                    now[n, f, m, g] = now[alike[n], f, alike[m], g]
+                                else:
+                                    now[n, f, m, g] = now[alike[m], g, alike[n], f]
+                        continue
                     if late:
                         for f in range(mine):
                             for g in range(others):
-                                between[n, f, m, g] = 0.0
+                                now[n, f, m, g] = 0.0
                         for w in range(MODES):
                             decay = np.exp(-waves[w] * waves[w] * tau)
                             if decay < 1e-17:
                                 break
                             for f in range(mine):
                                 for g in range(others):
-                                    between[n, f, m, g] += decay * told[n, f, w] * told[m, g, w]
+                                    now[n, f, m, g] += decay * told[axis, n, f, w] * told[axis, m, g, w]
                         continue
-                    a = places[n] if orders[n] == 1 else places[n, :1]
-                    b = places[m] if orders[m] == 1 else places[m, :1]
-                    images(a, orders[n], b, orders[m], n == m, length, film, tau, table)
+                    b = places[m] if order[m] == 1 else places[m, :1]
+                    images(a, order[n], b, order[m], n == m, length, film, tau, table)
                     for f in range(mine):
                         for q in range(len(b)):
                             value = 0.0
                             for k in range(len(a)):
-                                value += (jumps[f, k] if orders[n] == 1 else 1.0) * table[k, q]
+                                value += (jumps[n, which[axis, n], f, k] if order[n] == 1 else 1.0) * table[
+                                    k, q
+                                ]
                             half_done[f, q] = value
                     for f in range(mine):
                         for g in range(others):
                             value = 0.0
                             for q in range(len(b)):
-                                value += (jumps[g, q] if orders[m] == 1 else 1.0) * half_done[f, q]
-                            between[n, f, m, g] = value
-            if film > 0.0:
-                for n in range(count):
-                    mine = functions if orders[n] == 1 else 1
-                    a = places[n] if orders[n] == 1 else places[n, :1]
+                                value += (
+                                    jumps[m, which[axis, m], g, q] if order[m] == 1 else 1.0
+                                ) * half_done[f, q]
+                            now[n, f, m, g] = value
+                if film > 0.0:
+                    if alike[n] < n:
+                        everywhere[t, axis, n] = everywhere[t, axis, alike[n]]
+                        continue
                     if not late:
-                        images(a, orders[n], ends, 1, False, length, film, tau, table)
+                        images(a, order[n], ends, 1, False, length, film, tau, table)
                     for f in range(mine):
                         value = 0.0
                         if late:
                             for w in range(MODES):
-                                value += np.exp(-waves[w] * waves[w] * tau) * told[n, f, w] * inside[0, w]
+                                value += (
+                                    np.exp(-waves[w] * waves[w] * tau) * told[axis, n, f, w] * inside[0, w]
+                                )
                         else:
                             for k in range(len(a)):
-                                factor = jumps[f, k] if orders[n] == 1 else 1.0
+                                factor = jumps[n, which[axis, n], f, k] if order[n] == 1 else 1.0
                                 value += factor * (table[k, 1] - table[k, 0])
-                        everywhere[f] = value
-                    for i in range(patterns):
-                        whole[t, n * patterns + i] *= everywhere[along[i, which[n]] if orders[n] == 1 else 0]
-            for n in range(count):
+                        everywhere[t, axis, n, f] = value
+    kernel, whole, port = np.zeros((len(taus), total, total)), np.zeros((len(taus), total)), np.zeros(total)
+    for n in range(count):
+        for i in range(patterns):
+            at = n * patterns + i
+            for x in range(terms.shape[1]):
+                if terms[i, x, 0] < 0:
+                    continue
+                f0, f1, f2 = _functions(terms[i, x], orders, which, n)
+                port[at] += told[0, n, f0, 0] * told[1, n, f1, 0] * told[2, n, f2, 0]
+                for t in range(len(taus)):
+                    all_over = everywhere[t]
+                    whole[t, at] += all_over[0, n, f0] * all_over[1, n, f1] * all_over[2, n, f2]
                 for m in range(n + 1):
-                    for i in range(patterns):
-                        f = along[i, which[n]] if orders[n] == 1 else 0
-                        for j in range(patterns):
-                            g = along[j, which[m]] if orders[m] == 1 else 0
-                            kernel[t, n * patterns + i, m * patterns + j] *= between[n, f, m, g]
+                    for j in range(patterns):
+                        for y in range(terms.shape[1]):
+                            if terms[j, y, 0] < 0:
+                                continue
+                            g0, g1, g2 = _functions(terms[j, y], orders, which, m)
+                            for t in range(len(taus)):
+                                now = between[t]
+                                kernel[t, at, m * patterns + j] += (
+                                    now[0, n, f0, m, g0] * now[1, n, f1, m, g1] * now[2, n, f2, m, g2]
+                                )
     for t in range(len(taus)):
         for i in range(total):
             for j in range(i):
                 kernel[t, j, i] = kernel[t, i, j]
     return kernel, slowest, port, whole, held
+
+
+@njit(cache=True, error_model="numpy")
+def _functions(term, orders, which, n):
+    """The number of patch n's function along each of the box's axes."""
+    f0 = term[which[0, n]] if orders[0, n] == 1 else 0
+    f1 = term[which[1, n]] if orders[1, n] == 1 else 0
+    f2 = term[which[2, n]] if orders[2, n] == 1 else 0
+    return f0, f1, f2

@@ -41,7 +41,14 @@ class Resolution:
     @property
     def decay(self) -> np.ndarray:
         """(rates,) 1/s."""
-        return np.geomspace(self.slowest, self.fastest, self.rates)
+        return _decay(self.rates, self.slowest, self.fastest)
+
+
+@lru_cache(maxsize=64)
+def _decay(count: int, slowest: float, fastest: float) -> np.ndarray:
+    rates = np.geomspace(slowest, fastest, count)
+    rates.setflags(write=False)
+    return rates
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,13 +117,9 @@ def box_side(
 ) -> Side:
     """The box's network, M ports a patch, its slowest state first; outputs "object" (J in it) and "loss" (W to the
     air). size: m. film: W/(m2 K). tips: on the patches."""
-    box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, patches)
-    count, kept = len(GRAM), level.patterns
-    turn = np.zeros((len(tips) * count, len(tips) * kept))
-    for f, one in enumerate(tips):
-        turn[f * count : (f + 1) * count, f * kept : (f + 1) * kept] = one.basis
-    port = box.port @ turn
-    rest = turn.T @ box.impedance[OF_GRASP] @ turn
+    kept, bases = level.patterns, [one.basis for one in tips]
+    box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, patches, bases)
+    port, rest = box.port, box.impedance[OF_GRASP]
     weights = [
         1 / (1 / one.weight + rest[:, f * kept, f * kept] + port[f * kept] ** 2 / (GRASP + box.rate))
         for f, one in enumerate(tips)
@@ -124,7 +127,7 @@ def box_side(
     weight = np.min(weights, axis=0)
     rate, heat = box.rate, None
     if film > 0:
-        rate, rest, heat = _shielded(box, film, rest, port, turn, tips)
+        rate, rest, heat = _shielded(box, film, rest, tips)
     found = residues(rest, level.decay, weight)
     fast, ports = states(found, level.decay, level.least / weight[-1])
     rates = np.concatenate(([rate], fast))
@@ -144,16 +147,16 @@ def box_side(
 
 
 def _shielded(
-    box: BoxSamples, film: float, rest: np.ndarray, port: np.ndarray, turn: np.ndarray, tips: tuple[Tip, ...]
+    box: BoxSamples, film: float, rest: np.ndarray, tips: tuple[Tip, ...]
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """The slowest rate, the samples without it, and the heat's (S, ports), with no film on the patches: a film's flow
     is put back there in proportion to the temperature."""
     assert box.heat is not None
-    kept = len(tips[0].even)
+    kept, port = len(tips[0].even), box.port
     back = np.repeat([film * one.area for one in tips], kept)
     slow = 1 / (GRASP + box.rate)
     whole = rest + slow[:, None, None] * np.outer(port, port)
-    heat = box.heat[OF_GRASP] @ turn + slow[:, None] * box.held * port
+    heat = box.heat[OF_GRASP] + slow[:, None] * box.held * port
     rate = max(box.rate - float(np.sum(back * port**2)), 0.0)
     # T = Z (q + back T)
     opened = np.linalg.inv(np.eye(len(back)) - whole * back)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+_RIDGE = 1e-13  # of the largest square: what is that small is not known
+
 
 def output_row(
     moments: np.ndarray,
@@ -14,14 +16,16 @@ def output_row(
     total: np.ndarray | None = None,
 ) -> np.ndarray:
     """(n,) on states (n,) with ports (n, N), by least squares of an output's transfer (S, N) from the ports at moments
-    (S,) 1/s, weighted (S,); such that its jump with a unit heat at each port is exactly total (N,), where given."""
-    columns = weight[:, None, None] * ports / (moments[:, None, None] + rates[:, None])
-    matrix = columns.transpose(0, 2, 1).reshape(-1, len(rates))
-    wanted = (weight[:, None] * transfer).reshape(-1)
+    (S,) 1/s, weighted (S,), and a
+    little by its size; such that its jump with a unit heat at each port is exactly total (N,), where given."""
+    seen = weight[:, None] / (moments[:, None] + rates)
+    square = (ports @ ports.T) * (seen.T @ seen)
+    wanted = ((seen.T @ (weight[:, None] * transfer)) * ports).sum(axis=1)
+    square[np.diag_indices_from(square)] += _RIDGE * np.trace(square)
     if total is None:
-        return np.linalg.lstsq(matrix, wanted, rcond=1e-7)[0]
-    least = np.linalg.lstsq(ports.T, total, rcond=1e-12)[0]
-    _, values, vectors = np.linalg.svd(ports.T)
-    free = vectors[np.count_nonzero(values > 1e-12 * values[0]) :].T
-    added = np.linalg.lstsq(matrix @ free, wanted - matrix @ least, rcond=1e-7)[0]
-    return least + free @ added
+        return np.linalg.solve(square, wanted)
+    both = np.linalg.solve(square, np.column_stack((wanted, ports)))
+    row, pushed = both[:, 0], both[:, 1:]
+    row = row - pushed @ np.linalg.lstsq(ports.T @ pushed, ports.T @ row - total, rcond=1e-12)[0]
+    # what rounding has left of the jump
+    return row - np.linalg.lstsq(ports.T, ports.T @ row - total, rcond=1e-12)[0]

@@ -10,6 +10,8 @@ E: nodes, F: functions along an axis, P: patterns.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 EXPONENTS = (-0.7, -0.5, -0.2)
@@ -56,3 +58,19 @@ EVENNESS = np.linalg.cholesky(GRAM)
 """(P, P): lower factor L of GRAM; L.T turns a pattern's coefficients into orthonormal ones."""
 EVENNESS.setflags(write=False)
 GRAM.setflags(write=False)
+
+
+def along_axes(bases: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Combinations (P, M) of the patterns of each of N patches, the even pattern first, as sums of functions along one
+    axis each: jumps (N, 2, M, E) of these, the even one first, and terms (M, 2, 2), the functions along the two axes
+    whose products add up to a combination; -1 for none."""
+    shares = np.array(bases).transpose(0, 2, 1)
+    count = len(FUNCTIONS)
+    jumps = np.empty((len(shares), 2, shares.shape[1], JUMPS.shape[1]))
+    jumps[:, 0] = shares[..., :count] @ JUMPS
+    jumps[:, 1] = shares[..., count:] @ JUMPS[1:]
+    jumps[:, :, 0] = JUMPS[0]
+    terms = np.zeros((shares.shape[1], 2, 2), int)
+    terms[:, 0, 0] = terms[:, 1, 1] = np.arange(len(terms))
+    terms[0, 1] = -1
+    return jumps, terms

@@ -16,7 +16,8 @@ _STEPS = 20
 _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _RELAXED = 1.6
-_ROUND_OFF = 1e-24  # of squares off the diagonal beside those on it
+_ROUND_OFF = 1e-20  # of squares off the diagonal beside those on it
+_TINY = 1e-300  # beside a zero
 
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -24,75 +25,124 @@ def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     size = np.sqrt(np.sum(columns**2, axis=0))
     columns = columns / size
     normal = columns.T @ columns
-    seen = np.tensordot(columns.T, wanted, axes=1)
     eye = np.eye(columns.shape[1])
     solve = np.linalg.inv(normal + _PENALTY * eye)
-    inside = np.tensordot(np.linalg.inv(normal + _RIDGE * eye), seen, axes=1)
+    first = np.linalg.inv(normal + _RIDGE * eye)
+    seen = np.tensordot(wanted, columns, axes=(0, 0))  # rates last
+    inside = seen @ first
     _in_cone(solve, seen, inside)
-    return inside / size[:, None, None]
+    return np.ascontiguousarray((inside / size).transpose(2, 0, 1))
 
 
 @njit(cache=True, error_model="numpy")
 def _in_cone(solve, seen, inside):
-    """Turns the first guess inside (K, N, N) into the answer. solve: (K, K). seen: (K, N, N)."""
-    rates, ports = len(seen), seen.shape[1]
-    dual = np.zeros_like(seen)
-    pulled, placed = np.empty_like(seen), np.empty_like(seen)
-    one, turn = np.empty((ports, ports)), np.empty((ports, ports))
+    """Turns the first guess inside (N, N, K) into the answer. solve: (K, K) symmetric. seen: (N, N, K)."""
+    ports, rates = seen.shape[1], seen.shape[2]
+    dual, moved = np.zeros_like(seen), np.empty_like(seen)
+    turn, half = np.zeros_like(seen), np.empty_like(seen)
+    pulled, free, room = np.empty(rates), np.empty(rates), np.empty((4, rates))
+    for i in range(ports):
+        turn[i, i] = 1.0
     for _ in range(_STEPS):
-        pulled[:] = seen + _PENALTY * (inside - dual)
-        for k in range(rates):
-            for i in range(ports):
-                for j in range(i + 1):
-                    free = 0.0
-                    for m in range(rates):
-                        free += solve[k, m] * pulled[m, i, j]
-                    one[i, j] = _RELAXED * free + (1 - _RELAXED) * inside[k, i, j] + dual[k, i, j]
-                    one[j, i] = one[i, j]
-            dual[k] = one
-            _turn(one, turn)
-            for i in range(ports):
-                for j in range(ports):
-                    value = 0.0
-                    for m in range(ports):
-                        if one[m, m] > 0:
-                            value += turn[i, m] * one[m, m] * turn[j, m]
-                    placed[k, i, j] = value
-        inside[:] = placed
+        for i in range(ports):
+            for j in range(i + 1):
+                for k in range(rates):
+                    pulled[k] = seen[i, j, k] + _PENALTY * (inside[i, j, k] - dual[i, j, k])
+                    free[k] = 0.0
+                for m in range(rates):
+                    for k in range(rates):
+                        free[k] += solve[m, k] * pulled[m]
+                for k in range(rates):
+                    value = _RELAXED * free[k] + (1 - _RELAXED) * inside[i, j, k] + dual[i, j, k]
+                    dual[i, j, k] = dual[j, i, k] = value
+        # seen from the last step's eigenvectors it is nearly diagonal
+        _product(dual, turn, half)
+        for i in range(ports):
+            for j in range(i + 1):
+                for k in range(rates):
+                    moved[i, j, k] = 0.0
+                for m in range(ports):
+                    for k in range(rates):
+                        moved[i, j, k] += turn[m, i, k] * half[m, j, k]
+                for k in range(rates):
+                    moved[j, i, k] = moved[i, j, k]
+        _turn_diagonal(moved, turn, room)
+        for m in range(ports):
+            for k in range(rates):
+                moved[m, m, k] = max(moved[m, m, k], 0.0)
+        for i in range(ports):
+            for j in range(i + 1):
+                for k in range(rates):
+                    free[k] = 0.0
+                for m in range(ports):
+                    for k in range(rates):
+                        free[k] += turn[i, m, k] * moved[m, m, k] * turn[j, m, k]
+                for k in range(rates):
+                    inside[i, j, k] = inside[j, i, k] = free[k]
         dual -= inside
 
 
 @njit(cache=True, error_model="numpy")
-def _turn(matrix, turn):
-    """Diagonalises a symmetric matrix in place by Jacobi's rotations; turn: its eigenvectors in columns."""
-    n = len(matrix)
-    for i in range(n):
-        for j in range(n):
-            turn[i, j] = 1.0 if i == j else 0.0
+def _product(first, second, out):
+    """out = first @ second, of matrices (N, N, K)."""
+    ports, rates = first.shape[1], first.shape[2]
+    for i in range(ports):
+        for j in range(ports):
+            for k in range(rates):
+                out[i, j, k] = 0.0
+            for m in range(ports):
+                for k in range(rates):
+                    out[i, j, k] += first[i, m, k] * second[m, j, k]
+
+
+@njit(cache=True, error_model="numpy")
+def _turn_diagonal(matrix, turn, room):
+    """Diagonalises symmetric matrices (N, N, K) in place by Jacobi's rotations, which it adds to turn's columns. room:
+    (4, K)."""
+    ports, rates = matrix.shape[1], matrix.shape[2]
+    cosine, sine, off, on = room[0], room[1], room[2], room[3]
     for _ in range(30):
-        off, on = 0.0, 0.0
-        for i in range(n):
-            on += matrix[i, i] * matrix[i, i]
+        for k in range(rates):
+            off[k] = on[k] = 0.0
+        for i in range(ports):
+            for k in range(rates):
+                on[k] += matrix[i, i, k] * matrix[i, i, k]
             for j in range(i):
-                off += matrix[i, j] * matrix[i, j]
-        if off <= _ROUND_OFF * on:
+                for k in range(rates):
+                    off[k] += matrix[i, j, k] * matrix[i, j, k]
+        done = True
+        for k in range(rates):
+            done &= off[k] <= _ROUND_OFF * on[k]
+        if done:
             return
-        for p in range(n - 1):
-            for q in range(p + 1, n):
-                if matrix[p, q] == 0.0:
-                    continue
-                ratio = (matrix[q, q] - matrix[p, p]) / (2 * matrix[p, q])
-                tangent = 1 / (abs(ratio) + math.sqrt(ratio * ratio + 1))
-                if ratio < 0:
-                    tangent = -tangent
-                cosine = 1 / math.sqrt(tangent * tangent + 1)
-                sine = tangent * cosine
-                for k in range(n):
-                    a, b = matrix[k, p], matrix[k, q]
-                    matrix[k, p], matrix[k, q] = cosine * a - sine * b, sine * a + cosine * b
-                for k in range(n):
-                    a, b = matrix[p, k], matrix[q, k]
-                    matrix[p, k], matrix[q, k] = cosine * a - sine * b, sine * a + cosine * b
-                for k in range(n):
-                    a, b = turn[k, p], turn[k, q]
-                    turn[k, p], turn[k, q] = cosine * a - sine * b, sine * a + cosine * b
+        for p in range(ports - 1):
+            for q in range(p + 1, ports):
+                _angle(matrix[p, p], matrix[q, q], matrix[p, q], cosine, sine)
+                for m in range(ports):
+                    if m not in (p, q):
+                        _rotate(matrix[m, p], matrix[m, q], cosine, sine)
+                        matrix[p, m, :] = matrix[m, p]
+                        matrix[q, m, :] = matrix[m, q]
+                    _rotate(turn[m, p], turn[m, q], cosine, sine)
+                matrix[q, p, :] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _angle(first, second, between, cosine, sine):
+    """Cosines and sines of the rotations that make between (K,) 0, and the diagonal after them; all in place."""
+    for k in range(len(between)):
+        twice, apart = 2 * between[k], second[k] - first[k]
+        size = abs(apart) + np.sqrt(apart * apart + twice * twice) + _TINY
+        tangent = math.copysign(twice / size, apart * twice)
+        cosine[k] = 1 / np.sqrt(tangent * tangent + 1)
+        sine[k] = tangent * cosine[k]
+        first[k] -= tangent * between[k]
+        second[k] += tangent * between[k]
+        between[k] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _rotate(first, second, cosine, sine):
+    for k in range(len(first)):
+        a, b = first[k], second[k]
+        first[k], second[k] = cosine[k] * a - sine[k] * b, sine[k] * a + cosine[k] * b

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh_tridiagonal
+from scipy.linalg import block_diag, eigh_tridiagonal
 
 from thermograsp.thermal import Geometry, material, sensor
 from thermograsp.thermal.kernels import (
@@ -16,6 +16,7 @@ from thermograsp.thermal.kernels import (
     Side,
     box_samples,
     box_side,
+    contact_patterns,
     tip,
     touch_sides,
 )
@@ -127,6 +128,31 @@ def test_between_any_patches_it_is_passive() -> None:
         box = box_samples(tuple(size), 5.0, 2e6, float(rng.choice([0.0, 10.0])), Patches(faces, centre, half))
         values = np.linalg.eigvalsh(box.whole())
         assert np.all(values.min(axis=1) > -1e-7 * values.max(axis=1))
+
+
+@pytest.mark.parametrize("film", [0.0, 10.0])
+def test_few_patterns_are_combinations_of_all(film: float) -> None:
+    """Also of patches that are alike along one axis, or along both."""
+    part = ((0.0, 0.006), (0.0, WIDTH))
+    covered = (FULL, FULL, part, part)
+    centre = [(0.02, 0.015), (0.02, 0.015), (0.003, 0.012), (0.003, 0.02)]
+    half = [((x1 - x0) / 2, (y1 - y0) / 2) for (x0, x1), (y0, y1) in covered]
+    patches = placed([4, 5, 5, 4], centre, half)
+    bases = [contact_patterns(SEED, each, 3) for each in covered]
+    every = box_samples((0.04, 0.03, 0.01), 1.0, 2e6, film, patches)
+    few = box_samples((0.04, 0.03, 0.01), 1.0, 2e6, film, patches, bases)
+    turn = block_diag(*bases)
+    for told, wanted in ((few.impedance, every.impedance), (few.slope, every.slope)):
+        np.testing.assert_allclose(
+            told, turn.T @ wanted @ turn, rtol=0, atol=1e-11 * float(np.abs(wanted).max())
+        )
+    np.testing.assert_allclose(few.port, every.port @ turn, rtol=0, atol=1e-11 * float(every.port.max()))
+    if film > 0:
+        assert few.heat is not None
+        assert every.heat is not None
+        np.testing.assert_allclose(
+            few.heat, every.heat @ turn, rtol=0, atol=1e-11 * float(np.abs(every.heat).max())
+        )
 
 
 def test_heat_that_no_film_takes_stays() -> None:
