@@ -13,7 +13,7 @@ BENCH_FLAGS ?=
 FOLDERS := core envs touch thermal assets hardware agents figures dataset studio twin reports benchmarks
 FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -print))
 
-.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engine test-engines test-mjlab test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
+.PHONY: demo test test-slow test-ray test-backends test-rl test-grippers test-engine test-engines test-mjlab test-lerobot test-oldest test-view test-view-long test-hardware-long test-firmware test-bench test-release bench docs reference lint install clean distclean FORCE
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -76,6 +76,24 @@ test-mjlab: build/.files
 	  THERMOGRASP_MJLAB=1 WARP_CACHE_PATH=$(CURDIR)/$(MJLAB)/warp $(MJLAB)/bin/python -m pytest -rs $(TEST_FLAGS) tests/mjlab; \
 	else \
 	  echo "test-mjlab: skipped, mjlab cannot be installed here"; fi
+
+# LeRobot's datasets and robots, in an environment of their own: 2 GB with PyTorch for the CPU alone, else 7 GB. Of LeRobot
+# what datasets and robots need comes by hand: its list brings CUDA, rerun, diffusers and wandb, which nothing here uses,
+# and holds PyTorch back.
+LEROBOT := build/lerobot
+LEROBOT_INSTALL := $(LEROBOT)/bin/python -m pip install --disable-pip-version-check -q --no-warn-conflicts
+LEROBOT_ROOM := 8000000
+LEROBOT_NEEDS := torch==2.13.0 torchvision==0.28.0 'datasets<5' draccus==0.10.0 'huggingface-hub<0.36' 'av<16' 'packaging<26' \
+  'numpy<2.3' 'deepdiff<9' 'einops<0.9' jsonlines safetensors termcolor psutil pytest
+test-lerobot: build/.files
+	@if [ ! -e $(LEROBOT)/.installed ] && [ $$(df -Pk . | awk 'NR == 2 {print $$4}') -lt $(LEROBOT_ROOM) ]; then \
+	  echo "test-lerobot: skipped, LeRobot needs 8 GB of room"; \
+	elif $(MAKE) --no-print-directory $(LEROBOT)/.created VENV=$(LEROBOT) && { [ -e $(LEROBOT)/.installed ] || { \
+	  $(LEROBOT_INSTALL) $(LEROBOT_NEEDS) && $(LEROBOT_INSTALL) --no-deps lerobot==0.4.4 'accelerate<2'; }; }; then \
+	  touch $(LEROBOT)/.installed && $(LEROBOT_INSTALL) --no-build-isolation -e '.[dataset,hardware]' && \
+	  THERMOGRASP_LEROBOT=1 HF_HUB_OFFLINE=1 HF_HOME=$(CURDIR)/$(LEROBOT)/home $(LEROBOT)/bin/python -m pytest -rs $(TEST_FLAGS) tests/lerobot; \
+	else \
+	  echo "test-lerobot: skipped, LeRobot cannot be installed here"; fi
 
 # The oldest packages that setup.cfg allows, in an environment of their own: touch on the oldest MuJoCo, and the
 # environments on the oldest that they run on.

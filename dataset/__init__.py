@@ -8,10 +8,22 @@ docs/datasets.md lists the columns.
 """
 
 from thermograsp.dataset.keywords import decoded
+from thermograsp.dataset.lerobot_export import export_lerobot
 from thermograsp.dataset.minari_export import export_minari
 from thermograsp.dataset.plan import Plan, Shard
 from thermograsp.dataset.reading import iterate, load
 from thermograsp.dataset.run import Made, make
 from thermograsp.dataset.shards import read_plan
 
-__all__ = ["Made", "Plan", "Shard", "decoded", "export_minari", "iterate", "load", "make", "read_plan"]
+__all__ = [
+    "Made",
+    "Plan",
+    "Shard",
+    "decoded",
+    "export_lerobot",
+    "export_minari",
+    "iterate",
+    "load",
+    "make",
+    "read_plan",
+]

@@ -33,6 +33,7 @@ FOLDERS = {
     "bench": "benchmarks",
     "studio": "studio",
     "mjlab": "core/mjlab",
+    "lerobot": "core/lerobot",
     "cli": "core/cli",
 }
 """Folder of each package below the root."""
@@ -51,6 +52,7 @@ MAY_IMPORT = {
     "bench": ("assets", "thermal", "touch", "envs", "figures", "agents"),
     "studio": ("assets", "thermal", "touch", "envs", "hardware", "figures", "agents", "twin"),
     "mjlab": ("assets", "thermal", "touch"),
+    "lerobot": ("hardware",),
     "cli": tuple(folder for folder in FOLDERS if folder != "cli"),
 }
 """Folder -> the other folders that it may import; all may import the leaves."""

@@ -71,6 +71,8 @@ CASES = (
     ),
     Case("dataset/minari_export.py", "minari", "minari", "dataset --export minari --out made"),
     Case("dataset/minari_export.py", "h5py", "minari", "dataset --export minari --out made"),
+    Case("dataset/lerobot_export.py", "lerobot", "lerobot", "dataset --export lerobot --out made"),
+    Case("core/lerobot/hand.py", "lerobot", "lerobot", call("lerobot:ThermograspHand")),
     Case("dataset/reading.py", "torch", "torch", call("dataset:load", ".", library="torch")),
     Case(
         "benchmarks/accuracy/elements.py",

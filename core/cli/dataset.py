@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from thermograsp.dataset import Plan
 
 NAME = "dataset"
-HELP = "Write episodes to Parquet files, in parallel, going on where it was stopped; export them to Minari."
+HELP = "Write episodes to Parquet files, in parallel, going on where it was stopped; export them to Minari or LeRobot."
+
+_FORMATS = {"minari": "Minari", "lerobot": "LeRobot"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,16 +49,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="ADDRESS",
         help="run the workers on Ray: of a running cluster, auto, or local for a Ray of its own",
     )
-    add("--export", choices=("minari",), help="when the folder is complete, write a Minari dataset")
-    add("--name", help="of the Minari dataset (default: such as thermograsp/Grasp/scripted-v0)")
+    add(
+        "--export",
+        choices=tuple(_FORMATS),
+        help="when the folder is complete, write a Minari or a LeRobot dataset",
+    )
+    add(
+        "--name",
+        help="of the exported dataset (default: such as thermograsp/Grasp/scripted-v0 for Minari, "
+        "thermograsp/Grasp-scripted for LeRobot)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Makes what the folder lacks, then exports where that is asked."""
     if args.episodes is None and args.export is None:
-        raise InvalidValueError("say how many --episodes, or --export minari for a folder that is complete")
+        raise InvalidValueError(
+            "say how many --episodes, or --export minari or lerobot for a folder that is complete"
+        )
     if args.name is not None and args.export is None:
-        raise InvalidValueError("--name goes with --export minari")
+        raise InvalidValueError("--name goes with --export minari or lerobot")
     output = Output(args.json)
     load_mujoco(output)
     from thermograsp import dataset
@@ -77,9 +89,10 @@ def run(args: argparse.Namespace) -> int:
             "seconds": seconds,
         }
     if args.export is not None:
-        name, path = dataset.export_minari(args.out, args.name, output.progress)
-        output.line(f"wrote Minari dataset {name} to {path}")
-        document["minari"] = {"id": name, "path": str(path)}
+        export = dataset.export_minari if args.export == "minari" else dataset.export_lerobot
+        name, path = export(args.out, args.name, output.progress)
+        output.line(f"wrote {_FORMATS[args.export]} dataset {name} to {path}")
+        document[args.export] = {"id": name, "path": str(path)}
     output.document(document)
     return 0
 

@@ -32,8 +32,9 @@ CODE = [
 LINES = [(page, line) for page in PAGES for line in commands(page)]
 KNOWN = {"toml", "python", "python hardware", "sh", "math", "golden", "bibtex", "{toctree}", "{eval-rst}"}
 ELSEWHERE = {
-    "docs/datasets.md": {"python torch", "python minari"},
+    "docs/datasets.md": {"python torch", "python minari", "python lerobot"},
     "docs/engines.md": {"python mjlab"},
+    "docs/hardware.md": {"python lerobot"},
     "docs/howto.md": {"python rl", "python tensorboard", "python torchrl"},
 }
 """Kinds of blocks that tests of other folders run, by page."""
