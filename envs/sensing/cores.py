@@ -35,8 +35,8 @@ class HeatedCores:
         """The rows' have been as warm as at the start for long."""
         both = _fingertips(rows).ravel()
         settled = self._core.settled(self.setpoints.ravel(), self._room)
-        for mine, theirs in zip(_arrays(self._state), _arrays(settled), strict=True):
-            mine[both] = theirs[both]
+        for kept, new in zip(_arrays(self._state), _arrays(settled), strict=True):
+            kept[both] = new[both]
         self._warm[list(rows)] = self.setpoints[list(rows)]
 
     def step(self, drawn: np.ndarray, first: np.ndarray, drop: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -70,8 +70,8 @@ class HeatedCores:
     def set_state(self, rows: Sequence[int], state: tuple[np.ndarray, ...]) -> None:
         """Puts the rows into a state taken by `state`."""
         self._warm[list(rows)], *arrays = state
-        for mine, theirs in zip(_arrays(self._state), arrays, strict=True):
-            mine[_fingertips(rows)] = theirs
+        for kept, new in zip(_arrays(self._state), arrays, strict=True):
+            kept[_fingertips(rows)] = new
 
 
 def _fingertips(rows: Sequence[int]) -> np.ndarray:

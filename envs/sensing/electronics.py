@@ -41,11 +41,11 @@ class Electronics:
     def reset(self, row: int, drawn: Mapping[str, float], rest: np.ndarray | float = 0.0) -> None:
         """Starts a row's with what randomization.draw has drawn for it, at rest. rest: V that the sensors send then."""
         self._filtered[row] = self._last[row] = self._late[row] = rest
-        mine, nominal = self._chains[row], self._nominal
-        mine["gain"] = nominal["gain"] * (1 + drawn["gain_error"])
-        mine["offset"] = nominal["offset"] + drawn["offset_shift"]
-        mine["noise"] = nominal["noise"] * drawn["noise_factor"]
-        mine["delay"] = int(drawn["delay_samples"])
+        chain, nominal = self._chains[row], self._nominal
+        chain["gain"] = nominal["gain"] * (1 + drawn["gain_error"])
+        chain["offset"] = nominal["offset"] + drawn["offset_shift"]
+        chain["noise"] = nominal["noise"] * drawn["noise_factor"]
+        chain["delay"] = int(drawn["delay_samples"])
 
     def measure(self, drop: np.ndarray, rngs: Sequence[np.random.Generator]) -> np.ndarray:
         """Reported voltages (B, N, F) V of temperature drops (B, N, F) K, with noise from the environments' own

@@ -124,10 +124,10 @@ class FaceTemperature:
     ) -> None:
         """Puts the rows into a state taken by `state`, with these objects."""
         self.reset(rows, scenes)
-        chosen, mine = list(rows), self._state
-        mine.fields[chosen], mine.surface[chosen] = state.fields, state.surface
-        mine.contact[chosen], mine.begun[chosen] = state.contact, state.begun
-        mine.owner[chosen] = state.owner
+        chosen, kept = list(rows), self._state
+        kept.fields[chosen], kept.surface[chosen] = state.fields, state.surface
+        kept.contact[chosen], kept.begun[chosen] = state.contact, state.begun
+        kept.owner[chosen] = state.owner
 
     def _field(self, thing: GraspBody) -> FaceField:
         made_of, thickness = thing.touched, thing.plate[2] / thing.fingertips

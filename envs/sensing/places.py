@@ -63,9 +63,9 @@ class Place:
         """Whether a pad at the other place is on this one too."""
         if other.face != self.face:
             return False
-        apart = max(abs(a - b) for a, b in zip(self.middle, other.middle, strict=True))
-        mine, theirs = np.array(self.covered(size, width)), np.array(other.covered(size, width))
-        return apart <= NEAR * width and bool(np.abs(mine - theirs).max() <= EDGE * width)
+        distance = max(abs(a - b) for a, b in zip(self.middle, other.middle, strict=True))
+        first, second = np.array(self.covered(size, width)), np.array(other.covered(size, width))
+        return distance <= NEAR * width and bool(np.abs(first - second).max() <= EDGE * width)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +112,8 @@ def _heir(number: int, places: Sequence[Place], new: Place, width: float) -> tup
     nearest = width, -1
     for other, place in enumerate(rest):
         if place.face == given_up.face:
-            apart = float(np.hypot(*np.subtract(place.middle, given_up.middle)))
-            nearest = min(nearest, (apart, other))
+            distance = float(np.hypot(*np.subtract(place.middle, given_up.middle)))
+            nearest = min(nearest, (distance, other))
     return nearest
 
 

@@ -93,7 +93,7 @@ class SceneHeat:
             place.reshape(total, *place.shape[2:]),
             carried,
         )
-        return self._told(step, owners)
+        return self._joined_step(step, owners)
 
     def _owners(self, force: np.ndarray) -> tuple[np.ndarray, list[tuple[int, int, int, int]]]:
         """(B, N, F), of each sample, and what is carried: GraspHeat.advance's."""
@@ -110,7 +110,7 @@ class SceneHeat:
 
     def rest(self) -> SceneHeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
-        return self._told(self._rows.rest(), self._owner[:, None])
+        return self._joined_step(self._rows.rest(), self._owner[:, None])
 
     def set_thermostats(self, celsius: np.ndarray) -> None:
         """Temperatures (B, F) °C of the thermostats from now on."""
@@ -131,7 +131,7 @@ class SceneHeat:
         """(B, F) °C of the thermostats at the start."""
         return self._rows.sensor_temperatures[:: self._objects]
 
-    def _told(self, step: HeatStep, owners: np.ndarray) -> SceneHeatStep:
+    def _joined_step(self, step: HeatStep, owners: np.ndarray) -> SceneHeatStep:
         """owners: (B, N or 1, F) of each sample."""
         objects = step.told.reshape(-1, self._objects)
         told = np.zeros(len(objects), HEAT_TOLD)

@@ -47,8 +47,8 @@ class Thermostats:
         if self._model is not None:
             both = _fingertips(rows).ravel()
             settled = settled_thermostat(self._model, self.setpoints.size)
-            for mine, theirs in zip(_arrays(self._state), _arrays(settled), strict=True):
-                mine[both] = theirs[both]
+            for kept, new in zip(_arrays(self._state), _arrays(settled), strict=True):
+                kept[both] = new[both]
 
     @property
     def ideal(self) -> bool:
@@ -93,8 +93,8 @@ class Thermostats:
     def set_state(self, rows: Sequence[int], state: tuple[np.ndarray, ...]) -> None:
         """Puts the rows into a state taken by `state`."""
         self._hot[list(rows)], *arrays = state
-        for mine, theirs in zip(self._kept(), arrays, strict=True):
-            mine[_fingertips(rows)] = theirs
+        for kept, new in zip(self._kept(), arrays, strict=True):
+            kept[_fingertips(rows)] = new
 
     def _kept(self) -> list[np.ndarray]:
         return [] if self._model is None else _arrays(self._state)

@@ -32,9 +32,11 @@ SHARED = FIXED_LEVEL.decay
 """1/s: the rates of all networks."""
 _PAIRS = len(POLES)
 _FADING, _SEEN, _PUSHED = 1, 2, 2 + 2 * _PAIRS
-_TOLD = 2 + 4 * _PAIRS  # of a rate: itself, how it fades in a step, how it is seen and pushed at the poles
-HELD = _TOLD  # of the slowest state of a box: sqrt(J K) of heat in it
-_PORT, _DROP, POLE_HEAT = _TOLD, _TOLD + 1, _TOLD + 2  # of an element's pole
+_RATE_ROWS = (
+    2 + 4 * _PAIRS
+)  # of a rate: itself, how it fades in a step, how it is seen and pushed at the poles
+HELD = _RATE_ROWS  # of the slowest state of a box: sqrt(J K) of heat in it
+_PORT, _DROP, POLE_HEAT = _RATE_ROWS, _RATE_ROWS + 1, _RATE_ROWS + 2  # of an element's pole
 RATES, POLES_KEPT, LANES = len(SHARED), 8, 4
 """Of a level, and at most of an element's slow poles and of the step's poles: loops of a length that the compiler knows
 are faster, and what is left over is zero."""
@@ -80,11 +82,11 @@ def fixed_tables(
 ) -> FixedTables:
     """Empty tables. whole: the element under a contact with all of its face, which is element 0."""
     slow = _slow(whole)
-    poles, rates = np.zeros((_TOLD + 3, POLES_KEPT)), np.zeros((_TOLD, RATES))
-    poles[:_TOLD, :slow] = _told(whole.rates[:slow], dt)
+    poles, rates = np.zeros((_RATE_ROWS + 3, POLES_KEPT)), np.zeros((_RATE_ROWS, RATES))
+    poles[:_RATE_ROWS, :slow] = _rate_table(whole.rates[:slow], dt)
     seen = whole.ports[:, 0], whole.outputs["drop"], whole.outputs["element"]
     poles[_PORT, :slow], poles[_DROP, :slow], poles[POLE_HEAT, :slow] = (row[:slow] for row in seen)
-    rates[:] = _told(SHARED, dt)
+    rates[:] = _rate_table(SHARED, dt)
     ports = places * patterns
     tables = FixedTables(
         dt,
@@ -93,7 +95,7 @@ def fixed_tables(
         rates,
         poles,
         np.zeros((1 + rows * fingertips, patterns * patterns + 2 * patterns + 2, RATES)),
-        np.zeros((rows, _TOLD + 1 + ports)),
+        np.zeros((rows, _RATE_ROWS + 1 + ports)),
         np.zeros((rows, ports * ports + ports + 1, RATES)),
         np.zeros((rows, fingertips * patterns, fingertips * patterns, 2, LANES)),
         np.full((rows, WHERE + 2 * fingertips), -1),
@@ -109,8 +111,8 @@ def no_fixed_tables(dt: float) -> FixedTables:
         dt,
         1,
         1,
-        np.zeros((_TOLD, RATES)),
-        np.zeros((_TOLD + 3, POLES_KEPT)),
+        np.zeros((_RATE_ROWS, RATES)),
+        np.zeros((_RATE_ROWS + 3, POLES_KEPT)),
         np.zeros((1, 5, RATES)),
         np.zeros((0, HELD + 2)),
         np.zeros((0, 3, RATES)),
@@ -151,7 +153,7 @@ def fixed_tip_rows(tables: FixedTables, number: int) -> TipRows:
     )
 
 
-def _told(rates: np.ndarray, dt: float) -> np.ndarray:
+def _rate_table(rates: np.ndarray, dt: float) -> np.ndarray:
     """(14, ...) of rates 1/s: themselves, what of a state is left after a step, how it is seen at the poles, and what
     flows at the poles push it by."""
     scale = 1 / (POLES.reshape(-1, *(1,) * np.ndim(rates)) + dt * rates)
@@ -205,7 +207,7 @@ def set_body(tables: FixedTables, row: int, box: BodyResidues) -> None:
     count, most = len(box.ports), tables.places * tables.patterns
     slow, body = tables.slow[row], tables.body[row]
     slow[:] = body[:] = 0.0
-    slow[:_TOLD] = _told(np.asarray(box.rate), tables.dt)
+    slow[:_RATE_ROWS] = _rate_table(np.asarray(box.rate), tables.dt)
     slow[HELD], slow[HELD + 1 : HELD + 1 + count] = box.held, box.ports
     body[: most * most].reshape(most, most, -1)[:count, :count] = box.residues
     body[most * most :][:count], body[-1] = box.heat, box.still
