@@ -259,6 +259,10 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
             {"objects": {"crate": ThermalBody("glass", elements=(SensorElement((0, 0, 0.02), (0, 0, 1)),))}},
             "glued",
         ),
+        (
+            {"objects": {"can": ["glass", "wood"]}},
+            "'can': a list of 2 materials is one for each of many worlds",
+        ),
     ],
 )
 def test_what_is_not_served_is_refused(words: dict, message: str) -> None:

@@ -286,6 +286,23 @@ def test_the_scene_may_say_itself_what_its_objects_are() -> None:
         ThermalTouch(model, fingertips=PADS)
 
 
+def test_what_the_scene_says_is_renamed_as_its_bodies_are_when_it_is_attached() -> None:
+    if not hasattr(mujoco.MjSpec, "attach"):
+        pytest.skip("this MuJoCo attaches no specs")
+    whole = mujoco.MjSpec()
+    for side in ("left_", "right_"):
+        part = mujoco.MjSpec.from_string(
+            '<mujoco><custom><text name="thermograsp:wall" data="glass 5"/></custom><worldbody><body name="cup">'
+            '<geom name="tip" type="box" size=".01 .01 .01" pos="0 0 1"/>'
+            '<geom name="wall" type="box" size=".02 .02 .02"/>'
+            "</body></worldbody></mujoco>"
+        )
+        whole.attach(part, prefix=side, frame=whole.worldbody.add_frame())
+    touch = ThermalTouch(whole.compile(), fingertips={"tip": Fingertip("left_tip")})
+    assert touch.objects == ("left_wall", "right_wall")
+    assert touch.reading.object_temperature == {"left_wall": 5.0, "right_wall": 5.0}
+
+
 def test_a_touch_with_the_back_of_a_finger_is_none() -> None:
     model = mujoco.MjModel.from_xml_string(ONE_PRESS.format(cone="elliptic"))
     data = mujoco.MjData(model)

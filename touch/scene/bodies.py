@@ -160,11 +160,13 @@ def _thermal_body(name: str, told: object) -> ThermalBody:
 
 
 def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
-    """The objects that the MJCF itself describes: custom texts "thermograsp:NAME" of a material and, behind it, °C."""
+    """The objects that the MJCF itself describes: custom texts "thermograsp:NAME" of a material and, behind it, °C.
+    Where MjSpec.attach has renamed them with the rest, "PREFIXthermograsp:NAME", they are of PREFIXNAME."""
     found = {}
     for number in range(model.ntext):
         name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, number) or ""
-        if not name.startswith(PREFIX):
+        attached, ours, thing = name.partition(PREFIX)
+        if not ours:
             continue
         first, count = int(model.text_adr[number]), int(model.text_size[number])
         text = bytes(model.text_data)[first : first + count].split(b"\0")[0].decode()
@@ -177,7 +179,7 @@ def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
                 f'<text name="{name}" data="{text}"/>: write a material and, if it is not the air\'s, a temperature in '
                 '°C, such as "aluminium 5.0"'
             ) from None
-        found[name.removeprefix(PREFIX)] = ThermalBody(made_of, degrees)
+        found[attached + thing] = ThermalBody(made_of, degrees)
     return found
 
 
