@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from thermograsp.thermal import LAPPED_ALUMINA, Joint, Pad, Surface, contact_conductance, joint, materials
+from thermograsp.thermal import (
+    LAPPED_ALUMINA,
+    SKINS,
+    Joint,
+    Pad,
+    Surface,
+    contact_conductance,
+    joint,
+    materials,
+)
 from thermograsp.thermal.contact import covered_share
 
 FORCES = (1.0, 10.0, 30.0)
 """N on the whole pad."""
 
 FLATNESS = 10e-6  # m
+SKIN = SKINS["filled_silicone"]
 _PLASTIC_MOST, _ELASTIC_MOST = (
     0.02275,
     0.01137,
@@ -18,7 +28,7 @@ _PLASTIC_MOST, _ELASTIC_MOST = (
 def conductance_table() -> str:
     """A row for each material, in the table's order."""
     columns = ["material", *(f"{force:g} N" for force in FORCES), "law holds to", "full contact from"]
-    columns += ["10 N, at most full contact", "10 N, flat to 10 µm"]
+    columns += ["10 N, at most full contact", "10 N, flat to 10 µm", "10 N, with a skin"]
     head = f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}\n"
     return head + "".join(_row(name) for name in materials())
 
@@ -32,8 +42,12 @@ def _row(name: str) -> str:
     beyond = full < FORCES[-1]
     capped = _told(joint(LAPPED_ALUMINA, face, full_contact=True), 10 / area) if beyond else ""
     crowned = _told(joint(LAPPED_ALUMINA, face, flatness=FLATNESS), 10 / area)
+    worn = joint(Surface.of(SKIN.made_of), face, full_contact=True)
+    through = 1 / (SKIN.resistance + 1 / float(contact_conductance(worn, 10 / area)))
     ends = [_newton(known) if known < FORCES[-1] else "", _newton(full) if beyond else ""]
-    return "| " + " | ".join([name.replace("_", " "), *told, *ends, capped, crowned]) + " |\n"
+    return (
+        "| " + " | ".join([name.replace("_", " "), *told, *ends, capped, crowned, _digits(through)]) + " |\n"
+    )
 
 
 def _range(pair: Joint) -> float:
@@ -42,8 +56,13 @@ def _range(pair: Joint) -> float:
 
 
 def _told(pair: Joint, pressure: float) -> str:
-    """W/(m2 K), to three digits."""
-    return f"{float(f'{float(contact_conductance(pair, pressure)):.3g}'):.0f}"
+    """W/(m2 K)."""
+    return _digits(float(contact_conductance(pair, pressure)))
+
+
+def _digits(value: float) -> str:
+    """Three of them."""
+    return f"{float(f'{value:.3g}'):.0f}"
 
 
 def _newton(force: float) -> str:
