@@ -8,6 +8,11 @@ from typing import TYPE_CHECKING
 
 from thermograsp.doors import opened
 
+try:
+    import mjlab  # noqa: F401  (before the rest: it loads our tasks, which need all of this room)
+except ImportError:  # the room's modules say what is missing
+    pass
+
 if TYPE_CHECKING:
     from .sensor import ThermalTouchCfg, ThermalTouchData, ThermalTouchSensor
     from .terms import randomize_material, temperature_drop, voltage
