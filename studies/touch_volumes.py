@@ -326,7 +326,7 @@ def heard(
     reader, through, force, drop = touch._reader, [], [], []
     read = reader.read
 
-    def noted(data: mujoco.MjData, weight: float = 1.0) -> None:
+    def noted(data: mujoco.MjData, weight: int = 1) -> None:
         before = reader.touches[0].copy()
         read(data, weight)
         added = reader.touches[0] - before
