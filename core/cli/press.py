@@ -30,6 +30,7 @@ _KEYWORDS = (
     "tolerance",
     "rung",
     "opposite",
+    "skin",
 )
 
 
@@ -50,6 +51,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--area",
         type=float,
         help="of the contact, m2 (default: 81e-6, or the sensor's face where it is smaller)",
+    )
+    add(
+        "--skin",
+        help="over the sensor's face, in T mode: a skin's name, such as filled_silicone (default: bare)",
     )
     add("--shape", default="square", help="of the contact: square or round")
     size = (0.04, 0.04, 0.01)

@@ -22,6 +22,7 @@ SIDES = {
 
 _AREA = 81e-6  # m2
 _PLATES = {
+    "skin": None,
     "mode": "T",
     "shape": "square",
     "rung": "auto",

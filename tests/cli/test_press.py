@@ -97,3 +97,11 @@ def test_a_mesh_that_cannot_be_pressed_is_told(tmp_path: Path, capsys: pytest.Ca
     assert "multiply them by 0.001" in capsys.readouterr().err
     assert main(["press", "glass", "--mesh", str(file), "--scale", "0.001", "--mode", "O"]) != 0
     assert "--mode is for plates" in capsys.readouterr().err
+
+
+def test_a_skin_is_felt_through(capsys: pytest.CaptureFixture[str]) -> None:
+    finals = []
+    for skin in ("", " --skin filled_silicone"):
+        assert main(f"press aluminium --seconds 2 --json{skin}".split()) == 0
+        finals.append(json.loads(capsys.readouterr().out)["final_temperature_drop_K"])
+    assert 0.5 < finals[1] < finals[0]
