@@ -73,9 +73,20 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
 
 
 @NEEDS_SPECS
-@pytest.mark.parametrize("tolerance", [0.05, pytest.param(0.02, marks=TIER)])
-def test_its_voltages_are_those_of_thermal_touch(tolerance: float) -> None:
-    words = {"fingertips": PADS, "objects": OBJECTS, "tolerance": tolerance}
+@pytest.mark.parametrize(
+    "words",
+    [
+        {},
+        {
+            "fingertips": {name: Fingertip(pad, skin="filled_silicone") for name, pad in PADS.items()},
+            "objects": {"can": ThermalBody("rubber", 5.0), "ball": "glass"},
+        },
+        pytest.param({"tolerance": 0.02}, marks=TIER),
+    ],
+    ids=["bare", "soft", "finer"],
+)
+def test_its_voltages_are_those_of_thermal_touch(words: dict) -> None:
+    words = {"fingertips": PADS, "objects": OBJECTS, **words}
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
     seebeck = np.array([pad.stack.seebeck for pad in touch._pads])

@@ -62,7 +62,7 @@ CONTACT_LAW = np.dtype(
 LOG_LEAST, LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
 SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
 _NEWTON_STEPS = 8
-_ENDLESS = 80.0  # logarithm of a conductance W/(m2 K) that nothing reaches, finite in 32 bits too
+_ENDLESS = 80.0  # logarithm of W/(m2 K) or of Pa that nothing reaches, finite in 32 bits too
 
 
 def flat_law(
@@ -105,7 +105,7 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
         "jump": float(joint.jump),
         "flatness": float(joint.flatness),
         "roughness": float(joint.roughness),
-        "log_hardness": float(np.log(joint.hardness)),
+        "log_hardness": min(float(np.log(joint.hardness)), _ENDLESS),
         "log_elastic_hardness": float(np.log(joint.elastic_hardness)),
         "elastic_share": float(joint.elastic_share),
     }
