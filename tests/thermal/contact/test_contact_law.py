@@ -7,6 +7,7 @@ import pytest
 
 from thermograsp.thermal import (
     LAPPED_ALUMINA,
+    SKINS,
     Joint,
     Pad,
     Surface,
@@ -17,6 +18,7 @@ from thermograsp.thermal import (
     flat_law,
     joint,
     material,
+    materials,
     sphere_contact,
     sphere_law,
 )
@@ -79,3 +81,12 @@ def test_a_pad_off_the_middle_meets_what_lies_under_it() -> None:
             assert load == pytest.approx(float(expected.face_force), rel=1e-12, abs=1e-15)
             assert contact(fixed, 1.0, place) == (fixed["area"], fixed["share"])
         assert contact(law, 1.0, np.zeros(3)) == (law["area"], law["share"])
+
+
+@pytest.mark.parametrize("skin", [None, *SKINS])
+def test_its_numbers_are_finite_for_every_material(skin: str | None) -> None:
+    """As MuJoCo's plugin and float32 need them; soft materials have no hardness."""
+    face = LAPPED_ALUMINA if skin is None else Surface.of(SKINS[skin].made_of)
+    for name, one in materials().items():
+        law = flat_law(PAD, joint(face, Surface.of(one), full_contact=skin is not None), (0.04, 0.012))
+        assert all(np.isfinite(np.float32(law[field])).all() for field in law.dtype.names or ()), name
