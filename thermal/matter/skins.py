@@ -7,17 +7,21 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TypeVar
 
-from thermograsp.errors import InvalidValueError, positive, unknown_name
+from thermograsp.errors import InvalidValueError, positive, unknown_name, within
 
 from .layers import Layer
 from .materials import Material, material
 
 _Stack = TypeVar("_Stack")
+_THINNEST, _THICKEST = (
+    30e-6,
+    5e-3,
+)  # m; a thinner one takes the sensor's kernels minutes, a thicker one feels nothing
 
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """A sheet of one material, thickness m, bonded to the sensor's face without a resistance of its own.
+    """A sheet of one material, thickness 30e-6 .. 5e-3 m, bonded to the sensor's face without a resistance of its own.
 
     material: a name of thermal.materials() or a Material, with Young's modulus and roughness, for its contact. Raises
     UnknownNameError and InvalidValueError."""
@@ -26,7 +30,7 @@ class Skin:
     thickness: float
 
     def __post_init__(self) -> None:
-        positive("skin: thickness (m)", self.thickness)
+        within("skin: thickness", positive("skin: thickness (m)", self.thickness), _THINNEST, _THICKEST, "m")
         made = self.made_of
         if made.youngs_modulus is None or made.roughness is None:
             raise InvalidValueError(
@@ -78,10 +82,11 @@ within the 1.5 to 3 of such sheets, 1.7 MPa a Shore A hardness of 40 by Gent's r
 
 def skin(name: str | Skin | None) -> Skin | None:
     """What a keyword `skin` stands for: a name of SKINS, the skin itself, None for a bare face. Raises
-    UnknownNameError."""
+    InvalidValueError and UnknownNameError."""
     if name is None or isinstance(name, Skin):
         return name
-    try:
-        return SKINS[name]
-    except KeyError:
-        raise unknown_name("skin", name, SKINS) from None
+    if not isinstance(name, str):
+        raise InvalidValueError(f"skin must be a name, a Skin or None, got {name!r}")
+    if name not in SKINS:
+        raise unknown_name("skin", name, SKINS)
+    return SKINS[name]

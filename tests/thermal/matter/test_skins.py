@@ -56,8 +56,11 @@ def test_a_heated_sensor_wears_one() -> None:
 def test_refuses_what_is_none() -> None:
     with pytest.raises(UnknownNameError, match="filled_silicone"):
         press("glass", skin="filled_silicon")
-    with pytest.raises(InvalidValueError, match="thickness"):
-        Skin("silicone", 0.0)
+    for thickness in (0.0, 1e-6, 0.2, "thin"):
+        with pytest.raises(InvalidValueError, match="thickness"):
+            Skin("silicone", thickness)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(InvalidValueError, match="a name, a Skin or None"):
+        press("glass", skin={"silicone": 1e-4})  # pyright: ignore[reportArgumentType]
     with pytest.raises(InvalidValueError, match="youngs_modulus"):
         Skin(Material("m", 1, 1, 1), 1e-4)
     with pytest.raises(InvalidValueError, match="mode"):
