@@ -77,7 +77,7 @@ class Trained:
         shape, actions = env.single_action_space.shape, len(self._network.layers[-1][1])
         if shape != (actions,):
             raise InvalidValueError(
-                f"{path} gives {actions} numbers an action, the environment takes {shape}"
+                f"{path} gives actions of {actions} numbers, but the environment takes {shape}"
             )
         self._action = np.zeros((env.num_envs, actions), np.float32)
         self._taken = np.zeros(env.num_envs, int)

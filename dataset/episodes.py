@@ -104,7 +104,7 @@ def _write(
     for name in TRUTH:
         if name not in info:
             raise InvalidValueError(
-                f"a dataset needs an environment whose info has {', '.join(TRUTH)}: no {name}"
+                f"a dataset needs an environment whose info has {', '.join(TRUTH)}: {name} is missing"
             )
     for name, tape in tapes.items():
         if name not in ("action", "reward"):

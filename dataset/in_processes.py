@@ -40,8 +40,8 @@ def produce(
                     one.end()
                     if attempt == _ATTEMPTS:
                         raise SimulationError(
-                            f"seeds {shard.first} .. {shard.seeds[-1]} were lost with their processes again and "
-                            f"again (exit code {one.process.exitcode}); what is done is kept, the same command goes on"
+                            f"the processes of seeds {shard.first} .. {shard.seeds[-1]} died repeatedly (exit code "
+                            f"{one.process.exitcode}); finished files are kept, and the same command resumes"
                         ) from None
                     processes[processes.index(one)] = another = _Process(plan)
                     another.begin(shard, attempt + 1)

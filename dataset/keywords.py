@@ -57,7 +57,7 @@ def encoded(value: Any, name: str = "keyword") -> Any:
 
 
 def decoded(value: Any) -> Any:
-    """What was encoded; lists become tuples. Raises InvalidValueError and UnknownNameError."""
+    """The value that was encoded; lists become tuples. Raises InvalidValueError and UnknownNameError."""
     if isinstance(value, list):
         return tuple(decoded(one) for one in value)
     if not isinstance(value, Mapping):

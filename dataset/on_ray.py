@@ -41,8 +41,8 @@ def produce(
                 raise error.cause from None
             except ray.exceptions.RayError as error:
                 raise SimulationError(
-                    f"seeds {shard.first} .. {shard.seeds[-1]} were lost with their workers again and again; "
-                    f"what is done is kept, the same command goes on: {error}"
+                    f"the workers of seeds {shard.first} .. {shard.seeds[-1]} died repeatedly; finished files are "
+                    f"kept, and the same command resumes: {error}"
                 ) from error
             yield shard, content
 

@@ -34,7 +34,7 @@ def _seed_materials() -> tuple[Material, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Episodes of seeds first .. first + count - 1."""
+    """The episodes with the seeds first .. first + count - 1."""
 
     first: int
     count: int
@@ -51,8 +51,8 @@ class Shard:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Episode i is that of env_id reset with seed + i, acted on by the policy; its material is drawn from `materials`,
-    or is the object's own where that is empty.
+    """What a dataset holds: episode i is one of env_id, reset with seed + i and driven by the policy. Its material is
+    drawn from `materials`; if that is empty, the object keeps its own.
 
     mode: T or O. keywords: others of the environment, such as objects, randomize, tolerance, taxels, gripper: numbers,
     text, lists and records, as keywords.py has them; a list is kept as a tuple. shard_size: episodes a file. versions:

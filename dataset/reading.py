@@ -31,7 +31,7 @@ def load(
     library: Library = "numpy",
     incomplete: bool = False,
 ) -> dict[str, Any]:
-    """All episodes that `where` lets pass, in the order of their seeds.
+    """Returns all episodes that pass the filter `where`, in the order of their seeds.
 
     columns: names, None for all. where: a filter on the columns that have one value an episode, as PyArrow takes it:
     [("material", "in", ["glass", "wood"]), ("success", "==", True)], or an expression.
@@ -59,7 +59,7 @@ def iterate(
     incomplete: bool = False,
     part: tuple[int, int] = (0, 1),
 ) -> Iterator[dict[str, Any]]:
-    """Batches of B = batch_size steps, each step once: name -> (B, ...); the last batch has what is left.
+    """Yields batches of B = batch_size steps as name -> (B, ...). Each step occurs once; the last batch may be smaller.
 
     An observation's column is what the agent saw before the step; "next_" and its name, where `columns` asks for it,
     what it saw after. One value an episode is repeated for its steps, but terminated and truncated are true at the

@@ -32,7 +32,7 @@ def silent(total: float) -> Iterator[Advance]:
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """Shards in all, and those of them that this run found done."""
+    """The number of all shards, and of those that were complete before this run."""
 
     shards: int
     found: int

@@ -30,7 +30,7 @@ def shard_bytes(plan: Plan, shard: Shard, advance: Callable[[], None] = lambda: 
     different = plan.differences(replace(plan, versions=installed_versions(), sources=sources_digest()))
     if different:
         raise SimulationError(
-            f"this worker is not as the plan: its {'; its '.join(different)}; install the same everywhere"
+            f"this worker differs from the plan: its {'; its '.join(different)}; install the same versions everywhere"
         )
     pa = arrow()
     listed, episodes = roll(plan, shard.seeds, advance=advance)
@@ -61,7 +61,7 @@ def start(folder: Path, plan: Plan) -> Plan:
         if different:
             raise InvalidValueError(
                 f"{folder} holds another dataset: its {'; its '.join(different)}. "
-                f"Go on with the arguments of its {MANIFEST}, or name another folder"
+                f"Use the arguments of its {MANIFEST}, or name another folder"
             )
         if grown.episodes > held.episodes:
             write_text(folder / MANIFEST, _manifest(grown))
@@ -115,7 +115,7 @@ def whole(folder: str | os.PathLike[str], incomplete: bool = False) -> tuple[Pla
         lacks = f"{folder} lacks {len(lacking)} of {len(plan.shards)} shards"
         if not incomplete or not complete:
             raise InvalidValueError(
-                f"{lacks}: run the command that began it again"
+                f"{lacks}: repeat the command that made it"
                 + ("" if incomplete else ", or read what is there with incomplete=True")
             )
         episodes = sum(shard.count for shard in complete)

@@ -6,7 +6,7 @@ from thermograsp.errors import ThermograspError
 
 
 class DeviceError(ThermograspError, RuntimeError):
-    """Base of everything that a device or its line does."""
+    """Base class of all errors of a device or its line."""
 
 
 class PortError(DeviceError, OSError):
@@ -14,7 +14,7 @@ class PortError(DeviceError, OSError):
 
 
 class PortMissingError(PortError):
-    """There is no such port: the device is not plugged in, or its name is another one."""
+    """The port does not exist: the device is not plugged in, or has another name."""
 
 
 class PortBusyError(PortError):
@@ -26,23 +26,23 @@ class PortForbiddenError(PortError):
 
 
 class LinkLostError(DeviceError, ConnectionError):
-    """The port went away or takes no more bytes."""
+    """The port has disappeared or accepts no more bytes."""
 
 
 class StaleSensorError(DeviceError, TimeoutError):
-    """The device should send samples, and none has come for too long."""
+    """The device should send samples, but none has arrived for too long."""
 
 
 class NoAnswerError(DeviceError, TimeoutError):
-    """A command was sent as often as allowed and not acknowledged."""
+    """A command was sent as often as allowed and was never acknowledged."""
 
 
 class CommandRefusedError(DeviceError):
-    """The device understood a command and did not do it."""
+    """The device understood a command but did not execute it."""
 
 
 class WrongDeviceError(DeviceError):
-    """What answers is not a device of this kind, or not the one that was there before."""
+    """The device that answers is of another kind, or is not the one that was connected before."""
 
 
 class ProtocolVersionError(DeviceError):
@@ -50,20 +50,20 @@ class ProtocolVersionError(DeviceError):
 
 
 class SensorFaultError(DeviceError):
-    """A sensor of the device cannot be believed: open thermistor, saturated converter, thermostat off its setpoint."""
+    """A sensor of the device cannot be trusted: open thermistor, saturated converter, thermostat off its setpoint."""
 
 
 class GripperFaultError(DeviceError):
-    """The gripper says that something is wrong with it, or that it is not ready to move."""
+    """The gripper reports a fault, or is not ready to move."""
 
 
 class GripperTimeoutError(DeviceError, TimeoutError):
-    """The gripper answers, and has not done in time what it was told."""
+    """The gripper answers, but has not carried out a command in time."""
 
 
 class RecordingError(ThermograspError, OSError):
-    """A recording could not be written to its end, as on a full disk; the file has what came before."""
+    """A recording could not be completed, for example because the disk is full; the file holds what came before."""
 
 
 class StoppedError(DeviceError):
-    """A stop came from elsewhere while the device was being told to do something; the rest of that was not done."""
+    """Another thread stopped the device, or gave it another command, before this command was finished."""

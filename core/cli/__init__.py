@@ -104,7 +104,7 @@ def command_parser(given: Sequence[str], as_json: bool = False) -> argparse.Argu
         module = _command(name)
         sub = commands.add_parser(name, help=module.HELP, description=module.HELP, allow_abbrev=False)
         module.add_arguments(sub)
-        sub.add_argument(VERBOSE, action="store_true", help="tell on stderr what goes on beside the result")
+        sub.add_argument(VERBOSE, action="store_true", help="report details of the computation on stderr")
         sub.add_argument(
             JSON, action="store_true", help="print one JSON document and nothing else, errors too"
         )

@@ -22,7 +22,7 @@ _PICTURE = (480, 360)  # pixels, each of the two
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     actions = parser.add_subparsers(metavar="ACTION", required=True)
-    about = "Find fingers, pads and actuators, grasp an object of glass and one of aluminium, and say how that went."
+    about = "Find fingers, pads and actuators, grasp an object of glass and one of aluminium, and report the result."
     check = actions.add_parser("check", help=about, description=about, allow_abbrev=False)
     add = check.add_argument
     add("file", help="an MJCF file; a whole robot will do")

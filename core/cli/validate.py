@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from thermograsp.thermal.stack import HeatedStack
 
 NAME = "validate"
-HELP = "Predict the recorded touches of a real heated sensor, and say how far off the predictions are."
+HELP = "Predict the recorded touches of a real heated sensor, and report the errors of the predictions."
 
 _SHIPPED_SPLIT = 12  # the last run that the preset heated_thermistor is fitted to
 _SEED = 0  # of runs drawn again
@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--sort",
         action="store_true",
-        help="also say of which label each touch is, with and without the passive sensor",
+        help="also tell the label of each touch from its curve, with and without the passive sensor",
     )
     add("--plot", metavar="FILE", help="draw measured and predicted drops: .svg, .png or .pdf")
 

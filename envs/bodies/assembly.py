@@ -105,7 +105,7 @@ def assembly(
         first, second = next(pair for pair in pairs if hosts(within[np.ix_(pair, pair)]) is None)
         raise InvalidValueError(
             f"part {second} of {parts[second - 1].made_of.name} overlaps part {first} of "
-            f"{parts[first - 1].made_of.name}: let it lie beside that one, or in it and after it"
+            f"{parts[first - 1].made_of.name}: place it beside that part, or inside it and later in the list"
         )
     kinds = ((shape, None if mesh else size), *((part.shape or shape, part.size) for part in parts))
     moments = [_moments(surface, *kind) for surface, kind in zip(surfaces, kinds, strict=True)]

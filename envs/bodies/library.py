@@ -75,10 +75,10 @@ class PartPreset:
 
 @dataclass(frozen=True)
 class ObjectPreset:
-    """An object of the library. about: one line. recipe and parameters: how its shape is made, see recipes.py.
-    material: a name. temperature: °C at first. mass: kg, None for what solid and contents weigh. friction: None for the
-    material's. contents: what it holds. parts: what of it is of other materials. Raises UnknownNameError and
-    InvalidValueError."""
+    """An object of the library. about: one line of description. recipe and parameters: how its shape is made, see
+    recipes.py. material: a name. temperature: °C at the start. mass: kg, None for the weight of solid and contents.
+    friction: None for the material's. contents: what it holds. parts: its parts of other materials. Raises
+    UnknownNameError and InvalidValueError."""
 
     name: str
     about: str
@@ -203,7 +203,7 @@ def _part(
 def _resolved(name: str, table: Mapping[str, Any], seen: tuple[str, ...]) -> dict[str, Any]:
     """The entry with what it is like filled in. seen: names that led here."""
     if name not in table or name in seen:
-        raise InvalidValueError(f"{seen[-1]} is like {name!r}, which is not there or like itself")
+        raise InvalidValueError(f"{seen[-1]} is like {name!r}, which does not exist or is like itself")
     entry = dict(table[name])
     if "like" not in entry:
         return entry

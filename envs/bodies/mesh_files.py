@@ -80,7 +80,7 @@ def _parsed(path: str, file: Path) -> tuple[np.ndarray, np.ndarray]:
             f"{path}: {len(faces):,} faces, more than {MOST_FACES:,}; simplify it, 50,000 are plenty"
         )
     if faces.min() < 0 or faces.max() >= len(vertices):
-        raise MeshError(f"{path}: a face names corner {faces.max()} of {len(vertices)}; export it again")
+        raise MeshError(f"{path}: a face refers to corner {faces.max()} of {len(vertices)}; export it again")
     return vertices, faces
 
 
@@ -118,7 +118,7 @@ def _without_doubles(path: str, vertices: np.ndarray, faces: np.ndarray) -> np.n
         _warn(path, f"{len(faces) - len(once)} faces given twice have been left out")
         faces = faces[once]
     if not len(faces):
-        raise MeshError(f"{path}: all its faces are without area; export it again")
+        raise MeshError(f"{path}: none of its faces has an area; export it again")
     return faces
 
 
@@ -138,8 +138,8 @@ def _turned_alike(path: str, faces: np.ndarray, vertices: int) -> np.ndarray:
         )
     if counts.max() > 2:
         raise MeshError(
-            f"{path}: {int((counts > 2).sum())} edges join more than two faces, not turned alike; unite or part "
-            "what meets there"
+            f"{path}: {int((counts > 2).sum())} edges join more than two faces that are not turned alike; unite "
+            "or separate the surfaces that meet there"
         )
     flip = _flips((start > end).reshape(-1), edge, len(counts), len(faces))
     if flip is None:
@@ -178,7 +178,8 @@ def _check_crossing(path: str, surface: Triangles) -> None:
     if inside_out > _TWICE * surface.volume:
         raise MeshError(
             f"{path}: {100 * inside_out / surface.volume:.2g} % of it is inside out: a piece's faces look inward, or "
-            "its surface crosses itself; turn or unite what is there (Blender: Recalculate Outside; Boolean, union)"
+            "its surface crosses itself; turn the faces or unite the surfaces (Blender: Recalculate Outside; Boolean, "
+            "union)"
         )
     if twice > _TWICE * surface.volume:
         raise MeshError(

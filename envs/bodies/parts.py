@@ -64,5 +64,5 @@ def checked_size(shape: str, size: Size) -> Size:
         raise InvalidValueError(f"size {size}: give full extents (x, y, z) in m")
     x, y, z = (length("size", value) for value in size)
     if (shape == "sphere" and not x == y == z) or (shape == "cylinder" and x != y):
-        raise InvalidValueError(f"size {(x, y, z)} of a {shape}: extents across its axis must be equal")
+        raise InvalidValueError(f"size {(x, y, z)} of a {shape}: the extents across its axis must be equal")
     return x, y, z

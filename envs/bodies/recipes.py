@@ -53,7 +53,7 @@ class Solid(NamedTuple):
     def _filled(self, level: float) -> tuple[np.ndarray, np.ndarray]:
         """Radii and heights of what is filled, from its lowest point to its surface."""
         if self.hollow is None:
-            raise InvalidValueError("contents in what is not hollow: make it a vessel or a shell")
+            raise InvalidValueError("it has contents but is not hollow: make it a vessel or a shell")
         radius, height = self.hollow.T
         top = height[0] + level * (height[-1] - height[0])
         under = height < top

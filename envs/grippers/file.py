@@ -53,7 +53,7 @@ def _parsed(path: Path) -> mujoco.MjSpec:
         raise GripperError(f"{path} is a folder: give the MJCF file (.xml) in it")
     start = path.read_bytes()[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if not start.startswith(b"<"):
-        raise GripperError(f"{path} is no XML, it begins with {start[:20]!r}: give an MJCF file")
+        raise GripperError(f"{path} is not XML; it begins with {start[:20]!r}: give an MJCF file")
     try:
         return mujoco.MjSpec.from_file(str(path))
     except ValueError as error:

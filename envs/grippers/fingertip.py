@@ -36,8 +36,9 @@ _SHIPPED = "left"  # the fingertip of assets/gripper.xml that all others are cop
 
 @dataclass(frozen=True, slots=True)
 class FingertipReport:
-    """What was found and added. body: it sits on; geom: whose face, or "given". area: m2 of the flat face. place (3,) m
-    and normal (3,): of its middle, in the body's frame. added: names of what the spec has besides."""
+    """What was found and added. body: the body that carries the fingertip. geom: the geom that has the face, or
+    "given". area: m2 of the flat face. place (3,) m and normal (3,): of the face's middle, in the body's frame. added:
+    names of the elements that were added to the spec."""
 
     body: str
     geom: str

@@ -28,7 +28,7 @@ _SLACK = 0.004  # m beside the object on either side, at which a lone jaw's grip
 
 
 class Gripper(FoundGripper):
-    """A gripper of somebody's, with our fingertips on, mounted over the table."""
+    """Your own gripper with our fingertips on it, mounted over the table."""
 
     joints = (DRIVE, DRIVE)
 

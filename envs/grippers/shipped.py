@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 
 
 class GripperModel(Protocol):
-    """A gripper over the table. joints: the two whose positions add up to the opening, m. widest: m, that it opens.
-    strongest: N, that it closes with. A scene of it has a body `wrist` on a joint `lift` with an actuator of that name,
-    a servo `grip` of the opening, fingertips `tip_left` and `tip_right` with sites `pad_left` and `pad_right`."""
+    """A gripper over the table. joints: the two whose positions add up to the opening, m. widest: the largest opening,
+    m. strongest: the largest closing force, N. A scene with it has a body `wrist` on a joint `lift` with an actuator of
+    that name, a servo `grip` of the opening, fingertips `tip_left` and `tip_right` with sites `pad_left` and
+    `pad_right`."""
 
     @property
     def joints(self) -> tuple[str, str]:

@@ -131,8 +131,9 @@ def infos_of(
 
 
 class GraspBatch:
-    """`num_envs` environments over a plant. task: what actions mean and what is judged. plant: "simulated" or a URL.
-    observer: what is seen, made for that many environments. Other keywords go to the plant (SimulationConfig)."""
+    """`num_envs` environments over a plant. task: defines the actions, rewards and endings. plant: "simulated" or a
+    URL. observer: makes the observations of that many environments. Other keywords go to the plant
+    (SimulationConfig)."""
 
     def __init__(
         self,

@@ -15,7 +15,7 @@ Materials = Sequence[str | Material] | None
 
 
 class IdentifyEnv(TouchEnv):
-    """Feel what the object is made of, and declare it.
+    """Identify the object's material by touch and declare it.
 
     Action, Box(-1, 1, (2 + K,)), clipped, K the number of materials: force (above 0: the fingers close with that share
     of 40 N; else they open), declare (above .5: the episode ends), and a distribution over the materials in their
@@ -49,7 +49,7 @@ class IdentifyEnv(TouchEnv):
 
 
 class IdentifyVectorEnv(TouchVectorEnv):
-    """`num_envs` of them in one array step; keywords as IdentifyEnv's."""
+    """`num_envs` identify environments in one array step; keywords as IdentifyEnv's."""
 
     def __init__(
         self,

@@ -63,7 +63,7 @@ class SortEnv(TouchEnv):
 
 
 class SortVectorEnv(TouchVectorEnv):
-    """`num_envs` of them in one array step; keywords as SortEnv's."""
+    """`num_envs` sort environments in one array step; keywords as SortEnv's."""
 
     def __init__(
         self,

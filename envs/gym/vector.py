@@ -26,7 +26,8 @@ _Returned = tuple[Observation, np.ndarray, np.ndarray, np.ndarray, dict[str, Any
 
 @dataclass(frozen=True, slots=True)
 class VectorState:
-    """A vector environment in mid-episode; picklable. ended (B,): whose episode is over. steps (B,): of it."""
+    """The state of a vector environment in mid-episode; picklable. ended (B,): environments whose episode is over.
+    steps (B,): steps of each episode so far."""
 
     batch: BatchState
     ended: np.ndarray

@@ -122,8 +122,8 @@ class SimulationConfig:
             self._check_face()
         if self.scene is not None and (self.objects is not None or self.mode == "O" or not len(self.scene)):
             raise InvalidValueError(
-                f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene has one "
-                "object at least, stands in place of objects, and is of mode 'T'"
+                f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene needs "
+                "at least one object and mode 'T', and it replaces `objects`"
             )
         period = self.substeps * self.solver.timestep
         if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:

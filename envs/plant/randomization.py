@@ -62,7 +62,7 @@ class Roughness(_Factor):
 
 @dataclass(frozen=True, slots=True)
 class ObjectTemperature(_Shift):
-    """K on the object's temperature: what a room does to things in a day; 3 K as in the identification benchmark."""
+    """K added to the object's temperature, as a room changes it in a day; 3 K as in the identification benchmark."""
 
     low: float = -3.0
     high: float = 3.0
@@ -108,7 +108,7 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Mass(_Factor):
-    """Factor on the object's mass: cavities, fillings, impurities; a judgement."""
+    """Factor on the object's mass, for cavities, fillings and impurities; our estimate."""
 
     low: float = 0.8
     high: float = 1.25
@@ -142,7 +142,7 @@ class Offset(_Shift):
 
 @dataclass(frozen=True, slots=True)
 class Noise(_Factor):
-    """Factor on the chain's noise: wiring and supply; a judgement."""
+    """Factor on the chain's noise, for wiring and supply; our estimate."""
 
     low: float = 0.5
     high: float = 2.0
@@ -150,7 +150,7 @@ class Noise(_Factor):
 
 @dataclass(frozen=True, slots=True)
 class Delay:
-    """Whole samples of 10 ms by which voltages arrive late, 0 to most, evenly: a serial line, its driver and the host's
+    """Delay of the voltages in whole samples of 10 ms, uniform from 0 to most: a serial line, its driver and the host's
     scheduling. Raises InvalidValueError unless most >= 0."""
 
     most: int = 3
@@ -166,8 +166,8 @@ class Delay:
 
 @dataclass(frozen=True, slots=True)
 class ThermostatError(_Shift):
-    """K by which a thermostat is warmer than its own sensor says: .2 K is the tolerance of a usual 10 kOhm thermistor
-    (1 % in resistance, B = 3950 K: .23 K at 36 °C)."""
+    """K by which a thermostat is warmer than its own sensor reports: .2 K is the tolerance of a usual 10 kOhm
+    thermistor (1 % in resistance, B = 3950 K: .23 K at 36 °C)."""
 
     low: float = -0.2
     high: float = 0.2

@@ -41,7 +41,7 @@ def observation_space() -> gymnasium.spaces.Dict:
 class Observer:
     """Keeps the voltage history of `num_envs` environments and puts readings into observations of its `space`.
 
-    A reading beyond the space's bounds saturates there, as the instruments' own ranges would have it."""
+    A reading beyond the space's bounds is clipped to them, as an instrument saturates at the ends of its range."""
 
     def __init__(self, num_envs: int) -> None:
         self.space = observation_space()

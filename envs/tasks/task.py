@@ -15,9 +15,9 @@ from thermograsp.plant import Command, Reading
 
 
 class Outcome(NamedTuple):
-    """After a control step, all (B,): reward, success, terminated, truncated. reasons: name -> (B,) bool, the task's
-    reasons; info names those for which an episode ended. told: name -> (B, ...) that info
-    always has."""
+    """The result of a control step, all (B,): reward, success, terminated, truncated. reasons: name -> (B,) bool, the
+    task's reasons; info names those for which an episode ended. told: name -> (B, ...), values that info always
+    has."""
 
     reward: np.ndarray
     success: np.ndarray
@@ -28,8 +28,8 @@ class Outcome(NamedTuple):
 
 
 class Task(Protocol):
-    """Pure functions of arrays; a state is an array (B,) of records, all 0 before the first step. reasons: how an
-    episode can terminate that is no success."""
+    """A task as pure functions of arrays. A state is an array (B,) of records, all 0 before the first step. reasons:
+    the ways in which an episode can terminate without success."""
 
     reasons: ClassVar[tuple[str, ...]]
 

@@ -51,10 +51,10 @@ _HOPELESS = (WrongDeviceError, ProtocolVersionError)  # opening the port again d
 
 @dataclass(frozen=True, slots=True)
 class LinkStatistics:
-    """Since the driver was opened. bytes: received. frames: accepted. rejected: chunks that were no frame. samples,
-    lost, duplicates, late, echoes, late_answers, overruns: see SessionCounts. repeats: commands sent again. reconnects,
-    reboots: of the line and the device. drift: of the device's clock against the host's, relative. age: s since the
-    last sample, None before the first."""
+    """Counts since the driver was opened. bytes: received. frames: accepted. rejected: chunks that were no frame.
+    samples, lost, duplicates, late, echoes, late_answers, overruns: see SessionCounts. repeats: commands sent again.
+    reconnects, reboots: of the line and the device. drift: of the device's clock against the host's, relative. age: s
+    since the last sample, None before the first."""
 
     bytes: int
     frames: int
@@ -86,7 +86,7 @@ class _Wish:
 
 
 class Fingertips:
-    """Open from its making until `close` or the end of its `with` block.
+    """The driver of both fingertips; its line is open until `close` or the end of its `with` block.
 
     port: a path, best a stable one (/dev/serial/by-id/...), or a function that opens a transport. rate: samples a
     second, 0 for none at first. setpoint: °C of both thermostats, None to leave the heaters as they are: they go off by
@@ -270,7 +270,7 @@ class Fingertips:
 
         def permitted() -> None:
             if self._wish is not wish:
-                raise StoppedError("another setpoint was asked for meanwhile")
+                raise StoppedError("another setpoint was requested meanwhile")
 
         self._link.command(self._setpoint_command(wish.setpoint), first=wish.off, permitted=permitted)
         self._held_since = self._clock()

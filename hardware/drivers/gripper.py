@@ -25,9 +25,9 @@ class Contact(Enum):
 
 @dataclass(frozen=True, slots=True)
 class GripperStatus:
-    """opening: m between the pads. target: m, the last one commanded. moving: the fingers are on their way. contact:
-    what stopped them. current: A of the motor. active: it takes commands to move. fault: what is wrong, "" for
-    nothing."""
+    """The state of a gripper. opening: m between the pads. target: m, the last one commanded. moving: whether the
+    fingers move. contact: what stopped them. current: A of the motor. active: whether it accepts commands to move.
+    fault: a description of the fault, "" for none."""
 
     opening: float
     target: float
@@ -99,7 +99,7 @@ _SCHEMES: Mapping[str, str] = MappingProxyType(
 
 
 def open_gripper(url: str, **keywords: Any) -> Gripper:
-    """The gripper of a URL such as "robotiq:///dev/ttyUSB0", opened. keywords: its factory's.
+    """Opens the gripper of a URL such as "robotiq:///dev/ttyUSB0". keywords: its factory's.
 
     Other packages add theirs as an entry point of the group `thermograsp.grippers`, the scheme its name: a function of
     the URL and keywords. Raises UnknownNameError with the known schemes, and what the factory raises.

@@ -48,7 +48,7 @@ OPENED = "opened"  # the event of a transport put to use
 
 
 class Tap(Protocol):
-    """Sees all that goes over a line: a recorder. Times are the host's clock, s."""
+    """A listener that receives all bytes of a line, such as a recorder. Times are the host's clock, s."""
 
     def received(self, now: float, data: bytes) -> None:
         """Bytes from the device."""
@@ -65,10 +65,11 @@ class Tap(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class LinkSettings:
-    """answer_within: s to wait for an acknowledgement before a command is sent again. tries: of a command, at most.
-    open_within: s for a device to identify itself; a board that restarts when its port is opened needs 2.
-    stale_after: s without a sample, while there should be some, after which the sensor is stale and its port is opened
-    anew. reopen_every: s between attempts at that. kept: samples that wait to be taken; then the oldest go."""
+    """Time limits of a line. answer_within: s to wait for an acknowledgement before a command is sent again. tries: the
+    most attempts at a command. open_within: s for a device to identify itself; a board that restarts when its port is
+    opened needs 2. stale_after: s without an expected sample after which the sensor is stale and its port is opened
+    again. reopen_every: s between attempts to open it. kept: the most samples that wait to be taken; beyond it the
+    oldest are dropped."""
 
     answer_within: float = 0.08
     tries: int = 8
@@ -206,7 +207,9 @@ class Link:
                 found = self.session.reports.get(kind)
             if found is not None:
                 return found[1]  # pyright: ignore[reportReturnType]
-        raise NoAnswerError(f"{kind.__name__}: acknowledged, but it never came; the line loses too much")
+        raise NoAnswerError(
+            f"{kind.__name__}: the device acknowledged the request, but its answer never came; the line loses too much"
+        )
 
     def identify(self) -> Identity:
         """Begins a session. Raises NoAnswerError, WrongDeviceError, ProtocolVersionError, LinkLostError."""
@@ -228,11 +231,12 @@ class Link:
                 break
         if self.bytes_received == bytes_before:
             raise NoAnswerError(
-                f"nothing came within {self.settings.open_within:g} s: not a fingertip, not powered, or it hangs"
+                f"nothing came within {self.settings.open_within:g} s: the device is not a fingertip, has no power, or "
+                "hangs"
             )
         raise NoAnswerError(
-            f"{self.bytes_received - bytes_before} bytes came within {self.settings.open_within:g} s and no answer "
-            "among them: not a fingertip, or another baud rate"
+            f"{self.bytes_received - bytes_before} bytes came within {self.settings.open_within:g} s, but no answer: "
+            "the device is not a fingertip, or has another baud rate"
         )
 
     def _show(self, show: Callable[[Tap], None]) -> None:
@@ -273,12 +277,12 @@ def _check(name: str, answer: Acknowledgement) -> None:
 def _check_identity(identity: Identity) -> Identity:
     if identity.model != MODEL:
         raise WrongDeviceError(
-            f"the device says that it is model {identity.model:#06x}, a fingertip is {MODEL:#06x}"
+            f"the device reports model {identity.model:#06x}; a fingertip is model {MODEL:#06x}"
         )
     if identity.protocol[0] != PROTOCOL[0]:
         spoken = identity.protocol[0] or "none that this package knows"
         raise ProtocolVersionError(
-            f"the device (firmware {identity.firmware[0]}.{identity.firmware[1]}) speaks protocol {spoken}, this "
-            f"package {PROTOCOL[0]}; update the older of the two"
+            f"the device (firmware {identity.firmware[0]}.{identity.firmware[1]}) speaks protocol {spoken}, "
+            f"and this package speaks {PROTOCOL[0]}; update the older of the two"
         )
     return identity

@@ -43,15 +43,15 @@ _CONTACTS = {ObjectSeen.WHILE_OPENING: Contact.OPENING, ObjectSeen.WHILE_CLOSING
 
 
 class RobotiqGripper:
-    """Open from its making until `close` or the end of its `with` block. See Gripper for what its methods have in
-    common.
+    """A Robotiq 2F gripper on Modbus RTU; its line is open until `close` or the end of its `with` block. See Gripper
+    for what its methods have in common.
 
     port: a path, best a stable one (/dev/serial/by-id/...), or a function that opens a transport. units: of this
     gripper. clock, sleep: s, of the host, or of a virtual line (line.clock, line.advance).
 
-    A port that was lost is opened again by the next call; a gripper that was without power meanwhile says so and needs
-    `activate`: no other method makes the fingers travel on their own. Raises PortError, NoAnswerError where it cannot
-    be reached.
+    The next call opens a port again that was lost. A gripper that was without power meanwhile reports it and needs
+    `activate`; no other method makes the fingers travel on their own. Raises PortError, NoAnswerError if it cannot be
+    reached.
     """
 
     def __init__(
@@ -235,7 +235,7 @@ class RobotiqGripper:
 
     def _require_unstopped(self, stops: int | None) -> None:
         if stops not in (None, self._stops):
-            raise StoppedError("gripper: it was stopped meanwhile; tell it again what it shall do")
+            raise StoppedError("gripper: it was stopped meanwhile; send the command again")
 
     def _await(
         self,
@@ -302,5 +302,5 @@ def _require_active(now: State) -> None:
         raise GripperFaultError(f"gripper: {fault_text(now.fault)}")
     if now.activation != Activation.DONE:
         raise GripperFaultError(
-            "gripper: not active, as after it was without power; call activate(), which moves the fingers"
+            "gripper: it is not active, as after a loss of power; call activate(), which moves the fingers"
         )

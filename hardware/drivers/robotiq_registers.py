@@ -32,7 +32,8 @@ class Activation(IntEnum):
 
 
 class Fault(IntEnum):
-    """gFLT: 5 and 7 are about the order of commands, 8 and 9 pass by themselves, from 0xA on a reset is needed."""
+    """The fault register gFLT: 5 and 7 report commands in a wrong order, 8 and 9 clear by themselves, and from 0xA on a
+    reset is needed."""
 
     NONE = 0x0
     ACTION_DELAYED = 0x5

@@ -20,9 +20,9 @@ _NO_FORCE = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 @dataclass(frozen=True, slots=True)
 class Feel:
-    """At one moment, left and right. voltage: V at each Peltier element. heat: W drawn from each thermostat. force: N
-    on each pad, normal and two tangential. thermostat: °C of the plates, None for what
-    the device's own heaters make of them."""
+    """What both fingertips feel at one moment, left and right. voltage: V at each Peltier element. heat: W drawn from
+    each thermostat. force: N on each pad, normal and two tangential. thermostat: °C of the plates, None if the device's
+    own heaters determine them."""
 
     voltage: Pair = (0.0, 0.0)
     heat: Pair = (0.0, 0.0)
@@ -35,7 +35,7 @@ Source = Callable[[float], Feel]
 
 
 def untouched(time: float) -> Feel:
-    """Nothing is touched."""
+    """A source that touches nothing."""
     del time
     return Feel()
 
@@ -52,7 +52,8 @@ def press_source(
     dt: float = 0.01,
     **keywords: Any,
 ) -> Source:
-    """Both fingertips press an object again and again, as thermal.press has it, each time a fresh one.
+    """A source in which both fingertips press an object again and again, as thermal.press computes it, each time a
+    fresh one.
 
     conductance: W/(m2 K) while they touch. force: N while they touch. touch, hold, apart: s before the contact, in it,
     and after it, of one period. dt: s between points of the curve, joined by lines. keywords: thermal.press's. The heat
@@ -82,7 +83,7 @@ def press_source(
 
 
 def samples_source(samples: Samples) -> Source:
-    """Recorded samples once more, each until the next one is due, and then from the start. Raises InvalidValueError for
+    """A source that repeats recorded samples in a loop, each until the next one is due. Raises InvalidValueError for
     fewer than two."""
     if len(samples) < 2:
         raise InvalidValueError(f"{len(samples)} samples are too few to feel again; record for longer")

@@ -12,8 +12,8 @@ _MOVING_CURRENT = 0.1  # A, an estimate; at rest the manual's examples show 0
 
 
 class Fingers(Protocol):
-    """opening: m between the pads. contact: what has stopped them. current: A of the motor. A simulation of more than
-    this, such as of a whole scene, has the same form."""
+    """Simulated fingers. opening: m between the pads. contact: what has stopped them. current: A of the motor. A
+    simulation of more than this, such as of a whole scene, has the same form."""
 
     opening: float
     contact: Contact
@@ -25,7 +25,8 @@ class Fingers(Protocol):
 
 
 class SpringFingers:
-    """Constant speed, no mass; an object of `width` m pushes back with stiffness (N/m) times what it is pressed.
+    """Fingers of constant speed without mass; an object of `width` m pushes back with stiffness (N/m) times its
+    compression.
 
     width None: nothing is there. Attributes may be changed at any time. Raises InvalidValueError for a width or
     stiffness below 0.

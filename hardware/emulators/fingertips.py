@@ -75,9 +75,9 @@ _SILENCE = 10.0  # s without a sign of the host, after which the setpoints end
 
 @dataclass(frozen=True, slots=True)
 class DeviceModel:
-    """chain: amplifier and converter. thermostat: of each fingertip; its setpoint is what a host sets. drift: of the
-    clock, relative. max_rate: Hz. most_force: N at which a load cell is at its end. checks: that it can make. serial,
-    firmware, protocol, model: what it says of itself."""
+    """The properties of an emulated device. chain: amplifier and converter. thermostat: of each fingertip; a host sets
+    its setpoint. drift: of the clock, relative. max_rate: Hz. most_force: N at which a load cell is at the end of its
+    range. checks: the self-tests that it can perform. serial, firmware, protocol, model: how it identifies itself."""
 
     chain: SignalChain = IDEAL
     thermostat: Thermostat = Thermostat()
@@ -92,11 +92,12 @@ class DeviceModel:
 
 
 class EmulatedFingertips:
-    """Starts at time 0, booting. source: what it feels. rng: of the converter's noise and the line's faults.
+    """An emulated device that boots at time 0. source: what it feels. rng: of the converter's noise and the line's
+    faults.
 
-    line: faults of its line; broken_thermistors, broken_heaters, broken_converters, saturated: fingertips (0 left, 1
-    right) of which that is so. All may be changed at any time, as may stall_until, s, up to which it neither hears nor
-    says anything.
+    line: faults of its line. broken_thermistors, broken_heaters, broken_converters, saturated: the fingertips (0 left,
+    1 right) that have this fault. All may be changed at any time, as may stall_until, the time in s until which the
+    device neither receives nor sends anything.
     """
 
     def __init__(

@@ -46,8 +46,9 @@ _SEEN = {
 
 @dataclass(frozen=True, slots=True)
 class GripperModel:
-    """units: its counts. slave: its address. pacing: of its line. activation_speed, release_speed: m/s of what it does
-    by itself, estimates. tick: s, period of its controller: commands take effect at the next one."""
+    """The properties of an emulated gripper. units: its counts. slave: its address. pacing: of its line.
+    activation_speed, release_speed: m/s of the motions that it makes by itself, estimates. tick: s, period of its
+    controller; commands take effect at the next tick."""
 
     units: RobotiqUnits = RobotiqUnits()
     slave: int = SLAVE
@@ -58,12 +59,12 @@ class GripperModel:
 
 
 class EmulatedGripper:
-    """Starts at time 0, with power and not activated. fingers: what moves, free ones where not given. rng: of the
-    line's faults.
+    """An emulated gripper that starts at time 0 with power, but not activated. fingers: what moves; free fingers by
+    default. rng: of the line's faults.
 
-    line: faults of its line on the way to the host. exception: a Modbus exception code to refuse every request with, 0
-    for none, as a real one does. lasting: a major fault that a reset does not clear, as long as it is set. All may be
-    changed at any time, as may stall_until, s, up to which it neither hears nor says anything.
+    line: faults of its line on the way to the host. exception: a Modbus exception code with which every request is
+    refused, as a real gripper does; 0 for none. lasting: a major fault that a reset does not clear while it is set. All
+    may be changed at any time, as may stall_until, the time in s until which it neither receives nor sends anything.
     """
 
     def __init__(

@@ -6,7 +6,7 @@ from typing import Protocol, TypeVar
 
 
 class Emulated(Protocol):
-    """A device's end of a line; it has no clock, input or output of its own. Times are since its start, s."""
+    """The device's end of a line. It has no clock, input or output of its own. Times are since its start, s."""
 
     @property
     def due(self) -> float:

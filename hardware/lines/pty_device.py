@@ -21,8 +21,9 @@ _CHUNK = 4096
 
 
 class PtyDevice(Generic[Device]):
-    """Serves the device from its making until `close` or the end of its `with` block. path: of the port. link: a stable
-    name to make for it, replaced where it is a link already. The device's time 0 is when this was made.
+    """Serves an emulated device on a pseudo-terminal until `close` or the end of its `with` block. path: of the port.
+    link: a stable name to create for it; an existing link of that name is replaced. The device's time 0 is when this
+    object was created.
 
     A host that doesn't read fills the kernel's buffer; then the device drops whole samples, as a real one does. Use
     `with served.paused():` around whatever changes the device. Raises InvalidValueError for a link that cannot be.

@@ -48,7 +48,7 @@ def _lost() -> tuple[type[BaseException], ...]:
 
 
 class SerialPort:
-    """An open port, ours alone among programs that ask for that. Raises PortError or one of its kinds."""
+    """An open serial port, locked against other programs that ask for a lock. Raises PortError or one of its kinds."""
 
     def __init__(self, path: str, baud: int = BAUD) -> None:
         serial = _serial()

@@ -9,7 +9,8 @@ from .emulated import Device
 
 
 class VirtualLine(Generic[Device]):
-    """Opener, transport and clock of a driver: Fingertips(line.open, clock=line.clock, background=False).
+    """The opener, transport and clock of a driver in virtual time: Fingertips(line.open, clock=line.clock,
+    background=False).
 
     Time goes on by `advance`, and while the driver waits for an answer. The driver's clock follows as it reads: each
     frame comes at the moment when the device sent it.

@@ -90,7 +90,7 @@ class PaceCounts:
 
 
 class SerialPlant:
-    """See thermograsp.plant.Plant; owns fingertips and gripper, and closes them.
+    """A plant (thermograsp.plant.Plant) of real fingertips and a real gripper, which it owns and closes.
 
     A step sends the command, waits for the step's end, and reads. The voltages are the oldest samples not yet read, so
     that they are at most a step and a sample old. What goes wrong in a step or a reset opens the gripper and ends the

@@ -72,8 +72,8 @@ class Flag(IntFlag):
 
 
 class HeatersOff(IntFlag):
-    """Why heaters are off. All but a silent host are latched: both heaters stay off until CLEAR_FAULTS. A runaway is a
-    heater that was on without its plate becoming warmer; a silent host's setpoints have ended."""
+    """The reasons why heaters are off. All but a silent host are latched: both heaters stay off until CLEAR_FAULTS. A
+    runaway is a heater that was on without its plate becoming warmer; a silent host's setpoints have expired."""
 
     TOO_HOT_LEFT = 0x01
     TOO_HOT_RIGHT = 0x02
@@ -86,7 +86,7 @@ LATCHING = HeatersOff(0x0F)
 
 
 class Reset(IntFlag):
-    """What made the device start; several where one came with another, none where it cannot tell."""
+    """What made the device start: several causes if they came together, none if the device cannot tell."""
 
     POWER_ON = 0x01
     EXTERNAL = 0x02
@@ -154,7 +154,7 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """protocol: (major, minor) that the device speaks in this session, major 0 where the host speaks none of its.
+    """How a device identifies itself. protocol: (major, minor) of this session, major 0 if host and device share none.
     firmware: (major, minor). boots: how often it has started. max_rate: Hz. serial: number of this device.
     voltage_step, voltage_limit: V, of the converter, referred to the element."""
 
@@ -183,8 +183,8 @@ class Calibration:
 
 @dataclass(frozen=True, slots=True)
 class SelfTest:
-    """checks, failed: what was looked at, and what was not as it must be. voltage_noise: V rms of each channel.
-    heater_current: A of each heater when on."""
+    """The result of a self-test. checks: those that were performed. failed: those that failed. voltage_noise: V rms of
+    each channel. heater_current: A of each heater when on."""
 
     checks: int
     failed: int
@@ -203,7 +203,7 @@ class Acknowledgement:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """reset: what made the device start, a Reset. heaters_off: why heaters are off, HeatersOff."""
+    """The device's condition. reset: what made it start, a Reset. heaters_off: why heaters are off, HeatersOff."""
 
     reset: int
     heaters_off: int

@@ -47,10 +47,10 @@ class Entry(NamedTuple):
 
 
 class Recorder:
-    """Writes a new file; a tap of a driver. metadata: what JSON holds; the Unix time of the start is added. Raises
-    InvalidValueError where a file of that name exists or cannot be made.
+    """A tap of a driver that writes a new file. metadata: values that JSON can hold; the Unix time of the start is
+    added. Raises InvalidValueError if a file of that name exists or cannot be created.
 
-    A disk that is full does not disturb the driver: the recording ends there, `failure` says why ("": it goes on), and
+    A full disk does not disturb the driver: the recording ends there, `failure` says why ("" while it goes on), and
     `close`, or the end of the `with` block, raises RecordingError."""
 
     def __init__(self, path: str | os.PathLike[str], metadata: Mapping[str, Any] | None = None) -> None:
@@ -130,7 +130,7 @@ class Recorder:
 
 @dataclass(frozen=True, slots=True)
 class Damage:
-    """Bytes of a recording that are no entry, and were left out. at: of the first one in the file. bytes: how many."""
+    """Damaged bytes of a recording, which were left out. at: position of the first one in the file. bytes: how many."""
 
     at: int
     bytes: int
@@ -141,8 +141,9 @@ class Damage:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """metadata: as given, with unix_time_s. entries: the others, in order, without the end; an event tells where some
-    are missing. complete: the recorder closed it; else it was killed, or records still. damage: what was left out."""
+    """The content of a recording. metadata: as given, with unix_time_s. entries: the others, in order, without the end;
+    an event marks where some are missing. complete: True if the recorder closed the file, False if it was killed or
+    still records. damage: what was left out."""
 
     metadata: Mapping[str, Any]
     entries: tuple[Entry, ...]
@@ -151,7 +152,7 @@ class Recording:
 
 
 def read_recording(path: str | os.PathLike[str]) -> Recording:
-    """A file that a Recorder wrote, without what is damaged of it. Raises InvalidValueError for another file."""
+    """Reads a file that a Recorder wrote, without its damaged parts. Raises InvalidValueError for another file."""
     try:
         content = Path(path).read_bytes()
     except OSError as error:

@@ -26,9 +26,10 @@ from .recording import EVENT, RECEIVED, SENT, Damage, read_recording
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """metadata, complete, damage: the recording's. identity: of the device, None where none was recorded. calibration:
-    the last one; each sample has the one of its time. counts, decoder: what the driver counted. drift: of the device's
-    clock against the host's, relative. events: (s on the host's clock, what happened)."""
+    """A decoded recording. metadata, complete, damage: the recording's. identity: of the device, None if none was
+    recorded. calibration: the last one; each sample is calibrated with the one of its time. counts, decoder: what the
+    driver counted. drift: of the device's clock against the host's, relative. events: (s on the host's clock, what
+    happened)."""
 
     metadata: Mapping[str, Any]
     complete: bool
@@ -43,7 +44,7 @@ class Replay:
 
 
 def replay(path: str | os.PathLike[str]) -> Replay:
-    """All that a recording holds. Raises as read_recording does."""
+    """Decodes everything that a recording holds. Raises as read_recording does."""
     recording = read_recording(path)
     session = Session(kept=max(1, sum(len(entry.data) for entry in recording.entries)))
     commands = Decoder()

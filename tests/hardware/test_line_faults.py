@@ -119,7 +119,7 @@ class Mute(EmulatedFingertips):
 
 
 @pytest.mark.parametrize(
-    ("kind", "told"), [(Chatter, "not a fingertip, or another baud"), (Mute, "nothing came")]
+    ("kind", "told"), [(Chatter, "not a fingertip, or has another baud"), (Mute, "nothing came")]
 )
 def test_wrong_device(tmp_path: Path, kind: type[EmulatedFingertips], told: str) -> None:
     begun = time.monotonic()

@@ -74,7 +74,7 @@ def _on_face(
     if abs(at[axis] - face) > OFF_FACE:
         raise InvalidValueError(
             f"element {label}: its position lies {1e3 * abs(at[axis] - face):.1f} mm off the face that its normal "
-            f"tells: put it on the surface of {shape.name!r}, in the body's frame"
+            f"gives: put it on the surface of {shape.name!r}, in the body's frame"
         )
     at[axis] = face
     for other in range(3):

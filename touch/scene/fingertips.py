@@ -134,7 +134,7 @@ def _apart(model: mujoco.MjModel, geoms: Mapping[str, tuple[int, ...]], objects:
             if geom in owner:
                 raise InvalidValueError(
                     f"fingertips {owner[geom]!r} and {label!r} are on one geom, {geom_label(model, geom)}: give each "
-                    "its own geom, since contacts tell geoms and no more"
+                    "its own geom, since MuJoCo tells contacts apart only by their geoms"
                 )
             owner[geom] = label
     for shape in objects:
@@ -142,7 +142,7 @@ def _apart(model: mujoco.MjModel, geoms: Mapping[str, tuple[int, ...]], objects:
             if geom in owner:
                 raise InvalidValueError(
                     f"geom {geom_label(model, geom)} is fingertip {owner[geom]!r} and part of object {shape.name!r}: "
-                    "name one of them otherwise"
+                    "use different geoms for the two"
                 )
 
 
@@ -192,8 +192,8 @@ def _pad(
                 break
     if found is None:
         raise InvalidValueError(
-            f"fingertip {label!r}: no face of {one.name!r} looks at the other fingertips or the objects; say where its "
-            "pad is: Fingertip(name, position=(x, y, z), normal=(x, y, z), size=(y, z))"
+            f"fingertip {label!r}: no face of {one.name!r} points towards the other fingertips or the objects; give "
+            "its pad: Fingertip(name, position=(x, y, z), normal=(x, y, z), size=(y, z))"
         )
     position, axes, size = found
     if one.size is not None:

@@ -7,7 +7,7 @@ import argparse
 from thermograsp.cli.device.connection import add_port, connect
 from thermograsp.cli.shared import Output
 
-HELP = "Tell what has latched the heaters off, and end that; look at the fingertips first."
+HELP = "Report why the heaters are latched off, and clear the latch. Inspect the fingertips first."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

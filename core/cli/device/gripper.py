@@ -6,7 +6,7 @@ import argparse
 
 from thermograsp.cli.shared import Output
 
-HELP = "Tell how a gripper is; activate or move it first."
+HELP = "Report the status of a gripper; on request activate or move it first."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from thermograsp.hardware import Fingertips, Samples
 
 HELP = (
-    "Show voltages, temperatures and forces live: a plot on a terminal, a line a second in a pipe, with --json a line "
-    "of JSON for each sample, and one of what came at the end."
+    "Show voltages, temperatures and forces live: a plot on a terminal, a line a second in a pipe; with --json a line "
+    "of JSON for each sample, and at the end one with the counts."
 )
 
 _PERIOD = 0.1  # s between pictures

@@ -15,7 +15,7 @@ from thermograsp.cli.device.connection import (
 from thermograsp.cli.shared import Output, target
 from thermograsp.errors import InvalidValueError, positive
 
-HELP = "Record the line, raw, until the end of the time or Ctrl-C; replayed by `thermograsp device replay`."
+HELP = "Record the raw bytes of the line until the time is over or Ctrl-C, for `thermograsp device replay`."
 
 _PERIOD = 0.1  # s
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from thermograsp.cli.shared import Output, target
 
-HELP = "Decode a recording again: what came, what was lost, and a CSV file of it."
+HELP = "Decode a recording: report what arrived and what was lost, and write a CSV file."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
