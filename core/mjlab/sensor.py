@@ -31,7 +31,9 @@ try:
     import torch
     from mjlab.sensor import ContactMatch, ContactSensor, ContactSensorCfg, Sensor, SensorCfg
 except ImportError as error:
-    raise MissingDependencyError("thermograsp.mjlab needs mjlab: pip install 'thermograsp[mjlab]'") from error
+    raise MissingDependencyError(
+        "thermograsp.mjlab needs mjlab: pip install 'thermograsp[mjlab]', or in a clone pip install -e '.[mjlab]'"
+    ) from error
 
 _WHOLE = 1e-6
 Worlds = torch.Tensor | slice | None

@@ -9,6 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from .sensor import ThermalTouchCfg, torch  # before mjlab, whose absence it explains
+
+# isort: split
 from mjlab.entity import EntityCfg
 from mjlab.managers.observation_manager import ObservationTermCfg
 from mjlab.managers.reward_manager import RewardTermCfg
@@ -17,7 +20,6 @@ from mjlab.tasks.manipulation import mdp
 from mjlab.tasks.manipulation.config.yam.env_cfgs import get_cube_spec, yam_lift_cube_env_cfg
 from mjlab.tasks.manipulation.mdp import MultiCubeLiftingCommand, MultiCubeLiftingCommandCfg
 
-from .sensor import ThermalTouchCfg, torch
 from .terms import voltage
 
 MATERIALS = ("aluminium", "wood")

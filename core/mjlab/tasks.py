@@ -5,11 +5,12 @@
 
 from __future__ import annotations
 
+from .sort_cubes import sort_cubes_cfg  # before mjlab, whose absence it explains
+
+# isort: split
 from mjlab.tasks.manipulation.config.yam.rl_cfg import yam_lift_cube_ppo_runner_cfg
 from mjlab.tasks.manipulation.rl import ManipulationOnPolicyRunner
 from mjlab.tasks.registry import register_mjlab_task
-
-from .sort_cubes import sort_cubes_cfg
 
 _LEARNING = yam_lift_cube_ppo_runner_cfg()
 _LEARNING.experiment_name = "thermograsp_sort_cube"
