@@ -16,6 +16,7 @@ from thermograsp.errors import (
     InvalidValueError,
     MissingDependencyError,
     celsius,
+    install,
     non_negative,
     positive,
     unknown_name,
@@ -31,9 +32,7 @@ try:
     import torch
     from mjlab.sensor import ContactMatch, ContactSensor, ContactSensorCfg, Sensor, SensorCfg
 except ImportError as error:
-    raise MissingDependencyError(
-        "thermograsp.mjlab needs mjlab: pip install 'thermograsp[mjlab]', or in a clone pip install -e '.[mjlab]'"
-    ) from error
+    raise MissingDependencyError(f"thermograsp.mjlab needs mjlab: {install('mjlab')}") from error
 
 _WHOLE = 1e-6
 Worlds = torch.Tensor | slice | None
