@@ -374,8 +374,8 @@ def _push(**forces: Callable[[float], float]) -> Callable[[float, mujoco.MjData]
     return drive
 
 
-def three(refine: float, made_of: str, tolerance: float, strip: bool = False) -> tuple[Run, np.ndarray]:
-    """Three fingers round a can, 8 N each. strip: conduction over the strip in contact in place of the face."""
+def three(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
+    """Three fingers round a can, 8 N each."""
     places = [
         (math.cos(a), math.sin(a), math.degrees(a) + 180) for a in (0, 2 * math.pi / 3, 4 * math.pi / 3)
     ]
@@ -389,11 +389,11 @@ def three(refine: float, made_of: str, tolerance: float, strip: bool = False) ->
         3.0,
         tolerance,
     )
-    return run, _on_can(run, made_of, math.pi / 3, refine, strip)
+    return run, _on_can(run, made_of, math.pi / 3, refine)
 
 
-def one_on_can(refine: float, made_of: str, tolerance: float, strip: bool = True) -> tuple[Run, np.ndarray]:
-    """One finger on a can, over the strip that is in contact."""
+def one_on_can(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
+    """One finger on a can."""
     run = heard(
         _world(_CAN, [("f0", "-0.036 0 0", "0")]),
         {"can": made_of},
@@ -403,26 +403,18 @@ def one_on_can(refine: float, made_of: str, tolerance: float, strip: bool = True
         3.0,
         tolerance,
     )
-    return run, _on_can(run, made_of, math.pi, refine, strip)
+    return run, _on_can(run, made_of, math.pi, refine)
 
 
-def _on_can(run: Run, made_of: str, sector: float, refine: float, strip: bool) -> np.ndarray:
-    """(samples, 1). The strip is as wide as in the end; it conducts what was recorded less the constriction."""
-    half, reach, through = face(refine), HALF, run.through.mean(axis=1, keepdims=True)
-    if strip:
-        length = 2 * HALF
-        pad = Pad(width=0.020, face=length)
-        area = float(cylinder_contact(pad, run.force[-1].mean(), RADIUS, LENGTH).face)
-        reach = area / (2 * length)
-        ks = STACK.layers[-1].conductivity, material(made_of).conductivity
-        narrow = 0.473 * sum(1 / k for k in ks) * (1 / math.sqrt(area) - 1 / length)
-        on = through > 0
-        through = through.copy()
-        through[on] = 1 / (1 / through[on] - narrow)
-        half = np.concatenate(
-            (np.sort(reach - lines(0.0, reach, round(4 * refine), reach / (10 * refine))),
-             lines(reach, HALF, round(5 * refine), reach / (10 * refine))[1:])
-        )  # fmt: skip
+def _on_can(run: Run, made_of: str, sector: float, refine: float) -> np.ndarray:
+    """(samples, 1). Heat passes the strip in contact, which is here always as wide as in the end."""
+    length, through = 2 * HALF, run.through.mean(axis=1, keepdims=True)
+    area = float(cylinder_contact(Pad(width=0.020, face=length), run.force[-1].mean(), RADIUS, LENGTH).face)
+    reach = area / (2 * length)
+    half = np.concatenate(
+        (np.sort(reach - lines(0.0, reach, round(4 * refine), reach / (10 * refine))),
+         lines(reach, HALF, round(5 * refine), reach / (10 * refine))[1:])
+    )  # fmt: skip
     tip = body(element(half, face(refine), refine))
     thing = body(can(made_of, RADIUS, LENGTH / 2, sector, half, refine))
     return by_volumes([tip], [thing], [Joint(0, 0, True, reach)], through, refine)

@@ -273,9 +273,10 @@ class ThermalTouch:
 
     def fixed_places(self, like: Array, *, world: int = 0) -> FixedPlaces:
         """Its fingertips on the places where they have touched so far, as they are now, for a pure step of arrays:
-        `advance(state, conductance)`, once per sample of the converter. like: an array of floating-point numbers whose
-        kind (NumPy, PyTorch, JAX), dtype and device are taken. Raises InvalidValueError where nothing has been touched,
-        and beside thermostats of finite power, heated sensors and glued elements."""
+        `advance(state, conductance)`, once per sample of the converter; contacts there are of the sensor's whole face.
+        like: an array of floating-point numbers whose kind (NumPy, PyTorch, JAX), dtype and device are taken. Raises
+        InvalidValueError where nothing has been touched, and beside thermostats of finite power, heated sensors and
+        glued elements."""
         (row,) = self._rows([world])
         return self._heat.fixed_places(row, like)
 

@@ -26,7 +26,8 @@ and meshes are still in plates/, network/ and meshes/.
 from .box import BoxSamples, Patches, box_samples
 from .contact import Resolution, Side, Tip, box_side, tip
 from .coverage import contact_patterns
-from .element import Rectangle
+from .element import Rectangle, element_samples
+from .exponentials import residues
 from .glued import GluedElement, glued_element
 from .patterns import ALONG, GRAM, JUMPS, NODES
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
@@ -54,7 +55,9 @@ __all__ = [
     "box_samples",
     "box_side",
     "contact_patterns",
+    "element_samples",
     "glued_element",
+    "residues",
     "tip",
     "touch_sides",
 ]

@@ -1,17 +1,20 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
 from .array_contacts import ArrayContacts, array_contacts
-from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
+from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
 from .laws import constrictions, pair_laws
 from .reader import ContactReader
 from .sensors import SensorPlaces, prepare, sensor_places
 
 __all__ = [
+    "AREA",
+    "CLOSED",
     "COLUMNS",
     "ArrayContacts",
     "CONDUCTANCE",
     "FORCE",
+    "LENGTH",
     "NORMAL",
     "PLACE",
     "ContactReader",

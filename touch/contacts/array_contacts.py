@@ -1,7 +1,9 @@
 """Contacts as conductances in the arrays of a simulation of many worlds: NumPy, PyTorch, JAX.
 
 What reader.py's `sense` does with recorded contact sensors, as a pure function without a branch on data. It knows
-contacts of fingertips with objects; those of fingertips with one another it leaves aside.
+contacts of fingertips with objects; those of fingertips with one another it leaves aside. Arrays know contacts of the
+sensor's whole face: a narrower one has the steady resistance of its constriction from its first moment, where
+ThermalTouch lets it build up (touch/heat/narrow.py).
 
 B: worlds, F: fingertips, G: geoms of the objects, H: substeps, V: materials.
 """
@@ -48,7 +50,8 @@ class ArrayContacts:
         geom_turn: Array,
         material: Array,
     ) -> tuple[Array, Array]:
-        """(conductance W/K, force N on the pad), (B, F, G, H) each; a contact beside its pad has neither.
+        """(conductance W/K, force N on the pad), (B, F, G, H) each; a contact beside its pad has neither. The
+        conductance of a contact that is narrower than the face is less by its steady constriction.
 
         force: (B, F, G, H, 3) N net on each geom from each fingertip, in each substep, and place: (B, F, G, 3) m where
         it acts in the last of them, in the world's frame. tip_position (B, F, 3) m and tip_turn (B, F, 3, 3): of the

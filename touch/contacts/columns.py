@@ -1,4 +1,5 @@
 """Columns of what is noted of a fingertip on a target, sums over substeps: conductance W/K and force N on the pad, and
-at the last substep that touched the pad's middle m (3) and the way it looks (3), both in the object's frame."""
+at the last substep that touched the pad's middle m (3) and the way it looks (3), both in the object's frame. Sums
+again: the substeps that touched, the area m2 in contact, and it times its length m; 0 stand for the whole face."""
 
-CONDUCTANCE, FORCE, PLACE, NORMAL, COLUMNS = 0, 1, 2, 5, 8
+CONDUCTANCE, FORCE, PLACE, NORMAL, CLOSED, AREA, LENGTH, COLUMNS = 0, 1, 2, 5, 8, 9, 10, 11

@@ -70,8 +70,8 @@ def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) ->
 
 
 def constrictions(pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.ndarray:
-    """(F, O + F) K m/W: of a contact smaller than the sensor's face, the resistance on both sides that the networks,
-    which know the whole face, lack is this times (1/side - 1/width). Of objects, then of other fingertips."""
+    """(F, O + F) K m/W: of a contact smaller than the sensor's face, the steady resistance on both sides that networks
+    of the whole face lack is this times (1/side - 1/width). Of objects, then of other fingertips."""
     conducting = [shape.material.conductivity for shape in shapes]
     conducting += [pad.stack.layers[-1].conductivity for pad in pads]
     return np.array(

@@ -24,8 +24,8 @@ from thermograsp.errors import InvalidValueError, SimulationError
 from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import CYLINDER, FLAT, conductance, contact
 from ..scene import BodyShape, PadPlace
-from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
-from .laws import constrictions, pair_laws
+from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
+from .laws import pair_laws
 from .memory import (
     CONTACTS,
     DIM,
@@ -81,7 +81,7 @@ class ContactReader:
         self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
         # of each combination of the objects' materials that there is, and which of them each world has
         self._known: dict[tuple[Material, ...], int] = {}
-        self._laws, self._small = np.zeros((0, 0, 0, 3), CONTACT_LAW), np.zeros((0, 0, 0))
+        self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
         self._pyramidal = int(model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
@@ -96,10 +96,7 @@ class ContactReader:
                 self._known[own] = len(self._known)
                 shapes = [replace(s, material=m) for s, m in zip(self._shapes, own, strict=True)]
                 laws = pair_laws(self._model, self._of_pads, shapes)[None]
-                small = constrictions(self._of_pads, shapes)[None]
-                first = len(self._known) == 1
-                self._laws = laws if first else np.concatenate((self._laws, laws))
-                self._small = small if first else np.concatenate((self._small, small))
+                self._laws = laws if len(self._known) == 1 else np.concatenate((self._laws, laws))
             self._which[w] = self._known[own]
         self._point()
 
@@ -110,9 +107,8 @@ class ContactReader:
 
     def _point(self) -> None:
         """Says where the first world's arrays are."""
-        first = self._which[0]
-        self._own_laws, self._own_small = self._laws[first], self._small[first]
-        arrays = self._role, self._pads, self._met, self._own_small, self._pushed, self.touches, self.beside
+        self._own_laws = self._laws[self._which[0]]
+        arrays = self._role, self._pads, self._met, self._pushed, self.touches, self.beside
         sizes = len(self._role), *self.touches.shape[1:3], len(self._met), self._pyramidal
         self._own = np.array([*(array.ctypes.data for array in arrays), *sizes], np.int64)
 
@@ -149,7 +145,6 @@ class ContactReader:
             self._pads,
             self._met,
             self._laws,
-            self._small,
             self._which,
             self._pushed,
             self.touches,
@@ -168,14 +163,13 @@ class ContactReader:
 def _read(count, substeps, memory, own, laws):
     """Adds `count` contacts to touches and beside. memory: ContactMemory's table. own: addresses and sizes of a
     ContactReader's arrays, first those that are only read. Returns whether all forces are finite."""
-    tips, targets, things, pyramidal = own[8], own[9], own[10], own[11]
-    role = carray(words(own[0]), own[7])
+    tips, targets, things, pyramidal = own[7], own[8], own[9], own[10]
+    role = carray(words(own[0]), own[6])
     pads = carray(floats(own[1]), (tips, _PAD))
     met = carray(words(own[2]), (things, 3))
-    small = carray(floats(own[3]), (tips, targets))
-    pushed = carray(floats(own[4]), (tips, things, 3))  # room for forces and moments
-    touches = carray(floats(own[5]), (tips, targets, COLUMNS))
-    beside = carray(floats(own[6]), tips)
+    pushed = carray(floats(own[3]), (tips, things, 3))  # room for forces and moments
+    touches = carray(floats(own[4]), (tips, targets, COLUMNS))
+    beside = carray(floats(own[5]), tips)
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -228,14 +222,14 @@ def _read(count, substeps, memory, own, laws):
         else:
             beside[first] += weight * force
     if any_met:
-        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, pushed, touches, weight)
+        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, touches, weight)
     return True
 
 
 @njit(cache=True, error_model="numpy")
 def _sense(
     record, pairs, poses, geoms, turns, offsets, bodies, all_geoms,
-    pads, met, laws, small, which, pushed, touches, beside, broken,
+    pads, met, laws, which, pushed, touches, beside, broken,
 ):  # fmt: skip
     """_read of recorded sensors, world by world."""
     tips, things = len(pads), len(met)
@@ -293,8 +287,8 @@ def _sense(
                 any_met = True
             _press(data, at, pads, frames, f, thing, things, pushed, beside[w])
         if any_met:
-            own, few = laws[which[w]], small[which[w]]
-            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, own, few, pushed, touches[w], 1.0)
+            own = laws[which[w]]
+            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, own, pushed, touches[w], 1.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -370,12 +364,13 @@ def _within(pad, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
-def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, pushed, touches, weight):
+def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, touches, weight):
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)
     place = np.empty(3)
     for f in range(tips):
         middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:]
+        last = -1  # target that was touched; an object's geoms follow one another
         for g in range(things):
             force = pushed[f, g, 0]
             if force <= 0:
@@ -423,10 +418,13 @@ def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, small, push
                     area *= _kept(pushed[f, g, 1] / force, reach, half)
                     area *= _kept(pushed[f, g, 2] / force, reach, half)
                 if area > 0:
-                    side = math.sqrt(min(area, 4 * half * half))
-                    series = 1 / (conductance(law, pressure) * area)
-                    series += small[f, target] * (1 / side - 1 / (2 * half))
-                    touch[CONDUCTANCE] += weight / series
+                    long = law.face_length if law.shape == CYLINDER else math.sqrt(area)
+                    touch[CONDUCTANCE] += weight * conductance(law, pressure) * area
+                    touch[AREA] += weight * area
+                    touch[LENGTH] += weight * area * long
+                    if target != last:
+                        touch[CLOSED] += weight
+                        last = target
             touch[FORCE] += weight * force
             for i in range(3):
                 touch[PLACE + i], touch[NORMAL + i] = 0.0, 0.0

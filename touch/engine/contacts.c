@@ -48,9 +48,10 @@ static double kept(double at, double reach, double half) {
   return fmin(fmax(fmin(half, at + reach) - fmax(-half, at - reach), 0) / (2 * reach), 1);
 }
 
-/* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. */
-static void feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
-                 double* touch) {
+/* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
+target has been counted in this step. Returns whether one has now. */
+static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
+                 bool again, double* touch) {
   Pose at = pose(numbers, work, d, f);
   int geom = work->geom[g], body = work->body[g], axis = 0;
   double force = pushed[0], half = numbers->pads[f * PAD + WIDTH] / 2, place[3] = {0}, most = 0, area, share;
@@ -73,7 +74,6 @@ static void feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       for (int j = 1; j < 3; j++) place[j] += (at.middle[k] - other.middle[k]) * at.axes[3 * k + j];
   }
   const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
-  int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
   heat_contact(law, force, place, &area, &share);
   if (area > 0 && share > 0) {
     double pressure = share / area;
@@ -92,10 +92,11 @@ static void feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       area *= kept(pushed[2] / force, reach, half);
     }
     if (area > 0) {
-      double side = sqrt(fmin(area, 4 * half * half));
-      double series = 1 / (heat_conductance(law, numbers, pressure) * area);
-      series += numbers->small[f * numbers->targets + target] * (1 / side - 1 / (2 * half));
-      touch[CONDUCTANCE] += 1 / series;
+      touch[CONDUCTANCE] += heat_conductance(law, numbers, pressure) * area;
+      touch[AREA] += area;
+      touch[LENGTH] += area * (law->shape == SHAPE_CYLINDER ? law->face_length : sqrt(area));
+      if (!again) touch[CLOSED] += 1;
+      again = true;
     }
   }
   touch[FORCE] += force;
@@ -107,6 +108,7 @@ static void feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       touch[NORMAL + i] += rotation[3 * k + i] * at.axes[3 * k];
     }
   }
+  return again;
 }
 
 /* Adds the contacts of the step that was just taken to the touches. A force that is not finite is left out: MuJoCo resets
@@ -147,10 +149,13 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
     own[1] += force * y;
     own[2] += force * z;
   }
-  for (int i = 0; any && i < tips * things; i++) {
+  bool again = false;
+  for (int i = 0, last = -1; any && i < tips * things; i++) {
     int f = i / things, g = i % things;
     int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
-    if (pushed[3 * i] > 0)
-      feel(numbers, work, d, f, g, pushed + 3 * i, touches + (f * numbers->targets + target) * COLUMNS);
+    int touch = f * numbers->targets + target;
+    again = again && touch == last; /* an object's geoms follow one another */
+    last = touch;
+    if (pushed[3 * i] > 0) again = feel(numbers, work, d, f, g, pushed + 3 * i, again, touches + touch * COLUMNS);
   }
 }

@@ -12,8 +12,9 @@ fields, M: patterns of a contact, K: rates, P: places of an object. */
 #include <stdbool.h>
 #include <stddef.h>
 
-/* columns of a touch: conductance W/K and force N, sums over substeps; place m and normal, of the last one */
-enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, COLUMNS = 8 };
+/* columns of a touch: conductance W/K and force N, sums over substeps; place m and normal, of the last one; sums again:
+substeps that touched, area m2 in contact, and it times its length m */
+enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, AREA, LENGTH, COLUMNS };
 /* a pad: position m, axes, half sides m and its sensor's width m */
 enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
 /* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air, first state, early K s^.5 */
@@ -35,6 +36,7 @@ enum {
   MOMENTS = 16,   /* at which networks are fitted */
   POLES = 3,      /* pairs, of a step */
   SERIES = 13,    /* terms of the separation of rough faces */
+  WIDTHS = 9,      /* widths in a table of narrow contacts */
   AFTERWARDS = 15 /* times over which a field is followed to a new place */
 };
 
@@ -43,7 +45,7 @@ typedef struct {
   int tips, objects, geoms, targets, things, patterns, tip_states, sample_steps;
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
-  const double *roles, *pads, *boxes, *owner, *small, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
+  const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double *seebeck, *warm;  /* V/K; K above the air */
   const double* laws;            /* Law of each pad on each thing, by the axis of its frame */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
@@ -77,7 +79,7 @@ typedef struct {
 
 /* The state of an instance, numbers in MuJoCo's plugin_state. */
 typedef struct {
-  double *count, *touches, *places, *used, *current, *x;
+  double *count, *touches, *places, *used, *current, *narrow, *x;
 } State;
 
 const char* heat_parse(Numbers* numbers, const char* text);

@@ -1,6 +1,7 @@
 /* A sample of heat: closed contacts join fields into groups, each of which takes one rational step of the exponential;
-touch/heat/systems.py and march.py, thermal/network/coupling.py and kernel.py. */
+touch/heat/systems.py, narrow.py and march.py, thermal/network/coupling.py and kernel.py. */
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +27,7 @@ static size_t lay_out(Group* group, int ports, double* at) {
     group->gram = group->scale + 2 * POLES * n;
     group->room = group->gram + 2 * POLES * m * m;
   }
-  return n * (1 + m + 2 * POLES + 5) + 2 * POLES * m * m + 3 * m + 2 * m * m;
+  return n * (1 + m + 2 * POLES + 5) + 2 * POLES * m * m + 4 * m + 2 * m * m;
 }
 
 /* What a group's step needs: of its fields behind one another. */
@@ -129,17 +130,18 @@ static bool join(const Numbers* numbers, Work* work, const State* state, const b
   return true;
 }
 
-/* One step of a group's states; conductance W/K and difference K of each port. */
-static void step(const Numbers* numbers, const Group* group, double* restrict state, const double* conductance,
-                 const double* difference, double* restrict room) {
+/* One step of a group's states; conductance W/K and difference K of each port. Returns its mean flow W. */
+static const double* step(const Numbers* numbers, const Group* group, double* restrict state, const double* conductance,
+                          const double* difference, double* restrict room) {
   int n = group->n, m = group->pairs * numbers->patterns;
   double *restrict rate = room, *restrict change = rate + n, *restrict real = change + n, *restrict imag = real + n;
-  double *flow = imag + n, *gathered = flow + m, *matrix = gathered + 2 * m;
+  double *flow = imag + n, *through = flow + m, *gathered = through + m, *matrix = gathered + 2 * m;
   for (int j = 0; j < m; j++) {
     const double* restrict port = group->ports + (size_t)j * n;
     double seen = 0;
     for (int i = 0; i < n; i++) seen += port[i] * state[i];
     flow[j] = conductance[j] * (difference[j] - seen);
+    through[j] = 0;
   }
   for (int i = 0; i < n; i++) {
     rate[i] = -group->rates[i] * state[i];
@@ -149,6 +151,10 @@ static void step(const Numbers* numbers, const Group* group, double* restrict st
     const double *restrict along = group->scale + 2 * q * n, *restrict aside = along + n;
     const double* gram = group->gram + (size_t)2 * q * m * m;
     double weight_real = numbers->weights[2 * q], weight_imag = numbers->weights[2 * q + 1];
+    double pole_real = numbers->poles[2 * q], pole_imag = numbers->poles[2 * q + 1];
+    double size = pole_real * pole_real + pole_imag * pole_imag; /* lag: weight / pole */
+    double lag_real = (weight_real * pole_real + weight_imag * pole_imag) / size;
+    double lag_imag = (weight_imag * pole_real - weight_real * pole_imag) / size;
     for (int j = 0; j < m; j++) {
       const double* restrict port = group->ports + (size_t)j * n;
       double heard_real = 0, heard_imag = 0, weight = numbers->dt * conductance[j];
@@ -193,6 +199,7 @@ static void step(const Numbers* numbers, const Group* group, double* restrict st
       double total_real = a * row[2 * j] - b * row[2 * j + 1], total_imag = a * row[2 * j + 1] + b * row[2 * j];
       gathered[2 * j] = total_real;
       gathered[2 * j + 1] = total_imag;
+      through[j] -= 2 * (lag_real * total_real - lag_imag * total_imag);
       for (int i = 0; i < n; i++) {
         real[i] += port[i] * total_real;
         imag[i] += port[i] * total_imag;
@@ -203,6 +210,28 @@ static void step(const Numbers* numbers, const Group* group, double* restrict st
                    weight_imag * (along[i] * imag[i] + aside[i] * real[i]);
   }
   for (int i = 0; i < n; i++) state[i] -= 2 * numbers->dt * change[i];
+  return through;
+}
+
+/* Fills root with the b_k of a narrow contact; false where it is as wide as the face. */
+static bool spread(const Numbers* numbers, int pair, const double* touch, double* root) {
+  if (!(touch[AREA] > 0)) return false;
+  double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
+  double first = fmin(area / (touch[LENGTH] / touch[AREA]), width), second = area / first;
+  double across = fmin(first, second), along = fmin(fmax(first, second), width);
+  if (!(across < width * (1 - 1e-9))) return false;
+  int rates = numbers->rates;
+  double narrow = fmin(2 * log2(width / across), WIDTHS - 1);
+  int at = (int)fmin(narrow, WIDTHS - 2);
+  double of_squares = exp2(narrow - at) - 1, of_strips = (exp2((narrow - at) / 2) - 1) / (sqrt(2) - 1);
+  double square = fmin((width / along - 1) / (exp2(narrow / 2) - 1), 1);
+  const double *one = numbers->narrow + ((size_t)pair * 2 * WIDTHS + at) * rates, *other = one + WIDTHS * rates;
+  for (int k = 0; k < rates; k++) {
+    double of_square = one[k] + of_squares * (one[rates + k] - one[k]);
+    double of_strip = other[k] + of_strips * (other[rates + k] - other[k]);
+    root[k] = sqrt(square * of_square + (1 - square) * of_strip);
+  }
+  return true;
 }
 
 /* Advances every field by a sample. Returns false where there is no memory. */
@@ -220,9 +249,18 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     memcpy(work->current, state->current, sizeof(double) * tips * objects);
   }
   memset(busy, 0, sizeof busy);
+  int rates = numbers->rates;
+  double kept[rates], grown[rates]; /* of a state, and s, of a flow in a state, after a step */
+  for (int k = 0; k < rates; k++) {
+    kept[k] = exp(-numbers->dt * numbers->decay[k]);
+    grown[k] = (1 - kept[k]) / numbers->decay[k];
+  }
+  for (int i = 0; i < tips * targets; i++)
+    for (int k = 0; k < rates && !closed[i]; k++) state->narrow[i * rates + k] *= kept[k];
   for (int g = 0; g < work->count; g++) {
     const Group* group = &work->groups[g];
     double *x = group->room, conductance[group->pairs * patterns], difference[group->pairs * patterns];
+    double roots[group->pairs * rates];
     for (int i = 0; i < group->members; i++) {
       int t = group->member[i], size = states_of(numbers, work, t);
       busy[t] = true;
@@ -230,13 +268,28 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
       x += size;
     }
     memset(difference, 0, sizeof difference);
+    memset(roots, 0, sizeof roots);
     for (int i = 0; i < group->pairs; i++) {
-      int f = group->pair[2 * i], t = group->pair[2 * i + 1];
-      double mean = state->touches[(f * targets + t) * COLUMNS + CONDUCTANCE] / numbers->sample_steps;
+      int f = group->pair[2 * i], t = group->pair[2 * i + 1], pair = f * targets + t;
+      const double* touch = state->touches + pair * COLUMNS;
+      double mean = touch[CONDUCTANCE] / numbers->sample_steps, behind = 0, resists = 0, *root = roots + i * rates;
+      if (spread(numbers, pair, touch, root)) {
+        for (int k = 0; k < rates; k++) {
+          double part = grown[k] / numbers->dt; /* of a state that fades, over the step */
+          behind += root[k] * part * state->narrow[pair * rates + k];
+          resists += root[k] * root[k] * (1 - part) / numbers->decay[k];
+        }
+        mean = 1 / (1 / mean + resists);
+      }
       for (int k = 0; k < patterns; k++) conductance[i * patterns + k] = mean;
-      difference[i * patterns] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0);
+      difference[i * patterns] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0) - behind;
     }
-    step(numbers, group, group->room, conductance, difference, group->room + group->n);
+    const double* through = step(numbers, group, group->room, conductance, difference, group->room + group->n);
+    for (int i = 0; i < group->pairs; i++) {
+      double* own = state->narrow + (group->pair[2 * i] * targets + group->pair[2 * i + 1]) * rates;
+      for (int k = 0; k < rates; k++)
+        own[k] = kept[k] * own[k] + grown[k] * roots[i * rates + k] * through[i * patterns];
+    }
     x = group->room;
     for (int i = 0; i < group->members; i++) {
       int t = group->member[i], size = states_of(numbers, work, t);

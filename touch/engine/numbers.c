@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 1, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
+enum { VERSION = 2, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
 
 static int digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -69,7 +69,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->pads, (size_t)tips * PAD},
       {&n->boxes, (size_t)objects * BOX},
       {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
-      {&n->small, (size_t)tips * n->targets},
+      {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
       {&n->seebeck, tips},
       {&n->warm, tips},
       {&n->tip_area, tips},

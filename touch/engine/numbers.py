@@ -17,11 +17,11 @@ from ...thermal.contact import LOG_LEAST, LOG_MOST, SEPARATION
 from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES, TO_MOMENTS, before
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
-from ..contacts import constrictions, pair_laws
-from ..heat import AFTERWARDS, resolution, tip_field, untouched
+from ..contacts import pair_laws
+from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
-_VERSION = 1
+_VERSION = 2
 
 
 def packed(
@@ -55,7 +55,7 @@ def packed(
         *((*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width) for pad in pads),
         *(_box(shape, film, ambient) for shape in shapes),
         np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
-        constrictions(pads, shapes),
+        *(narrow_of(pad, other, level) for pad in pads for other in (*(s.material for s in shapes), *pads)),
         [pad.stack.seebeck for pad in pads],
         [pad.temperature - ambient for pad in pads],
         [tip.area for tip in tips],

@@ -16,7 +16,7 @@ enum { IDLE = 2 };    /* places that an object remembers besides those in use */
 size_t heat_states(const Numbers* numbers) {
   size_t tips = numbers->tips, objects = numbers->objects, fields = numbers->targets;
   return 1 + tips * fields * COLUMNS + objects * (numbers->places * SLOT + 1) + tips * objects +
-         objects * numbers->states + tips * numbers->tip_states;
+         tips * fields * numbers->rates + objects * numbers->states + tips * numbers->tip_states;
 }
 
 State heat_state(const Numbers* numbers, double* at) {
@@ -25,7 +25,8 @@ State heat_state(const Numbers* numbers, double* at) {
   state.places = state.touches + tips * numbers->targets * COLUMNS;
   state.used = state.places + objects * numbers->places * SLOT;
   state.current = state.used + objects;
-  state.x = state.current + tips * objects;
+  state.narrow = state.current + tips * objects;
+  state.x = state.narrow + tips * numbers->targets * numbers->rates;
   return state;
 }
 

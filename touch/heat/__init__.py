@@ -3,6 +3,7 @@
 from .fields import AFTERWARDS, resolution, tip_field, untouched
 from .fixed_places import FixedPlaces
 from .joined import HeatBalance, HeatState, JoinedHeat
+from .narrow import narrow_of
 
 __all__ = [
     "AFTERWARDS",
@@ -10,6 +11,7 @@ __all__ = [
     "HeatBalance",
     "HeatState",
     "JoinedHeat",
+    "narrow_of",
     "resolution",
     "tip_field",
     "untouched",

@@ -20,7 +20,8 @@ from ...thermal.numerics import Array, as_like
 @dataclass(frozen=True, slots=True)
 class FixedPlaces:
     """Networks of fingertips at fixed places of objects, for steps of dt s; made by ThermalTouch.fixed_places.
-    `advance` is pure: it can be traced, compiled, vectorised and differentiated.
+    `advance` is pure: it can be traced, compiled, vectorised and differentiated. Contacts are the sensor's whole face
+    wide: what heat has still to spread under a narrower one (narrow.py) must be in its conductance.
 
     pairs: (fingertip, object), names, in the order of conductances. fingertips: labels, in the order of drops. tables,
     difference (N,) K: what a step needs. state: (K,) where the ThermalTouch was."""

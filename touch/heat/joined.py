@@ -38,6 +38,7 @@ from .fields import (
 )
 from .fixed_places import FixedPlaces, fixed_places
 from .march import march, settle
+from .narrow import STEPS, narrow_of
 from .systems import Pair, SystemPool, groups
 
 MOST_SYSTEMS = 4096
@@ -60,14 +61,15 @@ class HeatBalance(NamedTuple):
 class HeatState:
     """What the heat remembers. fields: (W, O) the objects' networks; materials: (W, O); current (W, F, O): each pair's
     place among its object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted
-    from the air's temperature. given (W, F, T) and air (W,): J so far. drop: (W, F) K. backs: of the fingertips with
-    thermostats of finite power or heaters of their own."""
+    from the air's temperature. narrow: (W, F, T, K) sqrt(J K) of narrow contacts. given (W, F, T) and air (W,): J so
+    far. drop: (W, F) K. backs: of the fingertips with thermostats of finite power or heaters of their own."""
 
     fields: tuple[tuple[BodyField, ...], ...]
     materials: tuple[tuple[Material, ...], ...]
     current: np.ndarray
     states: np.ndarray
     started: np.ndarray
+    narrow: np.ndarray
     given: np.ndarray
     air: np.ndarray
     drop: np.ndarray
@@ -124,6 +126,11 @@ class JoinedHeat:
         self._given, self._air = np.zeros((worlds, count, fields)), np.zeros(worlds)
         self._x = np.zeros((worlds, fields, max(self._rows.shape[1], 1)))
         self._started = np.zeros((worlds, objects))
+        self._narrow = np.zeros((worlds, count, fields, self._level.rates))
+        # narrow contacts: of each fingertip and what it meets, a material or a fingertip, by number, the table's number
+        self._table_of: dict[tuple[int, Material | int], int] = {}
+        self._tables = np.zeros((1, 2, STEPS, self._level.rates))
+        self._kinds = np.zeros((worlds, count, fields), np.int64)
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face."""
         self._backs = tuple(
@@ -144,12 +151,14 @@ class JoinedHeat:
                 warm = celsius[self._on[e]] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
             self._renumber(w)
+            self._know(w)
         rows = list(worlds)
         for back in self._backs:
             back.reset(rows)
             self._warm[rows, back.tip] = back.temperature[rows] - self._ambient
         self._current[rows], self._faces[rows], self._plan[rows] = -1, -1, -1
         self._closed[rows], self._stale[rows] = False, False
+        self._narrow[rows] = 0.0
         self._given[rows], self._air[rows], self.drop[rows] = 0.0, 0.0, 0.0
         self._started[rows] = self._held()[rows]
 
@@ -198,7 +207,12 @@ class JoinedHeat:
             self._held_by,
             self._rows,
             self._nets,
+            self._level.decay,
+            self._tables,
+            self._kinds,
+            self._widths,
             self._x,
+            self._narrow,
             self._given,
             self._air,
             self.drop,
@@ -313,6 +327,7 @@ class JoinedHeat:
             self._current.copy(),
             self._x.copy(),
             self._started.copy(),
+            self._narrow.copy(),
             self._given.copy(),
             self._air.copy(),
             self.drop.copy(),
@@ -329,6 +344,7 @@ class JoinedHeat:
         self._current[:] = state.current
         self._x = state.states.copy()
         self._given[:], self._air[:], self._started[:] = state.given, state.air, state.started
+        self._narrow[:] = state.narrow
         self.drop[:] = state.drop
         for back, own in zip(self._backs, state.backs, strict=True):
             back.set_state(own)
@@ -370,10 +386,24 @@ class JoinedHeat:
         self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
         in_use = {field for fields in self._fields for field in fields}
         self._known = {key: field for key, field in self._known.items() if field in in_use or not key[2]}
+        self._table_of.clear()
         for w in range(len(self._fields)):
             self._renumber(w)
+            self._know(w)
         self._plan[:] = -1
         self._stale[:] = True
+
+    def _know(self, w: int) -> None:
+        """Which tables of narrow contacts a world's pairs have."""
+        for f, pad in enumerate(self._pads):
+            for t, target in enumerate((*self._materials[w], *range(len(self._pads)))):
+                if (f, target) not in self._table_of:
+                    number = self._table_of[f, target] = len(self._table_of)
+                    if number == len(self._tables):
+                        self._tables = np.concatenate((self._tables, np.zeros_like(self._tables)))
+                    other = target if isinstance(target, Material) else self._pads[target]
+                    self._tables[number] = narrow_of(pad, other, self._level)
+                self._kinds[w, f, t] = self._table_of[f, target]
 
     def _renumber(self, w: int) -> None:
         """Which networks a world's fields have."""

@@ -10,7 +10,8 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ...thermal.network import POLES, StepArrays, advance, workspace
-from ..contacts import CONDUCTANCE, NORMAL, PLACE
+from ..contacts import AREA, CLOSED, CONDUCTANCE, LENGTH, NORMAL, PLACE
+from .narrow import spread
 from .systems import CONTACTS, FIELDS, FLOATS, GRAM, HEADER, OWN, PORTS, SHARED, STATES
 
 _PAIRS = len(POLES)
@@ -73,14 +74,19 @@ def settle(touches, boxes, widths, reach, faces, middles, new_faces, new_middles
 @njit(cache=True, error_model="numpy")
 def march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, numbers, grams, fade, held, rows, nets,
-    x, given, air, drop, busy,
+    decay, tables, kinds, widths, x, narrow, given, air, drop, busy,
 ):  # fmt: skip
     """One step of dt s of every world.
 
     touches: (W, F, T, columns), sums over so many substeps. warm: (W, F) K, the thermostats above the air. plan: (W, C)
     the groups' systems, -1 behind the last. fade: (networks, K), what a state keeps in a step alone; nets: (W, T) which
     of them each field is. held: (W, O) J of the mean's state. rows: (F, K) of the drop. x: (W, T, K), given: (W, F, T)
-    J and air: (W,) J go on in place; drop: (W, F) K is filled. busy: room (T,)."""
+    J and air: (W,) J go on in place; drop: (W, F) K is filled. busy: room (T,).
+
+    Narrow contacts (narrow.py): decay (R,) 1/s their rates, tables (N, 2, J, R), kinds (W, F, T) which of these each
+    contact has, widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Within a step
+    these follow the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses
+    in a resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
     most, wide = 1, 1
     for w in range(worlds):
@@ -91,7 +97,16 @@ def march(
             most, wide = max(most, integers[start + STATES]), max(wide, integers[start + PORTS])
     room = workspace(most, wide)
     state = np.empty(most)
+    tips, targets, rates = narrow.shape[1], narrow.shape[2], len(decay)
+    roots = np.zeros((tips * targets, rates))  # of a group's contacts, 0 where they are not narrow
+    kept = np.exp(-dt * decay)  # of a state, in a step
+    grown = (1 - kept) / decay  # s, of a flow, in a state after a step
     for w in range(worlds):
+        for f in range(tips):
+            for t in range(targets):
+                if not touches[w, f, t, CONDUCTANCE] > 0:
+                    for k in range(rates):
+                        narrow[w, f, t, k] *= kept[k]
         for b in range(fields):
             busy[b] = False
         for c in range(plan.shape[1]):
@@ -130,13 +145,30 @@ def march(
                 room.drive[j] = 0.0
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
+                touch, root = touches[w, f, t], roots[i]
+                conducts, behind = touch[CONDUCTANCE] / substeps, 0.0
+                area, length = touch[AREA] / touch[CLOSED], touch[LENGTH] / touch[AREA]
+                if spread(tables[kinds[w, f, t]], widths[f], area, length, root):
+                    resists = 0.0
+                    for k in range(rates):
+                        mean = grown[k] / dt  # of a state that fades, over the step
+                        behind += root[k] * mean * narrow[w, f, t, k]
+                        resists += root[k] * root[k] * (1 - mean) / decay[k]
+                    conducts = 1 / (1 / conducts + resists)
+                else:
+                    root[:] = 0.0
                 for k in range(patterns):
-                    room.weight[i * patterns + k] = touches[w, f, t, CONDUCTANCE] / substeps
-                room.drive[i * patterns] = warm[w, f] - (warm[w, t - objects] if t >= objects else 0.0)
+                    room.weight[i * patterns + k] = conducts
+                room.drive[i * patterns] = (
+                    warm[w, f] - (warm[w, t - objects] if t >= objects else 0.0) - behind
+                )
             air[w] += dt * advance(system, state, room.weight, room.drive, room.flow, room)
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
                 given[w, f, t] += dt * room.flow[i * patterns]
+                for k in range(rates):
+                    passing = roots[i, k] * room.flow[i * patterns]
+                    narrow[w, f, t, k] = kept[k] * narrow[w, f, t, k] + grown[k] * passing
             at = 0
             for i in range(integers[start + FIELDS]):
                 field, size = integers[listed + 2 * i], integers[listed + 2 * i + 1]
