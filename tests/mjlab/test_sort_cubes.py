@@ -1,4 +1,4 @@
-"""The task Thermograsp-Sort-Cube-Yam: made by its name, stepped, reset."""
+"""The task Thermograsp-Sort-Cube-Yam: made by its name, stepped, reset; its example starts training."""
 
 # this package is installed in the environment of make test-mjlab alone
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,6 +20,7 @@ from mjlab.envs import ManagerBasedRlEnv
 from mjlab.tasks.registry import load_env_cfg
 
 TASK = "Thermograsp-Sort-Cube-Yam"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "train_sort_cube.py"
 WORLDS = 8
 
 
@@ -69,3 +71,11 @@ def test_it_steps_and_pays_for_the_cube_that_is_asked_for(env: Any) -> None:
         assert at_goal[asked].all()
         if number == 0:
             assert not at_goal[~asked].any()
+
+
+def test_the_example_starts_training(tmp_path: Path) -> None:
+    words = ["--worlds", "4", "--iterations", "2", "--out", str(tmp_path)]
+    run = subprocess.run([sys.executable, EXAMPLE, *words], capture_output=True, text=True, timeout=3000)
+    assert run.returncode == 0, run.stderr
+    assert list(tmp_path.glob("model_*.pt"))
+    assert "Learning iteration" in run.stdout
