@@ -106,7 +106,7 @@ CASES = (
 )
 INDIRECT = {("envs/bodies/meshes.py", "vhacdx")}
 """Imported by another package for us: trimesh."""
-BY_MJLAB = {(f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "sort_cubes", "tasks")}
+BY_MJLAB = {(f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "keep_cube", "sort_cubes", "tasks")}
 """mjlab itself imports its tasks; the door goes on without it."""
 WHERE_INSTALLED = {("benchmarks/speed/fetch.py", "gymnasium_robotics")}
 """The benchmark leaves its rows out elsewhere."""
