@@ -5,6 +5,7 @@ from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, 
 from .glued import GluedContacts
 from .laws import constrictions, pair_laws
 from .reader import ContactReader
+from .round_pads import bends, curves
 from .sensors import SensorPlaces, prepare, sensor_places
 
 __all__ = [
@@ -21,7 +22,9 @@ __all__ = [
     "GluedContacts",
     "SensorPlaces",
     "array_contacts",
+    "bends",
     "constrictions",
+    "curves",
     "pair_laws",
     "prepare",
     "sensor_places",

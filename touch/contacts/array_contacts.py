@@ -22,15 +22,19 @@ import numpy as np
 from ...thermal.contact import ArrayLaws, array_conductance, array_contact, array_laws
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
+from .array_round import array_round_contact
 from .laws import constrictions, pair_laws
 from .reader import DEPTH, RIM
+from .round_pads import bends, curves
 
 
 @dataclass(frozen=True, slots=True)
 class ArrayContacts:
     """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
     half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
-    and axis of the geom's frame. small: (V, F, G) K m/W. numbers: (F, G) integers, the laws' of the first material."""
+    and axis of the geom's frame. small: (V, F, G) K m/W. numbers: (F, G) integers, the laws' of the first material.
+    bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) which pads are round. Flat ones have
+    the bend of a round one, whose contact is not used."""
 
     position: Array
     axes: Array
@@ -39,6 +43,9 @@ class ArrayContacts:
     laws: ArrayLaws
     small: Array
     numbers: Array
+    bend: Array
+    curve: Array
+    bulging: tuple[bool, ...]
 
     def read(
         self,
@@ -76,10 +83,13 @@ class ArrayContacts:
         law = self.laws.at(as_integers((material[:, None] * (tips * geoms) + self.numbers) * 3 + axis))
         law = ArrayLaws(*(table[:, :, :, None] for table in law))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
+        off = xp.where(last[..., None], at[..., 1:], 0.0 * at[..., 1:])
+        kept = self._kept(law, area, off, axes, geom_turn)
+        if any(self.bulging):
+            area, share, kept = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
         whole = xp.where(area > 0, area, area + self.width[:, None, None] ** 2)
         pressure = share / whole
-        off = xp.where(last[..., None], at[..., 1:], 0.0 * at[..., 1:])
-        area = area * self._kept(law, area, off, axes, geom_turn)
+        area = area * kept
         closed = (area > 0) & (pressure > 0)
         safe = xp.where(closed, area, area * 0 + self.width[:, None, None] ** 2)
         width = self.width[:, None, None]
@@ -89,6 +99,46 @@ class ArrayContacts:
         series = 1 / (h * safe) + small * (1 / side - 1 / width)
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
         return xp.where(closed, 1 / series, 0.0 * pressed), pressed
+
+    def _of_round(
+        self,
+        area: Array,
+        share: Array,
+        kept: Array,
+        pressed: Array,
+        off: Array,
+        axis: Array,
+        axes: Array,
+        geom_turn: Array,
+    ) -> tuple[Array, Array, Array]:
+        """Area, force and share on the face, (B, F, G, H) each, of round pads in place of flat ones'."""
+        xp = namespace_of(pressed)
+        of_axis = as_like(np.eye(3), pressed)[axis]  # (B, F, G, 3)
+        across = as_like(
+            np.array([[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]), pressed
+        )
+        curve = (of_axis[..., None] * self.curve).sum(-2)
+        # the geom's axes along the pad's y and z, then the two of them that lie across
+        seen = (geom_turn[:, None, :, :, :, None] * axes[:, :, None, :, None, 1:]).sum(-3)  # (B, F, G, 3, 2)
+        picked = (of_axis[..., None, None] * across).sum(-3)  # (B, F, G, 2, 3)
+        sides = (picked[..., None] * seen[..., None, :, :]).sum(-2)
+        touching = pressed > 0
+        force = xp.where(touching, pressed, 1.0 + 0.0 * pressed)
+        found = array_round_contact(
+            self.bend[:, None, None],
+            curve[..., None, :],
+            sides[..., None, :, :],
+            force,
+            off[..., None, 0],
+            off[..., None, 1],
+        )
+        bulging = (as_like(np.array(self.bulging, float), pressed) > 0)[:, None, None]
+        zero = 0.0 * pressed
+        told = xp.where(touching, found[0], zero), xp.where(touching, found[1], zero), found[2] + zero
+        area, share, kept = (
+            xp.where(bulging, new, old) for new, old in zip(told, (area, share, kept), strict=True)
+        )
+        return area, share, kept
 
     def _small(self, material: Array) -> Array:
         """(B, F, G) K m/W of each world's materials."""
@@ -128,6 +178,9 @@ def array_contacts(
     owner = [o for o, shape in enumerate(kinds[0]) for _ in shape.geoms]
     small = np.stack([constrictions(pads, shapes)[:, owner] for shapes in kinds])
     numbers = np.arange(len(pads) * len(owner)).reshape(len(pads), len(owner))
+    bulging = tuple(sum(pad.curvature) > 0 for pad in pads)
+    bend = bends(pads)
+    bend[~np.array(bulging), 0] = 1.0
     return ArrayContacts(
         position=as_like(np.array([pad.position for pad in pads]), like),
         axes=as_like(np.array([pad.axes for pad in pads]), like),
@@ -136,6 +189,9 @@ def array_contacts(
         laws=array_laws(laws.reshape(-1), like),
         small=as_like(small, like),
         numbers=as_integers(as_like(numbers.astype(float), like)),
+        bend=as_like(bend, like),
+        curve=as_like(curves(model, pads, kinds[0])[: len(owner)], like),
+        bulging=bulging,
     )
 
 

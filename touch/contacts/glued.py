@@ -17,6 +17,7 @@ from ...thermal.contact import conductance, contact
 from ..scene import PadPlace
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
 from .laws import SQUARE
+from .round_pads import CURVES, bends, round_contact
 
 BOND = 1e7
 """W/(m2 K) of the glue, a thousand times what a contact conducts: as good as perfect."""
@@ -33,9 +34,11 @@ class GluedContacts:
         self._laws = np.zeros((tips, len(elements)), CONTACT_LAW)
         self._small = np.zeros(len(elements))
         self._places = np.zeros((len(elements), 14))
+        self._bends, self._curves = bends(fingertips), np.zeros((len(elements), CURVES))
         for e, element in enumerate(elements):
             width = element.stack.width
             self._small[e] = SQUARE / element.stack.layers[0].conductivity
+            self._curves[e, 2:] = width / 2
             self._places[e] = (element.glued, width, *element.position, *element.axes.ravel())
             for f, tip in enumerate(fingertips):
                 metal = tip.bare and tip.skin is None
@@ -50,14 +53,16 @@ class GluedContacts:
         substeps: what a pad met of an object where an element lies it met of the element, and every element is on its
         object. A pad's conductance on an element is that of its mean force, where its last substep found it; on several
         elements it presses alike."""
-        _redirect(touches, substeps, self._places, self._laws, self._small, self._felt)
+        _redirect(
+            touches, substeps, self._places, self._laws, self._small, self._bends, self._curves, self._felt
+        )
         return self._felt
 
 
 @njit(cache=True, error_model="numpy")
-def _redirect(touches, substeps, places, laws, small, felt):
+def _redirect(touches, substeps, places, laws, small, bend, curve, felt):
     worlds, tips, targets = touches.shape[:3]
-    place = np.zeros(3)
+    place, sides = np.zeros(3), np.array([1.0, 0.0, 0.0, 1.0])
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):
@@ -74,7 +79,11 @@ def _redirect(touches, substeps, places, laws, small, felt):
                         met += _meets(touches[w, f, o], places[other], laws[f, other], place)
                 _meets(touches[w, f, o], places[e], laws[f, e], place)
                 law, width = laws[f, e], places[e, 1]
-                area, force = contact(law, touches[w, f, o, FORCE] / substeps / met, place)
+                pressed = touches[w, f, o, FORCE] / substeps / met
+                if bend[f, 0] + bend[f, 1] > 0:
+                    area, force, _, _ = round_contact(bend[f], curve[e], sides, pressed, 0.0, 0.0)
+                else:
+                    area, force = contact(law, pressed, place)
                 if area > 0 and force > 0:
                     side = min(np.sqrt(area), width)
                     series = 1 / (conductance(law, force / area) * area) + small[e] * (1 / side - 1 / width)

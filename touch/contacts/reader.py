@@ -44,6 +44,7 @@ from .memory import (
     integers,
     words,
 )
+from .round_pads import BEND, CURVES, bends, curves, round_contact
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it
@@ -84,6 +85,7 @@ class ContactReader:
         self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
+        self._bend, self._curve = bends(pads), curves(model, pads, shapes)
         self._pyramidal = int(model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
         self.set_materials(range(worlds), [tuple(shape.material for shape in shapes)] * worlds)
         self._of: mujoco.MjData | None = None
@@ -108,7 +110,10 @@ class ContactReader:
     def _point(self) -> None:
         """Says where the first world's arrays are."""
         self._own_laws = self._laws[self._which[0]]
-        arrays = self._role, self._pads, self._met, self._pushed, self.touches, self.beside
+        arrays = (
+            *(self._role, self._pads, self._met, self._bend, self._curve),
+            *(self._pushed, self.touches, self.beside),
+        )
         sizes = len(self._role), *self.touches.shape[1:3], len(self._met), self._pyramidal
         self._own = np.array([*(array.ctypes.data for array in arrays), *sizes], np.int64)
 
@@ -146,6 +151,8 @@ class ContactReader:
             self._met,
             self._laws,
             self._which,
+            self._bend,
+            self._curve,
             self._pushed,
             self.touches,
             self.beside,
@@ -163,13 +170,15 @@ class ContactReader:
 def _read(count, substeps, memory, own, laws):
     """Adds `count` contacts to touches and beside. memory: ContactMemory's table. own: addresses and sizes of a
     ContactReader's arrays, first those that are only read. Returns whether all forces are finite."""
-    tips, targets, things, pyramidal = own[7], own[8], own[9], own[10]
-    role = carray(words(own[0]), own[6])
+    tips, targets, things, pyramidal = own[9], own[10], own[11], own[12]
+    role = carray(words(own[0]), own[8])
     pads = carray(floats(own[1]), (tips, _PAD))
     met = carray(words(own[2]), (things, 3))
-    pushed = carray(floats(own[3]), (tips, things, 3))  # room for forces and moments
-    touches = carray(floats(own[4]), (tips, targets, COLUMNS))
-    beside = carray(floats(own[5]), tips)
+    bend = carray(floats(own[3]), (tips, BEND))
+    curve = carray(floats(own[4]), (things, 3, CURVES))
+    pushed = carray(floats(own[5]), (tips, things, 3))  # room for forces and moments
+    touches = carray(floats(own[6]), (tips, targets, COLUMNS))
+    beside = carray(floats(own[7]), tips)
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -222,14 +231,14 @@ def _read(count, substeps, memory, own, laws):
         else:
             beside[first] += weight * force
     if any_met:
-        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, touches, weight)
+        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, bend, curve, pushed, touches, weight)
     return True
 
 
 @njit(cache=True, error_model="numpy")
 def _sense(
     record, pairs, poses, geoms, turns, offsets, bodies, all_geoms,
-    pads, met, laws, which, pushed, touches, beside, broken,
+    pads, met, laws, which, bend, curve, pushed, touches, beside, broken,
 ):  # fmt: skip
     """_read of recorded sensors, world by world."""
     tips, things = len(pads), len(met)
@@ -288,7 +297,9 @@ def _sense(
             _press(data, at, pads, frames, f, thing, things, pushed, beside[w])
         if any_met:
             own = laws[which[w]]
-            _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, own, pushed, touches[w], 1.0)
+            _feel(
+                xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, own, bend, curve, pushed, touches[w], 1.0
+            )
 
 
 @njit(cache=True, error_model="numpy")
@@ -364,10 +375,10 @@ def _within(pad, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
-def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, touches, weight):
+def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, bend, curve, pushed, touches, weight):
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)
-    place = np.empty(3)
+    place, sides = np.empty(3), np.empty(4)
     for f in range(tips):
         middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:]
         last = -1  # target that was touched; an object's geoms follow one another
@@ -397,11 +408,23 @@ def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, tou
                     place[1] += away * side_y[k]
                     place[2] += away * side_z[k]
             law = laws[f, g, axis]
-            area, share = contact(law, force, place)
+            bulging = bend[f, 0] + bend[f, 1] > 0
+            if geom < 0:
+                bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
+            if bulging:
+                _sides(geom_xmat, frames, f, geom, g - (things - tips), axis, sides)
+                area, share, kept, longer = round_contact(
+                    bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                )
+            else:
+                area, share = contact(law, force, place)
+                kept, longer = 1.0, 1.0
             touch = touches[f, target]
             if area > 0 and share > 0:
                 pressure = share / area
-                if law.shape == CYLINDER:
+                if bulging:
+                    area *= kept
+                elif law.shape == CYLINDER:
                     # MuJoCo may name any point of the line of contact: only what is across it is heard.
                     along_y, along_z = 0.0, 0.0
                     for k in range(3):
@@ -418,7 +441,9 @@ def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, tou
                     area *= _kept(pushed[f, g, 1] / force, reach, half)
                     area *= _kept(pushed[f, g, 2] / force, reach, half)
                 if area > 0:
-                    long = law.face_length if law.shape == CYLINDER else math.sqrt(area)
+                    long = (
+                        law.face_length if law.shape == CYLINDER and not bulging else math.sqrt(area * longer)
+                    )
                     touch[CONDUCTANCE] += weight * conductance(law, pressure) * area
                     touch[AREA] += weight * area
                     touch[LENGTH] += weight * area * long
@@ -437,3 +462,22 @@ def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, pushed, tou
 def _kept(at, reach, half):
     """Share of an interval of half width reach round `at` that is within -half to half."""
     return min(max(min(half, at + reach) - max(-half, at - reach), 0.0) / (2 * reach), 1.0)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _sides(geom_xmat, frames, f, geom, other, axis, sides):
+    """Fills sides (4,) with where the two axes of what a pad meets that lie across point, along the pad's y and z: of a
+    geom, or of the other fingertip's pad."""
+    n = 0
+    for i in range(3):
+        if geom >= 0 and i == axis:
+            continue
+        if geom < 0 and i == 0:
+            continue
+        y, z = 0.0, 0.0
+        for k in range(3):
+            points = geom_xmat[geom, 3 * k + i] if geom >= 0 else frames[other, 3 + 3 * i + k]
+            y += points * frames[f, 6 + k]
+            z += points * frames[f, 9 + k]
+        sides[2 * n], sides[2 * n + 1] = y, z
+        n += 1

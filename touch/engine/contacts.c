@@ -74,10 +74,32 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       for (int j = 1; j < 3; j++) place[j] += (at.middle[k] - other.middle[k]) * at.axes[3 * k + j];
   }
   const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
-  heat_contact(law, force, place, &area, &share);
+  const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
+  bool bulging = bend[0] + bend[1] > 0 || (!turn && curve[0] + curve[1] > 0);
+  double on_face = 1, longer = 1;
+  if (bulging) {
+    double sides[4] = {0};
+    Pose other = at;
+    if (!turn) other = pose(numbers, work, d, g - numbers->geoms);
+    for (int i = 0, n = 0; i < 3; i++) {
+      if (i == (turn ? axis : 0)) continue;
+      for (int k = 0; k < 3; k++) {
+        double points = turn ? turn[3 * k + i] : other.axes[3 * k + i];
+        sides[2 * n] += points * at.axes[3 * k + 1];
+        sides[2 * n + 1] += points * at.axes[3 * k + 2];
+      }
+      n++;
+    }
+    on_face = heat_round_contact(bend, curve, sides, force, pushed[1] / force, pushed[2] / force, &area, &share,
+                                 &longer);
+  } else {
+    heat_contact(law, force, place, &area, &share);
+  }
   if (area > 0 && share > 0) {
     double pressure = share / area;
-    if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
+    if (bulging) {
+      area *= on_face;
+    } else if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
       double along_y = 0, along_z = 0, across = 0;
       for (int k = 0; k < 3; k++) {
         along_y += at.axes[3 * k + 1] * turn[3 * k + 2];
@@ -94,7 +116,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     if (area > 0) {
       touch[CONDUCTANCE] += heat_conductance(law, numbers, pressure) * area;
       touch[AREA] += area;
-      touch[LENGTH] += area * (law->shape == SHAPE_CYLINDER ? law->face_length : sqrt(area));
+      touch[LENGTH] += area * (!bulging && law->shape == SHAPE_CYLINDER ? law->face_length : sqrt(area * longer));
       if (!again) touch[CLOSED] += 1;
       again = true;
     }

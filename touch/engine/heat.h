@@ -22,6 +22,8 @@ enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, FIRS
 /* a place: face of the box, middle m along its two axes, fingertip */
 enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
 enum { SHAPE_FLAT, SHAPE_CYLINDER, SHAPE_SPHERE };
+/* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
+enum { BEND = 7, CURVES = 4 };
 
 typedef struct {
   double area, share, size[2], across[2], stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
@@ -47,6 +49,7 @@ typedef struct {
   double timestep, dt, least;
   const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double *seebeck, *warm;  /* V/K; K above the air */
+  const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
   const double* laws;            /* Law of each pad on each thing, by the axis of its frame */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
   const double *separation, *separation_range;
@@ -93,6 +96,8 @@ double heat_voltage(const Numbers* numbers, const State* state, int tip);
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
+double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
+                          double* area, double* share, double* longer);
 
 void heat_network(const Numbers* numbers, int object, Network* network, double* room);
 size_t heat_network_room(const Numbers* numbers);

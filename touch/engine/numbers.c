@@ -70,6 +70,8 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->boxes, (size_t)objects * BOX},
       {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
       {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
+      {&n->bends, (size_t)tips * BEND},
+      {&n->curves, (size_t)things * 3 * CURVES},
       {&n->seebeck, tips},
       {&n->warm, tips},
       {&n->tip_area, tips},

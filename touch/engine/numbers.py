@@ -17,7 +17,7 @@ from ...thermal.contact import LOG_LEAST, LOG_MOST, SEPARATION
 from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES, TO_MOMENTS, before
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
-from ..contacts import pair_laws
+from ..contacts import bends, curves, pair_laws
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
@@ -56,6 +56,8 @@ def packed(
         *(_box(shape, film, ambient) for shape in shapes),
         np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
         *(narrow_of(pad, other, level) for pad in pads for other in (*(s.material for s in shapes), *pads)),
+        bends(pads),
+        curves(model, pads, shapes),
         [pad.stack.seebeck for pad in pads],
         [pad.temperature - ambient for pad in pads],
         [tip.area for tip in tips],

@@ -25,6 +25,7 @@ SMALLEST = 4e-6  # m2, of a face that can be a pad
 _METAL = 1.74e-3  # m, of the seed's thermostat plate
 _STEP = 0.01  # s; what is in front of a heater does not depend on it
 _DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
+_WITHIN = 0.8  # of a round geom's radius, half the width of its pad
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +38,9 @@ class Fingertip:
     conductance is its own; round bodies sink in as into a pad of silicone, with or without it.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
-    objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it. A site's
-    pad lies in its y and z and looks along its x. Or it is given in the frame of the body that carries it: position
-    (3,) m and normal (3,) together, and size (2,) m."""
+    objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it, and as
+    curved as that is there. A site's pad lies in its y and z and looks along its x. Or it is given in the frame of the
+    body that carries it, and flat: position (3,) m and normal (3,) together, and size (2,) m."""
 
     name: str
     position: tuple[float, float, float] | None = None
@@ -75,7 +76,8 @@ class PadPlace:
     stack: the sensor, or what of it is in front of its heater. temperature: °C of the thermostat or, at first, of the
     heater's place. heated: the whole sensor, where it has a heater of its own. bare: the thermostat
     itself, no sensor. glued: the number of the object that it is an element on, None for a fingertip. thermostat: of
-    finite power, None for an ideal one. skin: over the sensor's face, whose last layer it is, None for a bare one."""
+    finite power, None for an ideal one. skin: over the sensor's face, whose last layer it is, None for a bare one.
+    curvature: 1/m along y and z, of a pad that bulges out."""
 
     label: str
     body: int
@@ -90,6 +92,7 @@ class PadPlace:
     glued: int | None = None
     thermostat: Thermostat | None = None
     skin: Skin | None = None
+    curvature: tuple[float, float] = (0.0, 0.0)
 
     @property
     def face(self) -> Surface:
@@ -170,7 +173,7 @@ def _pad(
         if kind == "body"
         else int((model.geom_bodyid if kind == "geom" else model.site_bodyid)[number])
     )
-    turn = data.xmat[body].reshape(3, 3)
+    turn, curvature = data.xmat[body].reshape(3, 3), (0.0, 0.0)
     if one.position is not None:
         normal = np.asarray(one.normal, float)
         found = np.asarray(one.position, float), frame(normal / np.linalg.norm(normal)), np.full(2, _DEFAULT)
@@ -187,7 +190,10 @@ def _pad(
         for goal in towards:
             away = turn.T @ (goal - middle)
             if np.linalg.norm(away) > 1e-6:
-                found = _face(model, geoms, away / np.linalg.norm(away))
+                away = away / np.linalg.norm(away)
+                found = _face(model, geoms, away)
+                if found is None and (bulge := _bulge(model, geoms, away)) is not None:
+                    *found, curvature = bulge
             if found is not None:
                 break
     if found is None:
@@ -224,6 +230,7 @@ def _pad(
         None,
         one.thermostat,
         skin,
+        curvature,
     )
 
 
@@ -249,36 +256,62 @@ def _face(
         best = int(np.argmin(np.round(spans.prod(axis=1), 12)))
         axes = np.column_stack((axes[:, 0], axes[:, 1:] @ turns[best]))
         return face.centre, axes, spans[best]
-    round_kinds = (
-        mujoco.mjtGeom.mjGEOM_SPHERE,
-        mujoco.mjtGeom.mjGEOM_CAPSULE,
-        mujoco.mjtGeom.mjGEOM_ELLIPSOID,
-    )
+    return None
+
+
+_Bulge = tuple[np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]  # position, axes, size, curvature
+
+
+def _bulge(model: mujoco.MjModel, geoms: tuple[int, ...], direction: np.ndarray) -> _Bulge | None:
+    """Of the pad where a direction of the body's frame leaves the first round geom."""
     for geom in geoms:
-        if mujoco.mjtGeom(int(model.geom_type[geom])) in round_kinds:
+        if mujoco.mjtGeom(int(model.geom_type[geom])) in _ROUND_KINDS:
             return _round(model, geom, direction)
     return None
 
 
-def _round(
-    model: mujoco.MjModel, geom: int, direction: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The pad of a round geom: where the direction leaves it, as wide as it is."""
+_ROUND_KINDS = (
+    mujoco.mjtGeom.mjGEOM_SPHERE,
+    mujoco.mjtGeom.mjGEOM_CAPSULE,
+    mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+    mujoco.mjtGeom.mjGEOM_CYLINDER,
+)
+
+
+def _round(model: mujoco.MjModel, geom: int, direction: np.ndarray) -> _Bulge:
+    """On a ball the pad is as wide as what looks within 53 degrees of the direction, on a rod as long as that is
+    straight."""
+    kinds, kind = mujoco.mjtGeom, model.geom_type[geom]
     turn, size = rotation(model.geom_quat[geom]), model.geom_size[geom]
-    own = turn.T @ direction
-    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE:
-        out = np.array([own[0], own[1], 0.0]) if np.hypot(own[0], own[1]) > 0.5 else own
-        out = out / np.linalg.norm(out)
-        point, wide = size[0] * out, np.array([1.6 * size[0]] * 2)
-        if abs(out[2]) > 0:
-            point[2] += math.copysign(size[1], out[2])
-    elif model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_SPHERE:
-        out, point, wide = own, size[0] * own, np.array([1.6 * size[0]] * 2)
-    else:
-        point = own / np.sqrt(np.sum((own / size) ** 2))
-        out = point / size**2
-        out, wide = out / np.linalg.norm(out), np.array([1.6 * float(size.min())] * 2)
-    return model.geom_pos[geom] + turn @ point, frame(turn @ out), wide
+    own, at = turn.T @ direction, model.geom_pos[geom]
+    radius, half = float(size[0]), float(size[1])
+    side = float(np.hypot(own[0], own[1]))
+    rod = kind == kinds.mjGEOM_CYLINDER or (kind == kinds.mjGEOM_CAPSULE and side > 0.5)
+    if rod and side > 1e-6:
+        out = np.array([own[0], own[1], 0.0]) / side
+        # a short capsule is as straight along its length as the ellipsoid of its size
+        short = kind == kinds.mjGEOM_CAPSULE and half < _WITHIN * radius
+        straight = radius / (radius + half) ** 2 if short else 0.0
+        axes = np.column_stack((turn @ out, turn @ np.cross([0.0, 0.0, 1.0], out), turn[:, 2]))
+        wide = 2 * np.array([_WITHIN * radius, _WITHIN * radius if short else half])
+        return at + turn @ (radius * out), axes, wide, (1 / radius, straight)
+    if kind == kinds.mjGEOM_CAPSULE:
+        point = radius * own + [0.0, 0.0, math.copysign(half, own[2])]
+        return at + turn @ point, frame(direction), np.full(2, 2 * _WITHIN * radius), (1 / radius, 1 / radius)
+    axes_of = size if kind == kinds.mjGEOM_ELLIPSOID else np.full(3, radius)
+    point = own / np.sqrt(np.sum((own / axes_of) ** 2))
+    steep = point / axes_of**2
+    out = turn @ (steep / np.linalg.norm(steep))
+    axes = frame(out)
+    along = turn.T @ axes[:, 1:]
+    bent = along.T @ (along / axes_of[:, None] ** 2) / np.linalg.norm(steep)
+    if kind == kinds.mjGEOM_ELLIPSOID:  # y and z where it is bent the most and the least
+        turned = np.linalg.eigh(bent)[1][:, ::-1]
+        turned[:, 1] *= np.linalg.det(turned)
+        axes = np.column_stack((out, axes[:, 1:] @ turned))
+        bent = turned.T @ bent @ turned
+    first, second = (float(bent[i, i]) for i in range(2))
+    return at + turn @ point, axes, np.full(2, 2 * _WITHIN * float(axes_of.min())), (first, second)
 
 
 def frame(normal: np.ndarray) -> np.ndarray:

@@ -1,0 +1,240 @@
+"""Fingertips that are round: the contact of two curved bodies by closed forms and integrals, in whatever scene."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from thermograsp.thermal import IDEAL, Pad
+from thermograsp.thermal.contact import cylinder_contact, sphere_contact
+from thermograsp.touch import Fingertip, ThermalTouch, install
+from thermograsp.touch.contacts.array_round import array_round_contact
+from thermograsp.touch.contacts.round_pads import round_contact
+from thermograsp.touch.scene import bodies, pads
+
+PAD = Pad()
+STIFFNESS = PAD.foundation_modulus / PAD.thickness
+ALONG = np.array([1.0, 0.0, 0.0, 1.0])
+WIDE = 10.0
+
+
+def bend(first: float, second: float, half: float = PAD.width / 2, face: float = PAD.face / 2) -> np.ndarray:
+    return np.array([first, second, STIFFNESS, half, half, face, face])
+
+
+def turned(degrees: float) -> np.ndarray:
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return np.array([c, s, -s, c])
+
+
+FORCES = 0.05, 0.5, 5.0, 50.0
+
+
+@pytest.mark.parametrize("force", FORCES)
+def test_a_ball_on_a_ball_is_one_of_their_summed_curvatures_on_a_plane(force: float) -> None:
+    """sphere_contact's disc is cut off by the face as round_contact's ellipse is; both solve one load."""
+    found = round_contact(bend(120.0, 120.0), np.array([30.0, 30.0, WIDE, WIDE]), ALONG, force, 0.0, 0.0)
+    expected = sphere_contact(PAD, force, 1 / 150.0)
+    assert found[0] == pytest.approx(float(expected.face), rel=1e-9)
+    assert found[1] == pytest.approx(float(expected.face_force), rel=1e-9)
+    assert found[2] == 1.0 and found[3] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("force", FORCES)
+def test_rods_along_one_another_meet_in_a_line_and_across_in_a_spot(force: float) -> None:
+    rod, other = bend(100.0, 0.0), np.array([30.0, 0.0, WIDE, 0.05])
+    along = round_contact(rod, other, ALONG, force, 0.0, 0.0)
+    line = cylinder_contact(PAD, force, 1 / 130.0)
+    assert along[0] == pytest.approx(float(line.face), rel=1e-4)  # what is straight counts as a little curved
+    across = round_contact(rod, other, turned(90.0), force, 0.0, 0.0)
+    if force < 1:  # an ellipse within the face: area 2 pi D/sqrt(k1 k2), load pi D^2 K/(d sqrt(k1 k2))
+        root = math.sqrt(100.0 * 30.0)
+        assert across[0] == pytest.approx(2 * math.sqrt(math.pi * force / (STIFFNESS * root)), rel=1e-9)
+        assert across[1] == pytest.approx(force, rel=1e-9)
+        assert across[0] < along[0]
+        assert across[3] == pytest.approx(math.sqrt(100.0 / 30.0), rel=1e-9)
+        assert along[3] > 4
+
+
+@pytest.mark.parametrize("degrees", [0.0, 20.0, 45.0, 70.0])
+def test_crossed_rods_follow_hertz_s_curvatures(degrees: float) -> None:
+    """k1 k2 = A B sin^2 of the angle between two cylinders of curvatures A and B (Johnson, section 4.1)."""
+    rod, other = bend(100.0, 0.0, WIDE, WIDE), np.array([60.0, 0.0, WIDE, WIDE])
+    force = 1e-3
+    area = round_contact(rod, other, turned(degrees + 10), force, 0.0, 0.0)[0]
+    root = math.sqrt(100.0 * 60.0) * math.sin(math.radians(degrees + 10))
+    assert area == pytest.approx(2 * math.sqrt(math.pi * force / (STIFFNESS * root)), rel=1e-9)
+
+
+@pytest.mark.parametrize("force", FORCES)
+@pytest.mark.parametrize("curvatures", [(300.0, 40.0), (90.0, 1.0), (500.0, 500.0)])
+def test_area_and_load_are_integrals_of_the_pressure(force: float, curvatures: tuple[float, float]) -> None:
+    """By summing the pressure over 2000 x 2000 cells of the pad; D from the load that round_contact was given."""
+    half, face = 0.006, 0.004
+    area, load, _, _ = round_contact(
+        bend(*curvatures, half, face), np.array([0.0, 0.0, WIDE, WIDE]), ALONG, force, 0, 0
+    )
+    middles = (np.arange(2000) + 0.5) / 2000 * half
+    gap = middles[:, None] ** 2 * curvatures[0] / 2 + middles[None] ** 2 * curvatures[1] / 2
+    cell = 4 * STIFFNESS * (half / 2000) ** 2
+
+    def whole(depth: float) -> float:
+        return float(np.maximum(depth - gap, 0.0).sum()) * cell
+
+    low, high = 0.0, 0.02
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if whole(middle) < force else (low, middle)
+    on = np.ix_(middles < face, middles < face)
+    assert load == pytest.approx(float(np.maximum(low - gap[on], 0.0).sum()) * cell, rel=2e-3)
+    assert area == pytest.approx(float((gap[on] < low).sum()) * 4 * (half / 2000) ** 2, rel=5e-3)
+
+
+def test_arrays_do_as_compiled_code_does() -> None:
+    rng = np.random.default_rng(0)
+    count = 500
+    bend_ = np.column_stack(
+        (rng.uniform(0, 400, (count, 2)) * (rng.random((count, 2)) < 0.7), np.full(count, STIFFNESS),
+         rng.uniform(0.003, 0.01, (count, 2)), rng.uniform(0.002, 0.003, (count, 2)))
+    )  # fmt: skip
+    bend_[:, 0] += 1.0
+    curve = np.column_stack(
+        (
+            rng.uniform(0, 100, (count, 2)) * (rng.random((count, 2)) < 0.5),
+            rng.uniform(0.002, 0.1, (count, 2)),
+        )
+    )
+    sides = np.array([turned(angle) for angle in rng.uniform(-180, 180, count)])
+    force = 10 ** rng.uniform(-3, 2, count)
+    y, z = rng.uniform(-0.006, 0.006, (2, count))
+    expected = np.array([round_contact(*row) for row in zip(bend_, curve, sides, force, y, z, strict=True)])
+    found = np.stack(array_round_contact(bend_, curve, sides.reshape(count, 2, 2), force, y, z), axis=1)
+    np.testing.assert_allclose(found[:, :2], expected[:, :2], rtol=1e-7)
+    np.testing.assert_allclose(found[:, 2], expected[:, 2], rtol=1e-7, atol=1e-12)
+
+
+TIPS = {
+    "ball": '<geom name="tip" type="sphere" size=".008" mass=".1"/>',
+    "capsule": '<geom name="tip" type="capsule" size=".008 .012" euler="0 90 0" mass=".1"/>',
+    "short capsule": '<geom name="tip" type="capsule" size=".008 .003" euler="0 90 0" mass=".1"/>',
+    "upright capsule": '<geom name="tip" type="capsule" size=".008 .012" mass=".1"/>',
+    "egg": '<geom name="tip" type="ellipsoid" size=".008 .012 .01" mass=".1"/>',
+    "rod": '<geom name="tip" type="cylinder" size=".008 .01" euler="0 90 0" mass=".1"/>',
+}
+OBJECTS = {
+    "block": ('<geom name="thing" type="box" size=".02 .02 .02"/>', 0.02),
+    "ball": ('<geom name="thing" type="sphere" size=".025"/>', 0.025),
+    "can": ('<geom name="thing" type="cylinder" size=".03 .04" euler="90 0 0"/>', 0.03),
+    "can along": ('<geom name="thing" type="cylinder" size=".03 .04" euler="0 90 0"/>', 0.03),
+}
+SCENE = """
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <body name="object">{thing}</body>
+  <body name="finger" pos="0 0 {height}"><joint name="down" type="slide" axis="0 0 -1" damping="20"/>{tip}</body>
+</worldbody><actuator><motor joint="down"/></actuator></mujoco>"""
+
+
+def scene(tip: str, thing: str) -> str:
+    geom, top = OBJECTS[thing]
+    height = top + (0.0225 if tip == "upright capsule" else 0.0125 if tip == "egg" else 0.0085)
+    return SCENE.format(tip=TIPS[tip], thing=geom, height=height)
+
+
+@pytest.mark.parametrize(
+    ("tip", "size", "bent"),
+    [
+        ("ball", (0.0128, 0.0128), (125.0, 125.0)),
+        ("capsule", (0.0128, 0.024), (125.0, 0.0)),
+        ("short capsule", (0.0128, 0.0128), (125.0, 0.008 / 0.011**2)),
+        ("upright capsule", (0.0128, 0.0128), (125.0, 125.0)),
+        ("egg", (0.0128, 0.0128), (0.01 / 0.008**2, 0.01 / 0.012**2)),
+        ("rod", (0.0128, 0.02), (125.0, 0.0)),
+    ],
+)
+def test_a_round_fingertip_s_pad_is_as_curved_as_it(
+    tip: str, size: tuple[float, float], bent: tuple[float, float]
+) -> None:
+    model = mujoco.MjModel.from_xml_string(scene(tip, "block"))
+    (pad,) = pads(model, {"tip": "tip"}, bodies(model, {"object": "glass"}, 24.0))
+    np.testing.assert_allclose(pad.size, size, atol=1e-12)
+    np.testing.assert_allclose(pad.curvature, bent, rtol=1e-9)
+    np.testing.assert_allclose(pad.axes[:, 0], (0, 0, -1), atol=1e-9)
+    np.testing.assert_allclose(pad.axes.T @ pad.axes, np.eye(3), atol=1e-12)
+    assert np.linalg.det(pad.axes) == pytest.approx(1.0)
+    (flat,) = pads(
+        model,
+        {"tip": Fingertip("tip", tuple(pad.position), (0, 0, -1), (0.01, 0.01))},
+        bodies(model, {"object": "glass"}, 24.0),
+    )
+    assert flat.curvature == (0.0, 0.0)
+
+
+def dropped(tip: str | Fingertip, geometry: str, thing: str = "block") -> float:
+    model = mujoco.MjModel.from_xml_string(scene(geometry, thing))
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"object": "aluminium"}, chain=IDEAL)
+    data.ctrl[0], reading = 5.0, touch.reading
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+    assert reading.force[0] == pytest.approx(5.0, rel=0.05)
+    return float(reading.temperature_drop[0])
+
+
+def test_a_round_fingertip_feels_less_than_a_flat_one_and_the_less_the_rounder_the_object() -> None:
+    flat = dropped(Fingertip("tip", (0, 0, -0.008), (0, 0, -1), (0.0128, 0.0128)), "ball")
+    on_block, on_ball = dropped("tip", "ball"), dropped("tip", "ball", "ball")
+    assert flat > 1.2 * on_block > 1.2 * on_ball > 0.1
+
+
+def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> None:
+    """Along either, 9 of its 24 mm press on the sensor's face, with 9/24 of the force; across, all of it does."""
+    on_block, along, across = (dropped("tip", "capsule", thing) for thing in ("block", "can along", "can"))
+    assert across > 1.2 * along
+    assert across > on_block > along
+    rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045])
+    can = np.array([1 / 0.03, 0.0, WIDE, 0.04])
+    assert round_contact(rod, can, ALONG, 5.0, 0.0, 0.0)[1] == pytest.approx(5.0 * 9 / 24, rel=1e-4)
+    assert round_contact(rod, can, turned(90.0), 5.0, 0.0, 0.0)[1] == pytest.approx(5.0, rel=1e-3)
+
+
+@pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler")
+@pytest.mark.parametrize("tip", TIPS)
+@pytest.mark.parametrize("thing", OBJECTS)
+def test_inside_mujoco_s_step_it_is_the_same(tip: str, thing: str) -> None:
+    words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
+    model = install(mujoco.MjSpec.from_string(scene(tip, thing)), **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    data.ctrl[0], reading = 5.0, touch.reading
+    for _ in range(100):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+    mujoco.mj_forward(model, data)
+    drop = data.sensor("heat").data / touch._pads[0].stack.seebeck
+    assert reading.touching == ("object",)
+    assert drop == pytest.approx(reading.temperature_drop, abs=1e-9)
+    assert drop[0] > 0.02
+
+
+def test_two_round_fingertips_feel_one_another() -> None:
+    other = '<geom name="thing" type="capsule" size=".01 .02" euler="0 90 0"/>'
+    other += '<geom name="far" type="box" size=".01 .01 .01" pos=".2 0 0"/>'
+    model = mujoco.MjModel.from_xml_string(SCENE.format(tip=TIPS["ball"], thing=other, height=0.0185))
+    data = mujoco.MjData(model)
+    fingers = {"tip": "tip", "other": Fingertip("thing", temperature=30.0)}
+    touch = ThermalTouch(model, fingertips=fingers, objects={"far": "glass"}, chain=IDEAL)
+    data.ctrl[0], reading = 5.0, touch.reading
+    for _ in range(300):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+    assert reading.touching == ("other", "tip")
+    assert reading.temperature_drop[0] > 0.05 > -0.05 > reading.temperature_drop[1]

@@ -1,0 +1,147 @@
+"""Fingertips that are round themselves: balls, capsules, ellipsoids, cylinders that touch with their sides.
+
+Two bodies of principal curvatures touch as one of their sum touches a flat one (Johnson, Contact Mechanics, section
+4.1): the gap is x^2 k1/2 + y^2 k2/2, with k1 >= k2 (1/m) of the sum of both bodies' curvatures in the tangent plane,
+which need not lie along one another. Sunk in by D into the pad, an elastic foundation as in thermal/contact/area.py,
+p = K/d (D - x^2 k1/2 - y^2 k2/2) over the ellipse of half axes sqrt(2 D/k1) and sqrt(2 D/k2), cut off where either body
+ends; the sensor's face takes what of it lies on it.
+
+F: fingertips, N: what a pad may meet.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ...thermal import Pad
+from ..scene import BodyShape, PadPlace
+
+BEND, CURVES = 7, 4
+"""Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half its sides m, and half the face's m along them. Of
+what it meets: curvatures 1/m and half lengths m along two axes of its frame."""
+_WIDE = 10.0  # m, half of what no pad reaches the end of
+LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
+NEWTON_STEPS = 8
+
+
+def bends(pads: Sequence[PadPlace]) -> np.ndarray:
+    """(F, BEND)."""
+    rows = np.zeros((len(pads), BEND))
+    for row, pad in zip(rows, pads, strict=True):
+        sheet = Pad(width=math.sqrt(pad.size.prod()), face=min(pad.stack.width, math.sqrt(pad.size.prod())))
+        stiffness = sheet.foundation_modulus / sheet.thickness
+        row[:] = (*pad.curvature, stiffness, *(pad.size / 2), *np.minimum(pad.stack.width, pad.size) / 2)
+    return rows
+
+
+def curves(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.ndarray:
+    """(N, 3, CURVES): of the objects' geoms, by the axis of their frame that the pad looks along, along the other two
+    in their order; and of the pads, along their y and z."""
+    geoms = [geom for shape in shapes for geom in shape.geoms]
+    rows = np.zeros((len(geoms) + len(pads), 3, CURVES))
+    for n, geom in enumerate(geoms):
+        for axis in range(3):
+            rows[n, axis] = _geom(model, geom, axis)
+    for n, pad in enumerate(pads, len(geoms)):
+        rows[n] = (*pad.curvature, *(pad.size / 2))
+    return rows
+
+
+def _geom(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float, float, float]:
+    kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom].tolist()
+    kinds, others = mujoco.mjtGeom, [i for i in range(3) if i != axis]
+    if kind == kinds.mjGEOM_SPHERE:
+        return (1 / size[0], 1 / size[0], _WIDE, _WIDE)
+    if kind == kinds.mjGEOM_ELLIPSOID:
+        first, second = (size[axis] / size[i] ** 2 for i in others)
+        return (first, second, _WIDE, _WIDE)
+    if kind in (kinds.mjGEOM_CYLINDER, kinds.mjGEOM_CAPSULE) and axis < 2:
+        return (1 / size[0], 0.0, _WIDE, size[1])
+    if kind == kinds.mjGEOM_CAPSULE:
+        return (1 / size[0], 1 / size[0], _WIDE, _WIDE)
+    if kind == kinds.mjGEOM_CYLINDER:
+        return (0.0, 0.0, size[0], size[0])
+    if kind == kinds.mjGEOM_BOX:
+        return (0.0, 0.0, size[others[0]], size[others[1]])
+    return (0.0, 0.0, _WIDE, _WIDE)
+
+
+@njit(cache=True, error_model="numpy")
+def round_contact(bend, curve, sides, force, y, z):
+    """(area m2 and force N on the face were it met in its middle, share of that area that is on it, how many times as
+    long as broad it is) at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (4,) the
+    other's first axis along the pad's y and z, then its second one."""
+    first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2]
+    both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3]
+    second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3]
+    middle, apart = (first + second) / 2, math.hypot((first - second) / 2, both)
+    most, least = middle + apart, max(middle - apart, LEAST * (middle + apart))
+    # the direction of the larger curvature, and how much of the pad's and the other's first axes lies along it
+    own = (1 + (first - second) / 2 / apart) / 2 if apart > 0 else 1.0
+    own = min(max(own, 0.0), 1.0)
+    along, aside = math.sqrt(own), math.copysign(math.sqrt(1 - own), both)
+    other = min((along * sides[0] + aside * sides[1]) ** 2, 1.0)
+    reach = min(own * bend[3] + (1 - own) * bend[4], other * curve[2] + (1 - other) * curve[3])
+    width = min((1 - own) * bend[3] + own * bend[4], (1 - other) * curve[2] + other * curve[3])
+    face_reach = min(own * bend[5] + (1 - own) * bend[6], reach)
+    face_width = min((1 - own) * bend[5] + own * bend[6], width)
+    depth = _depth(force / bend[2], most, least, reach, width)
+    a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
+    area, load = _clipped(min(face_reach / a, 1.0), min(face_width / b, 1.0))
+    share = _kept(along * y + aside * z, a, face_reach) * _kept(along * z - aside * y, b, face_width)
+    longer = min(b, face_width) / min(a, face_reach)
+    return 4 * a * b * area, 4 * bend[2] * depth * a * b * load, share, max(longer, 1 / longer)
+
+
+@njit(cache=True, error_model="numpy")
+def _depth(load, most, least, reach, width):
+    """m at which the pressure over its stiffness is the load m3, over a rectangle of half sides m."""
+    # what an ellipse, strips or the whole rectangle without its curvature would need: each is less
+    depth = max(math.sqrt(load * math.sqrt(most * least) / math.pi), load / (4 * reach * width))
+    depth = max(depth, (0.375 * load * math.sqrt(most / 2) / width) ** (2 / 3))
+    depth = max(depth, (0.375 * load * math.sqrt(least / 2) / reach) ** (2 / 3))
+    for _ in range(NEWTON_STEPS):
+        a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
+        area, held = _clipped(min(reach / a, 1.0), min(width / b, 1.0))
+        change = (depth * held - load / (4 * a * b)) / area
+        depth -= change
+        if abs(change) < 1e-15 * depth:
+            break
+    return depth
+
+
+@njit(cache=True, error_model="numpy")
+def _clipped(x, y):
+    """Of a quarter of the unit disc in a rectangle x by y, at most 1: its area, and the integral of 1 - r^2 over it."""
+    if x * x + y * y <= 1.0:
+        return x * y, x * y * (1 - (x * x + y * y) / 3)
+    root = math.sqrt(1 - y * y)
+    area = y * root + _disc(x) - _disc(root)
+    load = y * root * (1 - y * y / 3 - root * root / 3) + 2 / 3 * (_cap(x) - _cap(root))
+    return area, load
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _disc(s):
+    return (s * math.sqrt(1 - s * s) + math.asin(s)) / 2
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _cap(s):
+    return (s * (5 - 2 * s * s) * math.sqrt(1 - s * s) + 3 * math.asin(s)) / 8
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _kept(at, reach, half):
+    """Share of what is -half to half of an interval of half width reach round 0 that is there round `at`."""
+    both = min(half, at + reach) - max(-half, at - reach)
+    return min(max(both, 0.0) / (2 * min(reach, half)), 1.0)
