@@ -201,7 +201,7 @@ def test_names_and_tables_are_checked(tmp_path) -> None:
         (good.replace("recipe", "recip"), "cube: recipe is missing"),
         (good + 'contents = { material = "ice", level = 2.0 }', "level must be from 0 to 1"),
         (good + "contents = { level = 0.5 }", "material"),
-        (good + '[objects.other]\nlike = "cub"', "'cub', which is not there"),
+        (good + '[objects.other]\nlike = "cub"', "'cub', which does not exist"),
         (good + '[objects.other]\nlike = "other"', "which does not exist or is like itself"),
         ("[objects", "not valid TOML"),
     ):

@@ -277,8 +277,8 @@ def test_files_that_are_no_gripper_are_refused(tmp_path: Path):
     for file, message in (
         (tmp_path / "none.xml", "no file"),
         (tmp_path, "folder"),
-        (write("text.xml", "my gripper, version 2"), "no XML"),
-        (write("empty.xml", ""), "no XML"),
+        (write("text.xml", "my gripper, version 2"), "not XML"),
+        (write("empty.xml", ""), "not XML"),
         (write("open.xml", "<mujoco><worldbody>"), "no MJCF"),
         (write("other.xml", "<robot name='r'/>"), "no MJCF|does not compile|no actuator"),
         (
