@@ -127,11 +127,12 @@ def test_what_has_spread_belongs_to_the_state() -> None:
         return touch.reading.temperature_drop.copy()
 
     felt(200)
-    kept, then = touch.state(), mujoco.MjData(model)
-    mujoco.mj_copyData(then, model, data)
+    kind = mujoco.mjtState.mjSTATE_INTEGRATION
+    kept, then = touch.state(), np.zeros(mujoco.mj_stateSize(model, kind))
+    mujoco.mj_getState(model, data, then, kind)
     assert np.abs(kept.heat.narrow).max() > 0
     first = felt(100)
-    mujoco.mj_copyData(data, model, then)
+    mujoco.mj_setState(model, data, then, kind)
     touch.set_state(kept)
     np.testing.assert_array_equal(felt(100), first)
     touch.reset()

@@ -208,6 +208,9 @@ def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> No
 
 
 @pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler")
+@pytest.mark.skipif(
+    not hasattr(mujoco.MjSpec, "activate_plugin"), reason="specs take plugins from MuJoCo 3.3.2 on"
+)
 @pytest.mark.parametrize("tip", TIPS)
 @pytest.mark.parametrize("thing", OBJECTS)
 def test_inside_mujoco_s_step_it_is_the_same(tip: str, thing: str) -> None:
