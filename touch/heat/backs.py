@@ -6,6 +6,7 @@ W: worlds.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any, Generic, TypeVar
@@ -20,7 +21,7 @@ from .fields import TipField
 _State = TypeVar("_State", CoreState, ThermostatState)
 
 
-class _Back(Generic[_State]):
+class _Back(ABC, Generic[_State]):
     """Behind fingertip number `tip`, of all worlds, in steps of dt s. first: its state at the start."""
 
     def __init__(self, pad: PadPlace, number: int, element: TipField, dt: float, first: _State) -> None:
@@ -55,9 +56,9 @@ class _Back(Generic[_State]):
         self._change = self._state.temperature - was
         states[:, : len(self._field)] -= self._change[:, None] * self._field
 
+    @abstractmethod
     def _after(self, drawn: np.ndarray, drop: np.ndarray, force: np.ndarray) -> _State:
         """The state a step later, with (W,) W drawn from it."""
-        raise NotImplementedError
 
     @property
     def temperature(self) -> np.ndarray:
