@@ -33,8 +33,8 @@ class Reading(NamedTuple):
     fingertip's load cell in the pad's frame, normal (> 0 when pressing) and two tangential. voltage (B, S, F) V after
     the ADC, oldest first. thermostat (B, F) °C. truth: name -> (B, ...) of what only a simulation knows; on
     hardware `unknown`, the names that are missing, and `late`, s by which the step's end was missed. error: (B,) why an
-    environment can't go on, "" while it can. told: names of what info tells of truth at every step. lateral (B,) m of
-    the arm along the table, None without such an axis. pressure (B, F, n, m) Pa over each pad, rows from the
+    environment can't go on, "" while it can. info_names: the entries of truth that every step's info has. lateral (B,)
+    m of the arm along the table, None without such an axis. pressure (B, F, n, m) Pa over each pad, rows from the
     fingertip's end up, columns along its horizontal axis; None without taxels. face_temperature (B, F, n, m) °C over
     each sensor's face, rows and columns alike; None where it is not asked for.
     """
@@ -47,7 +47,7 @@ class Reading(NamedTuple):
     thermostat: np.ndarray
     truth: Mapping[str, Any]
     error: tuple[str, ...]
-    told: tuple[str, ...] = ()
+    info_names: tuple[str, ...] = ()
     lateral: np.ndarray | None = None
     pressure: np.ndarray | None = None
     face_temperature: np.ndarray | None = None
@@ -68,7 +68,7 @@ def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
 
     both = Reading(*(merge(before, after) for before, after in zip(old, new, strict=True)))
     truth = {name: merge(value, new.truth[name]) for name, value in old.truth.items()}
-    return both._replace(truth=truth, told=new.told)
+    return both._replace(truth=truth, info_names=new.info_names)
 
 
 class Plant(Protocol):

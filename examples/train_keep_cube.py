@@ -25,26 +25,26 @@ parser.add_argument("--rounds", type=int, default=4, help="episodes of every wor
 parser.add_argument("--seed", type=int, default=1)
 parser.add_argument("--without-heat", action="store_true", help="the voltages are not observed")
 parser.add_argument("--out", default="out/keep_cube", help="where the log and the networks go")
-told = parser.parse_args()
+arguments = parser.parse_args()
 
 cfg, learning = load_env_cfg(TASK), load_rl_cfg(TASK)
-cfg.scene.num_envs, cfg.seed = told.worlds, told.seed
-learning.seed, learning.logger = told.seed, "tensorboard"
-if told.without_heat:
+cfg.scene.num_envs, cfg.seed = arguments.worlds, arguments.seed
+learning.seed, learning.logger = arguments.seed, "tensorboard"
+if arguments.without_heat:
     for group in cfg.observations.values():
         del group.terms["voltage"]
-env = RslRlVecEnvWrapper(ManagerBasedRlEnv(cfg, device=told.device))
-runner = MjlabOnPolicyRunner(env, asdict(learning), told.out, told.device)
-runner.learn(told.iterations)
+env = RslRlVecEnvWrapper(ManagerBasedRlEnv(cfg, device=arguments.device))
+runner = MjlabOnPolicyRunner(env, asdict(learning), arguments.out, arguments.device)
+runner.learn(arguments.iterations)
 
-policy = runner.get_inference_policy(told.device)
+policy = runner.get_inference_policy(arguments.device)
 right = []
 with torch.inference_mode():  # as in the training, whose tensors it goes on with
     observation, _ = env.reset()
-    for _ in range(told.rounds * env.max_episode_length):
+    for _ in range(arguments.rounds * env.max_episode_length):
         observation, _, done, extras = env.step(policy(observation))
         if done.any():  # every world's episode ends at once
             right.append(float(extras["log"]["Episode_Metrics/right"]))
 env.close()
-episodes = told.rounds * told.worlds
+episodes = arguments.rounds * arguments.worlds
 print(f"kept or let go as asked in {sum(right) / len(right):.1%} of {episodes} episodes")

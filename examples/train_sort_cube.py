@@ -20,12 +20,12 @@ parser.add_argument("--device", default="cpu")
 parser.add_argument("--worlds", type=int, default=8)
 parser.add_argument("--iterations", type=int, default=2)
 parser.add_argument("--out", default="out/sort_cube", help="where the log and the networks go")
-told = parser.parse_args()
+arguments = parser.parse_args()
 
 cfg, learning = load_env_cfg(TASK), load_rl_cfg(TASK)
-cfg.scene.num_envs, cfg.seed = told.worlds, learning.seed
+cfg.scene.num_envs, cfg.seed = arguments.worlds, learning.seed
 learning.logger = "tensorboard"
-env = RslRlVecEnvWrapper(ManagerBasedRlEnv(cfg, device=told.device), clip_actions=learning.clip_actions)
-runner = MjlabOnPolicyRunner(env, asdict(learning), told.out, told.device)
-runner.learn(told.iterations, init_at_random_ep_len=True)
+env = RslRlVecEnvWrapper(ManagerBasedRlEnv(cfg, device=arguments.device), clip_actions=learning.clip_actions)
+runner = MjlabOnPolicyRunner(env, asdict(learning), arguments.out, arguments.device)
+runner.learn(arguments.iterations, init_at_random_ep_len=True)
 env.close()

@@ -100,11 +100,15 @@ def errors(recordings: Recordings, stack: HeatedStack, metal: str = "aluminium")
     touched = known_labels(recordings.labels, {"metal": touched_as(f"metal={metal}")[1]})
     found = predict(recordings, stack, touched)
     document: dict[str, Any] = {"free_degC": dict(found.free)}
-    for half, mine in (("fitted", recordings.run <= FITTED_RUNS), ("others", recordings.run > FITTED_RUNS)):
-        rows = compare(recordings.only(mine), found.curves[mine], np.random.default_rng(0))
+    for half, selected in (
+        ("fitted", recordings.run <= FITTED_RUNS),
+        ("others", recordings.run > FITTED_RUNS),
+    ):
+        rows = compare(recordings.only(selected), found.curves[selected], np.random.default_rng(0))
         document[half] = {row.label: {**asdict(row), "ratio": row.ratio} for row in rows}
     early, later = (
-        recordings.only(mine) for mine in (recordings.run <= FITTED_RUNS, recordings.run > FITTED_RUNS)
+        recordings.only(selected)
+        for selected in (recordings.run <= FITTED_RUNS, recordings.run > FITTED_RUNS)
     )
     for label, row in document["others"].items():
         row["drawn_apart"] = drawn_apart(early, later, label, np.random.default_rng(0))

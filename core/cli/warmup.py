@@ -26,16 +26,16 @@ def run(args: argparse.Namespace) -> int:
     output = Output(args.json)
     load_mujoco(output)
     chosen = stages()
-    told = []
+    done = []
     with output.progress(len(chosen)) as advance:
         for name, work in chosen.items():
             advance(name, 0)
             begun = time.perf_counter()
             work()
-            told.append({"stage": name, "seconds": time.perf_counter() - begun})
+            done.append({"stage": name, "seconds": time.perf_counter() - begun})
             advance(name, 1)
-    output.table(("stage", "s"), [(one["stage"], f"{one['seconds']:.1f}") for one in told])
-    output.document({"stages": told})
+    output.table(("stage", "s"), [(one["stage"], f"{one['seconds']:.1f}") for one in done])
+    output.document({"stages": done})
     return 0
 
 

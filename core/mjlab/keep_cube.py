@@ -130,14 +130,14 @@ def keep_cube_cfg(play: bool = False) -> Any:
     cfg.events = {name: cfg.events[name] for name in ("reset_base", "reset_robot_joints")}
     cfg.terminations = {"time_out": cfg.terminations["time_out"]}
     cfg.curriculum = {}
-    told = {"command_name": COMMAND}
-    cfg.rewards = {"right": RewardTermCfg(func=right, weight=1.0, params=told)}
-    cfg.metrics = {"right": MetricsTermCfg(func=right, params=told, reduce="last")}
+    command = {"command_name": COMMAND}
+    cfg.rewards = {"right": RewardTermCfg(func=right, weight=1.0, params=command)}
+    cfg.metrics = {"right": MetricsTermCfg(func=right, params=command, reduce="last")}
     for group in cfg.observations.values():
         group.terms = {name: group.terms[name] for name in ("joint_pos", "ee_to_cube")}
         group.terms["joint_pos"].params["asset_cfg"] = SceneEntityCfg("robot", joint_names=(_FINGER,))
         group.terms["asked"] = ObservationTermCfg(
-            func=asked_material, params=told | {"materials": len(MATERIALS)}
+            func=asked_material, params=command | {"materials": len(MATERIALS)}
         )
         group.terms["voltage"] = ObservationTermCfg(func=voltage, params={"sensor_name": SENSOR})
     cfg.observations["actor"].enable_corruption = not play

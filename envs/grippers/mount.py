@@ -48,8 +48,8 @@ def mounted(gripper: FoundGripper) -> mujoco.MjSpec:
     spec = mujoco.MjSpec.from_file(str(asset("gripper.xml")))
     for name in _REPLACED:
         spec.delete(spec.geom(name))
-    for thing in (spec.actuator("grip"), spec.equality("coupling"), spec.tendon("opening")):
-        spec.delete(thing)
+    for element in (spec.actuator("grip"), spec.equality("coupling"), spec.tendon("opening")):
+        spec.delete(element)
     for name in ("finger_left", "finger_right"):
         spec.delete(spec.body(name))
     bodies = _Bodies(spec, gripper)

@@ -97,7 +97,7 @@ def close(hand: Hand, start: Opposition) -> Closing:
             f"{1e3 * openings[-1]:.1f} mm: name the closing actuators or other fingertips{_hint(hand, start.fingers)}"
         )
     postures = _along(hand, start.fingers, postures)
-    told = [walk.tell(values) for values in postures]
+    walked = [walk.tell(values) for values in postures]
     base = walk.tell(start.values)[0]
     return Closing(
         start.fingers,
@@ -108,8 +108,8 @@ def close(hand: Hand, start: Opposition) -> Closing:
         openings,
         np.array([mechanism.pose(values) for values in postures]),
         np.array(postures),
-        np.array([(centre - base) @ start.axes for centre, _ in told]),
-        np.array([tilt for _, tilt in told]),
+        np.array([(centre - base) @ start.axes for centre, _ in walked]),
+        np.array([tilt for _, tilt in walked]),
         start.wedges,
     )
 
@@ -137,13 +137,15 @@ def _along(hand: Hand, fingers: tuple[Finger, Finger], postures: list[np.ndarray
             (finger for finger in fingers if finger.moves),
             key=lambda finger, here=here: float(np.linalg.norm(places[hand.root(finger.body)] - here)),
         )
-        for mine, theirs in zip(_from_the_tip(hand, own), _from_the_tip(hand, leader.moves), strict=False):
-            share = (table[:, theirs] - mechanism.low[theirs]) / span[theirs]
-            if _mirrored(mechanism.low[mine], mechanism.high[mine]) != _mirrored(
-                mechanism.low[theirs], mechanism.high[theirs]
+        for follower, leading in zip(
+            _from_the_tip(hand, own), _from_the_tip(hand, leader.moves), strict=False
+        ):
+            share = (table[:, leading] - mechanism.low[leading]) / span[leading]
+            if _mirrored(mechanism.low[follower], mechanism.high[follower]) != _mirrored(
+                mechanism.low[leading], mechanism.high[leading]
             ):
                 share = 1 - share
-            table[:, mine] = mechanism.low[mine] + share * span[mine]
+            table[:, follower] = mechanism.low[follower] + share * span[follower]
     return list(table)
 
 

@@ -73,11 +73,11 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
         info["success"] = bool(outcome.success[row])
         if outcome.terminated[row]:
             info |= {name: True for name, ended in outcome.reasons.items() if ended[row]}
-        for name, values in outcome.told.items():
+        for name, values in outcome.info.items():
             info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
         if reading.error[row]:
             info["error"] = reading.error[row]
-    info |= {name: _item(reading.truth[name][row]) for name in reading.told}
+    info |= {name: _item(reading.truth[name][row]) for name in reading.info_names}
     randomized = reading.truth.get("randomized")
     if randomized:
         info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
@@ -114,12 +114,12 @@ def infos_of(
             if ended.any():
                 add(name, ended, ended)
         if judged.any():
-            for name, values in outcome.told.items():
+            for name, values in outcome.info.items():
                 add(name, values, judged)
         broken = np.array([bool(error) for error in reading.error]) & rows
         if broken.any():
             add("error", np.array(reading.error, object), broken)
-    for name in reading.told:
+    for name in reading.info_names:
         add(name, np.array(reading.truth[name]), rows)
     randomized = reading.truth.get("randomized")
     if randomized:

@@ -140,7 +140,7 @@ class SimulatedPlant:
             thermostat=self._thermostats.measured,
             truth=truth,
             error=error,
-            told=self._info,
+            info_names=self._info,
             lateral=self._lateral,
             pressure=None if self._taxels is None else self._taxels.nothing(self.num_envs),
             face_temperature=None if self._faces is None else self._faces.rest(rest),
@@ -172,7 +172,7 @@ class SimulatedPlant:
             thermostat=self._thermostats.measured,
             truth=truth,
             error=error,
-            told=self._info,
+            info_names=self._info,
             lateral=self._lateral,
             pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
             face_temperature=None if self._faces is None else self._faces.step(self.mechanics, step, owner),
@@ -259,13 +259,13 @@ class SimulatedPlant:
     def _regulate(self, step: HeatStep, force: np.ndarray) -> None:
         """Lets thermostats of finite power, or heaters of the sensors' own, answer to the heat drawn from them, and
         tells of those that are too hot. force: (B, F) N on the pads."""
-        first, drawn = self.heat.sensor_temperatures, step.told["drawn"]
+        first, drawn = self.heat.sensor_temperatures, step.info["drawn"]
         if isinstance(self._thermostats, HeatedCores):
             after = self._thermostats.step(drawn, first, step.drop[:, -1], force)
         else:
             after = self._thermostats.step(drawn, first)
         self.heat.set_thermostats(after)
-        self._thermostats.tell(step.told)
+        self._thermostats.tell(step.info)
 
     def _sent(self, step: HeatStep) -> np.ndarray:
         """(B, N, F) what the electronics take: K of drop, or V of heated sensors' dividers."""
@@ -289,7 +289,7 @@ class SimulatedPlant:
         self, heights: np.ndarray, force: np.ndarray, step: HeatStep, scene: SceneHeatStep | None
     ) -> tuple[Truth, tuple[str, ...]]:
         """What is known of a step, and why an environment can't go on. heights: (B, O) m. force: (B, O, F, 3) N."""
-        heat, labels, lift = step.told, self._labels, heights - self._rest
+        heat, labels, lift = step.info, self._labels, heights - self._rest
         error = tuple(self.mechanics.failure)
         truth = Truth(
             mode=self.config.mode,

@@ -90,9 +90,9 @@ class BoxHeat:
             )
         self._bodies[row] = body, film
         self._touched[row] = Touched((), (-1,) * self._tips)
-        mine = self._rows[row]
-        mine["size"], mine["face"], mine["boxed"] = body.spec.size, -1, 1
-        mine["normal"] = 3 - int(body.law["across"].sum())
+        record = self._rows[row]
+        record["size"], record["face"], record["boxed"] = body.spec.size, -1, 1
+        record["normal"] = 3 - int(body.law["across"].sum())
         self.tables.links[row] = 0
         self.tables.links[row, WHERE : WHERE + self._tips] = -1
 
@@ -123,13 +123,13 @@ class BoxHeat:
     def settle(self, row: int, fingertips: list[int], middles: np.ndarray, state: np.ndarray) -> None:
         """These fingertips, and those that have no place yet, are at their middles of (F, 3) m from now on. The heat of
         the object and of fingertips in the row's state (n,) stays to round-off."""
-        touched, mine, tables = self._touched[row], self._rows[row], self.tables
+        touched, record, tables = self._touched[row], self._rows[row], self.tables
         body, _ = self._bodies[row]
         size, width = body.spec.size, body.stack.width
         new = [f for f in range(self._tips) if touched.contacts[f] < 0 and f not in fingertips]
         before = fixed_heat(tables, row, state)
         for f in (*fingertips, *new):
-            place = place_of(mine, width, middles[f])
+            place = place_of(record, width, middles[f])
             if place is not None:
                 warmth = [self._warmth(row, k, state) for k in range(len(touched.places))]
                 touched, given_up = touched.moved(f, place, warmth, size, width)
@@ -208,7 +208,7 @@ class BoxHeat:
 
     def _make(self, row: int, touched: Touched) -> None:
         """The tables of the row's box and elements are those of these places."""
-        tables, mine, last = self.tables, self._rows[row], self._touched[row]
+        tables, record, last = self.tables, self._rows[row], self._touched[row]
         body, film = self._bodies[row]
         size, stack, level = body.spec.size, body.stack, self._of_level
         with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
@@ -222,7 +222,7 @@ class BoxHeat:
                     if element:
                         tables.tips[element] = _element(stack, covered, level)
                     tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
-                    mine["face"][f], mine["pad"][f] = (
+                    record["face"][f], record["pad"][f] = (
                         touched.places[number].face,
                         touched.places[number].middle,
                     )

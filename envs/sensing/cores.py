@@ -60,7 +60,7 @@ class HeatedCores:
         """(B, F) °C at the readouts; not to be written to."""
         return self._state.reading.reshape(-1, 2).copy()
 
-    def tell(self, told: np.ndarray) -> None:
+    def tell(self, info: np.ndarray) -> None:
         """Nothing: no device puts these heaters off."""
 
     def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:

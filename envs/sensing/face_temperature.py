@@ -80,28 +80,28 @@ class FaceTemperature:
 
     def rest(self, step: HeatStep) -> np.ndarray:
         """(B, F, n, m) °C where nothing has touched."""
-        even = step.told["sensor_surface"][..., None, None]
+        even = step.info["sensor_surface"][..., None, None]
         return np.broadcast_to(even, (*even.shape[:2], *self.shape)).copy()
 
     def step(self, mechanics: Mechanics, step: HeatStep, owner: np.ndarray | None = None) -> np.ndarray:
         """(B, F, n, m) °C at the end of the control step that mechanics and heat made last. owner: (B, F) the object
         that each fingertip's heat goes to, where there are several."""
-        maps, told, state = self.rest(step), step.told, self._state
+        maps, info, state = self.rest(step), step.info, self._state
         owners = np.zeros_like(state.owner) if owner is None else owner
-        flux = told["flow"] / self._stack.face_area
+        flux = info["flow"] / self._stack.face_area
         begun = state.begun | (flux != 0.0)
         pressure = self._pads.pressure(mechanics, owners)
-        renewed = (owners != state.owner) | ((told["events"] & NEW_PATCH) > 0)
+        renewed = (owners != state.owner) | ((info["events"] & NEW_PATCH) > 0)
         state.fields[renewed, 1] = 0.0  # the object's side
         state.begun[:], state.owner[:] = begun, owners
         for row, tip in np.argwhere(begun).tolist():
             number = owners[row, tip]
-            thing = self._things[row][number]
+            body = self._things[row][number]
             field = self._fields.get((row, number))
             if field is None:
-                field = self._fields[row, number] = self._field(thing)
+                field = self._fields[row, number] = self._field(body)
             maps[row, tip] += _advance(
-                *(thing.law, pressure[row, tip], self._on_face, flux[row, tip]),
+                *(body.law, pressure[row, tip], self._on_face, flux[row, tip]),
                 *(state.fields[row, tip], state.surface[row, tip], state.contact[row, tip]),
                 *self._parts,
                 *field,
@@ -129,8 +129,8 @@ class FaceTemperature:
         kept.contact[chosen], kept.begun[chosen] = state.contact, state.begun
         kept.owner[chosen] = state.owner
 
-    def _field(self, thing: GraspBody) -> FaceField:
-        made_of, thickness = thing.touched, thing.plate[2] / thing.fingertips
+    def _field(self, body: GraspBody) -> FaceField:
+        made_of, thickness = body.touched, body.plate[2] / body.fingertips
         behind = made_of.layer(thickness)
         return _field_of(self._stack, behind, self._dt)
 

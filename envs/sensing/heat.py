@@ -25,7 +25,7 @@ from .boxes import BoxHeat
 from .kernel import advance_boxes, advance_grasps
 from .networks import HeatNetworks
 from .places import Touched
-from .rows import EVENTS, HEAT_ROW, HEAT_TOLD, RELEASE
+from .rows import EVENTS, HEAT_INFO, HEAT_ROW, RELEASE
 
 if TYPE_CHECKING:
     from ...thermal import SurfacePatch
@@ -49,7 +49,7 @@ class HeatState:
 
 
 class HeatStep(NamedTuple):
-    """One control step. drop (B, N, F) K at the end of each heat sample. told (B,): HEAT_TOLD records of
+    """One control step. drop (B, N, F) K at the end of each heat sample. info (B,): HEAT_INFO records of
 
     conductance (B, F) W/(m2 K) and area (B, F) m2 of the contact: their product is the mean over the substeps; heat
     sees in each sample the mean of that sample's substeps. sensor_surface, object_surface (B, F) °C, means over the
@@ -62,12 +62,12 @@ class HeatStep(NamedTuple):
     """
 
     drop: np.ndarray
-    told: np.ndarray
+    info: np.ndarray
 
     @property
     def events(self) -> np.ndarray:
         """(B,) of tuples of (kind, fingertip)."""
-        codes = self.told["events"]
+        codes = self.info["events"]
         return EVENTS[codes[:, 0], codes[:, 1]]
 
 
@@ -121,18 +121,18 @@ class GraspHeat:
         temperatures = np.broadcast_to(self._sensor_temperature, (len(rows), 2))
         if sensor_temperatures is not None:
             temperatures = sensor_temperatures
-        for row, thing, temperature in zip(rows, things, temperatures, strict=True):
-            self._place(row, thing, temperature)
+        for row, body, temperature in zip(rows, things, temperatures, strict=True):
+            self._place(row, body, temperature)
             fresh = self._rows[row]
             fresh["sensor_temperature"] = temperature
-            fresh["difference"] = temperature - thing.temperature
-            fresh["known"] = thing.mode == "O"
-            fresh["anchor"] = thing.spec.element_places
+            fresh["difference"] = temperature - body.temperature
+            fresh["known"] = body.mode == "O"
+            fresh["anchor"] = body.spec.element_places
             for name in ("offset", "stored", "touching", "books"):
                 fresh[name] = 0
-            fresh["begun"] = thing.spec.reservoir is not None or fresh["ambient"] != 0
-            if thing.spec.reservoir is not None:
-                fresh["enthalpy"] = thing.spec.reservoir.row(thing.temperature)[1]
+            fresh["begun"] = body.spec.reservoir is not None or fresh["ambient"] != 0
+            if body.spec.reservoir is not None:
+                fresh["enthalpy"] = body.spec.reservoir.row(body.temperature)[1]
             if fresh["boxed"] or row not in waiting or fresh["begun"]:
                 self._build(row)
             if fresh["boxed"] and fresh["begun"]:
@@ -142,8 +142,8 @@ class GraspHeat:
         """The model that computes an environment's heat."""
         if row in self._waiting:
             return ""
-        mine = self._rows[row]
-        return self._boxes.rung if mine["boxed"] else self._networks.rungs[mine["network"]]
+        record = self._rows[row]
+        return self._boxes.rung if record["boxed"] else self._networks.rungs[record["network"]]
 
     def advance(
         self, force: np.ndarray, place: np.ndarray, carried: Sequence[tuple[int, int, int, int]] = ()
@@ -155,7 +155,7 @@ class GraspHeat:
             self._build(row)
         moved = self._moved(force, place) if self._touches else []
         drop = np.empty((len(force), self._samples, 2))
-        told = np.empty(len(force), HEAT_TOLD)
+        info = np.empty(len(force), HEAT_INFO)
         normal, middles = np.ascontiguousarray(force, dtype=float), np.ascontiguousarray(place, dtype=float)
         boxed = np.count_nonzero(self._rows["boxed"])
         strayed = self._boxes.strayed(normal, middles, self._samples) if boxed else []
@@ -166,29 +166,29 @@ class GraspHeat:
                     self._boxes.settle(row, tips, middles[row], self._state[row])
             for sample, source, target, tip in carried:
                 if sample == first:
-                    self._leave(told, sample, source, tip)
+                    self._leave(info, sample, source, tip)
                     self.carry(source, target, tip)
             for sample, row, tip in moved:
                 if sample == first:
                     self._touch(row, self._touches[row].moved(tip, place[row, tip]))
-            now = (normal, middles, drop, told, first, last)
+            now = (normal, middles, drop, info, first, last)
             tables = self._networks.tables(self._fingertips)
             if boxed < len(drop):
                 advance_grasps(self._laws, self._reservoirs, self._rows, self._state, *now, *tables)
             if boxed:
                 advance_boxes(self._laws, self._rows, self._state, *now, *self._boxes.tables)
-        return HeatStep(drop, told)
+        return HeatStep(drop, info)
 
     def rest(self) -> HeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
-        told = np.zeros(len(self._rows), HEAT_TOLD)
-        told["sensor_surface"] = self._rows["sensor_temperature"] + self._rows["offset"]
-        told["object_surface"] = told["sensor_surface"] - self._rows["difference"]
-        told["object_temperature"] = told["object_surface"][:, 0]
-        told["reservoir_temperature"] = np.where(
+        info = np.zeros(len(self._rows), HEAT_INFO)
+        info["sensor_surface"] = self._rows["sensor_temperature"] + self._rows["offset"]
+        info["object_surface"] = info["sensor_surface"] - self._rows["difference"]
+        info["object_temperature"] = info["object_surface"][:, 0]
+        info["reservoir_temperature"] = np.where(
             self._reservoirs["conductance"] > 0, self._reservoirs["temperature"], np.nan
         )
-        return HeatStep(np.zeros((len(self._rows), self._samples, 2)), told)
+        return HeatStep(np.zeros((len(self._rows), self._samples, 2)), info)
 
     def set_thermostats(self, celsius: np.ndarray) -> None:
         """Temperatures (B, F) °C of the thermostats from now on."""
@@ -276,33 +276,31 @@ class GraspHeat:
         """(B, F) °C of the thermostats at the start."""
         return self._rows["sensor_temperature"]
 
-    def _place(self, row: int, thing: GraspBody, sensor_temperature: np.ndarray) -> None:
-        self._things[row] = thing
-        self._laws[row] = thing.law
+    def _place(self, row: int, body: GraspBody, sensor_temperature: np.ndarray) -> None:
+        self._things[row] = body
+        self._laws[row] = body.law
         self._touches.pop(row, None)
-        inside = thing.spec.reservoir
+        inside = body.spec.reservoir
         self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
         if inside is not None:
-            self._reservoirs[row] = inside.row(thing.temperature)[0]
-        celsius = {thing.temperature}
-        if self._air and thing.ambient is not None:
-            celsius.add(thing.ambient)
+            self._reservoirs[row] = inside.row(body.temperature)[0]
+        celsius = {body.temperature}
+        if self._air and body.ambient is not None:
+            celsius.add(body.ambient)
         if inside is not None:
             celsius.add(float(self._reservoirs["temperature"][row]))
         # In steps, so that nearly equal temperatures share a network.
         above = float(max(np.abs(sensor_temperature - each).max() for each in celsius))
-        self._rows["boxed"][row] = self._boxes.serves(thing, above)
+        self._rows["boxed"][row] = self._boxes.serves(body, above)
         above /= LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
         self._demands[row] = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
         self._waiting.add(row)
-        mine = self._rows[row]
-        mine["glued"] = thing.mode == "O"
-        mine["reach"] = thing.stack.width / 2
-        mine["element_capacity"] = thing.stack.heat_capacity
-        mine["ambient"] = (
-            0.0 if thing.ambient is None or self._air == 0 else thing.ambient - thing.temperature
-        )
+        record = self._rows[row]
+        record["glued"] = body.mode == "O"
+        record["reach"] = body.stack.width / 2
+        record["element_capacity"] = body.stack.heat_capacity
+        record["ambient"] = 0.0 if body.ambient is None or self._air == 0 else body.ambient - body.temperature
 
     def _build(self, row: int) -> None:
         """Makes the row's network, all at its first temperature."""
@@ -313,34 +311,34 @@ class GraspHeat:
             self._box(row)
             return
         self._boxes.stop(row)
-        thing, demand = self._things[row], self._demands[row]
-        geometry, capacity = thing.geometry, thing.heat_capacity
+        body, demand = self._things[row], self._demands[row]
+        geometry, capacity = body.geometry, body.heat_capacity
         touches = None
-        if thing.solid is not None:
+        if body.solid is not None:
             from .touches import first_touches  # with what makes networks of meshes
 
-            touches = first_touches(thing, demand, self._cache)
+            touches = first_touches(body, demand, self._cache)
         if touches is not None:
             self._touches[row] = touches
             geometry = touches.body.geometry
             capacity = geometry.whole_capacity
         free = free_area(geometry)
-        mine = self._rows[row]
-        mine["lasting"] = touches is not None
-        mine["capacity"] = capacity
-        mine["air"] = self._air * free
-        mine["fed"] = touches is not None and touches.fed
+        record = self._rows[row]
+        record["lasting"] = touches is not None
+        record["capacity"] = capacity
+        record["air"] = self._air * free
+        record["fed"] = touches is not None and touches.fed
         # What the object gives to the air and to a reservoir at its mean, as one film of that many W/(m2 K).
-        inside = 0.0 if mine["fed"] else float(self._reservoirs["conductance"][row])
+        inside = 0.0 if record["fed"] else float(self._reservoirs["conductance"][row])
         self._films[row] = self._air + inside / free
-        mine["network"] = self._number(row)
+        record["network"] = self._number(row)
 
     def _box(self, row: int) -> None:
         """The row is a box, all at its first temperature and touched nowhere yet."""
-        thing, mine = self._things[row], self._rows[row]
-        self._boxes.start(row, thing, self._air)
-        mine["lasting"], mine["fed"], mine["network"] = 1, 0, 0
-        mine["capacity"] = thing.box_capacity
+        body, record = self._things[row], self._rows[row]
+        self._boxes.start(row, body, self._air)
+        record["lasting"], record["fed"], record["network"] = 1, 0, 0
+        record["capacity"] = body.box_capacity
         self._make_room()
 
     def _number(self, row: int) -> int:
@@ -361,18 +359,18 @@ class GraspHeat:
             kept[:, :last] = self._state[:, :states]
             self._state = kept
 
-    def _leave(self, told: np.ndarray, sample: int, row: int, fingertip: int) -> None:
+    def _leave(self, info: np.ndarray, sample: int, row: int, fingertip: int) -> None:
         """Notes that the fingertip leaves the row's object for another one within a step."""
         if sample > 0 and self._rows["touching"][row, fingertip]:
             self._rows["touching"][row, fingertip] = 0
-            told["events"][row, fingertip] |= RELEASE
+            info["events"][row, fingertip] |= RELEASE
 
     def _moved(self, force: np.ndarray, place: np.ndarray) -> list[tuple[int, int, int]]:
         """(sample, row, fingertip) of those that begin to touch where they have not been since they were there last."""
         rows = np.array(list(self._touches))
-        mine = self._rows[rows]
-        away = np.sqrt(((place[rows] - mine["anchor"]) ** 2).sum(axis=2))
-        elsewhere = (away > mine["reach"][:, None]) | (mine["known"] == 0)
+        record = self._rows[rows]
+        away = np.sqrt(((place[rows] - record["anchor"]) ** 2).sum(axis=2))
+        elsewhere = (away > record["reach"][:, None]) | (record["known"] == 0)
         pressed = force[rows] > 0
         asked = elsewhere & pressed.any(axis=1)
         sample = pressed.argmax(axis=1) * self._samples // force.shape[1]

@@ -36,11 +36,11 @@ from .rows import (
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, first, last, *numbers):
+def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, first, last, *numbers):
     """Advances rows (B,) HEAT_ROW and state (B, K) by the samples first to last - 1 of a control step, and fills these
-    of drop (B, N, F) K and, once the last one is done, told (B,) HEAT_TOLD. Rows of boxes are advance_boxes' to take.
+    of drop (B, N, F) K and, once the last one is done, info (B,) HEAT_INFO. Rows of boxes are advance_boxes' to take.
 
-    A step may be taken in several calls, one after the other, with the same normal, place, drop and told: what changes
+    A step may be taken in several calls, one after the other, with the same normal, place, drop and info: what changes
     networks between two samples does so between two calls, and the numbers are the same however many there are.
     laws: (B,) CONTACT_LAW. reservoirs: (B,) RESERVOIR_ROW. normal: (B, S, F) N. place: (B, F, 3) m. numbers: the
     fields of a HeatTables, which cost less to hand over one by one."""
@@ -50,7 +50,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, fir
     conducts = np.zeros((samples, 2))
     duration = tables.dt * samples
     for b in range(len(rows)):
-        row, one, x = rows[b], told[b], state[b]
+        row, one, x = rows[b], info[b], state[b]
         if row.boxed:
             continue
         _meet(laws[b], row, one, normal[b], place[b], drop[b], conducts, first)
@@ -93,7 +93,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, told, fir
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def advance_boxes(laws, rows, state, normal, place, drop, told, first, last, *numbers):
+def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *numbers):
     """The same for the rows that are boxes of FixedTables, of whose fields the numbers are. They are compiled apart, so
     that whoever has none of them does not wait for it. Boxes have no reservoirs."""
     tables = FixedTables(*numbers)
@@ -101,7 +101,7 @@ def advance_boxes(laws, rows, state, normal, place, drop, told, first, last, *nu
     room, reading = fixed_room(tables.gram.shape[1]), _reading(samples, tips)
     conducts = np.zeros((samples, 2))
     for b in range(len(rows)):
-        row, one = rows[b], told[b]
+        row, one = rows[b], info[b]
         if row.boxed == 0:
             continue
         _meet(laws[b], row, one, normal[b], place[b], drop[b], conducts, first)
@@ -210,15 +210,15 @@ def _set_node(tables, network, x, above):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _mean_contacts(law, normal, one, f, place, felt):
-    """Fills felt (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends fall
-    within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is the
-    mean of all, and whose area is the mean over the substeps that press. place: see contact. Returns whether any does.
-    """
-    samples, substeps = len(felt), len(normal)
+def _mean_contacts(law, normal, one, f, place, conductances):
+    """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends
+    fall within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is
+    the mean of all, and whose area is the mean over the substeps that press. place: see contact. Returns whether any
+    does."""
+    samples, substeps = len(conductances), len(normal)
     total, area, pressing = 0.0, 0.0, 0
     for k in range(samples):
-        felt[k, f] = 0.0
+        conductances[k, f] = 0.0
     for s in range(substeps):
         if normal[s] > 0:
             face, load = contact(law, normal[s], place)
@@ -231,22 +231,22 @@ def _mean_contacts(law, normal, one, f, place, felt):
                     part = min((s + 1) * samples, (k + 1) * substeps) - max(s * samples, k * substeps)
                     if part <= 0:
                         break
-                    felt[k, f] += conducts * part
+                    conductances[k, f] += conducts * part
     for k in range(samples):
-        felt[k, f] /= substeps
+        conductances[k, f] /= substeps
     one.area[f] = area / pressing if pressing else 0.0
     one.conductance[f] = total / substeps / one.area[f] if pressing else 0.0
     return pressing > 0
 
 
 @njit(cache=True, error_model="numpy")
-def _renewed(one, felt, k):
+def _renewed(one, conductances, k):
     """Whether a fingertip meets its new patch in sample k."""
     for f in range(2):
-        if one.events[f] & NEW_PATCH and felt[k, f] > 0.0:
+        if one.events[f] & NEW_PATCH and conductances[k, f] > 0.0:
             before = 0.0
             for earlier in range(k):
-                before += felt[earlier, f]
+                before += conductances[earlier, f]
             if before == 0.0:
                 return True
     return False

@@ -114,8 +114,8 @@ class HeatNetworks:
 
     def _add(self, key: object, system: ContactSystem, film: float, rung: str) -> int:
         number = self._given_up()
-        mine = slice(number, number + 1)  # of one that is given up, or behind the last
-        self.systems[mine], self._films[mine], self.rungs[mine] = [system], [film], [rung]
+        entry = slice(number, number + 1)  # of one that is given up, or behind the last
+        self.systems[entry], self._films[entry], self.rungs[entry] = [system], [film], [rung]
         self._numbers[key] = number
         self._tables = heat_tables(self.systems, self._films, self._dt)
         return number

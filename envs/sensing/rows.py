@@ -42,7 +42,7 @@ HEAT_ROW = np.dtype(
 )
 
 # One control step; see HeatStep.
-HEAT_TOLD = np.dtype(
+HEAT_INFO = np.dtype(
     [
         ("conductance", "f8", (2,)),
         ("area", "f8", (2,)),

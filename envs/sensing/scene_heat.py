@@ -18,7 +18,7 @@ import numpy as np
 from ...thermal.batch import LEAST_STATES
 from ..footprint import GraspBody
 from .heat import GraspHeat, HeatState, HeatStep
-from .rows import HEAT_TOLD
+from .rows import HEAT_INFO
 
 _OF_FINGERTIPS = ("conductance", "area", "sensor_surface", "object_surface", "flow", "drawn")
 _SUMMED = ("air_loss", "reservoir_flow", "imbalance", "exchanged")
@@ -36,7 +36,7 @@ class SceneHeatState:
 class SceneHeatStep(NamedTuple):
     """One control step. fingertips: what a HeatStep tells, of each fingertip and the object that it belongs to; the
     objects' heat, air loss and books are sums over all, object and reservoir temperature are the left fingertip's
-    object's. objects: (B, O) HEAT_TOLD, as each object's row tells. owner: (B, F) the object that each fingertip
+    object's. objects: (B, O) HEAT_INFO, as each object's row tells. owner: (B, F) the object that each fingertip
     touches or touched last."""
 
     fingertips: HeatStep
@@ -133,26 +133,26 @@ class SceneHeat:
 
     def _joined_step(self, step: HeatStep, owners: np.ndarray) -> SceneHeatStep:
         """owners: (B, N or 1, F) of each sample."""
-        objects = step.told.reshape(-1, self._objects)
-        told = np.zeros(len(objects), HEAT_TOLD)
+        objects = step.info.reshape(-1, self._objects)
+        info = np.zeros(len(objects), HEAT_INFO)
         for name in _OF_FINGERTIPS:
-            told[name] = self._picked(objects[name])
+            info[name] = self._picked(objects[name])
         # What flowed into an object that the fingertip left within the step.
-        left = objects["flow"].sum(axis=1) - told["flow"]
-        told["flow"] += left
-        told["drawn"] += left
-        told["heat"][:, :2] = self._picked(objects["heat"][:, :, :2])
+        left = objects["flow"].sum(axis=1) - info["flow"]
+        info["flow"] += left
+        info["drawn"] += left
+        info["heat"][:, :2] = self._picked(objects["heat"][:, :, :2])
         for number in range(self._objects):
-            told["heat"][:, 2] += objects["heat"][:, number, 2]
+            info["heat"][:, 2] += objects["heat"][:, number, 2]
             for name in _SUMMED:
-                told[name] += objects[name][:, number]
-            told["events"] |= objects["events"][:, number]
+                info[name] += objects[name][:, number]
+            info["events"] |= objects["events"][:, number]
         for name in _OF_OBJECT:
-            told[name] = self._picked(np.repeat(objects[name][..., None], 2, axis=2))[:, 0]
+            info[name] = self._picked(np.repeat(objects[name][..., None], 2, axis=2))[:, 0]
         drop = step.drop.reshape(len(objects), self._objects, *step.drop.shape[1:])
         chosen = np.broadcast_to(owners[:, None], (len(objects), 1, *drop.shape[2:]))
         return SceneHeatStep(
-            HeatStep(np.take_along_axis(drop, chosen, axis=1)[:, 0], told), objects, self._owner
+            HeatStep(np.take_along_axis(drop, chosen, axis=1)[:, 0], info), objects, self._owner
         )
 
     def _picked(self, values: np.ndarray) -> np.ndarray:

@@ -80,11 +80,11 @@ class Thermostats:
             return self.setpoints
         return self._state.measured.reshape(-1, 2).copy()
 
-    def tell(self, told: np.ndarray) -> None:
-        """Writes into HEAT_TOLD records (B,) which environments' heaters are off, and whose fingertips' heat has just
+    def tell(self, info: np.ndarray) -> None:
+        """Writes into HEAT_INFO records (B,) which environments' heaters are off, and whose fingertips' heat has just
         put them off."""
-        told["over_temperature"] = self._hot
-        told["events"] |= np.where(self._tripped, np.uint8(OVER_TEMPERATURE), np.uint8(0))
+        info["over_temperature"] = self._hot
+        info["events"] |= np.where(self._tripped, np.uint8(OVER_TEMPERATURE), np.uint8(0))
 
     def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:
         """A copy of what the rows remember."""

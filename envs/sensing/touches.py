@@ -39,11 +39,11 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Touches:
-    """thing: the object. body: its network and its patches. contacts: (F,) the patch that each fingertip is on or was
+    """grasped: the object. body: its network and its patches. contacts: (F,) the patch that each fingertip is on or was
     on last. demand: what the network was made for. film: W/K between it and its contents, 0 for none. cache:
     keep networks on disk."""
 
-    thing: GraspBody
+    grasped: GraspBody
     body: TouchedBody
     contacts: tuple[int, ...]
     demand: Demand
@@ -60,9 +60,9 @@ class Touches:
         body = self.body
         if patches != body.patches:
             body = _body(
-                _solid(self.thing),
+                _solid(self.grasped),
                 patches,
-                self.thing.stack,
+                self.grasped.stack,
                 self.demand,
                 len(contacts),
                 self.film,
@@ -77,7 +77,7 @@ class Touches:
         away = np.sqrt(((self.body.centres - place) ** 2).sum(axis=1))
         contacts = list(self.contacts)
         nearest = int(np.argmin(away))
-        if away[nearest] <= self.thing.stack.width / 2:
+        if away[nearest] <= self.grasped.stack.width / 2:
             contacts[fingertip] = nearest
             return replace(self, contacts=tuple(contacts))
         patches = list(self.body.patches)
@@ -87,7 +87,7 @@ class Touches:
             del patches[gone]
             contacts = [contact - (contact > gone) for contact in contacts]
         contacts[fingertip] = len(patches)
-        patches.append(_touched(_solid(self.thing), place, patches[0].area))
+        patches.append(_touched(_solid(self.grasped), place, patches[0].area))
         try:
             return self.at(tuple(patches), tuple(contacts))
         except MeshError as error:
@@ -99,26 +99,26 @@ class Touches:
         return _carried(last.body, self.body)
 
 
-def first_touches(thing: GraspBody, demand: Demand, cache: bool) -> Touches | None:
+def first_touches(grasped: GraspBody, demand: Demand, cache: bool) -> Touches | None:
     """With a patch where each fingertip is to meet the object; None, with a RuntimeWarning that says why, where no
     network can be made with these (a ring's hole, pieces that share but an edge), so that a plate stands for the
     object. Raises MeshError there for one with parts, which no plate can stand for."""
-    contacts = tuple(range(thing.fingertips))
-    patches = tuple(_grasped(thing, side) for side in (-1, 1)[: thing.fingertips])
-    film = thing.spec.reservoir.conductance if thing.spec.reservoir else 0.0
+    contacts = tuple(range(grasped.fingertips))
+    patches = tuple(_grasped(grasped, side) for side in (-1, 1)[: grasped.fingertips])
+    film = grasped.spec.reservoir.conductance if grasped.spec.reservoir else 0.0
     try:
-        body = _body(_solid(thing), patches, thing.stack, demand, thing.fingertips, film, cache)
+        body = _body(_solid(grasped), patches, grasped.stack, demand, grasped.fingertips, film, cache)
     except MeshError as error:
-        if thing.spec.parts:
+        if grasped.spec.parts:
             raise
         warnings.warn(
-            f"object {thing.spec.name!r}: {error}. A plate of the same volume stands for it, which is touched wherever "
-            "a pad presses",
+            f"object {grasped.spec.name!r}: {error}. A plate of the same volume stands for it, which is touched "
+            "wherever a pad presses",
             RuntimeWarning,
             stacklevel=2,
         )
         return None
-    return Touches(thing, body, contacts, demand, film, cache)
+    return Touches(grasped, body, contacts, demand, film, cache)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -139,15 +139,15 @@ def _body(
     return touched_body(body, patches, stack, demand, fingertips=fingertips, film=film, cache=cache)
 
 
-def _solid(thing: GraspBody) -> Solid:
-    assert thing.solid is not None
-    return thing.solid
+def _solid(grasped: GraspBody) -> Solid:
+    assert grasped.solid is not None
+    return grasped.solid
 
 
-def _grasped(thing: GraspBody, side: int) -> SurfacePatch:
+def _grasped(grasped: GraspBody, side: int) -> SurfacePatch:
     """Where the left (-1) or the right (1) fingertip of a gripper over the origin meets the object: the outermost
     surface along the line on which the fingers close."""
-    spec = thing.spec
+    spec = grasped.spec
     cos, sin = math.cos(spec.yaw), math.sin(spec.yaw)
     x, y = spec.position
     beyond = sum(spec.size)
@@ -155,7 +155,7 @@ def _grasped(thing: GraspBody, side: int) -> SurfacePatch:
     middle = -x * cos - y * sin, x * sin - y * cos
     height = spec.grasp_height - spec.size[2] / 2
     return SurfacePatch(
-        (middle[0] + beyond * along[0], middle[1] + beyond * along[1], height), along, thing.geometry.area
+        (middle[0] + beyond * along[0], middle[1] + beyond * along[1], height), along, grasped.geometry.area
     )
 
 

@@ -106,7 +106,7 @@ class GraspTask:
             terminated=ended,
             truncated=~ended & (elapsed >= self.seconds - dt / 2),
             reasons=dict(zip(self.reasons, (dropped, crushed, slipped), strict=True)),
-            told={},
+            info={},
         )
         return after, outcome
 

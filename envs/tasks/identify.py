@@ -100,6 +100,6 @@ class IdentifyTask:
             terminated=terminated,
             truncated=truncated,
             reasons={},
-            told={"prediction": share, "loss": loss},
+            info={"prediction": share, "loss": loss},
         )
         return after, outcome

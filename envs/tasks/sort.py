@@ -96,6 +96,6 @@ class SortTask:
             terminated=ended,
             truncated=~ended & (elapsed >= self.seconds - dt / 2),
             reasons=dict(zip(self.reasons, (wrong, dropped, crushed), strict=True)),
-            told={},
+            info={},
         )
         return after, outcome

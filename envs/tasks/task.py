@@ -16,15 +16,15 @@ from thermograsp.plant import Command, Reading
 
 class Outcome(NamedTuple):
     """The result of a control step, all (B,): reward, success, terminated, truncated. reasons: name -> (B,) bool, the
-    task's reasons; info names those for which an episode ended. told: name -> (B, ...), values that info always
-    has."""
+    task's reasons; an episode's info names those for which it ended. info: name -> (B, ...), values that every step's
+    info has."""
 
     reward: np.ndarray
     success: np.ndarray
     terminated: np.ndarray
     truncated: np.ndarray
     reasons: Mapping[str, np.ndarray]
-    told: Mapping[str, np.ndarray]
+    info: Mapping[str, np.ndarray]
 
 
 class Task(Protocol):
@@ -62,7 +62,7 @@ def cleared(outcome: Outcome, rows: np.ndarray) -> Outcome:
         terminated=outcome.terminated & others,
         truncated=outcome.truncated & others,
         reasons={name: ended & others for name, ended in outcome.reasons.items()},
-        told=outcome.told,
+        info=outcome.info,
     )
 
 

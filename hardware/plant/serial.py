@@ -242,7 +242,7 @@ class SerialPlant:
             thermostat=thermostat[None].copy(),
             truth={"unknown": unknown, "late": np.array([late])},
             error=(self._trouble,),
-            told=("unknown", "late"),
+            info_names=("unknown", "late"),
         )
 
     def _take(self, samples: Samples) -> None:

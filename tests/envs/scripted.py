@@ -41,5 +41,5 @@ def sampled_conductance(contacts: list[tuple[np.ndarray, np.ndarray]], body: Gra
     for force, place in contacts:
         first = force[:1] if force.ndim == 3 else force[:1, 0]
         at = place[:1] if force.ndim == 3 else place[:1, 0]
-        told += [one.advance(half, at).told["conductance"][0] for half in np.split(first, 2, axis=1)]
+        told += [one.advance(half, at).info["conductance"][0] for half in np.split(first, 2, axis=1)]
     return np.array(told)

@@ -41,10 +41,10 @@ def compare(recordings: Recordings, curves: np.ndarray, rng: np.random.Generator
     """One for each label. curves: (B, n) °C, predicted."""
     found = []
     for label in recordings.labels:
-        mine = recordings.label == label
-        some = recordings.only(mine)
+        chosen = recordings.label == label
+        some = recordings.only(chosen)
         measured = some.drops
-        error = measured - drops_of(some, curves[mine])
+        error = measured - drops_of(some, curves[chosen])
         found.append(
             Comparison(
                 label,
@@ -72,10 +72,10 @@ def drawn_apart(recordings: Recordings, others: Recordings, label: str, rng: np.
     of `others` from a fit on `recordings` may be off by for the draw of runs alone. nan for fewer than 3 runs."""
     away = []
     for some in (recordings, others):
-        mine = some.label == label
-        if len(np.unique(some.run[mine])) < _LEAST_RUNS:
+        chosen = some.label == label
+        if len(np.unique(some.run[chosen])) < _LEAST_RUNS:
             return float("nan")
-        away.append(_means_away(some.drops[mine], some.run[mine], rng))
+        away.append(_means_away(some.drops[chosen], some.run[chosen], rng))
     return float(np.quantile([_rms(a - b) for a, b in zip(*away, strict=True)], _SHARE))
 
 

@@ -148,12 +148,12 @@ def _weigher(recordings: Recordings) -> Callable[[np.ndarray, np.ndarray], np.nd
         own = {int(r): int(np.sum(recordings.run == r)) for r in np.unique(recordings.run)}
         share = np.array([counts.get(int(r), 0) / own[int(r)] for r in recordings.run])
         for label in recordings.labels:
-            mine = recordings.label == label
-            weights = share[mine]
-            rows.append((np.sqrt(weights)[:, None] * errors[mine]).ravel())
+            chosen = recordings.label == label
+            weights = share[chosen]
+            rows.append((np.sqrt(weights)[:, None] * errors[chosen]).ravel())
             total = weights.sum()
             if total:
-                means.append(_MEAN_WEIGHT * np.sqrt(total) * (weights @ errors[mine] / total))
+                means.append(_MEAN_WEIGHT * np.sqrt(total) * (weights @ errors[chosen] / total))
         return np.concatenate((*rows, *means))
 
     return weigh

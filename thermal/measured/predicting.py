@@ -94,18 +94,18 @@ def predict(recordings: Recordings, stack: HeatedStack, touched: Mapping[str, To
     curves = np.empty_like(recordings.heated)
     temperature, free = np.empty(len(curves)), {}
     for label in recordings.labels:
-        mine = recordings.label == label
-        some, what = recordings.only(mine), touched[label]
+        chosen = recordings.label == label
+        some, what = recordings.only(chosen), touched[label]
         if what.temperature == "free":
             cold, warm = (_curves(some, stack, what.sample, np.full(len(some.run), value)) for value in _TWO)
             slope = (warm - cold) / (_TWO[1] - _TWO[0])
             free[label] = best_temperature(some, cold, slope)
-            temperature[mine] = free[label]
-            curves[mine] = cold + slope * (free[label] - _TWO[0])
+            temperature[chosen] = free[label]
+            curves[chosen] = cold + slope * (free[label] - _TWO[0])
             continue
         by_sensor = what.temperature == "passive"
-        temperature[mine] = passive_temperature(some) if by_sensor else float(what.temperature)
-        curves[mine] = _curves(some, stack, what.sample, temperature[mine])
+        temperature[chosen] = passive_temperature(some) if by_sensor else float(what.temperature)
+        curves[chosen] = _curves(some, stack, what.sample, temperature[chosen])
     if not np.isfinite(curves).all():
         raise SimulationError("a prediction is not finite: look at the sensor's properties")
     return Predictions(curves, temperature, free)

@@ -105,9 +105,11 @@ def _covariance(
         where = touched[label].temperature
         if where == "free":
             continue
-        mine = known & (recordings.label == label)
-        degrees = passive_temperature(recordings) if where == "passive" else np.full(len(mine), float(where))
-        residuals.append((measured - at_zero - degrees[:, None] * (at_one - at_zero))[mine])
+        chosen = known & (recordings.label == label)
+        degrees = (
+            passive_temperature(recordings) if where == "passive" else np.full(len(chosen), float(where))
+        )
+        residuals.append((measured - at_zero - degrees[:, None] * (at_one - at_zero))[chosen])
     rows = np.concatenate(residuals) if residuals else np.empty((0, measured.shape[1]))
     if len(rows) < 2 * measured.shape[1]:
         raise InvalidValueError(

@@ -117,22 +117,22 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
     return tuple(found)
 
 
-def _first(name: str, told: Made | Sequence[Made]) -> Made:
-    if isinstance(told, str | Material | ThermalBody) or not isinstance(told, list | tuple):
-        return told  # pyright: ignore[reportReturnType]
-    if not told:
+def _first(name: str, given: Made | Sequence[Made]) -> Made:
+    if isinstance(given, str | Material | ThermalBody) or not isinstance(given, list | tuple):
+        return given  # pyright: ignore[reportReturnType]
+    if not given:
         raise InvalidValueError(f"object {name!r}: its list of materials is empty: give one for each world")
-    return told[0]
+    return given[0]
 
 
 def materials_by_world(
-    told: Objects, shapes: Sequence[BodyShape], worlds: int, ambient: float
+    given: Objects, shapes: Sequence[BodyShape], worlds: int, ambient: float
 ) -> tuple[dict[str, list[Material]], dict[str, np.ndarray]]:
-    """By name of the objects told of: their materials in each world, and their first temperatures (worlds,) °C. shapes:
+    """By name of the objects given: their materials in each world, and their first temperatures (worlds,) °C. shapes:
     what they are otherwise. Raises InvalidValueError and UnknownNameError."""
     known = {shape.name: shape for shape in shapes}
     materials, temperatures = {}, {}
-    for name, one in told.items():
+    for name, one in given.items():
         if name not in known:
             raise unknown_name("object", name, known)
         every = list(one) if isinstance(one, list | tuple) else [one] * worlds
@@ -149,14 +149,14 @@ def materials_by_world(
     return materials, temperatures
 
 
-def _thermal_body(name: str, told: object) -> ThermalBody:
-    if isinstance(told, ThermalBody):
-        return told
-    if not isinstance(told, str | Material):
+def _thermal_body(name: str, given: object) -> ThermalBody:
+    if isinstance(given, ThermalBody):
+        return given
+    if not isinstance(given, str | Material):
         raise InvalidValueError(
-            f"object {name!r}: give a material's name, a Material or a ThermalBody, got {told!r}"
+            f"object {name!r}: give a material's name, a Material or a ThermalBody, got {given!r}"
         )
-    return ThermalBody(told)
+    return ThermalBody(given)
 
 
 def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
@@ -165,7 +165,7 @@ def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
     found = {}
     for number in range(model.ntext):
         name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, number) or ""
-        attached, ours, thing = name.partition(PREFIX)
+        attached, ours, label = name.partition(PREFIX)
         if not ours:
             continue
         first, count = int(model.text_adr[number]), int(model.text_size[number])
@@ -179,13 +179,13 @@ def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
                 f'<text name="{name}" data="{text}"/>: write a material and, if it is not the air\'s, a temperature in '
                 '°C, such as "aluminium 5.0"'
             ) from None
-        found[attached + thing] = ThermalBody(made_of, degrees)
+        found[attached + label] = ThermalBody(made_of, degrees)
     return found
 
 
-def _body(model: mujoco.MjModel, name: str, told: Made, ambient: float) -> BodyShape:
+def _body(model: mujoco.MjModel, name: str, given: Made, ambient: float) -> BodyShape:
     kind, number = find(model, name, ("body", "geom"), "object")
-    thing = _thermal_body(name, told)
+    described = _thermal_body(name, given)
     geoms = geoms_of(model, kind, number)
     if not geoms:
         raise InvalidValueError(
@@ -196,14 +196,14 @@ def _body(model: mujoco.MjModel, name: str, told: Made, ambient: float) -> BodyS
         name,
         int(model.geom_bodyid[geoms[0]]),
         geoms,
-        named_material(thing.material),
-        ambient if thing.temperature is None else float(thing.temperature),
+        named_material(described.material),
+        ambient if described.temperature is None else float(described.temperature),
         size,
         centre,
         axes,
         extent,
         surface,
-        tuple(thing.elements),
+        tuple(described.elements),
     )
 
 

@@ -107,18 +107,20 @@ def pads(
     InvalidValueError."""
     if not fingertips:
         raise InvalidValueError('fingertips: none given; name at least one, such as {"thumb": "thumb_pad"}')
-    told = {label: one if isinstance(one, Fingertip) else Fingertip(one) for label, one in fingertips.items()}
+    given = {
+        label: one if isinstance(one, Fingertip) else Fingertip(one) for label, one in fingertips.items()
+    }
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     found = {
         label: find(model, one.name, ("geom", "site", "body"), f"fingertip {label!r}")
-        for label, one in told.items()
+        for label, one in given.items()
     }
     geoms = {label: geoms_of(model, *where) for label, where in found.items()}
     _apart(model, geoms, objects)
     middles = {label: _middle(model, data, where, geoms[label]) for label, where in found.items()}
     placed = []
-    for label, one in told.items():
+    for label, one in given.items():
         others = [middle for other, middle in middles.items() if other != label]
         towards = [np.mean(others, axis=0)] if others else []
         towards += [data.xpos[o.body] + data.xmat[o.body].reshape(3, 3) @ o.centre for o in objects]

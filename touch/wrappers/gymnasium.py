@@ -48,13 +48,13 @@ class AddThermalObservation(gymnasium.Wrapper):
         self._stepped = SteppedTouch(lambda: _simulation(self.env), every)
         shape = (len(self.touch.fingertips), SAMPLES)
         volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
-        theirs = env.observation_space
-        if isinstance(theirs, gymnasium.spaces.Dict):
-            if VOLTAGE in theirs.spaces:
+        space = env.observation_space
+        if isinstance(space, gymnasium.spaces.Dict):
+            if VOLTAGE in space.spaces:
                 raise InvalidValueError(f"the environment's observation has an entry {VOLTAGE!r} already")
-            self.observation_space = gymnasium.spaces.Dict({**theirs.spaces, VOLTAGE: volts})
+            self.observation_space = gymnasium.spaces.Dict({**space.spaces, VOLTAGE: volts})
         else:
-            self.observation_space = gymnasium.spaces.Dict({OBSERVATION: theirs, VOLTAGE: volts})
+            self.observation_space = gymnasium.spaces.Dict({OBSERVATION: space, VOLTAGE: volts})
 
     @property
     def touch(self) -> ThermalTouch:

@@ -66,7 +66,7 @@ def test_drops_are_those_of_the_searched_network_within_the_tolerance(name):
         force = np.zeros((1, 10, 2))
         force[0, :, 0], force[0, :, 1] = 10.0 * (k < 300), 10.0 * (20 <= k < 300)
         told = heat.advance(force, MIDDLES[None])
-        felt = np.repeat(told.told["conductance"] * told.told["area"], searched.modes, axis=1)
+        felt = np.repeat(told.info["conductance"] * told.info["area"], searched.modes, axis=1)
         for _ in range(2):
             x, _ = step(other, x, felt, difference)
             expected.append(searched.drop @ x[0])
@@ -93,7 +93,7 @@ def test_books_hold_whatever_a_fingertip_does():
         if k % 3:
             place[:, 1] += 0.001 * k % 0.004
         for told in press(heat, 0.1, place if rng.random() < 0.8 else None):
-            row = told.told[0]
+            row = told.info[0]
             gone += STEP * (row["drawn"].sum() - row["air_loss"])
             assert abs(row["imbalance"]) < 1e-10 * max(row["exchanged"], 1.0)
             assert row["heat"].sum() == pytest.approx(gone, abs=1e-9)
@@ -159,7 +159,7 @@ def boxes_of(name: str, size: tuple[float, float, float], along: list[float], pl
         at = None if place is None else np.array([[-size[0] / 2, along[place] - size[1] / 2, 0.0], [9.0] * 3])
         for told in press(heat, seconds, at):
             found += told.drop[0, :, 0].tolist()
-            felt = max(felt, float(told.told["conductance"][0, 0]))
+            felt = max(felt, float(told.info["conductance"][0, 0]))
     return np.array(found), felt
 
 
@@ -213,13 +213,13 @@ def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
         seen.append([])
         many = press(together, 0.2, place, course[-1 - k], MIDDLES)
         for a, b in zip(press(alone, 0.2, place), many, strict=True):
-            assert np.array_equal(a.drop[0], b.drop[0]) and a.told[0].tobytes() == b.told[0].tobytes()
-            seen[-1].append(a.told[0].tobytes())
+            assert np.array_equal(a.drop[0], b.drop[0]) and a.info[0].tobytes() == b.info[0].tobytes()
+            seen[-1].append(a.info[0].tobytes())
     other = heat_of(thing(name="cork"), air=5.0)
     for heat in (other, alone):
         heat.set_state([0], states[2])
         for place, told in zip(course[2:], seen[2:], strict=True):
-            assert [step.told[0].tobytes() for step in press(heat, 0.2, place)] == told
+            assert [step.info[0].tobytes() for step in press(heat, 0.2, place)] == told
 
 
 def test_drawn_sizes_vector_and_single_agree_bit_for_bit():

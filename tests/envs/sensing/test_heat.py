@@ -257,7 +257,7 @@ def test_a_pad_that_hangs_over_an_edge_feels_by_what_lies_under_it(lift):
     above = motion.place[0, :, 2]
     step = batch.plant.heat.advance(motion.normal, motion.place)  # pyright: ignore[reportAttributeAccessIssue]
     expected = thermal.flat_contact(PAD, 10.0, (0.04, 0.03), (motion.place[0, :, 1], above)).face
-    assert step.told["area"][0] == pytest.approx(expected, rel=1e-12)
+    assert step.info["area"][0] == pytest.approx(expected, rel=1e-12)
     assert np.all(expected < 80e-6) == (lift > 0) and np.all(expected > 0)
 
 

@@ -80,7 +80,7 @@ def test_two_samples_in_one_step_are_those_of_two_steps(anywhere):
         for half in range(2):
             one = halves.advance(force[:, 5 * half : 5 * half + 5], place)
             assert np.array_equal(told.drop[:, half], one.drop[:, 0])
-            assert np.array_equal(one.told["heat"], told.told["heat"]) == (half == 1) or step == 0
+            assert np.array_equal(one.info["heat"], told.info["heat"]) == (half == 1) or step == 0
 
 
 def test_a_substep_that_two_samples_share_counts_for_both_by_its_parts():
@@ -100,7 +100,7 @@ def test_a_fingertip_goes_over_to_another_object_between_two_samples():
     stay = np.stack([pressed((FULL, 0)), pressed()], axis=1)
     drawn = 0.0
     for _ in range(10):
-        told = [heat.advance(stay, place) for heat in heats][0].fingertips.told[0]
+        told = [heat.advance(stay, place) for heat in heats][0].fingertips.info[0]
         drawn += told["drawn"].sum() * 0.02
     over = np.stack([pressed((slice(0, 5), 0)), pressed((HALF, 0))], axis=1)
     going, staying = (heat.advance(each, place) for heat, each in zip(heats, (over, stay), strict=True))
@@ -109,7 +109,7 @@ def test_a_fingertip_goes_over_to_another_object_between_two_samples():
     assert going.owner[0].tolist() == [1, 0]
     assert going.fingertips.events[0] == (("touch", "left"), ("release", "left"))
     for step in (going, *(heats[0].advance(stay[:, ::-1], place) for _ in range(5))):
-        told = step.fingertips.told[0]
+        told = step.fingertips.info[0]
         drawn += told["drawn"].sum() * 0.02
         assert told["heat"].sum() == pytest.approx(drawn, rel=1e-9)
         assert abs(told["imbalance"]) <= 1e-9 * told["exchanged"]

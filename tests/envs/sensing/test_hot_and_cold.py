@@ -51,7 +51,7 @@ class Run:
         self.drawn = self.air = self.supplied = 0.0
 
     def step(self, newton: float = 0.0):
-        told = self.heat.advance(np.full((1, 10, 2), newton), self.thing.spec.element_places[None]).told[0]
+        told = self.heat.advance(np.full((1, 10, 2), newton), self.thing.spec.element_places[None]).info[0]
         self.drawn += STEP * told["drawn"].sum()
         self.air += STEP * told["air_loss"]
         self.supplied += STEP * told["reservoir_flow"]
@@ -180,7 +180,7 @@ def test_a_state_in_the_middle_goes_on_bit_for_bit():
     for newton in [8.0] * 10 + [0.0] * 10:
         place = body.spec.element_places[None]
         a, b = (run.heat.advance(np.full((1, 10, 2), newton), place) for run in (first, other))
-        assert a.told.tobytes() == b.told.tobytes() and np.array_equal(a.drop, b.drop)
+        assert a.info.tobytes() == b.info.tobytes() and np.array_equal(a.drop, b.drop)
 
 
 def held(batch: GraspBatch, steps: int, force: float = 20.0) -> list:

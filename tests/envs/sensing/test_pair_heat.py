@@ -50,7 +50,7 @@ def test_what_leaves_the_thermostats_is_what_elements_and_objects_gain(names, co
     heat = pair_heat(thing(names[0]), thing(names[1], 20.0))
     drawn = exchanged = 0.0
     for left, right in COURSES[course]:
-        told = step(heat, left, right).fingertips.told[0]
+        told = step(heat, left, right).fingertips.info[0]
         drawn += told["drawn"].sum() * 0.02
         exchanged += np.abs(told["drawn"]).sum() * 0.02
         assert told["heat"].sum() == pytest.approx(drawn, abs=1e-9 * exchanged)
@@ -64,7 +64,7 @@ def test_thermostats_that_drift_are_in_the_books():
     heat = pair_heat(thing("copper"), thing("glass"))
     drawn, celsius = 0.0, 36.0
     for k, (left, right) in enumerate(COURSES["one after the other"]):
-        told = step(heat, left, right).fingertips.told[0]
+        told = step(heat, left, right).fingertips.info[0]
         drawn += told["drawn"].sum() * 0.02
         assert told["heat"].sum() == pytest.approx(drawn, rel=1e-9)
         celsius -= 0.02 if k < 80 else -0.01
@@ -82,7 +82,7 @@ def test_until_it_goes_over_it_is_the_heat_of_one_object():
             told = step(heat, on, on)
             one = alone.advance(np.full((1, 10, 2), 10.0 * pressed), thing("glass").spec.element_places[None])
             assert np.array_equal(told.fingertips.drop, one.drop)
-            assert np.array_equal(told.fingertips.told["heat"], one.told["heat"])
+            assert np.array_equal(told.fingertips.info["heat"], one.info["heat"])
             assert told.objects["object_temperature"][0, 1 - number] == 24.0
 
 

@@ -126,7 +126,7 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
         taken = supplied = lost = gained = 0.0
         for place in places:
             for step in press(heat, 4.0, place):
-                told = step.told[0]
+                told = step.info[0]
                 taken += STEP * told["flow"].sum()
                 supplied += STEP * told["reservoir_flow"]
                 lost += STEP * told["air_loss"]
@@ -151,8 +151,8 @@ def test_heat_taken_is_the_rise_times_the_heat_capacity(name, meshes):
     taken = 0.0
     for place in places:
         for step in press(heat, 2.0, place):
-            taken += STEP * step.told["flow"][0].sum()
-            rise = step.told["object_temperature"][0] - 24.0
+            taken += STEP * step.info["flow"][0].sum()
+            rise = step.info["object_temperature"][0] - 24.0
             assert capacity * rise == pytest.approx(taken, rel=1e-6, abs=1e-12)
     assert taken > 1.0 and len(heat._touches[0].body.patches) == 2
 
@@ -203,7 +203,7 @@ def test_two_fingers_warm_a_small_block_as_the_two_port_network_says():
     for tips in (1, 2):
         heat = heat_of(thing(spec, "aluminium", fingertips=tips))
         place, force = spec.element_places[None], np.full((1, 10, 2), 10.0)
-        told = [heat.advance(force, place).told[0] for _ in range(250)][-1]
+        told = [heat.advance(force, place).info[0] for _ in range(250)][-1]
         rise[tips] = told["object_temperature"] - 24.0
         level = heat._boxes._of_level
         sensor = tip(STACK, ((0.0, 0.009), (0.0, 0.009)), level)
@@ -241,14 +241,14 @@ def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
         one = press(alone, 0.1, place)
         all_of_them = press(together, 0.1, place, course[-1 - k], 4 * LEFT)
         for a, b in zip(one, all_of_them, strict=True):
-            assert np.array_equal(a.drop[0], b.drop[0]) and a.told[0].tobytes() == b.told[0].tobytes()
+            assert np.array_equal(a.drop[0], b.drop[0]) and a.info[0].tobytes() == b.info[0].tobytes()
         seen.append(alone.state([0]))
     other = heat_of(thing(BAR, "cork"))
     other.set_state([0], seen[3])
     alone.set_state([0], seen[3])
     for place in course[4:]:
         for a, b in zip(press(alone, 0.1, place), press(other, 0.1, place), strict=True):
-            assert a.told[0].tobytes() == b.told[0].tobytes()
+            assert a.info[0].tobytes() == b.info[0].tobytes()
 
 
 def test_vector_and_single_environments_agree_on_meshes_bit_for_bit(meshes):

@@ -61,5 +61,5 @@ def test_a_row_does_not_depend_on_the_others(task) -> None:
             assert alone[row].tobytes() == state[own].tobytes()
             for mine, theirs in zip(one[:4], outcome[:4], strict=True):
                 assert mine.tobytes() == theirs[own].tobytes()
-            for name, values in one.told.items():
-                assert values.tobytes() == outcome.told[name][own].tobytes()
+            for name, values in one.info.items():
+                assert values.tobytes() == outcome.info[name][own].tobytes()
