@@ -50,10 +50,10 @@ def install(
     celsius("ambient (°C)", ambient)
     non_negative("air (W/(m2 K))", air)
     positive("tolerance (K)", tolerance)
-    for name, made_of in (objects or {}).items():
+    for label, made_of in (objects or {}).items():
         if isinstance(made_of, list | tuple):
             raise InvalidValueError(
-                f"object {name!r}: a list of {len(made_of)} materials is one for each of many worlds, and a model "
+                f"object {label!r}: a list of {len(made_of)} materials is one for each of many worlds, and a model "
                 "with heat inside its step is one world's: give one material, and install into a spec for each, or use "
                 "ThermalTouch(model, worlds=...)"
             )
