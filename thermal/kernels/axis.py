@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.special import erfc
+from scipy.special import erfc, erfcx
 
 from thermograsp.compiled import njit
 
@@ -33,6 +33,19 @@ def _integral_of_erfc() -> np.ndarray:
 
 
 _TABLE = _integral_of_erfc()
+_FAR = 20.0  # from which on erfcx is told by its series
+_FEW = 0.02  # what is added to its argument up to which differences of erfcx are told by theirs
+
+
+def _scaled_erfc() -> np.ndarray:
+    """(nodes, 2) of erfcx(x) at 4 / (4 + x) = 1 - node / _FINE, and its slope along the nodes."""
+    place = 1 - np.arange(int((1 - 4 / (4 + _FAR)) * _FINE) + 2) / _FINE
+    x = 4 / place - 4
+    value = erfcx(x)
+    return np.stack((value, (2 * x * value - 2 / _ROOT_PI) * 4 / place**2 / _FINE), axis=1)
+
+
+_SCALED = _scaled_erfc()
 
 
 @njit(cache=True, error_model="numpy")
@@ -87,21 +100,30 @@ def overlaps(nodes, jumps, order, length, waves, cosines, out):
 @njit(cache=True, error_model="numpy")
 def images(one, order, other, other_order, same, length, film, tau, out):
     """Fills out (E one, E other) with the kernel's antiderivatives, of the orders in x and in x', at tau m2. What is
-    linear in both is left out: no function over strips sees it. same: one is other."""
+    linear in both is left out: no function over strips sees it. one, other: ascending. same: one is other."""
     total = order + other_order
     flip = -1.0 if other_order == 1 else 1.0
     turned = -1.0 if total == 1 else 1.0
     scale = 2 * math.sqrt(tau)
+    reach = _REACH * scale
+    low_end = one[0] + other[0] <= reach
+    high_end = 2 * length - one[-1] - other[-1] <= reach
+    both_ends = 2 * length - max(one[-1] - other[0], other[-1] - one[0]) <= reach
     for i in range(len(one)):
         for j in range(i + 1 if same else len(other)):
             near, far = one[i] - other[j], one[i] + other[j]
             value = flip * _free(near, scale, total)
-            value += flip * _beyond(near - 2 * length, -1.0, scale, total)
-            value += flip * _beyond(near + 2 * length, 1.0, scale, total)
-            value += _beyond(far, 1.0, scale, total) + _beyond(far - 2 * length, -1.0, scale, total)
-            if film > 0.0:
-                value -= _lost(far, scale, tau, film, total)
-                value -= turned * _lost(2 * length - far, scale, tau, film, total)
+            if both_ends:
+                value += flip * _beyond(near - 2 * length, -1.0, scale, total)
+                value += flip * _beyond(near + 2 * length, 1.0, scale, total)
+            if low_end:
+                value += _beyond(far, 1.0, scale, total)
+                if film > 0.0:
+                    value -= _lost(far, scale, film, total)
+            if high_end:
+                value += _beyond(far - 2 * length, -1.0, scale, total)
+                if film > 0.0:
+                    value -= turned * _lost(2 * length - far, scale, film, total)
             out[i, j] = value
             if same:
                 out[j, i] = value
@@ -127,37 +149,49 @@ def _beyond(d, side, scale, order):
         return math.exp(-r * r) / (scale * _ROOT_PI)
     if order == 1:
         return -0.5 * side * math.erfc(r)
-    place = r * _FINE
+    return 0.5 * scale * _between(_TABLE, r * _FINE)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _between(table, place):
+    """The table's value between two of its nodes."""
     k = int(place)
     u = place - k
     v = 1 - u
-    left, right = (
-        _TABLE[k, 0] * (1 + 2 * u) + _TABLE[k, 1] * u,
-        _TABLE[k + 1, 0] * (1 + 2 * v) - _TABLE[k + 1, 1] * v,
-    )
-    return 0.5 * scale * (left * v * v + right * u * u)
+    left = table[k, 0] * (1 + 2 * u) + table[k, 1] * u
+    right = table[k + 1, 0] * (1 + 2 * v) - table[k + 1, 1] * v
+    return left * v * v + right * u * u
 
 
 @njit(cache=True, error_model="numpy")
-def _lost(y, scale, tau, film, order):
+def _lost(y, scale, film, order):
     """Antiderivative of that order, 0 far off, of what a film takes from the image at distance y."""
     r = y / scale
     if r > _REACH:
         return 0.0
-    gauss = math.exp(-r * r)
-    cold = gauss * _erfcx(r + film * scale / 2)
+    gauss, warm, more = math.exp(-r * r), _erfcx(r), film * scale / 2
     if order == 0:
-        return film * cold
-    bare = math.erfc(r)
+        return film * gauss * _erfcx(r + more)
+    if more > _FEW:
+        cooled = _erfcx(r + more) - warm
+    else:
+        first = 2 * r * warm - 2 / _ROOT_PI
+        second = 2 * (warm + r * first)
+        third = 2 * (2 * first + r * second)
+        fourth = 2 * (3 * second + r * third)
+        fifth = 2 * (4 * third + r * fourth)
+        cooled = more * (
+            first + more / 2 * (second + more / 3 * (third + more / 4 * (fourth + more / 5 * fifth)))
+        )
     if order == 1:
-        return cold - bare
-    return (cold - bare) / film - (y * bare - scale / _ROOT_PI * gauss)
+        return gauss * cooled
+    return gauss * (cooled / film - y * warm + scale / _ROOT_PI)
 
 
 @njit(cache=True, error_model="numpy")
 def _erfcx(x):
     """exp(x^2) erfc(x), x >= 0."""
-    if x < 20.0:
-        return math.exp(x * x) * math.erfc(x)
+    if x < _FAR:
+        return _between(_SCALED, (1 - 4 / (4 + x)) * _FINE)
     square = 0.5 / (x * x)
     return (1 - square * (1 - 3 * square * (1 - 5 * square))) / (x * _ROOT_PI)

@@ -20,6 +20,8 @@ from .axis import MODES, SWITCH, images, overlaps, wave_numbers
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
+_UNSEEN = 160.0  # squared distance over diffusion length squared: exp(-40)
+
 
 class Patches(NamedTuple):
     """face: (N,) 2 axis + side, side 0 at the coordinate's 0 and 1 at the far end. centre, half: (N, 2) m along the
@@ -157,7 +159,10 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
                 a = places[n] if order[n] == 1 else places[n, :1]
                 for m in range(n + 1):
                     others = functions if order[m] == 1 else 1
-                    if alike[n] < n or alike[m] < m:
+                    if _unseen(size, face, n, m, tau):
+                        now[n, :, m, :] = 0.0
+                        continue
+                    if (alike[n] < n or alike[m] < m) and not _unseen(size, face, alike[n], alike[m], tau):
                         # opposite fingertips often differ along one axis only
                         for f in range(mine):
                             for g in range(others):
@@ -242,6 +247,13 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
             for j in range(i):
                 kernel[t, j, i] = kernel[t, i, j]
     return kernel, slowest, port, whole, held
+
+
+@njit(cache=True, error_model="numpy")
+def _unseen(size, face, n, m, tau):
+    """Whether patches n and m are on opposite faces, of which neither has felt the other by then to round-off."""
+    axis = face[n] // 2
+    return face[m] // 2 == axis and face[m] != face[n] and size[axis] * size[axis] > _UNSEEN * tau
 
 
 @njit(cache=True, error_model="numpy")

@@ -16,7 +16,8 @@ _STEPS = 20
 _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _RELAXED = 1.6
-_ROUND_OFF = 1e-20  # of squares off the diagonal beside those on it
+_ROUND_OFF = 1e-20  # of squares off the diagonal beside those on it, in the last step
+_ON_THE_WAY = 1e-8  # the same before it: the next step's matrices are turned on from there
 _TINY = 1e-300  # beside a zero
 
 
@@ -39,11 +40,11 @@ def _in_cone(solve, seen, inside):
     """Turns the first guess inside (N, N, K) into the answer. solve: (K, K) symmetric. seen: (N, N, K)."""
     ports, rates = seen.shape[1], seen.shape[2]
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
-    turn, half = np.zeros_like(seen), np.empty_like(seen)
+    turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
     pulled, free, room = np.empty(rates), np.empty(rates), np.empty((4, rates))
     for i in range(ports):
         turn[i, i] = 1.0
-    for _ in range(_STEPS):
+    for step in range(_STEPS):
         for i in range(ports):
             for j in range(i + 1):
                 for k in range(rates):
@@ -63,42 +64,46 @@ def _in_cone(solve, seen, inside):
                     moved[i, j, k] = 0.0
                 for m in range(ports):
                     for k in range(rates):
-                        moved[i, j, k] += turn[m, i, k] * half[m, j, k]
-                for k in range(rates):
-                    moved[j, i, k] = moved[i, j, k]
-        _turn_diagonal(moved, turn, room)
+                        moved[i, j, k] += turn[i, m, k] * half[j, m, k]
+        _turn_diagonal(moved, turn, room, _ON_THE_WAY if step < _STEPS - 1 else _ROUND_OFF)
         for m in range(ports):
-            for k in range(rates):
-                moved[m, m, k] = max(moved[m, m, k], 0.0)
+            for i in range(ports):
+                for k in range(rates):
+                    half[m, i, k] = max(moved[m, m, k], 0.0) * turn[m, i, k]
         for i in range(ports):
             for j in range(i + 1):
                 for k in range(rates):
-                    free[k] = 0.0
+                    inside[i, j, k] = 0.0
                 for m in range(ports):
                     for k in range(rates):
-                        free[k] += turn[i, m, k] * moved[m, m, k] * turn[j, m, k]
+                        inside[i, j, k] += turn[m, i, k] * half[m, j, k]
                 for k in range(rates):
-                    inside[i, j, k] = inside[j, i, k] = free[k]
-        dual -= inside
+                    dual[i, j, k] -= inside[i, j, k]
+                    dual[j, i, k] = dual[i, j, k]
+    for i in range(ports):
+        for j in range(i):
+            for k in range(rates):
+                inside[j, i, k] = inside[i, j, k]
 
 
 @njit(cache=True, error_model="numpy")
 def _product(first, second, out):
-    """out = first @ second, of matrices (N, N, K)."""
+    """out[m, i] = sum over r of first[i, r] second[m, r], of matrices (N, N, K)."""
     ports, rates = first.shape[1], first.shape[2]
-    for i in range(ports):
-        for j in range(ports):
+    for m in range(ports):
+        for i in range(ports):
             for k in range(rates):
-                out[i, j, k] = 0.0
-            for m in range(ports):
+                out[m, i, k] = 0.0
+            for r in range(ports):
                 for k in range(rates):
-                    out[i, j, k] += first[i, m, k] * second[m, j, k]
+                    out[m, i, k] += first[i, r, k] * second[m, r, k]
 
 
 @njit(cache=True, error_model="numpy")
-def _turn_diagonal(matrix, turn, room):
-    """Diagonalises symmetric matrices (N, N, K) in place by Jacobi's rotations, which it adds to turn's columns. room:
-    (4, K)."""
+def _turn_diagonal(matrix, turn, room, least):
+    """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
+    which it adds to turn's rows. least: squares off the diagonal that may be left, beside those on it. room: (4, K).
+    """
     ports, rates = matrix.shape[1], matrix.shape[2]
     cosine, sine, off, on = room[0], room[1], room[2], room[3]
     for _ in range(30):
@@ -112,19 +117,26 @@ def _turn_diagonal(matrix, turn, room):
                     off[k] += matrix[i, j, k] * matrix[i, j, k]
         done = True
         for k in range(rates):
-            done &= off[k] <= _ROUND_OFF * on[k]
+            done &= off[k] <= least * on[k]
+            on[k] *= least / (ports * ports)
         if done:
             return
-        for p in range(ports - 1):
-            for q in range(p + 1, ports):
-                _angle(matrix[p, p], matrix[q, q], matrix[p, q], cosine, sine)
+        for q in range(1, ports):
+            for p in range(q):
+                small = True
+                for k in range(rates):
+                    small &= matrix[q, p, k] * matrix[q, p, k] <= on[k]
+                if small:
+                    continue
+                _angle(matrix[p, p], matrix[q, q], matrix[q, p], cosine, sine)
+                for m in range(p):
+                    _rotate(matrix, p, m, q, m, cosine, sine)
+                for m in range(p + 1, q):
+                    _rotate(matrix, m, p, q, m, cosine, sine)
+                for m in range(q + 1, ports):
+                    _rotate(matrix, m, p, m, q, cosine, sine)
                 for m in range(ports):
-                    if m not in (p, q):
-                        _rotate(matrix[m, p], matrix[m, q], cosine, sine)
-                        matrix[p, m, :] = matrix[m, p]
-                        matrix[q, m, :] = matrix[m, q]
-                    _rotate(turn[m, p], turn[m, q], cosine, sine)
-                matrix[q, p, :] = 0.0
+                    _rotate(turn, p, m, q, m, cosine, sine)
 
 
 @njit(cache=True, error_model="numpy")
@@ -141,8 +153,8 @@ def _angle(first, second, between, cosine, sine):
         between[k] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def _rotate(first, second, cosine, sine):
-    for k in range(len(first)):
-        a, b = first[k], second[k]
-        first[k], second[k] = cosine[k] * a - sine[k] * b, sine[k] * a + cosine[k] * b
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _rotate(matrix, i, j, m, n, cosine, sine):
+    for k in range(len(cosine)):
+        a, b = matrix[i, j, k], matrix[m, n, k]
+        matrix[i, j, k], matrix[m, n, k] = cosine[k] * a - sine[k] * b, sine[k] * a + cosine[k] * b
