@@ -40,6 +40,7 @@ from .kernel import (
     set_points,
     summarise,
 )
+from .resized import Resized, primitive
 from .scene import build_scene, contact_sensor
 from .solver_settings import SHIPPED, SolverSettings
 
@@ -134,7 +135,8 @@ class Mechanics:
         self._out: dict[tuple[int, tuple], dict[Any, np.ndarray]] = {}
         self._compiled = KeptFields(_KEPT_MODELS)
         self._base = {name: getattr(self.model, name).tobytes() for name in _MODEL_ARRAYS}
-        self._varying: set[str] = set()
+        self._resized = Resized(self.model, self.names, gripper, self._base) if primitive(at_origin) else None
+        self._expanded: dict[str, np.ndarray] = {}
         self._index(self.model)
         self.failure = [""] * num_envs
         self.reset()
@@ -389,13 +391,15 @@ class Mechanics:
         """Write environment `env`'s row of every model field that depends on the objects."""
         self.objects[env] = items
         own = self._differences(tuple(placeless(item) for item in items))
-        self._varying |= own.keys()
-        for name in self._varying:
-            rows = self._batch.expand(name)
+        for name in own.keys() - self._expanded.keys():
+            self._expanded[name] = self._batch.expand(name)
+        for name, rows in self._expanded.items():
             rows[env] = own[name] if name in own else getattr(self.model, name)[: rows.shape[1]]
 
     def _differences(self, key: tuple[ObjectSpec, ...]) -> dict[str, np.ndarray]:
         """Model fields in which a scene of the objects `key` differs from self.model."""
+        if self._resized is not None and primitive(key):
+            return self._resized.differences(key)
         if key not in self._compiled:
             model = self._build(key)
             pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)

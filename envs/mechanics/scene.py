@@ -21,7 +21,7 @@ from ..grippers import SHIPPED_GRIPPER, GripperModel
 from ..limits import LATERAL_REACH, MAX_LATERAL_RATE, TIPS
 from .solver_settings import SHIPPED, SolverSettings
 
-_GEOMS = {
+PRIMITIVES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
     "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
@@ -139,7 +139,7 @@ def _keep_hulls(spec: mujoco.MjSpec, shapes: Sequence[MeshShape]) -> None:
 
 def _add_object(spec: mujoco.MjSpec, item: ObjectSpec, settings: SolverSettings) -> None:
     com, inertia = item.inertia
-    moments, quat = _principal(inertia)
+    moments, quat = principal(inertia)
     pose = item.pose
     body = spec.worldbody.add_body(
         name=item.name,
@@ -152,8 +152,6 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec, settings: SolverSettings)
         explicitinertial=True,
     )
     body.add_freejoint(name=f"{item.name}_free")
-    x, y, z = (s / 2 for s in item.size)
-    half = {"box": (x, y, z), "cylinder": (x, z, 0), "sphere": (x, 0, 0), "mesh": (0, 0, 0)}[item.shape]
     # They meet the pads (1), the other objects (2) and the table (4); their own contact settings hold.
     contact: dict = {
         "contype": 2,
@@ -168,8 +166,8 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec, settings: SolverSettings)
     for i, mesh in enumerate(meshes):
         geom = body.add_geom(
             name=f"{item.name}_{i}",
-            type=mujoco.mjtGeom.mjGEOM_MESH if mesh else _GEOMS[item.shape],
-            size=half,
+            type=mujoco.mjtGeom.mjGEOM_MESH if mesh else PRIMITIVES[item.shape],
+            size=half_sizes(item),
             rgba=item.rgba,
             material="matter",
             **contact,
@@ -190,7 +188,15 @@ def _add_object(spec: mujoco.MjSpec, item: ObjectSpec, settings: SolverSettings)
             )
 
 
-def _principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def half_sizes(item: ObjectSpec) -> tuple[float, float, float]:
+    """m, as MuJoCo tells a geom of that shape; zeros of a mesh."""
+    x, y, z = (side / 2 for side in item.size)
+    return {"box": (x, y, z), "cylinder": (x, z, 0.0), "sphere": (x, 0.0, 0.0), "mesh": (0.0,) * 3}[
+        item.shape
+    ]
+
+
+def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Principal moments and the rotation of their axes, never the identity.
 
     MuJoCo stores the mass matrix of a body with aligned axes more sparsely; objects of one batch need one layout.
