@@ -163,7 +163,7 @@ build/.backends: PINS := torch==2.13.0 mujoco-mjx==3.17.0
 build/.view: EXTRA := [test]
 build/.view: PINS := playwright
 build/.rl: EXTRA := [test,rl]
-build/.rl: PINS := torch==2.13.0 torchrl tensorboard
+build/.rl: PINS := torch==2.13.0 torchrl
 build/.grippers: EXTRA := [test,grippers]
 # Of robosuite only the files are read, and what it depends on holds numpy back.
 build/.grippers: ALONE := robosuite==1.5.2

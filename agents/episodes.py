@@ -15,6 +15,7 @@ import gymnasium
 import numpy as np
 
 from thermograsp.agents.checks import Violation, violations
+from thermograsp.agents.policies import Policy
 from thermograsp.agents.policies import policy as named_policy
 
 
@@ -35,15 +36,16 @@ def rollout(
     env: gymnasium.vector.VectorEnv,
     episodes: int,
     seed: int,
-    policy: str = "scripted",
+    policy: str | Policy = "scripted",
     max_steps: int | None = None,
     check: bool = False,
     advance: Callable[[str, float], None] = lambda doing, by: None,
 ) -> Rollout:
-    """Runs episodes 0 .. episodes - 1; episode k is reset with seed + k. advance: told of progress, in episodes.
+    """Runs episodes 0 .. episodes - 1; episode k is reset with seed + k. policy: its name, or one made for `env`.
+    advance: told of progress, in episodes.
 
     Without `check` only broken simulations are violations. Raises UnknownNameError and InvalidValueError."""
-    acting = named_policy(env, policy)
+    acting = named_policy(env, policy) if isinstance(policy, str) else policy
     digests, found, returns = [], [], []
     steps = successes = 0
     wall = 0.0

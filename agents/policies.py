@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Protocol
 
 import gymnasium
 import numpy as np
 
-from thermograsp.assets import asset
+from thermograsp.assets import ROOT
 from thermograsp.errors import InvalidValueError, unknown_name
 
 POLICIES = ("scripted", "feeling", "trained", "random", "zero")
@@ -31,17 +32,44 @@ class Policy(Protocol):
 
 
 def policy(env: gymnasium.vector.VectorEnv, name: str) -> Policy:
-    """The policy of that name, or of a file of trained.py. Raises UnknownNameError, and InvalidValueError
-    where there is no such file or it cannot act in `env`."""
+    """The policy of that name, of a file of a trained one, or of "module:callable" (see called.py). Raises
+    UnknownNameError, and InvalidValueError where there is none or it cannot act in `env`."""
     if name == "trained" or name.endswith(".npz"):
-        from thermograsp.agents.trained import Trained
+        return _of_file(env, shipped(env) if name == "trained" else name)
+    if ":" in name:
+        from thermograsp.agents.called import Called
 
-        return Trained(env, asset("policies/grasp_heat_no-load.npz") if name == "trained" else name)
+        return Called(env, name)
     if name not in POLICIES:
         raise unknown_name("policy", name, POLICIES)
     if name in ("scripted", "feeling"):
         return _Scripted(env, name)
     return {"random": _Random, "zero": _Zero}[name](env)
+
+
+def shipped(env: gymnasium.vector.VectorEnv) -> Path:
+    """The file of the trained policy for the task of `env`. Raises InvalidValueError where there is none."""
+    from thermograsp.agents.learning.tasks import task_name_of
+
+    folder, task = ROOT / "policies", task_name_of(env)
+    path = folder / f"{task}_heat_no-load.npz"
+    if not path.exists():
+        known = ", ".join(sorted(each.stem.split("_")[0] for each in folder.glob("*.npz")))
+        raise InvalidValueError(
+            f"no trained policy fits this environment; there are some for {known}. `thermograsp train` makes others: "
+            "give its policy.npz"
+        )
+    return path
+
+
+def _of_file(env: gymnasium.vector.VectorEnv, path: str | Path) -> Policy:
+    from thermograsp.agents.learning.agent import Acting, is_agent, load_agent
+
+    if is_agent(path):
+        return Acting(env, load_agent(path))
+    from thermograsp.agents.trained import Trained
+
+    return Trained(env, path)
 
 
 class _Zero:

@@ -69,6 +69,7 @@ class FeelingGrasp(ScriptedGrasp):
     """Closes gently on an object of STAKES, and lifts what feels like metal with more force."""
 
     _share = 0.2  # a heavy object that lies aside gives one fingertip a third, the table's friction the rest
+    _gentle = _GENTLE
 
     def __init__(self, num_envs: int, dt: float) -> None:
         super().__init__(num_envs, dt, np.full(num_envs, _GENTLE))
@@ -81,5 +82,8 @@ class FeelingGrasp(ScriptedGrasp):
         self._force = gentle
 
     def _decide(self, observation: dict[str, np.ndarray], rows: np.ndarray) -> None:
-        metal = observation["voltage"][:, :, -1].mean(axis=1) > _METAL
-        self._force = np.where(rows & metal, _FIRM, self._force)
+        self._force = np.where(rows & self._heavy(observation), _FIRM, self._force)
+
+    def _heavy(self, observation: dict[str, np.ndarray]) -> np.ndarray:
+        """(B,) bool, which objects need the larger force: metals."""
+        return observation["voltage"][:, :, -1].mean(axis=1) > _METAL

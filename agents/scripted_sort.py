@@ -36,6 +36,8 @@ class ScriptedSort:
     asked one's; else it lifts object 1. Where the hotter one is asked it feels both and lifts the one of less voltage.
     """
 
+    feeling = FEELING
+
     def __init__(self, batch: Any) -> None:
         rows, layout = batch.num_envs, batch.plant.layout
         self._dt = batch.dt
@@ -62,7 +64,7 @@ class ScriptedSort:
         self._phase[going & (abs(away) < _NEAR) & (opening > _WIDE)] = _FEELING
         pressing = np.all(observation["force"][:, :, 0] > FORCE / 2, axis=1) & (self._phase != _GOING)
         self._pressed = np.where(pressing, self._pressed + self._dt, 0.0)
-        for row in np.flatnonzero((self._phase == _FEELING) & (self._pressed >= FEELING)).tolist():
+        for row in np.flatnonzero((self._phase == _FEELING) & (self._pressed >= self.feeling)).tolist():
             self._decide(row, volts[row] - _LEFT_OVER * self._before[row], observation["goal"][row])
         going = self._phase == _GOING
         away = self._places[self._side] - lateral
@@ -82,16 +84,18 @@ class ScriptedSort:
         """Lifts what it holds, or turns to the other object."""
         side = self._side[row]
         self._felt[row, side] = volts
-        if self._expected is not None:
-            # An object that was not pressed is taken on trust: it must be the other one.
-            wanted = side == 1 or goal[np.argmin(abs(self._expected - volts))] > 0
-        else:
-            known = ~np.isnan(self._felt[row]).any()
-            wanted = known and self._felt[row, side] < self._felt[row, 1 - side]
-        if wanted:
+        if self._wanted(row, goal):
             self._phase[row] = _LIFTING
         else:
             self._phase[row], self._side[row] = _GOING, 1 - side
+
+    def _wanted(self, row: int, goal: np.ndarray) -> bool:
+        """Whether what a row has just felt is to be lifted."""
+        side, felt = self._side[row], self._felt[row]
+        if self._expected is not None:
+            # An object that was not pressed is taken on trust: it must be the other one.
+            return bool(side == 1 or goal[np.argmin(abs(self._expected - felt[side]))] > 0)
+        return bool(not np.isnan(felt).any() and felt[side] < felt[1 - side])
 
 
 def expected_voltages(layout: Any) -> np.ndarray:

@@ -108,7 +108,7 @@ ROOMS = {
 }
 """Rooms (and single files) of a folder, from the ground up: each may import those before it."""
 
-COMMON = ("thermograsp.envs.limits", "thermograsp.hardware.errors")
+COMMON = ("thermograsp.envs.limits", "thermograsp.envs.sb3", "thermograsp.hardware.errors")
 """Files of a folder that belong to no room; other folders may import them."""
 
 LENT_BY_THE_ROOT = ("thermograsp.touch", "thermograsp.touch.wrappers")

@@ -28,6 +28,8 @@ COMMANDS = (
     "reproduce",
     "validate",
     "rollout",
+    "train",
+    "score",
     "dataset",
     "device",
     "gripper",

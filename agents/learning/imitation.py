@@ -1,0 +1,96 @@
+"""The first part of a training: an agent acts, and learns what a teacher would have done (DAgger).
+
+Ross S., Gordon G. & Bagnell D., A Reduction of Imitation Learning and Structured Prediction to No-Regret Online
+Learning, AISTATS 2011. B: environments, T: decisions of each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch  # pyright: ignore[reportMissingImports]
+
+from .inputs import REPEAT
+from .perceiving import Perceiving
+from .recipe import Recipe
+from .teachers import Teacher
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """vector: (N, size) inputs. right: (N, n) what the teacher would do. gained: (N,) discounted rewards to the end of
+    the episode; nan where it did not end."""
+
+    vector: np.ndarray
+    right: np.ndarray
+    gained: np.ndarray
+
+    def and_also(self, other: Seen) -> Seen:
+        """Both."""
+        return Seen(
+            np.concatenate([self.vector, other.vector]),
+            np.concatenate([self.right, other.right]),
+            np.concatenate([self.gained, other.gained]),
+        )
+
+
+def watched(
+    env: Perceiving,
+    teacher: Teacher,
+    agent: Callable[[np.ndarray], np.ndarray] | None,
+    decisions: int,
+    gamma: float,
+    advance: Callable[[int], None],
+) -> Seen:
+    """T = `decisions` of each environment from a reset on. agent: acts in three of four environments, the teacher in
+    the others; None: the teacher acts in all. advance: is told of control steps as they are done."""
+    vector = env.reset()
+    rows = np.arange(env.num_envs)
+    taught = rows % 4 == 0 if agent is not None else np.ones(env.num_envs, bool)
+    teacher.restart(rows)
+    vectors, rights, rewards, ends = [], [], [], []
+    for _ in range(decisions):
+        right = np.clip(teacher.action(env.raw), -1.0, 1.0)
+        action = right if agent is None else np.where(taught[:, None], right, agent(vector))
+        vectors.append(vector)
+        rights.append(right)
+        vector, reward, ended, _ = env.step(action)
+        rewards.append(reward)
+        ends.append(ended)
+        teacher.restart(np.flatnonzero(ended))
+        advance(env.num_envs * REPEAT)
+    gained, after = np.zeros((decisions, env.num_envs), np.float32), np.full(env.num_envs, np.nan)
+    for at in range(decisions - 1, -1, -1):
+        after = rewards[at] + gamma * np.where(ends[at], 0.0, after)
+        gained[at] = after
+    return Seen(np.concatenate(vectors), np.concatenate(rights).astype(np.float32), gained.ravel())
+
+
+def imitate(policy: Any, seen: Seen, recipe: Recipe, seed: int) -> float:
+    """Fits a policy of stable-baselines3, its mean actions to the teacher's and its values to what was gained; returns
+    the mean squared error of the actions over the last pass."""
+    generator = torch.Generator().manual_seed(seed)
+    count = len(seen.vector)
+    minibatches = max(round(recipe.passes * count / recipe.batch), 1)
+    optimizer = torch.optim.Adam(policy.parameters(), lr=recipe.imitation_rate)
+    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, minibatches)
+    vector, right, gained = (torch.from_numpy(each) for each in (seen.vector, seen.right, seen.gained))
+    errors = []
+    for _ in range(minibatches):
+        chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
+        acting, valuing = policy.mlp_extractor(vector[chosen])
+        error = ((policy.action_net(acting) - right[chosen]) ** 2).mean()
+        known = ~gained[chosen].isnan()
+        loss = error
+        if known.any():
+            value = policy.value_net(valuing)[:, 0]
+            loss = error + ((value - gained[chosen])[known] ** 2).mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        falling.step()
+        errors.append(error.item())
+    return float(np.mean(errors[-max(count // recipe.batch, 1) :]))

@@ -1,0 +1,87 @@
+"""What an agent perceives: the last five seconds of an observation as one scaled vector, with NumPy alone.
+
+Every .1 s the observation becomes a frame; the vector holds a choice of the last frames, the time, and what is asked.
+All tasks and grippers share this. B: environments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+STEP = 0.02  # s, the control step of all tasks
+REPEAT = 5
+"""Control steps that a frame and an action last."""
+AGES = (*range(10), *range(10, 50, 2))
+"""Of the frames in the vector: 0 is the newest."""
+FRAME = 4 + 6 + 4 + 1
+"""Numbers in a frame: gripper, load cells, voltages of two fingertips in the older and the newer half, arm sideways."""
+
+_HALF = 5  # samples at 100 Hz; two halves are the time since the last frame
+_VOLTAGE = 3e-4  # V, up to which the scale is even; above it is logarithmic
+# Middle and half range of what a grasp meets, so that numbers are about -1 .. 1.
+_GRIPPER = (np.array([0.0425, 0.0, 0.025, 20.0]), np.array([0.0425, 0.1, 0.025, 20.0]))  # m, m/s, m, N
+_FORCE = 20.0  # N
+_LATERAL = 0.05  # m
+_THERMOSTAT = (36.0, 10.0)  # °C
+_LONG = 10.0  # s
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """heat: voltages and thermostats. load: the load cells. What is left out reads 0, so that agents with and without
+    it have the same network. goals: numbers that say what is asked; 0 where the task never varies."""
+
+    heat: bool = True
+    load: bool = True
+    goals: int = 0
+
+    @property
+    def size(self) -> int:
+        """Numbers in the vector."""
+        return FRAME * len(AGES) + 2 + 1 + self.goals
+
+    def frame(self, observation: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(B, FRAME) float32 of observations (B, ...)."""
+        rows = len(observation["gripper"])
+        volts = observation["voltage"][:, :, -2 * _HALF :].reshape(rows, 2, 2, _HALF).mean(axis=3)
+        parts = (
+            (observation["gripper"] - _GRIPPER[0]) / _GRIPPER[1],
+            observation["force"] / _FORCE * self.load,
+            np.arcsinh(volts / _VOLTAGE) * self.heat,
+            observation["lateral"] / _LATERAL if "lateral" in observation else np.zeros((rows, 1)),
+        )
+        return np.concatenate([part.reshape(rows, -1) for part in parts], axis=1).astype(np.float32)
+
+
+class Memory:
+    """The frames of `num_envs` environments. An episode begins with its first frame in place of all earlier ones."""
+
+    def __init__(self, inputs: Inputs, num_envs: int) -> None:
+        self.inputs = inputs
+        self._frames = np.zeros((num_envs, AGES[-1] + 1, FRAME), np.float32)  # newest first
+        self._count = np.zeros(num_envs, int)
+
+    def restart(self, rows: np.ndarray) -> None:
+        """The rows begin an episode with the next observation."""
+        self._count[rows] = 0
+
+    def vector(self, observation: Mapping[str, np.ndarray], rows: np.ndarray | None = None) -> np.ndarray:
+        """Remembers the observations (B, ...) of rows (n,), all by default, REPEAT control steps after their last ones,
+        and returns (n, size) float32. A row's result does not depend on the others."""
+        if rows is not None:
+            observation = {name: values[rows] for name, values in observation.items()}
+        at = np.arange(len(self._count)) if rows is None else rows
+        frame = self.inputs.frame(observation)
+        frames, count = np.roll(self._frames[at], 1, axis=1), self._count[at]
+        frames[:, 0] = frame
+        begins = count == 0
+        frames[begins] = frame[begins, None]
+        self._frames[at], self._count[at] = frames, count + 1
+        thermostat = (observation["thermostat"] - _THERMOSTAT[0]) / _THERMOSTAT[1] * self.inputs.heat
+        clock = count[:, None] * STEP * REPEAT / _LONG
+        goal = observation["goal"] if self.inputs.goals else np.zeros((len(at), 0))
+        recent = frames[:, AGES].reshape(len(at), -1)
+        return np.concatenate([recent, thermostat, clock, goal], axis=1).astype(np.float32)

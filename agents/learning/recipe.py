@@ -1,0 +1,37 @@
+"""How agents are trained: one set of numbers for all tasks and grippers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """First an agent imitates a teacher that is told the truth, then PPO goes on with the task's own reward.
+
+    steps: control steps of all environments together, both parts. taught: share of them for the first part, in
+    `rounds`; in the first round the teacher acts, in the others the agent does in three of four episodes, and the
+    teacher says in all of them what it would do. passes: how often each round goes over all that has been seen.
+    hidden: tanh units of each layer. noise: logarithm of the standard deviation of PPO's actions at the start.
+    decisions: of each environment between two updates of PPO. checkpoints: evaluations, evenly over PPO's steps.
+    evaluated: episodes of each.
+    """
+
+    steps: int = 600_000
+    taught: float = 0.6
+    rounds: int = 6
+    passes: float = 12.0
+    imitation_rate: float = 1e-3
+    num_envs: int = 32
+    hidden: tuple[int, ...] = (128, 128)
+    noise: float = -3.0
+    decisions: int = 96
+    batch: int = 512
+    epochs: int = 4
+    learning_rate: float = 1e-4
+    gamma: float = 0.99
+    gae_lambda: float = 0.95
+    clip: float = 0.1
+    target_kl: float = 0.01
+    checkpoints: int = 6
+    evaluated: int = 64

@@ -1,0 +1,58 @@
+"""`thermograsp score`: a policy on episodes that no training has seen."""
+
+from __future__ import annotations
+
+import argparse
+
+from thermograsp.cli.shared import Output, load_mujoco
+
+NAME = "score"
+HELP = "Count how often a policy succeeds in held-out episodes of a task, the same for every policy."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add = parser.add_argument
+    add(
+        "policy",
+        metavar="POLICY",
+        help="trained, a script (scripted, feeling), random, zero, a policy's .npz file, or module:callable, which "
+        "gets observations of all environments and returns their actions",
+    )
+    add("--task", required=True, help="grasp, identify, sort or hotter")
+    add("--episodes", type=int, default=200, help="how many")
+    add("--no-load", action="store_true", help="a gripper without load cells: forces read 0")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Runs the episodes."""
+    output = Output(args.json)
+    load_mujoco(output)
+    from thermograsp.agents.learning import HELD_OUT, learning_task, score
+
+    task = learning_task(args.task)
+    with output.progress(args.episodes) as advance:
+        found = score(task, args.policy, args.episodes, not args.no_load, advance)
+    output.line(f"{task.name} ({task.env_id}), policy {args.policy}, {found.episodes} held-out episodes")
+    interval = f"{100 * found.low:.1f} .. {100 * found.high:.1f} %"
+    output.line(f"success  {100 * found.success:.1f} %, with 95 % certainty {interval}")
+    output.line(f"return   {found.mean_return:.3f} (mean)")
+    output.line(f"length   {found.seconds:.2f} s (mean)")
+    output.line(f"digest   {found.digest}")
+    output.document(
+        {
+            "task": task.name,
+            "env_id": task.env_id,
+            "policy": args.policy,
+            "load": not args.no_load,
+            "first_seed": HELD_OUT,
+            "episodes": found.episodes,
+            "successes": found.successes,
+            "success_rate": found.success,
+            "success_interval": [found.low, found.high],
+            "mean_return": found.mean_return,
+            "mean_seconds": found.seconds,
+            "digest": found.digest,
+        }
+    )
+    return 0

@@ -1,0 +1,157 @@
+"""`thermograsp train`: an interrupted run goes on from its checkpoint; what it writes acts with NumPy alone."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3", reason="needs stable-baselines3: make test-rl")
+pytest.importorskip("tensorboard", reason="needs tensorboard: make test-rl")
+
+from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
+
+from thermograsp.agents.learning import TASKS, LearningTask, Recipe, learning_task, load_agent
+from thermograsp.agents.learning.inputs import REPEAT
+from thermograsp.agents.learning.perceiving import Perceiving
+from thermograsp.agents.learning.teachers import TEACHERS
+from thermograsp.agents.learning.training import MODEL, POLICY, STATE, Progress, Training
+from thermograsp.errors import InvalidValueError
+
+
+def brief(name: str) -> LearningTask:
+    """A task that ends soon."""
+    task = learning_task(name)
+    return replace(task, keywords={**task.keywords, "seconds": 0.4})
+
+
+TINY = Recipe(
+    steps=960,
+    taught=0.5,
+    rounds=2,
+    passes=1.0,
+    num_envs=4,
+    hidden=(8,),
+    decisions=12,
+    batch=24,
+    epochs=1,
+    checkpoints=2,
+    evaluated=2,
+)
+
+
+@pytest.mark.parametrize("name", sorted(TASKS))
+def test_every_task_is_trained_alike(name: str, tmp_path: Path) -> None:
+    reports: list[Progress] = []
+    training = Training(brief(name), tmp_path, recipe=TINY, report=reports.append)
+    best = training.run()
+    assert best["steps"] <= training.steps == reports[-1].steps >= TINY.steps
+    assert {each.doing for each in reports} == {"imitation", "ppo"}
+    assert list((tmp_path / "tensorboard").glob("events.*"))
+    agent = load_agent(tmp_path / POLICY)
+    assert agent.task == name and agent.about["seed"] == 0
+    state = json.loads((tmp_path / STATE).read_text())
+    assert [each["doing"] for each in state["evaluations"]][:2] == ["imitation", "imitation"]
+
+
+def test_the_file_acts_as_the_network_that_was_trained(tmp_path: Path) -> None:
+    training = Training(brief("sort"), tmp_path, recipe=replace(TINY, taught=1.0, rounds=1))
+    training.run()  # with one evaluation, which is the best
+    agent = load_agent(tmp_path / POLICY)
+    vector = np.random.default_rng(0).standard_normal((5, agent.inputs.size)).astype(np.float32)
+    theirs, _ = PPO.load(tmp_path / MODEL).predict(vector, deterministic=True)
+    np.testing.assert_allclose(agent.decide(vector), theirs, atol=1e-5)
+
+
+def test_a_killed_run_goes_on_from_its_checkpoint(tmp_path: Path) -> None:
+    code = f"""
+from dataclasses import replace
+from pathlib import Path
+from thermograsp.agents.learning import Recipe, learning_task
+from thermograsp.agents.learning.training import Training
+
+def report(progress):
+    if progress.doing == "ppo" and progress.success is None:
+        Path({str(tmp_path / "ppo")!r}).touch()
+        input()
+
+task = learning_task("identify")
+task = replace(task, keywords={{"seconds": 0.4}})
+Training(task, {str(tmp_path / "run")!r}, recipe={TINY!r}, report=report).run()
+"""
+    running = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE)
+    while not (tmp_path / "ppo").exists():
+        assert running.poll() is None
+        time.sleep(0.05)
+    os.kill(running.pid, signal.SIGKILL)
+    running.wait()
+    state = json.loads((tmp_path / "run" / STATE).read_text())
+    assert state["rounds_done"] == 2 and len(state["evaluations"]) == 2
+    again: dict[str, Any] = {"recipe": TINY, "resume": True}
+    reports: list[Progress] = []
+    task = brief("identify")
+    training = Training(task, tmp_path / "run", report=reports.append, **again)
+    assert training.steps == 480  # what it had done
+    training.run()
+    assert {each.doing for each in reports} == {"ppo"} and training.steps >= TINY.steps
+    evaluations = json.loads((tmp_path / "run" / STATE).read_text())["evaluations"]
+    assert evaluations[:2] == state["evaluations"] and len(evaluations) > 2
+    done = Training(task, tmp_path / "run", report=reports.append, **again)
+    assert done.steps == training.steps and done.run() == training.best
+
+
+def test_imitation_goes_on_after_its_last_round(tmp_path: Path) -> None:
+    class Stop(Exception):
+        pass
+
+    def stop(progress: Progress) -> None:
+        if progress.success is not None:
+            raise Stop
+
+    task = brief("grasp")
+    with pytest.raises(Stop):
+        Training(task, tmp_path, recipe=TINY, report=stop).run()
+    assert (tmp_path / MODEL).exists()
+    training = Training(task, tmp_path, recipe=TINY, resume=True)
+    assert training.steps == 240
+    training.run()
+    assert json.loads((tmp_path / STATE).read_text())["rounds_done"] == 2
+
+
+def test_a_folder_is_not_overwritten_and_not_resumed_as_another(tmp_path: Path) -> None:
+    task = brief("identify")
+    (tmp_path / STATE).write_text(json.dumps({"task": "sort"}))
+    with pytest.raises(InvalidValueError, match="--resume"):
+        Training(task, tmp_path, recipe=TINY)
+    with pytest.raises(InvalidValueError, match="another task and seed"):
+        Training(task, tmp_path, recipe=TINY, resume=True)
+    with pytest.raises(InvalidValueError, match="seed must be"):
+        Training(task, tmp_path / "new", seed=1000, recipe=TINY)
+
+
+@pytest.mark.parametrize("name", sorted(TASKS))
+def test_the_teachers_succeed(name: str) -> None:
+    """In all episodes that they are shown."""
+    env = Perceiving(learning_task(name), 12, True, True)
+    env.seed(5)
+    env.reset()
+    teacher = TEACHERS[name](env.batch)
+    teacher.restart(np.arange(12))
+    ended, won = np.zeros(12, bool), np.zeros(12, bool)
+    for _ in range(round(10.0 / 0.02 / REPEAT)):
+        _, _, now, infos = env.step(np.clip(teacher.action(env.raw), -1.0, 1.0))
+        won |= ~ended & np.array([bool(info.get("success")) for info in infos])
+        ended |= now
+        teacher.restart(np.flatnonzero(now))
+        if ended.all():
+            break
+    assert won.all()
