@@ -47,7 +47,7 @@ def watched(
 ) -> Seen:
     """T = `decisions` of each environment from a reset on. agent: acts in three of four environments, the teacher in
     the others; None: the teacher acts in all. advance: is told of control steps as they are done."""
-    vector = env.reset()
+    vector: Any = env.reset()
     rows = np.arange(env.num_envs)
     taught = rows % 4 == 0 if agent is not None else np.ones(env.num_envs, bool)
     teacher.restart(rows)
@@ -74,12 +74,11 @@ def imitate(policy: Any, seen: Seen, recipe: Recipe, seed: int) -> float:
     the mean squared error of the actions over the last pass."""
     generator = torch.Generator().manual_seed(seed)
     count = len(seen.vector)
-    minibatches = max(round(recipe.passes * count / recipe.batch), 1)
     optimizer = torch.optim.Adam(policy.parameters(), lr=recipe.imitation_rate)
-    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, minibatches)
+    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, recipe.minibatches)
     vector, right, gained = (torch.from_numpy(each) for each in (seen.vector, seen.right, seen.gained))
     errors = []
-    for _ in range(minibatches):
+    for _ in range(recipe.minibatches):
         chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
         acting, valuing = policy.mlp_extractor(vector[chosen])
         error = ((policy.action_net(acting) - right[chosen]) ** 2).mean()

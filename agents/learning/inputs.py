@@ -20,7 +20,7 @@ FRAME = 4 + 6 + 4 + 1
 """Numbers in a frame: gripper, load cells, voltages of two fingertips in the older and the newer half, arm sideways."""
 
 _HALF = 5  # samples at 100 Hz; two halves are the time since the last frame
-_VOLTAGE = 3e-4  # V, up to which the scale is even; above it is logarithmic
+_VOLTAGE, _GAIN = 3e-4, 3.0  # V, up to which the scale is even; above it is logarithmic, and wide for what is alike
 # Middle and half range of what a grasp meets, so that numbers are about -1 .. 1.
 _GRIPPER = (np.array([0.0425, 0.0, 0.025, 20.0]), np.array([0.0425, 0.1, 0.025, 20.0]))  # m, m/s, m, N
 _FORCE = 20.0  # N
@@ -50,7 +50,7 @@ class Inputs:
         parts = (
             (observation["gripper"] - _GRIPPER[0]) / _GRIPPER[1],
             observation["force"] / _FORCE * self.load,
-            np.arcsinh(volts / _VOLTAGE) * self.heat,
+            _GAIN * np.arcsinh(volts / _VOLTAGE) * self.heat,
             observation["lateral"] / _LATERAL if "lateral" in observation else np.zeros((rows, 1)),
         )
         return np.concatenate([part.reshape(rows, -1) for part in parts], axis=1).astype(np.float32)

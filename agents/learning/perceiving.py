@@ -24,7 +24,7 @@ class Perceiving(VecEnvWrapper):
         env = task.make(num_envs)
         self.inputs = Inputs(heat, load, goals_of(env))
         self.batch: Any = env.unwrapped.batch  # pyright: ignore[reportAttributeAccessIssue]
-        self.raw: dict[str, np.ndarray] = {}
+        self.raw: Any = {}
         self._memory = Memory(self.inputs, num_envs)
         space = gymnasium.spaces.Box(-np.inf, np.inf, (self.inputs.size,), np.float32)
         super().__init__(StableBaselinesVecEnv(env, repeat=REPEAT, bootstrap=False), observation_space=space)

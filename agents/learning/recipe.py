@@ -11,17 +11,17 @@ class Recipe:
 
     steps: control steps of all environments together, both parts. taught: share of them for the first part, in
     `rounds`; in the first round the teacher acts, in the others the agent does in three of four episodes, and the
-    teacher says in all of them what it would do. passes: how often each round goes over all that has been seen.
+    teacher says in all of them what it would do. minibatches: of each round, of all that has been seen so far.
     hidden: tanh units of each layer. noise: logarithm of the standard deviation of PPO's actions at the start.
     decisions: of each environment between two updates of PPO. checkpoints: evaluations, evenly over PPO's steps.
     evaluated: episodes of each.
     """
 
-    steps: int = 600_000
-    taught: float = 0.6
+    steps: int = 400_000
+    taught: float = 0.75
     rounds: int = 6
-    passes: float = 12.0
-    imitation_rate: float = 1e-3
+    minibatches: int = 3000
+    imitation_rate: float = 3e-3
     num_envs: int = 32
     hidden: tuple[int, ...] = (128, 128)
     noise: float = -3.0
@@ -33,5 +33,5 @@ class Recipe:
     gae_lambda: float = 0.95
     clip: float = 0.1
     target_kl: float = 0.01
-    checkpoints: int = 6
+    checkpoints: int = 4
     evaluated: int = 64

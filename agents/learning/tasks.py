@@ -58,6 +58,5 @@ def task_name_of(env: gymnasium.vector.VectorEnv) -> str | None:
     if not (isinstance(observed, gymnasium.spaces.Dict) and {"gripper", "voltage"} <= set(observed.spaces)):
         return None
     goals = (observed["goal"].shape or (0,))[0] if "goal" in observed.spaces else 0
-    return {((3,), 0): "grasp", ((12,), 0): "identify", ((4,), 10): "sort", ((4,), 1): "hotter"}.get(
-        (env.single_action_space.shape or (), goals)
-    )
+    (actions,) = env.single_action_space.shape or (0,)
+    return {(3, 0): "grasp", (12, 0): "identify", (4, 10): "sort", (4, 1): "hotter"}.get((actions, goals))

@@ -139,8 +139,7 @@ class Training:
     def _imitation(self) -> None:
         """The rounds that are left."""
         recipe, seen = self.recipe, self._seen()
-        if self._state["rounds_done"] < recipe.rounds:
-            teacher = TEACHERS[self.task.name](self._env.batch)
+        teacher = TEACHERS[self.task.name](self._env.batch)
         while (done := self._state["rounds_done"]) < recipe.rounds:
             self._env.seed(self.seed * 100_000 + done * _ROUND)
             steps = self.steps

@@ -113,8 +113,7 @@ def test_training_without_its_extra_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
     monkeypatch.delitem(sys.modules, "thermograsp.agents.learning.training", raising=False)
-    monkeypatch.setitem(sys.modules, "stable_baselines3", None)
-    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.setitem(sys.modules, "tensorboard", None)
     assert main(["train", "identify", "--out", str(tmp_path / "run")]) == 2
     assert "pip install 'thermograsp[rl]'" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
