@@ -20,7 +20,8 @@ FRAME = 4 + 6 + 4 + 1
 """Numbers in a frame: gripper, load cells, voltages of two fingertips in the older and the newer half, arm sideways."""
 
 _HALF = 5  # samples at 100 Hz; two halves are the time since the last frame
-_VOLTAGE, _GAIN = 3e-4, 3.0  # V, up to which the scale is even; above it is logarithmic, and wide for what is alike
+_VOLTAGE = 3e-4  # V, up to which the scale is even; above it is logarithmic
+_GAIN = 3.0  # of that scale, so that like materials lie apart
 # Middle and half range of what a grasp meets, so that numbers are about -1 .. 1.
 _GRIPPER = (np.array([0.0425, 0.0, 0.025, 20.0]), np.array([0.0425, 0.1, 0.025, 20.0]))  # m, m/s, m, N
 _FORCE = 20.0  # N
