@@ -1,11 +1,12 @@
 """The sensor's element seen through a patch anywhere on its face: a box of layers, held at its back.
 
 Under the whole face or a part of it: the first layer as a half-space, a product of kernels as in box.py, and what its
-depth and the further layers change, a sum over the few lateral eigenfunctions that reach them. What is even over the
-cross-section is one-dimensional: its slowest poles are found once per stack and kept exactly, since the temperature
-drop, a mean over the face, follows from them alone.
+depth and the further layers change, a sum over the lateral eigenfunctions that reach them. These are few, unless the
+first layer is thin; then that change, smooth in the logarithm of the wave number, is known at nodes of it, and no
+thickness takes long. What is even over the cross-section is one-dimensional: its slowest poles are found once per stack
+and kept exactly, since the temperature drop, a mean over the face, follows from them alone.
 
-P: patterns (patterns.py), S: moments (samples.py), L: lateral eigenfunctions of an axis, K: poles.
+P: patterns (patterns.py), S: moments (samples.py), L: nodes among an axis' lateral eigenfunctions, K: poles.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import SensorStack
-from ..plates import Sampled, stack_impedance, stack_profile
+from ..plates import Sampled, from_nodes, log_nodes, stack_impedance, stack_profile
 from .axis import SWITCH, images
 from .patterns import ALONG, GRAM, JUMPS, NODES
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
@@ -28,6 +29,9 @@ Rectangle = tuple[tuple[float, float], tuple[float, float]]
 
 POLES = 5
 _DEPTHS = 6.0  # wave number times the first layer's thickness beyond which nothing below it is seen, exp(-12)
+_EACH = 40  # eigenfunctions of an axis that are nodes, one by one
+_SPACING = 0.15  # of the nodes beyond, in ln of the wave number: cubic interpolation leaves 1e-5
+_REACH = 25.0  # wave number times a contact's finest strip beyond which no eigenfunction is summed
 _SCAN = 4000  # places where the characteristic function is looked at for its first roots
 
 
@@ -37,8 +41,8 @@ class Element:
 
     rates: (K,) 1/s and ports: (K,) sqrt(K/J) of its slowest even poles; their outputs drop: (K,) K/sqrt(J) and heat:
     (K,) sqrt(J K). drop_rest: (S,) K/W and heat_rest: (S,) J/W of the even part's transform at MOMENTS beyond them.
-    correction: (2, S, L, L) m2 K/W to add to the first layer's half-space for each lateral eigenfunction, and its
-    derivative by the moment."""
+    nodes: (L,) lateral eigenfunctions of an axis, by half waves over the width. correction: (2, S, L, L) m2 K/W to add
+    to the first layer's half-space there, and its derivative by the moment."""
 
     stack: SensorStack
     rates: np.ndarray
@@ -47,6 +51,7 @@ class Element:
     heat: np.ndarray
     drop_rest: np.ndarray
     heat_rest: np.ndarray
+    nodes: np.ndarray
     correction: np.ndarray
 
 
@@ -69,7 +74,10 @@ def element(stack: SensorStack) -> Element:
     even_heat = (flows[0] - flows[-1])[:, 0] / MOMENTS
     weights = 1 / (s + rates)
     count = int(_DEPTHS / near.thickness * stack.width / np.pi) + 1
-    wave = np.arange(count) * np.pi / stack.width
+    nodes = np.arange(min(count, _EACH), dtype=float)
+    if count > _EACH:
+        nodes = np.concatenate((nodes, log_nodes(_EACH, max(count, _EACH + 4), _SPACING)))
+    wave = nodes * np.pi / stack.width
     kappa2 = (wave[:, None] ** 2 + wave**2).ravel()
     tiny = 1e-30
     turned = s * (1 + 1j * tiny)
@@ -84,7 +92,8 @@ def element(stack: SensorStack) -> Element:
         heat / ports,
         even_drop - weights @ drop,
         even_heat - weights @ heat,
-        correction.reshape(2, len(MOMENTS), count, count),
+        nodes,
+        correction.reshape(2, len(MOMENTS), len(nodes), len(nodes)),
     )
 
 
@@ -97,11 +106,14 @@ def element_samples(stack: SensorStack, covered: Rectangle) -> Sampled:
     capacity = layer.volumetric_heat_capacity
     diffusivity = layer.conductivity / capacity
     area = 4 * half[0] * half[1]
-    kernel, overlap = _lateral(
-        stack.width, diffusivity * TIMES, centre, half, NODES, JUMPS, ALONG, known.correction.shape[-1]
-    )
+    finest = float(half.min() * np.diff(NODES).min())
+    count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / np.pi) + 1)
+    kernel, overlap = _lateral(stack.width, diffusivity * TIMES, centre, half, NODES, JUMPS, ALONG, count)
     # products of two functions along each axis, then of the two axes, for the pairs of patterns that there are
-    pairs = (overlap[:, :, None] * overlap[:, None]).reshape(2, -1, overlap.shape[-1])
+    pairs = (overlap[:, :, None] * overlap[:, None]).reshape(2, -1, count)
+    if len(known.nodes) > _EACH:
+        between = from_nodes(known.nodes[_EACH:], np.arange(_EACH, count))
+        pairs = np.stack([np.hstack((axis[:, :_EACH], axis[:, _EACH:] @ between)) for axis in pairs])
     lateral = pairs[0] @ known.correction @ pairs[1].T
     first, second = (along[:, None] * len(JUMPS) + along for along in ALONG.T)
     lateral = lateral[..., first, second] / area**2

@@ -13,15 +13,12 @@ from .layers import Layer
 from .materials import Material, material
 
 _Stack = TypeVar("_Stack")
-_THINNEST, _THICKEST = (
-    30e-6,
-    5e-3,
-)  # m; a thinner one takes the sensor's kernels minutes, a thicker one feels nothing
+_THINNEST, _THICKEST = 1e-6, 5e-3  # m; a thicker one feels nothing
 
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """A sheet of one material, thickness 30e-6 .. 5e-3 m, bonded to the sensor's face without a resistance of its own.
+    """A sheet of one material, thickness 1e-6 .. 5e-3 m, bonded to the sensor's face without a resistance of its own.
 
     material: a name of thermal.materials() or a Material, with Young's modulus and roughness, for its contact. Raises
     UnknownNameError and InvalidValueError."""

@@ -1,7 +1,7 @@
 """Layered plates seen through a contact patch, in the Laplace domain."""
 
 from .impedance import Far, Sampled, stack_impedance, stack_profile
-from .lateral_sum import lateral_sum
+from .lateral_sum import from_nodes, lateral_sum, log_nodes
 from .patch import SquarePatch
 from .samples import BodySamples, ElementSamples, Geometry, sample_bodies, sample_element
 
@@ -12,7 +12,9 @@ __all__ = [
     "Geometry",
     "Sampled",
     "SquarePatch",
+    "from_nodes",
     "lateral_sum",
+    "log_nodes",
     "sample_bodies",
     "sample_element",
     "stack_impedance",

@@ -97,9 +97,27 @@ def _gathered(kappa: np.ndarray, left: np.ndarray, right: np.ndarray) -> tuple[n
     if len(kappa) <= _FIRST + 4:
         return kappa, left[:, :, None] * right[:, None, :]
     beyond = kappa[_FIRST:]
-    count = max(int(np.ceil(np.log(beyond[-1] / beyond[0]) / _SPACING)) + 1, 4)
-    nodes = np.geomspace(beyond[0], beyond[-1], count)
-    place = np.log(beyond / beyond[0]) * (count - 1) / np.log(beyond[-1] / beyond[0])
+    nodes = log_nodes(beyond[0], beyond[-1], _SPACING)
+    far = np.zeros((len(nodes), left.shape[1] * right.shape[1]))
+    for start in range(0, len(beyond), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        a, b = left[_FIRST:][part], right[_FIRST:][part]
+        products = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
+        far += from_nodes(nodes, beyond[part]).T @ products
+    near = left[:_FIRST, :, None] * right[:_FIRST, None, :]
+    products = np.concatenate((near, far.reshape(-1, left.shape[1], right.shape[1])))
+    return np.concatenate((kappa[:_FIRST], nodes)), products
+
+
+def log_nodes(low: float, high: float, spacing: float) -> np.ndarray:
+    """(N,) from low to high, equally spaced in the logarithm by at most that, four of them at least."""
+    return np.geomspace(low, high, max(int(np.ceil(np.log(high / low) / spacing)) + 1, 4))
+
+
+def from_nodes(nodes: np.ndarray, at: np.ndarray) -> csr_matrix:
+    """(M, N) of the cubic interpolation from log_nodes (N,) to places `at` (M,) between them."""
+    count = len(nodes)
+    place = np.log(at / nodes[0]) * (count - 1) / np.log(nodes[-1] / nodes[0])
     first = np.clip(place.astype(int) - 1, 0, count - 4)
     x = place - first
     weights = np.stack(
@@ -111,14 +129,7 @@ def _gathered(kappa: np.ndarray, left: np.ndarray, right: np.ndarray) -> tuple[n
         ),
         axis=1,
     )
-    far = np.zeros((count, left.shape[1] * right.shape[1]))
-    for start in range(0, len(beyond), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        rows = np.arange(len(beyond[part]) + 1) * 4
-        columns = (first[part, None] + np.arange(4)).ravel()
-        hand_out = csr_matrix((weights[part].ravel(), columns, rows), shape=(len(rows) - 1, count))
-        a, b = left[_FIRST:][part], right[_FIRST:][part]
-        far += hand_out.T @ (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
-    near = left[:_FIRST, :, None] * right[:_FIRST, None, :]
-    products = np.concatenate((near, far.reshape(count, left.shape[1], right.shape[1])))
-    return np.concatenate((kappa[:_FIRST], nodes)), products
+    rows = np.arange(len(at) + 1) * 4
+    return csr_matrix(
+        (weights.ravel(), (first[:, None] + np.arange(4)).ravel(), rows), shape=(len(at), count)
+    )

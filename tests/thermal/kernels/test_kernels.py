@@ -1,13 +1,14 @@
 """Heat kernels of boxes and elements and the networks of fixed rates made of them."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.linalg import block_diag, eigh_tridiagonal
 
-from thermograsp.thermal import Geometry, material, sensor
+from thermograsp.thermal import Geometry, SensorStack, material, sensor
 from thermograsp.thermal.kernels import (
     MOMENTS,
     Detail,
@@ -21,8 +22,9 @@ from thermograsp.thermal.kernels import (
     touch_sides,
 )
 from thermograsp.thermal.kernels.axis import MODES, SWITCH, images, overlaps, wave_numbers
-from thermograsp.thermal.kernels.element import element_samples
+from thermograsp.thermal.kernels.element import element, element_samples
 from thermograsp.thermal.kernels.patterns import JUMPS, NODES
+from thermograsp.thermal.matter import Layer
 from thermograsp.thermal.plates import sample_bodies, stack_impedance
 
 SEED = sensor("seed")
@@ -162,14 +164,24 @@ def test_heat_that_no_film_takes_stays() -> None:
     np.testing.assert_allclose(held[:, 0] * MOMENTS, 1, rtol=1e-5)
 
 
+def coated(thickness: float, conductivity: float) -> SensorStack:
+    """The seed's sensor with one more layer on its face."""
+    return replace(SEED, layers=(*SEED.layers, Layer("coat", thickness, conductivity, 1200.0, 1500.0)))
+
+
+@pytest.mark.parametrize(
+    "stack",
+    [SEED, coated(1e-6, 0.2), coated(2e-5, 0.05), coated(1e-4, 0.2), coated(5e-6, 400.0)],
+    ids=["bare", "oxide", "paper", "paint", "metal"],
+)
 @pytest.mark.parametrize(
     ("centre", "half"), [((0.0045, 0.0045), (0.0045, 0.0045)), ((0.003, 0.006), (0.002, 0.003))]
 )
 def test_an_element_is_the_sum_over_its_eigenfunctions(
-    centre: tuple[float, float], half: tuple[float, float]
+    centre: tuple[float, float], half: tuple[float, float], stack: SensorStack
 ) -> None:
-    slabs = SEED.layers[::-1]
-    count = 2000
+    slabs = stack.layers[::-1]
+    count = 1200
     wave = np.arange(count) * np.pi / WIDTH
     shares = []
     for middle, wide in zip(centre, half, strict=True):
@@ -180,11 +192,21 @@ def test_an_element_is_the_sum_over_its_eigenfunctions(
     low_x, high_x, low_y, high_y = (
         m + side * w for m, w in zip(centre, half, strict=True) for side in (-1, 1)
     )
-    found = element_samples(SEED, ((low_x, high_x), (low_y, high_y))).value
+    found = element_samples(stack, ((low_x, high_x), (low_y, high_y))).value
+    beyond = np.array([1.5 * (count * np.pi / WIDTH) ** 2])  # what is left out counts as if all there
     for s in (4, 12, 19):
-        each = stack_impedance(slabs, "isothermal", MOMENTS[s : s + 1, None], kappa2).reshape(count, count)
-        summed = shares[0] @ each @ shares[1] / (16 * np.prod(half) ** 2)
-        assert found[s, 0, 0] == pytest.approx(summed, rel=3e-5)
+        at = MOMENTS[s : s + 1, None]
+        last = stack_impedance(slabs, "isothermal", at, beyond)
+        each = stack_impedance(slabs, "isothermal", at, kappa2).reshape(count, count) - last
+        area = 4 * np.prod(half)
+        summed = shares[0] @ each @ shares[1] / area**2 + last[0, 0] / area
+        assert found[s, 0, 0] == pytest.approx(summed, rel=5e-5)
+
+
+def test_no_layer_is_too_thin() -> None:
+    """What an element holds is a table of a hundred nodes or so an axis, not of all eigenfunctions."""
+    for thickness in (1e-8, 1e-6, 3e-5):
+        assert len(element(coated(thickness, 0.2)).nodes) < 160
 
 
 def test_networks_hold_all_heat_that_goes_in() -> None:
