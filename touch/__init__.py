@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
-    from .contacts import prepare
+    from .contacts import TouchContacts, prepare
     from .engine import install, load_plugin
+    from .fixed_touch import FixedTouch, FixedTouchReading, FixedTouchState
     from .heat import FixedPlaces, HeatBalance
     from .scene import (
         Face,
@@ -30,10 +31,14 @@ __all__ = [
     "Face",
     "Fingertip",
     "FixedPlaces",
+    "FixedTouch",
+    "FixedTouchReading",
+    "FixedTouchState",
     "HeatBalance",
     "SensorElement",
     "ThermalBody",
     "ThermalTouch",
+    "TouchContacts",
     "TouchReading",
     "TouchState",
     "flat_faces",
@@ -48,8 +53,9 @@ __all__ = [
 __getattr__ = opened(
     __name__,
     {
-        "contacts": ("prepare",),
+        "contacts": ("TouchContacts", "prepare"),
         "engine": ("install", "load_plugin"),
+        "fixed_touch": ("FixedTouch", "FixedTouchReading", "FixedTouchState"),
         "heat": ("FixedPlaces", "HeatBalance"),
         "scene": (
             "Face",

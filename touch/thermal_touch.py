@@ -9,7 +9,8 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -18,11 +19,13 @@ from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name
 
 from ..thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
+from ..thermal import material as named_material
 from ..thermal.numerics import Array
 from ..thermal.readout import chain_numbers, measure_rows
 from ..thermal.stack import converter
 from .contacts import FORCE, ContactReader, sensor_places
 from .draw import draw_fingertips
+from .fixed_touch import FixedTouch, fixed_touch, pad_poses
 from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
 from .scene import (
     Fingertip,
@@ -142,8 +145,8 @@ class ThermalTouch:
             ambient=ambient,
         )
         tips, targets = self._reader.touches.shape[1:3]
-        of_chain, sample = _chain(chain), dt / self._samples
-        chains = [_numbers(of_chain, pad, sample) for pad in (*self._pads, *self._glued)]
+        self._chain, sample = _chain(chain), dt / self._samples
+        chains = [_numbers(self._chain, pad, sample) for pad in (*self._pads, *self._glued)]
         self._chains, sensors = np.tile(np.concatenate(chains), count), len(chains)
         # the low-pass's output and its last input, V, and voltages under way: none
         self._filtered, self._last = np.zeros((count * sensors, 1)), np.zeros((count * sensors, 1))
@@ -279,6 +282,71 @@ class ThermalTouch:
         glued elements."""
         (row,) = self._rows([world])
         return self._heat.fixed_places(row, like)
+
+    def fixed_touch(
+        self,
+        like: Array,
+        *,
+        materials: Mapping[str, Sequence[str | Material]] | None = None,
+        world: int = 0,
+        data: mujoco.MjData | None = None,
+    ) -> FixedTouch:
+        """Its fingertips on every object, each on one place of it, for a pure step of arrays that takes contacts:
+        `advance(state, contacts)`, once per sample of the converter. A place is where the fingertip has touched the
+        object, or else where the pad would, in the pose of `data` or the model's first. Contacts of fingertips with
+        one another are left aside.
+
+        like: an array of floating-point numbers whose kind (NumPy, PyTorch, JAX), dtype and device are taken.
+        materials: by object, those that it may be of; without, those that it is of in the worlds. A ThermalTouch of
+        many worlds in which nothing has touched starts all of them, at their first temperatures; otherwise world
+        `world` is what starts, as it is now. Raises UnknownNameError, and InvalidValueError beside thermostats of
+        finite power, heated sensors and glued elements."""
+        (row,) = self._rows([world])
+        of = {name: tuple(map(named_material, own)) for name, own in (materials or {}).items()}
+        for name in of:
+            if name not in self.objects:
+                raise unknown_name("object", name, self.objects)
+        every = [
+            tuple(dict.fromkeys((*of.get(name, ()), *(own[o] for own in self._materials))))
+            for o, name in enumerate(self.objects)
+        ]
+        most = max(map(len, every))
+        kinds = [
+            tuple(
+                replace(shape, material=own[min(v, len(own) - 1)])
+                for shape, own in zip(self._shapes, every, strict=True)
+            )
+            for v in range(most)
+        ]
+        fresh = not self._heat.touched
+        rows = range(len(self._time)) if fresh else [row]
+        numbers = [[own.index(m) for own, m in zip(every, self._materials[w], strict=True)] for w in rows]
+        places = None
+        if hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
+            with suppress(InvalidValueError):  # a model that touch.prepare has not made
+                places = sensor_places(self._model, self._pads, self._shapes)
+        tips, own = len(self._pads), slice(row * self._voltage.shape[1], None)
+        now = (
+            None
+            if fresh
+            else (self._filtered[own][:tips, 0], self._last[own][:tips, 0], self._voltage[row, :tips])
+        )
+        return fixed_touch(
+            self._model,
+            self._pads,
+            self._shapes,
+            kinds,
+            every,
+            self._heat.fixed_networks(row, every, pad_poses(self._model, data, self._pads, self._shapes)),
+            substeps=self._sample_steps,
+            ambient=self._ambient,
+            chain=self._chain,
+            places=places,
+            worlds=(np.array(numbers), self._first[list(rows)]),
+            now=now,
+            samples=SAMPLES,
+            like=like,
+        )
 
     def draw(self, scene: mujoco.MjvScene, data: mujoco.MjData, *, world: int = 0) -> int:
         """Adds what each fingertip feels to a scene of MuJoCo's viewer (viewer.user_scn) or Renderer (renderer.scene):

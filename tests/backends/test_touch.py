@@ -1,4 +1,4 @@
-"""Fingertips of ThermalTouch on fixed places: PyTorch and JAX step them as NumPy does."""
+"""Fingertips of ThermalTouch on fixed places: PyTorch and JAX step them and their contacts as NumPy does."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -8,7 +8,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from thermograsp.touch import ThermalTouch
+from thermograsp.touch import ThermalTouch, prepare
 
 from .conftest import Kind
 
@@ -22,6 +22,15 @@ SCENE = """
     </body>
   </worldbody>
 </mujoco>"""
+
+CAN = """
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <body name="left" pos="-.0345 0 0"><joint type="slide" axis="1 0 0" damping="20"/>
+    <geom name="left_pad" type="box" size=".004 .01 .01" mass=".1"/></body>
+  <body name="right" pos=".0345 0 0"><joint type="slide" axis="-1 0 0" damping="20"/>
+    <geom name="right_pad" type="box" size=".004 .01 .01" mass=".1"/></body>
+  <body name="can"><geom type="cylinder" size=".03 .05"/></body>
+</worldbody></mujoco>"""
 
 
 def test_fixed_places_are_numpy_s(kind: Kind) -> None:
@@ -41,3 +50,39 @@ def test_fixed_places_are_numpy_s(kind: Kind) -> None:
         expected, right = exact.advance(expected, conductance)
         np.testing.assert_allclose(np.asarray(drop), right, rtol=0, atol=1e-10)
         assert drop.dtype == kind.float64.dtype
+
+
+def test_contacts_are_felt_as_in_numpy(kind: Kind) -> None:
+    """A can between two fingers, by strips and in worlds of two materials, in one function of the record."""
+    tips = {"left": "left_pad", "right": "right_pad"}
+    model = prepare(mujoco.MjSpec.from_string(CAN), tips, {"can": "glass"})
+    data, rows = mujoco.MjData(model), []
+    for _ in range(200):
+        data.qfrc_applied[:2] = 8.0
+        mujoco.mj_step(model, data)
+        rows.append(data.sensordata.copy())
+    touch = ThermalTouch(model, fingertips=tips, objects={"can": ["glass", "aluminium"]}, worlds=2)
+    exact, fixed = touch.fixed_touch(np.zeros(0)), touch.fixed_touch(kind.float64)
+    single = touch.fixed_touch(kind.float32)
+
+    def step(state, record):
+        return fixed.advance(state, fixed.contacts(record))
+
+    compiled = kind.compiled(step)
+    expected, state, near = exact.start(), fixed.start(), single.start()
+    every = np.repeat(np.array(rows)[None], 2, axis=0)
+    for begin in range(0, 200, exact.substeps):
+        record = every[:, begin : begin + exact.substeps]
+        expected, right = exact.advance(expected, exact.contacts(record))
+        state, reading = compiled(state, kind.of(record))
+        assert reading.temperature_drop.dtype == kind.float64.dtype
+        for own, numpys in zip(reading, right, strict=True):
+            np.testing.assert_allclose(np.asarray(own), numpys, rtol=1e-9, atol=1e-10)
+    assert (expected.signal.last[1] > expected.signal.last[0]).all() and expected.narrow.max() > 0
+    record = every[:, -exact.substeps :].astype(np.float32)
+    near, reading = single.advance(near, single.contacts(kind.of(record)))
+    assert {each.dtype for each in (near.heat, near.narrow, reading.force)} == {kind.float32.dtype}
+    worlds = kind.of(np.array([False, True]))
+    cleared, first = fixed.reset(state, worlds), fixed.start()
+    np.testing.assert_array_equal(np.asarray(cleared.heat[1]), np.asarray(first.heat[1]))
+    np.testing.assert_array_equal(np.asarray(cleared.heat[0]), np.asarray(state.heat[0]))

@@ -120,6 +120,7 @@ def test_arrays_do_as_compiled_code_does() -> None:
     found = np.stack(array_round_contact(bend_, curve, sides.reshape(count, 2, 2), force, y, z), axis=1)
     np.testing.assert_allclose(found[:, :2], expected[:, :2], rtol=1e-7)
     np.testing.assert_allclose(found[:, 2], expected[:, 2], rtol=1e-7, atol=1e-12)
+    np.testing.assert_allclose(found[:, 3], expected[:, 3], rtol=1e-7)
 
 
 TIPS = {

@@ -1,12 +1,12 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
-from .array_contacts import ArrayContacts, array_contacts
+from .array_contacts import ArrayContacts, FeltContacts, TouchContacts, array_contacts
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
 from .laws import constrictions, pair_laws
 from .reader import ContactReader
 from .round_pads import bends, curves
-from .sensors import SensorPlaces, prepare, sensor_places
+from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
 
 __all__ = [
     "AREA",
@@ -15,12 +15,16 @@ __all__ = [
     "ArrayContacts",
     "CONDUCTANCE",
     "FORCE",
+    "FORCE_AT",
     "LENGTH",
     "NORMAL",
     "PLACE",
+    "PLACE_AT",
     "ContactReader",
+    "FeltContacts",
     "GluedContacts",
     "SensorPlaces",
+    "TouchContacts",
     "array_contacts",
     "bends",
     "constrictions",

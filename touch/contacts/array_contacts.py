@@ -1,11 +1,9 @@
 """Contacts as conductances in the arrays of a simulation of many worlds: NumPy, PyTorch, JAX.
 
 What reader.py's `sense` does with recorded contact sensors, as a pure function without a branch on data. It knows
-contacts of fingertips with objects; those of fingertips with one another it leaves aside. Arrays know contacts of the
-sensor's whole face: a narrower one has the steady resistance of its constriction from its first moment, where
-ThermalTouch lets it build up (touch/heat/narrow.py).
+contacts of fingertips with objects; those of fingertips with one another it leaves aside.
 
-B: worlds, F: fingertips, G: geoms of the objects, H: substeps, V: materials.
+B: worlds, F: fingertips, O: objects, G: geoms of the objects, H: substeps, L: contacts of a pair, V: materials.
 """
 
 # mujoco ships no type stubs for its compiled names
@@ -15,6 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -26,6 +27,31 @@ from .array_round import array_round_contact
 from .laws import constrictions, pair_laws
 from .reader import DEPTH, RIM
 from .round_pads import bends, curves
+
+
+class TouchContacts(NamedTuple):
+    """What pressed on fingertips in the substeps of a step, newest first, in the world's frame. force: (B, H, F, G, L,
+    3) N on each geom of the objects from each fingertip and place: (B, H, F, G, L, 3) m where it acts; L are forces of
+    one pair, such as several contacts; one that is 0 is none. tip_position (B, H, F, 3) m and tip_turn (B, H, F, 3, 3):
+    of the bodies that carry the pads; geom_position (B, H, G, 3) m and geom_turn (B, H, G, 3, 3): of the geoms."""
+
+    force: Array
+    place: Array
+    tip_position: Array
+    tip_turn: Array
+    geom_position: Array
+    geom_turn: Array
+
+
+class FeltContacts(NamedTuple):
+    """Of a step, (B, F, O) each: conductance W/K, its mean; area m2 and length m of the contact while there was one, 0
+    without; force N on the pad, its mean. beside: (B, F) N off the pads, its mean."""
+
+    conductance: Array
+    area: Array
+    length: Array
+    force: Array
+    beside: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,28 +103,94 @@ class ArrayContacts:
         on = (sides & (abs(at[..., 0]) <= DEPTH)) | ~last
         pressed = xp.where(on[..., None] & ~(pressed <= 0), pressed, 0.0 * pressed)
 
-        looking = _seen(geom_turn[:, None], normal[:, :, None])  # (B, F, G, 3) in the geom's frame
+        off = xp.where(last[..., None], at[..., 1:], 0.0 * at[..., 1:])
+        conducts, area, _ = self._joined(pressed, off, middle, axes, geom_position, geom_turn, material)
+        closed, width = conducts > 0, self.width[:, None, None]
+        safe = xp.where(closed, area, area * 0 + width**2)
+        small = self._small(material)[..., None] * (1 / xp.minimum(safe**0.5, width) - 1 / width)
+        series = 1 / xp.where(closed, conducts, 1.0 + 0.0 * conducts) + small
+        return xp.where(closed, 1 / series, conducts), pressed
+
+    def felt(self, contacts: TouchContacts, material: Array, of_object: Array) -> FeltContacts:
+        """What `contacts` are to the heat of a step, each substep with its own places. material: (B, G) integers.
+        of_object: (G, O), 1 where a geom is an object's. A world with a number that is not finite has no number that
+        is."""
+        xp = namespace_of(contacts.force)
+        worlds, substeps = contacts.force.shape[:2]
+        total = reduce(add, ((0.0 * part).reshape(worlds, -1).sum(-1) for part in contacts))
+        force, place, tip_position, tip_turn, geom_position, geom_turn = (
+            part.reshape((worlds * substeps, *part.shape[2:])) for part in contacts
+        )
+        axes = _product(tip_turn, self.axes)  # (B H, F, 3, 3), columns normal, y and z
+        middle = tip_position + _rotated(tip_turn, self.position)
+        pressed = (force * axes[:, :, None, None, :, 0]).sum(-1)  # (B H, F, G, L)
+        at = _seen(axes[:, :, None, None], place - middle[:, :, None, None])
+        on = (abs(at[..., 1:]) <= self.half[:, None, None] + RIM).all(-1) & (abs(at[..., 0]) <= DEPTH)
+        none = 0.0 * pressed
+        pressed = xp.where(pressed > 0, pressed, none)
+        beside = xp.where(on, none, pressed).sum(-1).sum(-1)
+        pressed = xp.where(on, pressed, none)
+        whole = pressed.sum(-1)
+        off = (pressed[..., None] * at[..., 1:]).sum(-2) / xp.where(whole > 0, whole, 1.0 + whole)[..., None]
+        every = xp.broadcast_to(material[:, None], (worlds, substeps, material.shape[-1])).reshape(
+            (worlds * substeps, -1)
+        )
+        found = self._joined(whole[..., None], off, middle, axes, geom_position, geom_turn, every)
+
+        def summed(values: Array) -> Array:
+            """(B, H, F, O) of the objects, from (B H, F, G)."""
+            of = (values[..., None] * of_object).sum(-2)
+            return of.reshape((worlds, substeps, *of.shape[1:]))
+
+        conducts, area, long = (each[..., 0] for each in found)
+        areas = summed(area)
+        closed = xp.where(areas > 0, 1.0 + 0.0 * areas, 0.0 * areas).sum(1)
+        areas = areas.sum(1)
+        broken = total[:, None, None]
+        return FeltContacts(
+            summed(conducts).mean(1) + broken,
+            areas / xp.where(closed > 0, closed, 1.0 + closed),
+            summed(area * long).sum(1) / xp.where(areas > 0, areas, 1.0 + areas),
+            summed(whole).mean(1) + broken,
+            beside.reshape((worlds, substeps, -1)).mean(1) + total[:, None],
+        )
+
+    def _joined(
+        self,
+        pressed: Array,
+        off: Array,
+        middle: Array,
+        axes: Array,
+        geom_position: Array,
+        geom_turn: Array,
+        material: Array,
+    ) -> tuple[Array, Array, Array]:
+        """(conductance W/K of a contact of the whole face's spread, area m2, length m), (B, F, G, H) each, 0 where
+        nothing conducts. pressed: (B, F, G, H) N on the pads, which acts at off (B, F, G, 2) m from the middle (B, F,
+        3) m of a pad with axes (B, F, 3, 3)."""
+        xp = namespace_of(pressed)
+        tips, geoms = self.numbers.shape
+        looking = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # (B, F, G, 3) in the geom's frame
         axis = abs(looking).argmax(-1)
         from_geom = _seen(geom_turn[:, None], middle[:, :, None] - geom_position[:, None])
         law = self.laws.at(as_integers((material[:, None] * (tips * geoms) + self.numbers) * 3 + axis))
         law = ArrayLaws(*(table[:, :, :, None] for table in law))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
-        off = xp.where(last[..., None], at[..., 1:], 0.0 * at[..., 1:])
         kept = self._kept(law, area, off, axes, geom_turn)
+        longer = 1.0 + 0.0 * area
         if any(self.bulging):
-            area, share, kept = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
-        whole = xp.where(area > 0, area, area + self.width[:, None, None] ** 2)
-        pressure = share / whole
+            area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
+        width = self.width[:, None, None]
+        pressure = share / xp.where(area > 0, area, area + width**2)
         area = area * kept
         closed = (area > 0) & (pressure > 0)
-        safe = xp.where(closed, area, area * 0 + self.width[:, None, None] ** 2)
-        width = self.width[:, None, None]
-        side = xp.minimum(safe**0.5, width)
-        small = self._small(material)[..., None]
+        safe = xp.where(closed, area, area * 0 + width**2)
         h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
-        series = 1 / (h * safe) + small * (1 / side - 1 / width)
+        bulging = (as_like(np.array(self.bulging, float), pressed) > 0)[:, None, None]
+        long = xp.where((law.cylinder > 0) & ~bulging, law.face_length + 0.0 * safe, (safe * longer) ** 0.5)
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
-        return xp.where(closed, 1 / series, 0.0 * pressed), pressed
+        none = 0.0 * pressed
+        return xp.where(closed, h * safe, none), xp.where(closed, area, none), xp.where(closed, long, none)
 
     def _of_round(
         self,
@@ -110,8 +202,9 @@ class ArrayContacts:
         axis: Array,
         axes: Array,
         geom_turn: Array,
-    ) -> tuple[Array, Array, Array]:
-        """Area, force and share on the face, (B, F, G, H) each, of round pads in place of flat ones'."""
+    ) -> tuple[Array, Array, Array, Array]:
+        """Area, force and share on the face and how many times as long as broad they are, (B, F, G, H) each, of round
+        pads in place of flat ones'."""
         xp = namespace_of(pressed)
         of_axis = as_like(np.eye(3), pressed)[axis]  # (B, F, G, 3)
         across = as_like(
@@ -138,7 +231,7 @@ class ArrayContacts:
         area, share, kept = (
             xp.where(bulging, new, old) for new, old in zip(told, (area, share, kept), strict=True)
         )
-        return area, share, kept
+        return area, share, kept, xp.where(bulging, found[3] + zero, 1.0 + zero)
 
     def _small(self, material: Array) -> Array:
         """(B, F, G) K m/W of each world's materials."""

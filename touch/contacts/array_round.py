@@ -10,9 +10,9 @@ from .round_pads import LEAST, NEWTON_STEPS
 
 def array_round_contact(
     bend: Array, curve: Array, sides: Array, force: Array, y: Array, z: Array
-) -> tuple[Array, Array, Array]:
-    """(area m2, force N, share) of round_contact, of the force's shape. bend (..., BEND) of the pads, curve (...,
-    CURVES) and sides (..., 2, 2) of what they meet; force: N > 0. y, z: m."""
+) -> tuple[Array, Array, Array, Array]:
+    """(area m2, force N, share, length over breadth) of round_contact, of the force's shape. bend (..., BEND) of the
+    pads, curve (..., CURVES) and sides (..., 2, 2) of what they meet; force: N > 0. y, z: m."""
     xp = namespace_of(force)
     (c1, c2), (half1, half2) = (curve[..., 0], curve[..., 1]), (curve[..., 2], curve[..., 3])
     y1, z1, y2, z2 = (sides[..., i, j] for i in range(2) for j in range(2))
@@ -40,7 +40,9 @@ def array_round_contact(
     a, b = (2 * depth / most) ** 0.5, (2 * depth / least) ** 0.5
     area, load = _clipped(xp, (face_reach / a).clip(None, 1.0), (face_width / b).clip(None, 1.0))
     share = _kept(xp, along * y + aside * z, a, face_reach) * _kept(xp, along * z - aside * y, b, face_width)
-    return 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load, share
+    longer = xp.minimum(b, face_width) / xp.minimum(a, face_reach)
+    longer = xp.maximum(longer, 1 / longer)
+    return 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load, share, longer
 
 
 def _depth(xp, load, most, least, reach, width):

@@ -1,17 +1,23 @@
 """Heat of fingertips and objects as separate passive fields that contacts join."""
 
+from .array_narrow import ArrayNarrow, array_narrow
 from .fields import AFTERWARDS, resolution, tip_field, untouched
-from .fixed_places import FixedPlaces
+from .fixed_networks import FixedNetworks
+from .fixed_places import FixedPlaces, network_tables
 from .joined import HeatBalance, HeatState, JoinedHeat
 from .narrow import narrow_of
 
 __all__ = [
     "AFTERWARDS",
+    "ArrayNarrow",
+    "FixedNetworks",
     "FixedPlaces",
     "HeatBalance",
     "HeatState",
     "JoinedHeat",
+    "array_narrow",
     "narrow_of",
+    "network_tables",
     "resolution",
     "tip_field",
     "untouched",

@@ -63,16 +63,29 @@ def fixed_places(
 ) -> FixedPlaces:
     """pairs: N. rates: (K,) 1/s. ports: (K, N M) sqrt(K/J), as `Propagator` has them. drop: (N, K) of each pair's
     fingertip. difference: (N,) K. state: (K,)."""
-    made = propagator(rates, ports, dt)
-    none, still = np.zeros((3, len(rates))), np.zeros((3 * len(pairs), len(rates)))
-    rows = (rates[None], none, drop, still, np.real(made.scale), np.imag(made.scale), ports.T)
-    sizes = np.array([[len(rates), len(rates), 0, ports.shape[1] // len(pairs), 0]])
-    tables = HeatTables(dt, sizes, np.concatenate(rows)[None], made.gram[None])
     return FixedPlaces(
         dt,
         tuple(pairs),
         tuple(dict.fromkeys(tip for tip, _ in pairs)),
-        array_tables(tables, like),
+        network_tables(rates[None], ports[None], drop, dt, like),
         as_like(difference, like),
         as_like(state, like),
     )
+
+
+def network_tables(
+    rates: np.ndarray, ports: np.ndarray, drop: np.ndarray, dt: float, like: Array
+) -> ArrayTables:
+    """Of networks (T) for array_step, in which each of N pairs is a fingertip. rates: (T, K) 1/s. ports: (T, K, N M)
+    sqrt(K/J). drop: (N, K) of each pair's fingertip."""
+    count, states = rates.shape
+    none, still = np.zeros((3, states)), np.zeros((3 * len(drop), states))
+    made = [propagator(own, seen, dt) for own, seen in zip(rates, ports, strict=True)]
+    rows = [
+        np.concatenate(
+            (one.rates[None], none, drop, still, np.real(one.scale), np.imag(one.scale), one.ports.T)
+        )
+        for one in made
+    ]
+    sizes = np.tile([states, states, 0, ports.shape[2] // len(drop), 0], (count, 1))
+    return array_tables(HeatTables(dt, sizes, np.array(rows), np.array([one.gram for one in made])), like)

@@ -20,7 +20,7 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import Material
 from ...thermal.numerics import Array
-from ..contacts import FORCE, GluedContacts
+from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
 from .fields import (
@@ -36,6 +36,7 @@ from .fields import (
     touched,
     untouched,
 )
+from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import march, settle
 from .narrow import STEPS, narrow_of
@@ -229,11 +230,7 @@ class JoinedHeat:
 
     def fixed_places(self, w: int, like: Array) -> FixedPlaces:
         """World w's fingertips on the places that they have, and on other fingertips that they touch."""
-        if self._backs or self._glued is not None:
-            raise InvalidValueError(
-                "fixed places know fingertips on ideal thermostats alone: leave out thermostat=, heated sensors and "
-                "elements that are glued on"
-            )
+        self._refuse_backs()
         objects, patterns = len(self._shapes), self._level.patterns
         at = np.concatenate((self._current[w] >= 0, self._closed[w, :, objects:]), axis=1)
         pairs: list[Pair] = [(f, t) for f, t in np.argwhere(at).tolist()]
@@ -271,6 +268,75 @@ class JoinedHeat:
             self._dt,
             like,
         )
+
+    def fixed_networks(
+        self, w: int, materials: Sequence[Sequence[Material]], poses: np.ndarray
+    ) -> FixedNetworks:
+        """World w's fingertips on the places that they have, or would have where they have not touched an object.
+        materials: that each object may be of, the world's own among them. poses: (F, O, 6) the pads' PLACE and NORMAL
+        on every object (contacts/columns.py)."""
+        self._refuse_backs()
+        tips, objects = self._current.shape[1:]
+        pads, level = self._pads[:tips], self._level
+        places = [list(field.places) for field in self._fields[w]]
+        current = self._current[w].copy()
+        expected = self._expected(poses)
+        for f, o in np.argwhere(current < 0).tolist():
+            current[f, o] = len(places[o])
+            places[o].append(expected[f][o])
+        after = [[self._field(o, one, tuple(places[o])) for one in own] for o, own in enumerate(materials)]
+        states = []
+        for o, before in enumerate(self._fields[w]):
+            own = self._field(o, self._materials[w][o], tuple(places[o]))
+            held = self._x[w, o, : len(before.rates)]
+            states.append(held if own is before else carried(before, own, level.patterns) @ held)
+        states += [self._x[w, objects + f, : len(tip.side.rates)] for f, tip in enumerate(self._tips)]
+        most = max(map(len, materials))
+        kinds = [[own[min(v, len(own) - 1)] for v in range(most)] for own in materials]
+        tables = [narrow_of(pad, one, level) for pad in pads for own in kinds for one in own]
+        return fixed_networks(
+            self._dt,
+            level.patterns,
+            self._tips[:tips],
+            after,
+            current,
+            self._warm[w],
+            np.array(tables),
+            np.repeat(self._widths[:tips], objects),
+            level.decay,
+            states,
+            self._narrow[w, :, :objects].reshape(tips * objects, -1),
+        )
+
+    @property
+    def touched(self) -> bool:
+        """Whether any fingertip has touched an object in any world."""
+        return bool((self._current >= 0).any())
+
+    def _expected(self, poses: np.ndarray) -> list[list[Place]]:
+        """(F, O) places of pads in those poses (F, O, 6)."""
+        tips, objects = poses.shape[:2]
+        touches = np.zeros((1, tips, objects, COLUMNS))
+        touches[..., CONDUCTANCE] = 1.0
+        touches[0, :, :, PLACE : PLACE + 3], touches[0, :, :, NORMAL : NORMAL + 3] = (
+            poses[..., :3],
+            poses[..., 3:],
+        )
+        faces, middles = np.full((1, tips, objects), -1), np.zeros((1, tips, objects, 2))
+        new = faces.copy(), middles.copy()
+        closed, stale = np.zeros((1, tips, objects), bool), np.zeros(1, bool)
+        settle(touches, self._boxes, self._widths, self._widths, faces, middles, *new, closed, stale)
+        return [
+            [self._on_grid(f, o, int(new[0][0, f, o]), new[1][0, f, o]) for o in range(objects)]
+            for f in range(tips)
+        ]
+
+    def _refuse_backs(self) -> None:
+        if self._backs or self._glued is not None:
+            raise InvalidValueError(
+                "fixed places know fingertips on ideal thermostats alone: leave out thermostat=, heated sensors and "
+                "elements that are glued on"
+            )
 
     @property
     def sent(self) -> np.ndarray:
@@ -426,23 +492,27 @@ class JoinedHeat:
 
     def _settle(self, w: int, f: int, o: int) -> None:
         """The pair's place: one that is known near there, or a new one."""
-        width = float(self._widths[f])
-        spacing, middle = GRID * width, []
-        sizes = np.delete(self._shapes[o].size, self._new_faces[w, f, o] // 2)
-        for at, size in zip(self._new_middles[w, f, o].tolist(), sizes.tolist(), strict=True):
-            room = max(size - width, 0.0) / 2
-            off = min(max(round((at - size / 2) / spacing) * spacing, -room), room)
-            middle.append(size / 2 + off)
-        place = Place(int(self._new_faces[w, f, o]), (middle[0], middle[1]), f)
+        place = self._on_grid(f, o, int(self._new_faces[w, f, o]), self._new_middles[w, f, o])
         known = self._fields[w][o].places
         for number, one in enumerate(known):
-            if near(one, place, NEAR * width):
+            if near(one, place, NEAR * float(self._widths[f])):
                 self._current[w, f, o] = number
                 break
         else:
             self._add(w, o, place)
         self._place(w, f, o)
         self._stale[w] = True
+
+    def _on_grid(self, f: int, o: int, face: int, middle: np.ndarray) -> Place:
+        """The place of the grid that is nearest to a middle (2,) m on a face of an object."""
+        width = float(self._widths[f])
+        spacing, found = GRID * width, []
+        sizes = np.delete(self._shapes[o].size, face // 2)
+        for at, size in zip(middle.tolist(), sizes.tolist(), strict=True):
+            room = max(size - width, 0.0) / 2
+            off = min(max(round((at - size / 2) / spacing) * spacing, -room), room)
+            found.append(size / 2 + off)
+        return Place(face, (found[0], found[1]), f)
 
     def _place(self, w: int, f: int, o: int) -> None:
         number = int(self._current[w, f, o])

@@ -1,0 +1,95 @@
+"""Networks of every fingertip on every object, each pair at one place, for objects of several materials.
+
+F: fingertips, O: objects, N = F O: pairs, V: materials of an object, T: combinations of materials, M: patterns of a
+contact, K: states, those of the objects first, S: states of a narrow contact, J: widths of its table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...thermal.kernels import Tip
+from .fields import BodyField
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FixedNetworks:
+    """For steps of dt s. Pairs count through the objects of a fingertip, then through the fingertips; combinations
+    through the materials of the last object, then of the one before.
+
+    rates (T, K) 1/s. ports (T, K, N M) sqrt(K/J). drop (N, K): what a pair's fingertip feels. difference (N,) K of the
+    fingertips above the air. mean (O,): the states of the objects' mean temperatures, and held (O, V) J in one of them.
+    narrow (N V, 2, J, S) K/J of narrow.py, the materials of a pair behind one another, width (N,) m and decay (S,) 1/s.
+    state (K,) and narrow_state (N, S): as they are now."""
+
+    dt: float
+    rates: np.ndarray
+    ports: np.ndarray
+    drop: np.ndarray
+    difference: np.ndarray
+    mean: np.ndarray
+    held: np.ndarray
+    narrow: np.ndarray
+    width: np.ndarray
+    decay: np.ndarray
+    state: np.ndarray
+    narrow_state: np.ndarray
+
+
+def fixed_networks(
+    dt: float,
+    patterns: int,
+    tips: Sequence[Tip],
+    fields: Sequence[Sequence[BodyField]],
+    places: np.ndarray,
+    warm: np.ndarray,
+    narrow: np.ndarray,
+    width: np.ndarray,
+    decay: np.ndarray,
+    states: Sequence[np.ndarray],
+    narrow_state: np.ndarray,
+) -> FixedNetworks:
+    """fields: of the objects, by material. places: (F, O) each pair's among its object's. warm: (F,) K. narrow, width:
+    by pair. states: of the objects, then of the fingertips."""
+    objects, most = len(fields), max(map(len, fields))
+    lengths = [max(len(field.rates) for field in own) for own in fields] + [
+        len(tip.side.rates) for tip in tips
+    ]
+    begin = np.cumsum([0, *lengths])
+    pairs, total = len(tips) * objects, int(begin[-1])
+    counts = tuple(map(len, fields))
+    rates = np.zeros((int(np.prod(counts)), total))
+    ports, drop = np.zeros((*rates.shape, pairs * patterns)), np.zeros((pairs, total))
+    held = np.zeros((objects, most))
+    for o, own in enumerate(fields):
+        held[o] = [own[min(v, len(own) - 1)].heat[0] for v in range(most)]
+    for n, (f, o) in enumerate(np.ndindex(len(tips), objects)):
+        side, first = tips[f].side, begin[objects + f]
+        own = slice(first, first + len(side.rates))
+        rates[:, own], drop[n, own] = side.rates, side.outputs["drop"]
+        ports[:, own, n * patterns : (n + 1) * patterns] = -side.ports
+        for row, chosen in enumerate(np.ndindex(*counts)):
+            field = fields[o][chosen[o]]
+            own = slice(begin[o], begin[o] + len(field.rates))
+            rates[row, own] = field.rates
+            ports[row, own, n * patterns : (n + 1) * patterns] = field.port(int(places[f, o]), patterns)
+    state = np.zeros(total)
+    for first, own in zip(begin, states, strict=False):
+        state[first : first + len(own)] = own
+    return FixedNetworks(
+        dt,
+        rates,
+        ports,
+        drop,
+        np.repeat(warm, objects),
+        begin[:objects],
+        held,
+        narrow,
+        width,
+        decay,
+        state,
+        narrow_state,
+    )
