@@ -90,7 +90,7 @@ ROOMS = {
         "senses",
         "taxels",
     ),
-    "touch": ("scene", "contacts", "heat", "draw", "thermal_touch", "engine", "wrappers"),
+    "touch": ("scene", "contacts", "heat", "draw", "fixed_touch", "thermal_touch", "engine", "wrappers"),
     "hardware": ("errors", "protocol", "lines", "drivers", "recordings", "emulators", "plant"),
     "studio": ("control", "sources", "session", "web"),
     "reports": ("demo", "paper"),
