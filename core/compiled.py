@@ -7,6 +7,8 @@ the code is kept under a hash of the function, of all that it calls and of every
 
 from __future__ import annotations
 
+import functools
+import gc
 import glob
 import hashlib
 import inspect
@@ -35,16 +37,51 @@ _BELOW = ("numpy", "numba", "scipy")
 """Packages whose functions numba compiles in its own way: their names say it."""
 
 
-def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator as numba.njit is. cache: keep the compiled code beside the source, or where NUMBA_CACHE_DIR says."""
+def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator as numba.njit is, whose functions compile sooner.
+
+    cache: keep the compiled code beside the source, or where NUMBA_CACHE_DIR says. inner: only compiled code calls the
+    function. No entry from Python is then compiled, which may take longer than the function itself; a call from Python
+    raises TypeError.
+    """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        dispatcher: Any = numba.njit(**options)(function)
+        entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
+        dispatcher: Any = numba.njit(**options, **entries)(function)
         if cache:
             dispatcher._cache = _Cache(dispatcher)
+        dispatcher.compile = _uncollected(dispatcher.compile)
+        if inner:  # numba would take the entry that is not there
+            dispatcher._insert = _nothing
+            dispatcher._compile_for_args = functools.partial(_refused, function.__name__)
         return dispatcher
 
     return compiled
+
+
+def _uncollected(compile_: Callable[..., Any]) -> Callable[..., Any]:
+    """The same without Python's collection of cycles: of what a compilation builds, it would search all a thousand
+    times, and find little."""
+
+    @functools.wraps(compile_)
+    def run(signature: Any) -> Any:
+        if not gc.isenabled():
+            return compile_(signature)
+        gc.disable()
+        try:
+            return compile_(signature)
+        finally:
+            gc.enable()
+
+    return run
+
+
+def _nothing(*_: Any) -> None:
+    pass
+
+
+def _refused(name: str, *_: Any, **__: Any) -> None:
+    raise TypeError(f"{name} is for compiled functions: it was compiled without an entry from Python")
 
 
 def compiled_hash(kernel: Any) -> str:

@@ -183,6 +183,22 @@ def test_values_and_options_are_told_apart() -> None:
     assert hash_of(np.ones(2)) == hash_of(np.ones(2))
 
 
+def test_a_call_from_python_of_what_has_no_entry_is_refused() -> None:
+    """Also once compiled code has called it, where numba alone would jump to nowhere."""
+
+    @njit(inner=True)
+    def called(x: float) -> float:
+        return x + 1
+
+    @njit()
+    def caller(x: float) -> float:
+        return 2 * called(x)
+
+    assert caller(1.0) == 4.0
+    with pytest.raises(TypeError, match="called is for compiled functions"):
+        called(1.0)
+
+
 def test_every_kernel_of_the_package_has_a_hash() -> None:
     kernels = 0
     for package in ("thermal", "envs"):

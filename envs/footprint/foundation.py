@@ -82,7 +82,7 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
         out[i] *= exact
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _untilted(height, cover, places, spring, force, least, solution):
     """Writes the depth at which the untilted surface takes the force; the centre of that contact, m."""
     depth, covered = 0.0, 0.0
@@ -110,7 +110,7 @@ def _untilted(height, cover, places, spring, force, least, solution):
     return y / load, z / load
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _furthest(cover, places, y, z, centre):
     """The share of the way from (y, z) to the centre beyond which no point of the surface lies in that direction."""
     along_y, along_z = centre[0] - y, centre[1] - z
@@ -124,7 +124,7 @@ def _furthest(cover, places, y, z, centre):
     return most / whole
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _balance(height, cover, places, scale, spring, force, y, z, solution):
     """Newton's steps to depth and tilts (times scale) in solution (3,) under a force at y, z (in units of scale), with
     an exact search along each. Returns whether force and moments balance."""
@@ -160,7 +160,7 @@ def _balance(height, cover, places, scale, spring, force, y, z, solution):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _sums(height, cover, places, scale, spring, force, y, z, at, gradient, hessian):
     """Writes what force and moments (in units of scale) lack, and their derivatives."""
     s, sy, sz, syy, syz, szz, push, push_y, push_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -183,7 +183,7 @@ def _sums(height, cover, places, scale, spring, force, y, z, at, gradient, hessi
     hessian[1, 1], hessian[1, 2], hessian[2, 2] = spring * syy, spring * syz, spring * szz
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _solve(a, b, x):
     """x = a^-1 b of a symmetric matrix given by its upper triangle, by Cholesky; False where it is singular."""
     floor = 1e-13 * a[0, 0]
@@ -209,7 +209,7 @@ def _solve(a, b, x):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _depth(height, cover, places, scale, at):
     """m, the deepest spring."""
     deepest = 0.0

@@ -126,7 +126,7 @@ def _inside(inset, pitch):
     return min(max(0.5 + inset / pitch, 0.0), 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _box(half, origin, along, pitch):
     entry, face = -np.inf, 0
     for k in range(3):
@@ -144,7 +144,7 @@ def _box(half, origin, along, pitch):
     return entry, cover
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _cylinder(half, origin, along, pitch):
     """Upright: its axis is z."""
     square = along[0] ** 2 + along[1] ** 2
@@ -167,7 +167,7 @@ def _cylinder(half, origin, along, pitch):
     return entry, _inside(half[0] - math.sqrt(x * x + y * y), pitch)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _sphere(radius, origin, along):
     middle = origin[0] * along[0] + origin[1] * along[1] + origin[2] * along[2]
     inner = middle**2 - (origin[0] ** 2 + origin[1] ** 2 + origin[2] ** 2 - radius**2)

@@ -121,7 +121,7 @@ def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *nu
         _book(row, one, tables.dt * samples)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _reading(samples, tips):
     """Room for the HeatReading of one row."""
     by_tip, by_row = np.zeros((5, samples, tips)), np.zeros((2, samples))
@@ -130,7 +130,7 @@ def _reading(samples, tips):
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _meet(law, row, one, normal, place, drop, conducts, first):
     """Where a row's fingertips touch in a control step: fills conducts (N, F) W/K of each sample, notes what has begun
     and ended, and before the first sample clears what the step adds up."""
@@ -155,7 +155,7 @@ def _meet(law, row, one, normal, place, drop, conducts, first):
         one.reservoir_temperature, one.reservoir_flow = math.nan, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _add(one, reading, drop, k, samples, tips):
     """Adds sample k to what the step tells."""
     for f in range(tips):
@@ -164,7 +164,7 @@ def _add(one, reading, drop, k, samples, tips):
     one.air_loss += reading.air_loss[0, k] / samples
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _end(row, one, reading, k, tips):
     """What sample k, the step's last, leaves."""
     for f in range(tips):
@@ -175,7 +175,7 @@ def _end(row, one, reading, k, tips):
     one.object_temperature += one.heat[2] / row.capacity
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _book(row, one, duration):
     """The balance of heat after a step of so many seconds."""
     for f in range(2):
@@ -192,7 +192,7 @@ def _book(row, one, duration):
     one.exchanged = row.books[1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _node(tables, network, x):
     """K of the network's node above the object's first temperature."""
     heat = 0.0
@@ -201,7 +201,7 @@ def _node(tables, network, x):
     return heat / NODE
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _set_node(tables, network, x, above):
     """Gives the node that temperature, K; the object keeps its own."""
     change = above - _node(tables, network, x)
@@ -209,7 +209,7 @@ def _set_node(tables, network, x, above):
         x[i] += change * tables.rows[network, RESERVOIR, i]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _mean_contacts(law, normal, one, f, place, conductances):
     """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends
     fall within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is
@@ -239,7 +239,7 @@ def _mean_contacts(law, normal, one, f, place, conductances):
     return pressing > 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _renewed(one, conductances, k):
     """Whether a fingertip meets its new patch in sample k."""
     for f in range(2):
@@ -252,7 +252,7 @@ def _renewed(one, conductances, k):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _follow(row, one, f, touching, place):
     """Notes a touch, a release or a new patch since the last step."""
     touched, events = row.touching[f] > 0, 0

@@ -161,7 +161,7 @@ def strayed(rows, force, place, tips, width, found):
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _away(row, f, middle, width):
     other, along = False, 0
     face = 2 * row.normal + (1 if middle[row.normal] > 0 else 0)

@@ -188,7 +188,7 @@ def face_means(waves, surface, contact, rows, columns):
     return means - total / touched
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _flux_of(conductance, waves, at_once, own, drive, flux):
     """Solves flux / conductance + (what flux does at once) = drive in the cells that touch, by conjugate gradients."""
     cells = len(drive)
@@ -232,7 +232,7 @@ def _flux_of(conductance, waves, at_once, own, drive, flux):
                     along[i, j] = residual[i, j] / (1 / conductance[i, j] + own) + turn * along[i, j]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _forth(waves, cells, cosines):
     """Writes the cosines' shares (P, P) of what is constant in each cell (N, N)."""
     count, parts = waves.shape
@@ -250,7 +250,7 @@ def _forth(waves, cells, cosines):
             cosines[p, q] = total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _back(rows, columns, cosines, parts):
     """Writes the means over parts (n, m) of a sum of cosines (P, P), from those of the cosines along either axis."""
     count, across = columns.shape

@@ -263,7 +263,7 @@ class FixedRoom(NamedTuple):
     numbers: np.ndarray
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def fixed_room(ports):
     """Room for so many ports of contacts."""
     matrix = np.zeros((ports + 2, ports, 2, LANES))
@@ -272,7 +272,7 @@ def fixed_room(ports):
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def advance_fixed(tables, i, x, conductance, difference, around, room, reading, b, k):
     """One step of row i, state x in place, for compiled callers. conductance: (F,) W/K, 0 of a fingertip without a
     place. difference: (F,) K, what element less box was when both were uniform. around: K, the air above the box's
@@ -451,7 +451,7 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
 _LAGS = WEIGHTS / POLES
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _held(slow, body, heats, still, x, used, aired):
     """J in a box, above its first temperature."""
     total = slow[HELD] * x[0]
@@ -465,7 +465,7 @@ def _held(slow, body, heats, still, x, used, aired):
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _solve_symmetric(matrix, flows, factors, m):
     """Solves matrix x = flows at all poles at once, the leading m of each, in place, without pivoting: the matrix is
     symmetric, of which the upper half is looked at, and its numerical range lies in a half plane (step.py)."""

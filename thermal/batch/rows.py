@@ -250,7 +250,7 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
                 )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def advance_row(tables, i, x, conductance, difference, around, room, reading, b, k):
     """One sample of advance_heat of one row for compiled callers: network i, state x (K,) in place, conductance and
     difference (F,), into sample k of row b of the reading. around: K, the surroundings above the object's first
@@ -302,7 +302,7 @@ def _fingertips(rows, pairs, ports):
     return (rows - TIPPED - 2 * pairs - ports) // 4
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def fingertips_of(tables):
     """HeatTables.fingertips for compiled callers."""
     return _fingertips(tables.rows.shape[1], tables.gram.shape[1], tables.gram.shape[3])

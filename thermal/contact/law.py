@@ -114,7 +114,7 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
     return law[0]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _overlap(law, place):
     """(area m2 on the face, its share of the force) of a flat object. place: see contact."""
     if law.size[0] == 0:
@@ -164,7 +164,7 @@ def conductance(law, pressure):
     return solid + law.gas / gap
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _separation(log_share):
     y = math.sqrt(-min(max(log_share, LOG_LEAST), LOG_MOST))
     z = (2 * y - LOW - HIGH) / (HIGH - LOW)
@@ -174,7 +174,7 @@ def _separation(log_share):
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _square_area(u):
     if u <= 1.0:
         return math.pi * u
@@ -183,7 +183,7 @@ def _square_area(u):
     return math.pi * u - 4 * (u * math.acos(1 / math.sqrt(u)) - math.sqrt(u - 1))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _square_load(u):
     if u <= 1.0:
         return math.pi / 2 * u * u
@@ -194,7 +194,7 @@ def _square_load(u):
     return math.pi / 2 * u * u - 2 * u * u * turned + 2 * root * u + 4 / 3 * root**3
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _square_inverse(load):
     narrow = math.sqrt(2 * load / math.pi)
     if load <= math.pi / 2:

@@ -67,7 +67,7 @@ def climb(table, axes, data, prior, limits, index, capacity, resistance):
     return misfit, point, gradient, curvature
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _misfit(table, axes, data, prior, index, capacity, resistance, seen, gradient, curvature):
     """(misfit, difference) at a point; fills seen (3, Q), the curve and its derivatives per kelvin by capacity and
     relative resistance, gradient and curvature."""
@@ -131,7 +131,7 @@ def _interpolate(table, x, y, z, seen):
                     seen[2, q] += c * row[q]
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _lagrange(x, length, most, weight, slope):
     """(first node, how many) of at most `most` nodes around x, and their weights for the value and the derivative."""
     size = min(length, most)
@@ -146,7 +146,7 @@ def _lagrange(x, length, most, weight, slope):
     return first, size
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _hold(matrix, vector, axis):
     for i in range(3):
         if i != axis:
@@ -154,7 +154,7 @@ def _hold(matrix, vector, axis):
     vector[axis] = 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _solve(matrix, vector):
     """Of a positive definite matrix, in place: Gauss without pivots."""
     for i in range(3):

@@ -129,7 +129,7 @@ def images(one, order, other, other_order, same, length, film, tau, out):
                 out[j, i] = value
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _free(d, scale, order):
     """Antiderivative of that order of the free kernel at d; scale: 2 sqrt(tau)."""
     side = 1.0 if d >= 0 else -1.0
@@ -139,7 +139,7 @@ def _free(d, scale, order):
     return far + 0.5 * side if order == 1 else far
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _beyond(d, side, scale, order):
     """The same less what it becomes far off, |d| / 2 or side / 2. side: the sign of d."""
     r = abs(d) / scale
@@ -152,7 +152,7 @@ def _beyond(d, side, scale, order):
     return 0.5 * scale * _between(_TABLE, r * _FINE)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _between(table, place):
     """The table's value between two of its nodes."""
     k = int(place)
@@ -163,7 +163,7 @@ def _between(table, place):
     return left * v * v + right * u * u
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _lost(y, scale, film, order):
     """Antiderivative of that order, 0 far off, of what a film takes from the image at distance y."""
     r = y / scale
@@ -188,7 +188,7 @@ def _lost(y, scale, film, order):
     return gauss * (cooled / film - y * warm + scale / _ROOT_PI)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _erfcx(x):
     """exp(x^2) erfc(x), x >= 0."""
     if x < _FAR:

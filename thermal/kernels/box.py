@@ -249,14 +249,14 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
     return kernel, slowest, port, whole, held
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _unseen(size, face, n, m, tau):
     """Whether patches n and m are on opposite faces, of which neither has felt the other by then to round-off."""
     axis = face[n] // 2
     return face[m] // 2 == axis and face[m] != face[n] and size[axis] * size[axis] > _UNSEEN * tau
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _functions(term, orders, which, n):
     """The number of patch n's function along each of the box's axes."""
     f0 = term[which[0, n]] if orders[0, n] == 1 else 0

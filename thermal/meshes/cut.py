@@ -94,7 +94,7 @@ def clip(polygon, count, axis, bound, above, out):
     return kept
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def cell_range(polygon, count, axis, edges, outward):
     """First and last cell along an axis that a polygon passes through; one in a plane of the grid is the body's."""
     low = high = polygon[0, axis]
@@ -189,7 +189,7 @@ def _flat_areas(triangles, plane, first, second, found):
                 found[0 if area > 0 else 1, i, j, plane[f]] += abs(area)
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _add(polygon, count, wall, moments, i, j, k):
     """Area vector of a polygon and the moment of its first component along the first axis."""
     for t in range(1, count - 1):

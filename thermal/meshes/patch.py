@@ -116,7 +116,7 @@ def _pieces(corners, counts, axes, x, y, z, room):
     return cells[:found], seen[:found], middles[:found], spans[:found]
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _span(polygon, count, axes, span):
     """From where to where (2, 2) a polygon reaches along the first two axes."""
     for side in range(2):
@@ -128,7 +128,7 @@ def _span(polygon, count, axes, span):
             span[side, 0], span[side, 1] = min(span[side, 0], at), max(span[side, 1], at)
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _seen(polygon, count, normal, middle):
     """Area m2 of a polygon seen along a normal; its middle is filled in."""
     total = 0.0

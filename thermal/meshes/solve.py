@@ -48,7 +48,7 @@ def _apply(diagonal, neighbours, links, x):
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _multiply(diagonal, neighbours, links, x, out):
     cells, columns = x.shape
     for i in range(cells):
@@ -77,7 +77,7 @@ def _factor(diagonal, neighbours, links):
     return inverse
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _precondition(inverse, neighbours, links, right, out):
     cells, columns = right.shape
     for i in range(cells):
@@ -100,7 +100,7 @@ def _precondition(inverse, neighbours, links, right, out):
                     out[i, p] += g * out[j, p]
 
 
-@njit(cache=True)
+@njit(cache=True, inner=True)
 def _dots(a, b, out):
     out[:] = 0.0
     for i in range(a.shape[0]):

@@ -86,7 +86,7 @@ def _in_cone(solve, seen, inside):
                 inside[j, i, k] = inside[i, j, k]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _product(first, second, out):
     """out[m, i] = sum over r of first[i, r] second[m, r], of matrices (N, N, K)."""
     ports, rates = first.shape[1], first.shape[2]
@@ -99,7 +99,7 @@ def _product(first, second, out):
                     out[m, i, k] += first[i, r, k] * second[m, r, k]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _turn_diagonal(matrix, turn, room, least):
     """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
     which it adds to turn's rows. least: squares off the diagonal that may be left, beside those on it. room: (4, K).
@@ -139,7 +139,7 @@ def _turn_diagonal(matrix, turn, room, least):
                     _rotate(turn, p, m, q, m, cosine, sine)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _angle(first, second, between, cosine, sine):
     """Cosines and sines of the rotations that make between (K,) 0, and the diagonal after them; all in place."""
     for k in range(len(between)):
@@ -153,7 +153,7 @@ def _angle(first, second, between, cosine, sine):
         between[k] = 0.0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _rotate(matrix, i, j, m, n, cosine, sine):
     for k in range(len(cosine)):
         a, b = matrix[i, j, k], matrix[m, n, k]

@@ -65,7 +65,7 @@ def march(
     return reading, heat, used
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _stage(capacity, link, x, heater, power, back, loss, ambient, dt, diagonal, rate):
     """Fills rate (N,) K/s with the solution of (C + gamma dt L) rate = power - L x."""
     nodes = len(capacity)

@@ -302,7 +302,7 @@ def _sense(
             )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _frames(pads, met, xpos, xmat):
     """(F, 12) where the pads are in the world: the middle m, then the normal, y and z."""
     tips = len(pads)
@@ -374,7 +374,7 @@ def _within(pad, x, y, z):
     return abs(x) <= DEPTH and abs(y) <= pad[_HALF] + RIM and abs(z) <= pad[_HALF + 1] + RIM
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, bend, curve, pushed, touches, weight):
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)

@@ -102,7 +102,7 @@ def round_contact(bend, curve, sides, force, y, z):
     return 4 * a * b * area, 4 * bend[2] * depth * a * b * load, share, max(longer, 1 / longer)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _depth(load, most, least, reach, width):
     """m at which the pressure over its stiffness is the load m3, over a rectangle of half sides m."""
     # what an ellipse, strips or the whole rectangle without its curvature would need: each is less
@@ -119,7 +119,7 @@ def _depth(load, most, least, reach, width):
     return depth
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _clipped(x, y):
     """Of a quarter of the unit disc in a rectangle x by y, at most 1: its area, and the integral of 1 - r^2 over it."""
     if x * x + y * y <= 1.0:
