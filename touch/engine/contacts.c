@@ -11,19 +11,23 @@
 
 /* A pad in the world: its middle and its axes in columns. */
 typedef struct {
+  bool known;
   double middle[3], axes[9];
 } Pose;
 
-static Pose pose(const Numbers* numbers, const Work* work, const mjData* d, int f) {
+/* Of pad f in this step, found when it is first asked for. */
+static const Pose* pose(const Numbers* numbers, const Work* work, const mjData* d, int f, Pose* poses) {
+  Pose* found = poses + f;
+  if (found->known) return found;
   int body = work->body[numbers->geoms + f];
   const double *pad = numbers->pads + f * PAD, *turn = d->xmat + 9 * body;
-  Pose found;
+  found->known = true;
   for (int k = 0; k < 3; k++) {
-    found.middle[k] = d->xpos[3 * body + k];
-    for (int j = 0; j < 3; j++) found.middle[k] += turn[3 * k + j] * pad[j];
+    found->middle[k] = d->xpos[3 * body + k];
+    for (int j = 0; j < 3; j++) found->middle[k] += turn[3 * k + j] * pad[j];
     for (int a = 0; a < 3; a++) {
-      found.axes[3 * k + a] = 0;
-      for (int j = 0; j < 3; j++) found.axes[3 * k + a] += turn[3 * k + j] * pad[AXES + 3 * j + a];
+      found->axes[3 * k + a] = 0;
+      for (int j = 0; j < 3; j++) found->axes[3 * k + a] += turn[3 * k + j] * pad[AXES + 3 * j + a];
     }
   }
   return found;
@@ -51,8 +55,8 @@ static double kept(double at, double reach, double half) {
 /* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
-                 bool again, double* touch) {
-  Pose at = pose(numbers, work, d, f);
+                 Pose* poses, bool again, double* touch) {
+  const Pose* at = pose(numbers, work, d, f, poses);
   int geom = work->geom[g], body = work->body[g], axis = 0;
   double force = pushed[0], half = numbers->pads[f * PAD + WIDTH] / 2, place[3] = {0}, most = 0, area, share;
   const double* turn = geom >= 0 ? d->geom_xmat + 9 * geom : NULL;
@@ -60,8 +64,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     for (int i = 0; i < 3; i++) {
       double looking = 0;
       for (int k = 0; k < 3; k++) {
-        looking += turn[3 * k + i] * at.axes[3 * k];
-        place[i] += turn[3 * k + i] * (at.middle[k] - d->geom_xpos[3 * geom + k]);
+        looking += turn[3 * k + i] * at->axes[3 * k];
+        place[i] += turn[3 * k + i] * (at->middle[k] - d->geom_xpos[3 * geom + k]);
       }
       if (fabs(looking) > most) {
         most = fabs(looking);
@@ -69,9 +73,9 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       }
     }
   } else { /* another fingertip: how far the pads' middles are apart along this one's sides */
-    Pose other = pose(numbers, work, d, g - numbers->geoms);
+    const Pose* other = pose(numbers, work, d, g - numbers->geoms, poses);
     for (int k = 0; k < 3; k++)
-      for (int j = 1; j < 3; j++) place[j] += (at.middle[k] - other.middle[k]) * at.axes[3 * k + j];
+      for (int j = 1; j < 3; j++) place[j] += (at->middle[k] - other->middle[k]) * at->axes[3 * k + j];
   }
   const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
@@ -79,14 +83,13 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   double on_face = 1, longer = 1;
   if (bulging) {
     double sides[4] = {0};
-    Pose other = at;
-    if (!turn) other = pose(numbers, work, d, g - numbers->geoms);
+    const Pose* other = turn ? at : pose(numbers, work, d, g - numbers->geoms, poses);
     for (int i = 0, n = 0; i < 3; i++) {
       if (i == (turn ? axis : 0)) continue;
       for (int k = 0; k < 3; k++) {
-        double points = turn ? turn[3 * k + i] : other.axes[3 * k + i];
-        sides[2 * n] += points * at.axes[3 * k + 1];
-        sides[2 * n + 1] += points * at.axes[3 * k + 2];
+        double points = turn ? turn[3 * k + i] : other->axes[3 * k + i];
+        sides[2 * n] += points * at->axes[3 * k + 1];
+        sides[2 * n + 1] += points * at->axes[3 * k + 2];
       }
       n++;
     }
@@ -102,8 +105,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     } else if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
       double along_y = 0, along_z = 0, across = 0;
       for (int k = 0; k < 3; k++) {
-        along_y += at.axes[3 * k + 1] * turn[3 * k + 2];
-        along_z += at.axes[3 * k + 2] * turn[3 * k + 2];
+        along_y += at->axes[3 * k + 1] * turn[3 * k + 2];
+        along_z += at->axes[3 * k + 2] * turn[3 * k + 2];
       }
       double length = sqrt(along_y * along_y + along_z * along_z);
       if (length > 0) across = (pushed[1] * along_z - pushed[2] * along_y) / (force * length);
@@ -126,8 +129,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   for (int i = 0; i < 3; i++) {
     touch[PLACE + i] = touch[NORMAL + i] = 0;
     for (int k = 0; k < 3; k++) {
-      touch[PLACE + i] += rotation[3 * k + i] * (at.middle[k] - origin[k]);
-      touch[NORMAL + i] += rotation[3 * k + i] * at.axes[3 * k];
+      touch[PLACE + i] += rotation[3 * k + i] * (at->middle[k] - origin[k]);
+      touch[NORMAL + i] += rotation[3 * k + i] * at->axes[3 * k];
     }
   }
   return again;
@@ -139,6 +142,7 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
   int tips = numbers->tips, things = numbers->things;
   bool any = false;
   double* pushed = work->room; /* (F, N, 3) */
+  Pose poses[tips];
   for (int c = 0; c < d->ncon; c++) {
     const mjContact* contact = &d->contact[c];
     if (contact->geom[0] < 0 || contact->geom[1] < 0 || contact->efc_address < 0) continue;
@@ -156,14 +160,16 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
     if (m->opt.cone == mjCONE_PYRAMIDAL)
       for (int k = 1; k < 2 * (contact->dim - 1); k++) force += d->efc_force[contact->efc_address + k];
     if (!(force > 0 && isfinite(force))) continue;
-    if (!any) memset(pushed, 0, sizeof(double) * tips * things * 3);
-    any = true;
+    if (!any) {
+      memset(pushed, 0, sizeof(double) * tips * things * 3);
+      for (int f = 0; f < tips; f++) poses[f].known = false;
+      any = true;
+    }
     int thing = second >= tips ? second - tips : numbers->geoms + second;
-    Pose at = pose(numbers, work, d, first);
-    bool on = lies(numbers->pads + first * PAD, &at, contact, sign, &y, &z);
+    bool on = lies(numbers->pads + first * PAD, pose(numbers, work, d, first, poses), contact, sign, &y, &z);
     if (second < tips) {
-      Pose other = pose(numbers, work, d, second);
-      on = lies(numbers->pads + second * PAD, &other, contact, -sign, &other_y, &other_z) && on;
+      const Pose* other = pose(numbers, work, d, second, poses);
+      on = lies(numbers->pads + second * PAD, other, contact, -sign, &other_y, &other_z) && on;
     }
     if (!on) continue;
     double* own = pushed + (first * things + thing) * 3;
@@ -178,6 +184,7 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
     int touch = f * numbers->targets + target;
     again = again && touch == last; /* an object's geoms follow one another */
     last = touch;
-    if (pushed[3 * i] > 0) again = feel(numbers, work, d, f, g, pushed + 3 * i, again, touches + touch * COLUMNS);
+    if (pushed[3 * i] > 0)
+      again = feel(numbers, work, d, f, g, pushed + 3 * i, poses, again, touches + touch * COLUMNS);
   }
 }

@@ -62,11 +62,12 @@ typedef struct {
   double *places, *rates, *ports, *fade;
 } Network;
 
-/* Contacts that share a field, and what their step needs. */
+/* Contacts that share a field, and what their step needs. seen: of each pair, where the states of its target and of its
+fingertip begin and end. weighed: scale times the poles' weights, then the sum of its real parts. */
 typedef struct {
   int pairs, members, n;
-  int *pair, *member;
-  double *rates, *ports, *scale, *gram, *room;
+  int *pair, *member, *seen;
+  double *rates, *ports, *scale, *weighed, *gram, *room;
 } Group;
 
 typedef struct {
@@ -77,6 +78,7 @@ typedef struct {
   double *pool;                  /* their numbers, and room for a step of one */
   size_t pool_size;
   double *room, *fade;
+  double *kept, *grown;          /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
   int *role, *geom, *body;       /* of the model's geoms, as Numbers.roles or -1; of what a pad may meet */
 } Work;
 

@@ -24,10 +24,11 @@ static size_t lay_out(Group* group, int ports, double* at) {
     group->rates = at;
     group->ports = group->rates + n;
     group->scale = group->ports + n * m;
-    group->gram = group->scale + 2 * POLES * n;
+    group->weighed = group->scale + 2 * POLES * n;
+    group->gram = group->weighed + (2 * POLES + 1) * n;
     group->room = group->gram + 2 * POLES * m * m;
   }
-  return n * (1 + m + 2 * POLES + 5) + 2 * POLES * m * m + 4 * m + 2 * m * m;
+  return n * (1 + m + 4 * POLES + 1 + 3 + 2 * POLES) + 2 * POLES * m * m + m * (2 + 2 * POLES) + 2 * m * m;
 }
 
 /* What a group's step needs: of its fields behind one another. */
@@ -46,7 +47,11 @@ static void assemble(const Numbers* numbers, const Work* work, const State* stat
   int n = group->n;
   memset(group->ports, 0, sizeof(double) * n * ports);
   for (int i = 0; i < group->pairs; i++) {
-    int f = group->pair[2 * i], t = group->pair[2 * i + 1];
+    int f = group->pair[2 * i], t = group->pair[2 * i + 1], *seen = group->seen + 4 * i;
+    seen[0] = begin[t];
+    seen[1] = begin[t] + states_of(numbers, work, t);
+    seen[2] = begin[objects + f];
+    seen[3] = begin[objects + f] + tip_states;
     for (int p = 0; p < patterns; p++) {
       double* row = group->ports + (size_t)(i * patterns + p) * n;
       const double* given = numbers->tip_ports + (size_t)(f * patterns + p) * tip_states;
@@ -61,13 +66,20 @@ static void assemble(const Numbers* numbers, const Work* work, const State* stat
       }
     }
   }
+  double* at_once = group->weighed + 2 * POLES * n;
+  memset(at_once, 0, sizeof(double) * n);
   for (int q = 0; q < POLES; q++) {
     double re = numbers->poles[2 * q], im = numbers->poles[2 * q + 1];
+    double weight_real = numbers->weights[2 * q], weight_imag = numbers->weights[2 * q + 1];
     double *real = group->scale + 2 * q * n, *imag = real + n, *gram = group->gram + (size_t)2 * q * ports * ports;
+    double *of_real = group->weighed + 2 * q * n, *of_imag = of_real + n;
     for (int k = 0; k < n; k++) {
       double along = re + numbers->dt * group->rates[k], size = 1 / (along * along + im * im);
       real[k] = along * size;
       imag[k] = -im * size;
+      of_real[k] = weight_real * real[k] - weight_imag * imag[k];
+      of_imag[k] = -weight_real * imag[k] - weight_imag * real[k];
+      at_once[k] += of_real[k];
     }
     for (int i = 0; i < ports; i++) {
       for (int j = 0; j < ports; j++) {
@@ -130,41 +142,46 @@ static bool join(const Numbers* numbers, Work* work, const State* state, const b
   return true;
 }
 
-/* One step of a group's states; conductance W/K and difference K of each port. Returns its mean flow W. */
+/* One step of a group's states; conductance W/K and difference K of each port. Returns its mean flow W. Of a port, only
+the states that it sees are gone through: its target's and its fingertip's. */
 static const double* step(const Numbers* numbers, const Group* group, double* restrict state, const double* conductance,
                           const double* difference, double* restrict room) {
-  int n = group->n, m = group->pairs * numbers->patterns;
-  double *restrict rate = room, *restrict change = rate + n, *restrict real = change + n, *restrict imag = real + n;
-  double *flow = imag + n, *through = flow + m, *gathered = through + m, *matrix = gathered + 2 * m;
-  for (int j = 0; j < m; j++) {
-    const double* restrict port = group->ports + (size_t)j * n;
-    double seen = 0;
-    for (int i = 0; i < n; i++) seen += port[i] * state[i];
-    flow[j] = conductance[j] * (difference[j] - seen);
-    through[j] = 0;
-  }
+  int n = group->n, patterns = numbers->patterns, m = group->pairs * patterns;
+  double *restrict rate = room, *restrict change = rate + n, *restrict scaled = change + n;
+  double *flow = scaled + 2 * POLES * n, *through = flow + m, *heard = through + m, *matrix = heard + 2 * POLES * m;
+  const double* at_once = group->weighed + 2 * POLES * n;
   for (int i = 0; i < n; i++) {
     rate[i] = -group->rates[i] * state[i];
-    change[i] = 0;
+    change[i] = at_once[i] * rate[i];
+  }
+  for (int k = 0; k < 2 * POLES; k++)
+    for (int i = 0; i < n; i++) scaled[k * n + i] = rate[i] * group->scale[k * n + i];
+  for (int j = 0; j < m; j++) {
+    const double* restrict port = group->ports + (size_t)j * n;
+    const int* seen = group->seen + 4 * (j / patterns);
+    double now = 0, later[2 * POLES] = {0};
+    for (int part = 0; part < 4; part += 2) {
+      for (int i = seen[part]; i < seen[part + 1]; i++) {
+        now += port[i] * state[i];
+        for (int k = 0; k < 2 * POLES; k++) later[k] += port[i] * scaled[k * n + i];
+      }
+    }
+    flow[j] = conductance[j] * (difference[j] - now);
+    through[j] = 0;
+    for (int k = 0; k < 2 * POLES; k++) heard[k / 2 * 2 * m + 2 * j + k % 2] = later[k];
   }
   for (int q = 0; q < POLES; q++) {
-    const double *restrict along = group->scale + 2 * q * n, *restrict aside = along + n;
     const double* gram = group->gram + (size_t)2 * q * m * m;
     double weight_real = numbers->weights[2 * q], weight_imag = numbers->weights[2 * q + 1];
     double pole_real = numbers->poles[2 * q], pole_imag = numbers->poles[2 * q + 1];
     double size = pole_real * pole_real + pole_imag * pole_imag; /* lag: weight / pole */
     double lag_real = (weight_real * pole_real + weight_imag * pole_imag) / size;
     double lag_imag = (weight_imag * pole_real - weight_real * pole_imag) / size;
+    double* gathered = heard + 2 * q * m;
     for (int j = 0; j < m; j++) {
-      const double* restrict port = group->ports + (size_t)j * n;
-      double heard_real = 0, heard_imag = 0, weight = numbers->dt * conductance[j];
-      for (int i = 0; i < n; i++) {
-        double heard = port[i] * rate[i];
-        heard_real += heard * along[i];
-        heard_imag += heard * aside[i];
-      }
-      gathered[2 * j] = flow[j] - weight * heard_real;
-      gathered[2 * j + 1] = -weight * heard_imag;
+      double weight = numbers->dt * conductance[j];
+      gathered[2 * j] = flow[j] - weight * gathered[2 * j];
+      gathered[2 * j + 1] = -weight * gathered[2 * j + 1];
       for (int k = 0; k < 2 * m; k++) matrix[2 * j * m + k] = weight * gram[2 * j * m + k];
       matrix[2 * (j * m + j)] += 1;
     }
@@ -185,12 +202,8 @@ static const double* step(const Numbers* numbers, const Group* group, double* re
         gathered[2 * r + 1] -= a * gathered[2 * c + 1] + b * gathered[2 * c];
       }
     }
-    for (int i = 0; i < n; i++) {
-      real[i] = rate[i];
-      imag[i] = 0;
-    }
     for (int j = m - 1; j >= 0; j--) {
-      const double *restrict port = group->ports + (size_t)j * n, *row = matrix + 2 * j * m;
+      const double* row = matrix + 2 * j * m;
       double a = gathered[2 * j], b = gathered[2 * j + 1];
       for (int k = j + 1; k < m; k++) {
         a -= row[2 * k] * gathered[2 * k] - row[2 * k + 1] * gathered[2 * k + 1];
@@ -200,14 +213,20 @@ static const double* step(const Numbers* numbers, const Group* group, double* re
       gathered[2 * j] = total_real;
       gathered[2 * j + 1] = total_imag;
       through[j] -= 2 * (lag_real * total_real - lag_imag * total_imag);
-      for (int i = 0; i < n; i++) {
-        real[i] += port[i] * total_real;
-        imag[i] += port[i] * total_imag;
+    }
+  }
+  for (int j = 0; j < m; j++) {
+    const double *restrict port = group->ports + (size_t)j * n, *restrict weighed = group->weighed;
+    const int* seen = group->seen + 4 * (j / patterns);
+    double total[2 * POLES];
+    for (int k = 0; k < 2 * POLES; k++) total[k] = heard[k / 2 * 2 * m + 2 * j + k % 2];
+    for (int part = 0; part < 4; part += 2) {
+      for (int i = seen[part]; i < seen[part + 1]; i++) {
+        double sum = 0;
+        for (int k = 0; k < 2 * POLES; k++) sum += weighed[k * n + i] * total[k];
+        change[i] += port[i] * sum;
       }
     }
-    for (int i = 0; i < n; i++)
-      change[i] += weight_real * (along[i] * real[i] - aside[i] * imag[i]) -
-                   weight_imag * (along[i] * imag[i] + aside[i] * real[i]);
   }
   for (int i = 0; i < n; i++) state[i] -= 2 * numbers->dt * change[i];
   return through;
@@ -250,11 +269,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
   }
   memset(busy, 0, sizeof busy);
   int rates = numbers->rates;
-  double kept[rates], grown[rates]; /* of a state, and s, of a flow in a state, after a step */
-  for (int k = 0; k < rates; k++) {
-    kept[k] = exp(-numbers->dt * numbers->decay[k]);
-    grown[k] = (1 - kept[k]) / numbers->decay[k];
-  }
+  const double *kept = work->kept, *grown = work->grown;
   for (int i = 0; i < tips * targets; i++)
     for (int k = 0; k < rates && !closed[i]; k++) state->narrow[i * rates + k] *= kept[k];
   for (int g = 0; g < work->count; g++) {

@@ -45,10 +45,13 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
     Group none, *group = block ? &work->groups[g] : &none;
     PART(group->pair, 2 * contacts, int);
     PART(group->member, n->targets, int);
+    PART(group->seen, 4 * contacts, int);
   }
   PART(work->closed, contacts, double);
   PART(work->current, (size_t)n->tips * n->objects, double);
   PART(work->fade, (size_t)n->tips * n->tip_states, double);
+  PART(work->kept, n->rates, double);
+  PART(work->grown, n->rates, double);
   PART(work->role, m->ngeom, int);
   PART(work->geom, n->things, int);
   PART(work->body, n->things, int);
@@ -135,6 +138,10 @@ static int init(const mjModel* m, mjData* d, int instance) {
   heat->work.count = -1;
   for (int o = 0; o < n->objects; o++) heat->work.networks[o].count = -1;
   for (int i = 0; i < n->tips * n->tip_states; i++) heat->work.fade[i] = exp(-n->dt * n->tip_rates[i]);
+  for (int k = 0; k < n->rates; k++) {
+    heat->work.kept[k] = exp(-n->dt * n->decay[k]);
+    heat->work.grown[k] = (1 - heat->work.kept[k]) / n->decay[k];
+  }
   heat_reset(n, d->plugin_state + m->plugin_stateadr[instance]);
   return 0;
 }
