@@ -2,10 +2,12 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "heat.h"
 
 #define ROUND_OFF 1e-24 /* of squares off the diagonal beside those on it */
+#define TINY 1e-300     /* beside a zero */
 
 /* Turns a symmetric matrix into its eigenvalues on the diagonal by Jacobi's rotations; turn: eigenvectors in columns.
 As thermal/numerics/passive_residues.py. */
@@ -43,6 +45,64 @@ void heat_diagonalise(int n, double* matrix, double* turn) {
       }
     }
   }
+}
+
+static void rotate(int count, double* restrict first, double* restrict second, const double* cosine, const double* sine) {
+  for (int k = 0; k < count; k++) {
+    double a = first[k], b = second[k];
+    first[k] = cosine[k] * a - sine[k] * b;
+    second[k] = sine[k] * a + cosine[k] * b;
+  }
+}
+
+/* Cosines and sines of the rotations that make between 0, and the diagonal after them. */
+static void angle(int count, double* first, double* second, double* between, double* cosine, double* sine) {
+  for (int k = 0; k < count; k++) {
+    double twice = 2 * between[k], apart = second[k] - first[k];
+    double tangent = copysign(twice / (fabs(apart) + sqrt(apart * apart + twice * twice) + TINY), apart * twice);
+    cosine[k] = 1 / sqrt(tangent * tangent + 1);
+    sine[k] = tangent * cosine[k];
+    first[k] -= tangent * between[k];
+    second[k] += tangent * between[k];
+    between[k] = 0;
+  }
+}
+
+/* Turns `count` symmetric matrices (N, N, count) at once into their eigenvalues, and adds the rotations to the rows of
+turn; of the matrices the lower halves count. least: squares off the diagonal that may be left, beside those on it. The
+order and the thresholds are those of thermal/numerics/passive_residues.py, whose steps end where they leave off. */
+void heat_diagonalise_all(int n, int count, double* matrix, double* turn, double least) {
+  double off[count], on[count], cosine[count], sine[count];
+#define AT(what, i, j) (what + ((size_t)(i) * n + (j)) * count)
+  for (int sweep = 0; sweep < 30; sweep++) {
+    memset(off, 0, sizeof off);
+    memset(on, 0, sizeof on);
+    for (int i = 0; i < n; i++) {
+      for (int k = 0; k < count; k++) on[k] += AT(matrix, i, i)[k] * AT(matrix, i, i)[k];
+      for (int j = 0; j < i; j++)
+        for (int k = 0; k < count; k++) off[k] += AT(matrix, i, j)[k] * AT(matrix, i, j)[k];
+    }
+    bool done = true;
+    for (int k = 0; k < count; k++) {
+      done = done && off[k] <= least * on[k];
+      on[k] *= least / (n * n);
+    }
+    if (done) return;
+    for (int q = 1; q < n; q++) {
+      for (int p = 0; p < q; p++) {
+        double* apart = AT(matrix, q, p);
+        bool small = true;
+        for (int k = 0; k < count; k++) small = small && apart[k] * apart[k] <= on[k];
+        if (small) continue;
+        angle(count, AT(matrix, p, p), AT(matrix, q, q), apart, cosine, sine);
+        for (int m = 0; m < p; m++) rotate(count, AT(matrix, p, m), AT(matrix, q, m), cosine, sine);
+        for (int m = p + 1; m < q; m++) rotate(count, AT(matrix, m, p), AT(matrix, q, m), cosine, sine);
+        for (int m = q + 1; m < n; m++) rotate(count, AT(matrix, m, p), AT(matrix, m, q), cosine, sine);
+        for (int m = 0; m < n; m++) rotate(count, AT(turn, p, m), AT(turn, q, m), cosine, sine);
+      }
+    }
+  }
+#undef AT
 }
 
 /* Of a symmetric positive definite matrix, which is lost. */

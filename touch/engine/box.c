@@ -13,6 +13,8 @@ enum { MODES = 12, STEPS = 20 };
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
 #define RIDGE 1e-4    /* of the first guess, without constraint */
 #define RELAXED 1.6
+#define ON_THE_WAY 1e-8 /* squares off the diagonal that all steps but the last may leave, beside those on it */
+#define AT_LAST 1e-20
 static const double pi = 3.14159265358979323846;
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. told: with eigenfunctions. */
@@ -184,11 +186,11 @@ static void impedance(const Numbers* numbers, int object, const Network* network
 }
 
 /* inside (K, W, W) positive semidefinite, whose sum with the columns (MOMENTS, K) is nearest to wanted (MOMENTS, W, W):
-thermal/numerics/passive_residues.py. */
+thermal/numerics/passive_residues.py. Meanwhile the rates come last, (W, W, K). */
 static void residues(int rates, int wide, double* columns, const double* wanted, double* inside, double* room) {
   int square = wide * wide;
   size_t whole = (size_t)rates * square;
-  double *seen = room, *dual = seen + whole, *pulled = dual + whole, *one = pulled + whole, *turn = one + square;
+  double *seen = room, *dual = seen + whole, *turn = dual + whole, *half = turn + whole, *moved = half + whole;
   double size[rates], normal[rates * rates], solve[rates * rates], guess[rates * rates];
   for (int k = 0; k < rates; k++) {
     size[k] = 0;
@@ -206,46 +208,69 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     }
     heat_inverse(rates, normal, ridge ? guess : solve);
   }
-  memset(seen, 0, sizeof(double) * 2 * whole); /* dual too */
+#define AT(what, i, j) (what + ((size_t)(i) * wide + (j)) * rates)
+  memset(seen, 0, sizeof(double) * 3 * whole); /* dual and turn too */
   memset(inside, 0, sizeof(double) * whole);
-  for (int k = 0; k < rates; k++)
+  for (int i = 0; i < square; i++)
     for (int s = 0; s < MOMENTS; s++)
-      for (int i = 0; i < square; i++) seen[k * square + i] += columns[s * rates + k] * wanted[s * square + i];
-  for (int k = 0; k < rates; k++)
+      for (int k = 0; k < rates; k++) seen[(size_t)i * rates + k] += columns[s * rates + k] * wanted[s * square + i];
+  for (int i = 0; i < square; i++)
     for (int m = 0; m < rates; m++)
-      for (int i = 0; i < square; i++) inside[k * square + i] += guess[k * rates + m] * seen[m * square + i];
+      for (int k = 0; k < rates; k++)
+        inside[(size_t)i * rates + k] += guess[m * rates + k] * seen[(size_t)i * rates + m];
+  for (int i = 0; i < wide; i++)
+    for (int k = 0; k < rates; k++) AT(turn, i, i)[k] = 1;
   for (int step = 0; step < STEPS; step++) {
-    for (size_t i = 0; i < whole; i++) pulled[i] = seen[i] + PENALTY * (inside[i] - dual[i]);
-    for (int k = 0; k < rates; k++) {
-      double *own = inside + (size_t)k * square, *left = dual + (size_t)k * square;
-      for (int i = 0; i < wide; i++) {
-        for (int j = 0; j <= i; j++) {
-          double free = 0;
-          for (int m = 0; m < rates; m++) free += solve[k * rates + m] * pulled[(size_t)m * square + i * wide + j];
-          one[i * wide + j] = RELAXED * free + (1 - RELAXED) * own[i * wide + j] + left[i * wide + j];
-          one[j * wide + i] = one[i * wide + j];
+    for (int i = 0; i < wide; i++) {
+      for (int j = 0; j <= i; j++) {
+        double *own = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
+        for (int k = 0; k < rates; k++) {
+          pulled[k] = from[k] + PENALTY * (own[k] - left[k]);
+          free[k] = 0;
         }
+        for (int m = 0; m < rates; m++)
+          for (int k = 0; k < rates; k++) free[k] += solve[m * rates + k] * pulled[m];
+        for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * own[k] + left[k];
+        memcpy(AT(dual, j, i), left, sizeof free);
       }
-      memcpy(left, one, sizeof(double) * square);
-      heat_diagonalise(wide, one, turn);
-      for (int i = 0; i < wide; i++) {
-        for (int j = 0; j < wide; j++) {
-          double value = 0;
-          for (int m = 0; m < wide; m++)
-            if (one[m * wide + m] > 0) value += turn[i * wide + m] * one[m * wide + m] * turn[j * wide + m];
-          own[i * wide + j] = value;
-          left[i * wide + j] -= value;
-        }
+    }
+    /* seen from the last step's eigenvectors it is nearly diagonal */
+    memset(half, 0, sizeof(double) * 2 * whole); /* moved too */
+    for (int m = 0; m < wide; m++)
+      for (int i = 0; i < wide; i++)
+        for (int r = 0; r < wide; r++)
+          for (int k = 0; k < rates; k++) AT(half, m, i)[k] += AT(dual, i, r)[k] * AT(turn, m, r)[k];
+    for (int i = 0; i < wide; i++)
+      for (int j = 0; j <= i; j++)
+        for (int m = 0; m < wide; m++)
+          for (int k = 0; k < rates; k++) AT(moved, i, j)[k] += AT(turn, i, m)[k] * AT(half, j, m)[k];
+    heat_diagonalise_all(wide, rates, moved, turn, step < STEPS - 1 ? ON_THE_WAY : AT_LAST);
+    for (int m = 0; m < wide; m++)
+      for (int i = 0; i < wide; i++)
+        for (int k = 0; k < rates; k++) AT(half, m, i)[k] = fmax(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];
+    for (int i = 0; i < wide; i++) {
+      for (int j = 0; j <= i; j++) {
+        double* own = AT(inside, i, j);
+        memset(own, 0, sizeof(double) * rates);
+        for (int m = 0; m < wide; m++)
+          for (int k = 0; k < rates; k++) own[k] += AT(turn, m, i)[k] * AT(half, m, j)[k];
+        for (int k = 0; k < rates; k++) AT(dual, i, j)[k] -= own[k];
+        memcpy(AT(dual, j, i), AT(dual, i, j), sizeof(double) * rates);
       }
     }
   }
-  for (size_t i = 0; i < whole; i++) inside[i] /= size[i / square];
+  memcpy(moved, inside, sizeof(double) * whole);
+  for (int k = 0; k < rates; k++)
+    for (int i = 0; i < wide; i++)
+      for (int j = 0; j < wide; j++)
+        inside[((size_t)k * wide + i) * wide + j] = (j > i ? AT(moved, j, i) : AT(moved, i, j))[k] / size[k];
+#undef AT
 }
 
 size_t heat_network_room(const Numbers* numbers) {
   size_t wide = (size_t)numbers->places * numbers->patterns, square = wide * wide;
   size_t along = 3 * (size_t)numbers->places * (sizeof(Along) / sizeof(double) + 1);
-  return along + wide + MOMENTS * (square + 1 + numbers->rates) + 4 * numbers->rates * square + 2 * square;
+  return along + wide + MOMENTS * (square + 1 + numbers->rates) + 6 * numbers->rates * square;
 }
 
 /* Makes the network of the places that stand in it. */
