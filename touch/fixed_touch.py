@@ -84,15 +84,16 @@ class FixedTouch:
     ThermalTouch.fixed_touch. Methods are pure: they can be traced, compiled and vectorised.
 
     fingertips, objects: names. materials: those that each object may be of; a world's number counts along them.
-    geoms: (object, its geom's number in the model), the G of contacts. origin: the states of the ThermalTouch's
-    worlds, or of one of them. ambient: °C."""
+    bodies (F,) that carry the pads and geoms (G,) of the objects, integers: their numbers in the model. origin: the
+    states of the ThermalTouch's worlds, or of one of them. ambient: °C."""
 
     dt: float
     substeps: int
     fingertips: tuple[str, ...]
     objects: tuple[str, ...]
     materials: tuple[tuple[Material, ...], ...]
-    geoms: tuple[tuple[str, int], ...]
+    bodies: Array
+    geoms: Array
     ambient: float
     chain: SignalChain
     origin: FixedTouchState
@@ -196,6 +197,22 @@ class FixedTouch:
             (of_geom[..., :, :, None] * places.turn[:, None, :, :]).sum(-2),
         )
 
+    def posed(
+        self, force: Array, place: Array, xpos: Array, xmat: Array, geom_xpos: Array, geom_xmat: Array
+    ) -> TouchContacts:
+        """Forces and places as in TouchContacts, in the poses that MuJoCo's data have of all bodies and geoms: (B, H,
+        bodies, ...) and (B, H, geoms, ...)."""
+        tips, tip_turns = xpos[:, :, self.bodies], xmat[:, :, self.bodies]
+        geoms, geom_turns = geom_xpos[:, :, self.geoms], geom_xmat[:, :, self.geoms]
+        return TouchContacts(
+            force,
+            place,
+            tips,
+            tip_turns.reshape((*tips.shape, 3)),
+            geoms,
+            geom_turns.reshape((*geoms.shape, 3)),
+        )
+
     def advance(
         self, state: FixedTouchState, contacts: TouchContacts, noise: Array | float = 0.0
     ) -> tuple[FixedTouchState, FixedTouchReading]:
@@ -245,7 +262,7 @@ class FixedTouch:
         return (network if len(self.tables.decay) > 1 else 0), pairs + first
 
     def _check(self, state: FixedTouchState, contacts: TouchContacts) -> None:
-        worlds, tips, geoms = state.heat.shape[0], len(self.fingertips), len(self.geoms)
+        worlds, tips, geoms = state.heat.shape[0], len(self.fingertips), self.geoms.shape[0]
         expected = {
             "force": (worlds, self.substeps, tips, geoms, "L", 3),
             "place": (worlds, self.substeps, tips, geoms, "L", 3),
@@ -265,6 +282,7 @@ class FixedTouch:
 
     def _material(self, material: Array, state: FixedTouchState) -> Array:
         shape = tuple(state.material.shape)
+        material = material if hasattr(material, "dtype") else np.asarray(material)
         if tuple(np.shape(material)) != shape:
             raise InvalidValueError(f"material must have the shape {shape}, got {tuple(np.shape(material))}")
         if isinstance(material, np.ndarray):  # tensors are not looked into
@@ -278,6 +296,7 @@ class FixedTouch:
         return as_integers(material)
 
     def _first(self, temperature: Array, state: FixedTouchState) -> Array:
+        temperature = temperature if hasattr(temperature, "dtype") else np.asarray(temperature)
         if tuple(np.shape(temperature)) != tuple(state.first.shape):
             raise InvalidValueError(
                 f"temperature must have the shape {tuple(state.first.shape)} °C, got {tuple(np.shape(temperature))}"
@@ -290,6 +309,7 @@ class FixedTouch:
 
     def _mask(self, worlds: Array, state: FixedTouchState) -> Array:
         count = state.heat.shape[0]
+        worlds = worlds if hasattr(worlds, "dtype") else np.asarray(worlds)
         if tuple(np.shape(worlds)) != (count,) or "bool" not in str(getattr(worlds, "dtype", "")):
             raise InvalidValueError(
                 f"worlds must be ({count},) booleans, got {getattr(worlds, 'dtype', type(worlds).__name__)} of shape "
@@ -346,7 +366,8 @@ def fixed_touch(
         tips,
         objects,
         tuple(map(tuple, materials)),
-        tuple((objects[o], geom) for o, geom in of),
+        integers([pad.body for pad in pads]),
+        integers([geom for _, geom in of]),
         ambient,
         chain,
         origin,

@@ -160,6 +160,33 @@ def test_a_world_that_breaks_down_fails_alone() -> None:
     np.testing.assert_array_equal(reading.temperature_drop[1], right.temperature_drop[1])
 
 
+def test_forces_and_places_may_come_from_elsewhere() -> None:
+    """Single contacts of the data with the poses of all bodies, in place of the sensors that prepare adds."""
+    model = prepare(mujoco.MjSpec.from_string(BLOCK), TIP, {"block": "glass"})
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips=TIP, objects={"block": "glass"})
+    fixed = touch.fixed_touch(np.zeros(0), materials={"block": ("wood", "glass")})
+    assert [each.name for each in fixed.materials[0]] == ["wood", "glass"]
+    start = fixed.start(1)
+    assert start.material.tolist() == [[1]]
+    data.ctrl[0] = 5.0
+    record = recorded(model, data, 300)[:, -1:].repeat(SAMPLE, axis=1)
+    force, place = np.zeros((1, SAMPLE, 1, 1, 4, 3)), np.zeros((1, SAMPLE, 1, 1, 4, 3))
+    for n in range(data.ncon):
+        own = np.zeros(6)
+        mujoco.mj_contactForce(model, data, n, own)
+        along = data.contact.frame[n, :3] * (1 if data.contact.geom[n, 0] == model.geom("pad").id else -1)
+        force[..., n, :], place[..., n, :] = own[0] * along, data.contact.pos[n]
+    poses = (
+        np.tile(each, (1, SAMPLE, 1, 1)) for each in (data.xpos, data.xmat, data.geom_xpos, data.geom_xmat)
+    )
+    _, reading = fixed.advance(start, fixed.posed(force, place, *poses))
+    _, right = fixed.advance(start, fixed.contacts(record))
+    assert data.ncon > 1 and right.force > 1.0
+    for own, other in zip(reading, right, strict=True):
+        np.testing.assert_allclose(own, other, rtol=1e-9)
+
+
 def test_single_precision_is_near() -> None:
     model, record = block()
     touch, fixed = worlds_of(model)
@@ -185,10 +212,14 @@ def test_what_cannot_be_is_refused() -> None:
         fixed.advance(state, contacts._replace(geom_turn=contacts.geom_turn[..., 0]))
     with pytest.raises(InvalidValueError, match="a record must have the shape"):
         fixed.contacts(part[..., 1:])
-    with pytest.raises(InvalidValueError, match="worlds must be 3"):
-        fixed.start(5)
-    with pytest.raises(InvalidValueError, match="booleans"):
-        fixed.reset(state, np.array([0, 2, 1]))
+    for worlds in (0, 1, 5):
+        with pytest.raises(InvalidValueError, match="worlds must be 3"):
+            fixed.start(worlds)
+    for worlds in (np.array([0, 2, 1]), [True, False], 1):
+        with pytest.raises(InvalidValueError, match="booleans"):
+            fixed.reset(state, worlds)
+    listed = fixed.reset(state, [True, False, True], material=[[2], [0], [1]])
+    assert listed.material.tolist() == [[2], [1], [1]]
     with pytest.raises(InvalidValueError, match="whole numbers"):
         fixed.reset(state, material=np.array([[0], [1], [3]]))
     with pytest.raises(InvalidValueError, match="material must have the shape"):
