@@ -35,6 +35,7 @@ def small_network(actions: int = 3) -> Network:
     return Network(layers, Senses(heat=False), 5, {"seed": 3})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("policy", "points"), [("trained", 5), ("feeling", 15)])
 def test_who_feels_heat_beats_every_constant_force(policy: str, points: int) -> None:
     """No constant force serves more than those episodes whose windows it is in."""

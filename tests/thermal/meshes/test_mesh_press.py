@@ -83,7 +83,7 @@ def layered_drop(t: np.ndarray, layers) -> np.ndarray:
     return 12.0 * invert(column.transform, t)[:, 0]
 
 
-@pytest.mark.parametrize("sleeve", [0.0005, 0.0002])
+@pytest.mark.parametrize("sleeve", [0.0005, pytest.param(0.0002, marks=pytest.mark.slow)])
 def test_a_steel_core_in_a_sleeve_of_rubber_is_layered_at_first(sleeve):
     """While rubber's diffusivity * time is below 1/4000 of the contact's area (.28 s), in which heat passes .2 mm of it
     but not .5 mm; after that heat spreads sideways."""
@@ -103,6 +103,7 @@ def test_a_steel_core_in_a_sleeve_of_rubber_is_layered_at_first(sleeve):
     )
 
 
+@pytest.mark.slow
 def test_air_cools_by_the_true_surface():
     body = of(trimesh.creation.box(CUBE), "aluminium")
     mesh = press_body(body, TOP, air=20.0, cache=False, seconds=60, dt=0.1)
