@@ -121,13 +121,15 @@ function show(now) {
     const note = element("names").children[row]?.lastChild;
     if (note) say(note, ending || state);
   });
-  say(element("cost"), described(rows.map(({ cost }) => cost).filter(Boolean)));
+  const costs = rows.map(({ cost }) => cost).filter(Boolean);
+  say(element("cost"), described(costs));
+  element("cost").title = [...new Set(costs.map(({ rung }) => rung))].join("\n"); // for those who know the names
 }
 
 function described(costs) {
   if (!costs.length) return "";
   const rungs = costs.map(({ rung, states, multiply_adds: adds }) => (
-    states ? `${rung}: ${states} states, ${adds} multiply-adds a sample` : rung));
+    states ? `Heat model: a network of ${states} states, ${adds} multiply-adds a sample` : rung));
   const { heat, all } = costs[0];
   return `${[...new Set(rungs)].join("\n")}\nHeat takes ${Math.round(1e6 * heat)} of a step’s ${Math.round(1e6 * all)} µs`;
 }
