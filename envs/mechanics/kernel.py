@@ -116,7 +116,8 @@ def summarise(
         for t in range(tips):
             first = (t * objects + at.object) * at.sensor
             mean = force[b, t]
-            mean[:] = 0.0
+            for i in range(3):
+                mean[i] = 0.0
             for s in range(substeps):
                 x, y, z = sensors[b, s, first + 1], sensors[b, s, first + 2], sensors[b, s, first + 3]
                 frame = axes[b, s, t]
