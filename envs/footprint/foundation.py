@@ -28,7 +28,8 @@ _RIDGE = 1e-3  # springs, added where those that push can't resist a tilt
 
 @njit(cache=True, error_model="numpy")
 def pressure_map(height, cover, places, area, stiffness, deepest, force, centre, out):
-    """Writes the pressure, Pa, at each of n points into out (n,), where `force` N acts at `centre` (2,) m.
+    """Writes the pressure, Pa, at each of n points into out (n,), where `force` N acts at `centre` (2,) m. Returns the
+    depth, m, and the tilts by which the surface is pressed in; 0 where nothing is covered or pressed.
 
     height (n,): m, of the object's surface over the pad; cover (n,): share of the point's area, m2, over which there is
     a surface. places (n, 2): m, the points. stiffness: Pa/m. deepest: m.
@@ -43,7 +44,7 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
         scale = max(scale, abs(places[i, 0]), abs(places[i, 1]))
         out[i] = 0.0
     if force <= 0.0:
-        return
+        return 0.0, 0.0, 0.0
     least, covered = np.inf, 0.0
     for i in range(len(height)):
         if cover[i] > 0.0:
@@ -55,7 +56,7 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
             if distance < away:
                 nearest, away = i, distance
         out[nearest] = force / area
-        return
+        return 0.0, 0.0, 0.0
     spring = stiffness * area
     middle_y, middle_z = _untilted(height, cover, places, spring, force, least, solution)
     flat = solution[0]
@@ -80,6 +81,7 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
     exact = force / (total * area)
     for i in range(len(height)):
         out[i] *= exact
+    return solution[0], solution[1] / scale, solution[2] / scale
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -23,18 +23,21 @@ from ...thermal import (
     SensorStack,
     Surface,
     cylinder_contact,
-    cylinder_law,
     flat_contact,
-    flat_law,
     joint,
     sphere_contact,
-    sphere_law,
+)
+from ...thermal.contact import (
+    TABLE_FORCES,
+    cylinder_footprint,
+    flat_footprint,
+    sphere_footprint,
+    table_footprint,
 )
 from ..bodies import ObjectSpec
 
 if TYPE_CHECKING:
     from ...thermal import Solid
-    from .mesh_contact import MeshContact
 
 PAD = Pad()
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
@@ -59,19 +62,18 @@ class GraspBody:
     anywhere: bool = False
 
     @cached_property
-    def contact_shape(self) -> Literal["flat", "cylinder", "sphere"]:
-        """What the pads meet, of a mesh about. An element glued on (O mode) is flat."""
-        if self.mode == "O" or self.spec.shape == "box":
+    def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:
+        """What the pads meet. An element glued on (O mode) is flat, and so is what stands for a mesh that they miss."""
+        if self.mode == "O" or self.spec.shape == "box" or (self.spec.mesh and self._mesh_table is None):
             return "flat"
-        return self._mesh_contact.shape if self.spec.shape == "mesh" else self.spec.shape
+        return self.spec.shape
 
     @cached_property
-    def _mesh_contact(self) -> MeshContact:
-        """What the pads meet of a mesh; where they meet nothing, a face as wide as its bounding box stands for it."""
-        from .mesh_contact import MeshContact, mesh_contact
+    def _mesh_table(self) -> ContactArea | None:
+        """What the pads meet of a mesh, at TABLE_FORCES."""
+        from .mesh_contact import mesh_contact
 
-        found = mesh_contact(PAD, self.spec, NOMINAL_FORCE)
-        return found if min(found.size) > 0 else MeshContact("flat", np.inf, self.spec.size[1:])
+        return mesh_contact(PAD, self.spec, tuple(TABLE_FORCES.tolist()))
 
     @cached_property
     def plate(self) -> tuple[float, float, float]:
@@ -99,8 +101,11 @@ class GraspBody:
 
     @cached_property
     def geometry(self) -> Geometry:
-        """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE."""
-        area = float(self.contact(np.array(NOMINAL_FORCE)).face)
+        """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE, its middle before the pad's."""
+        nominal = self._contact(np.array(NOMINAL_FORCE), (0.0, 0.0))
+        area = float(nominal.face)
+        if self.contact_shape == "mesh" and not area > 0:  # it may slip to where the sensor is
+            area = float(nominal.pad)
         if not area > 0:
             raise InvalidValueError(
                 f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face"
@@ -109,19 +114,33 @@ class GraspBody:
         return Geometry(self.stack, self.material, self.mode, area, "square", self.plate, self.fingertips)
 
     def contact(self, force: np.ndarray) -> ContactArea:
-        """Areas and force share at that normal force N on a pad."""
+        """Areas and force share at that normal force N on a pad, where the fingers are to close on it."""
+        if self.mode == "O":
+            return self._contact(force, (0.0, 0.0))
+        aside = self.spec.position[1 if self._across[0] == 1 else 0]
+        return self._contact(force, (aside, self.spec.grasp_height - self.spec.size[2] / 2))
+
+    def _contact(self, force: np.ndarray, offset: tuple[float, float]) -> ContactArea:
+        """The same of a pad whose middle is so far from the object's, m across and up. A mesh has its own place."""
+        aside, up = offset
         if self.contact_shape == "cylinder":
-            return cylinder_contact(PAD, force, *self._round)
+            return cylinder_contact(PAD, force, *self._round, offset=(up, aside))
         if self.contact_shape == "sphere":
-            return sphere_contact(PAD, force, self._round[0])
-        return flat_contact(PAD, force, self._face)
+            return sphere_contact(PAD, force, self._round[0], offset=offset)
+        if self.contact_shape == "flat":
+            return flat_contact(PAD, force, self._face, offset)
+        from .mesh_contact import mesh_contact
+
+        every = np.atleast_1d(force)
+        found = mesh_contact(PAD, self.spec, tuple(every.ravel().tolist()))
+        assert found is not None  # or else something flat stands for it
+        shaped = (each.reshape(np.shape(force)) for each in (found.pad, found.face, found.face_force))
+        return ContactArea(*shaped)
 
     @property
     def _face(self) -> tuple[float, float]:
-        """m, the flat face that the pads meet."""
-        if self.mode == "O":
-            return self.stack.width, self.stack.width
-        return self._mesh_contact.size if self.spec.shape == "mesh" else self._sides
+        """m, the flat face that the pads meet; of a mesh that they miss, as wide as its bounding box."""
+        return (self.stack.width, self.stack.width) if self.mode == "O" else self._sides
 
     @property
     def _across(self) -> tuple[int, int]:
@@ -144,20 +163,21 @@ class GraspBody:
 
     @property
     def _round(self) -> tuple[float, float]:
-        """m, radius and length of the round body that the pads meet."""
-        if self.spec.shape == "mesh":
-            return self._mesh_contact.radius, self._mesh_contact.size[0]
+        """m, radius and length of a cylinder or a sphere."""
         return self.spec.size[0] / 2, self.spec.size[2]
 
     @cached_property
     def law(self) -> np.void:
-        """Area and conductance by force, for compiled code."""
+        """Area and conductance by force and place, for compiled code; FOOTPRINT_LAW."""
         if self.contact_shape == "cylinder":
-            return cylinder_law(PAD, self.joint, *self._round)
+            return cylinder_footprint(PAD, self.joint, *self._round)
         if self.contact_shape == "sphere":
-            return sphere_law(PAD, self.joint, self._round[0])
-        followed = self.mode == "T" and self.spec.shape == "box"
-        return flat_law(PAD, self.joint, self._face, self._across if followed else None)
+            return sphere_footprint(PAD, self.joint, self._round[0])
+        if self.contact_shape == "flat":
+            followed = self.mode == "T" and self.spec.shape == "box"
+            return flat_footprint(PAD, self.joint, self._face, self._across if followed else None)
+        assert self._mesh_table is not None
+        return table_footprint(PAD, self.joint, self._mesh_table)
 
     @cached_property
     def heat_capacity(self) -> float:

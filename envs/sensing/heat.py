@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...thermal import (
-    CONTACT_LAW,
     Demand,
     free_area,
     shift_thermostats,
 )
 from ...thermal.batch import carry_matrix
+from ...thermal.contact import FOOTPRINT_LAW
 from ..bodies import RESERVOIR_ROW
 from ..footprint import GraspBody
 from .boxes import BoxHeat
@@ -103,7 +103,7 @@ class GraspHeat:
         self._touches: dict[int, Touches] = {}
         self._waiting: set[int] = set()
         self._rows = np.zeros(num_envs, HEAT_ROW)
-        self._laws = np.zeros(num_envs, CONTACT_LAW)
+        self._laws = np.zeros(num_envs, FOOTPRINT_LAW)
         self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
         self._state = np.zeros((num_envs, 0))
 

@@ -23,7 +23,7 @@ from ...thermal.batch import (
     fixed_room,
     forget_row,
 )
-from ...thermal.contact import conductance, contact
+from ...thermal.contact import FLAT, conductance, footprint
 from ...thermal.network import NODE, workspace
 from ...thermal.numerics import FAST
 from ..bodies import reservoir_step, reservoir_temperature
@@ -42,7 +42,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
 
     A step may be taken in several calls, one after the other, with the same normal, place, drop and info: what changes
     networks between two samples does so between two calls, and the numbers are the same however many there are.
-    laws: (B,) CONTACT_LAW. reservoirs: (B,) RESERVOIR_ROW. normal: (B, S, F) N. place: (B, F, 3) m. numbers: the
+    laws: (B,) FOOTPRINT_LAW. reservoirs: (B,) RESERVOIR_ROW. normal: (B, S, F) N. place: (B, F, 3) m. numbers: the
     fields of a HeatTables, which cost less to hand over one by one."""
     tables = HeatTables(*numbers)
     samples, tips = drop.shape[1], fingertips_of(tables)
@@ -134,9 +134,10 @@ def _reading(samples, tips):
 def _meet(law, row, one, normal, place, drop, conducts, first):
     """Where a row's fingertips touch in a control step: fills conducts (N, F) W/K of each sample, notes what has begun
     and ended, and before the first sample clears what the step adds up."""
-    samples = len(drop)
+    samples, at = len(drop), np.zeros(3)
     for f in range(2):
-        touching = _mean_contacts(law, normal[:, f], one, f, place[f], conducts)
+        _along_pad(law, place, f, at)
+        touching = _mean_contacts(law, normal[:, f], one, f, at, conducts)
         if first == 0:
             _follow(row, one, f, touching, place[f])
             row.begun |= touching
@@ -210,10 +211,25 @@ def _set_node(tables, network, x, above):
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _along_pad(law, place, f, at):
+    """Writes where a pad's middle (3,) m is, of bodies that aren't flat what of it lies along the pads: across the line
+    between both pads' middles, since these face each other."""
+    square, share = 0.0, 0.0
+    for i in range(3):
+        between = place[1, i] - place[0, i]
+        square += between * between
+        share += between * place[f, i]
+    for i in range(3):
+        at[i] = place[f, i]
+        if law.shape != FLAT and square > 0.0:
+            at[i] -= share / square * (place[1, i] - place[0, i])
+
+
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _mean_contacts(law, normal, one, f, place, conductances):
     """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends
     fall within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is
-    the mean of all, and whose area is the mean over the substeps that press. place: see contact. Returns whether any
+    the mean of all, and whose area is the mean over the substeps that press. place: see footprint. Returns whether any
     does."""
     samples, substeps = len(conductances), len(normal)
     total, area, pressing = 0.0, 0.0, 0
@@ -221,7 +237,7 @@ def _mean_contacts(law, normal, one, f, place, conductances):
         conductances[k, f] = 0.0
     for s in range(substeps):
         if normal[s] > 0:
-            face, load = contact(law, normal[s], place)
+            face, load = footprint(law, normal[s], place)
             if face > 0:
                 conducts = conductance(law, load / face) * face
                 total += conducts

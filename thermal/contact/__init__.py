@@ -2,6 +2,15 @@
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
 from .array_law import ArrayLaws, array_conductance, array_contact, array_laws
+from .footprint import (
+    FOOTPRINT_LAW,
+    TABLE_FORCES,
+    cylinder_footprint,
+    flat_footprint,
+    footprint,
+    sphere_footprint,
+    table_footprint,
+)
 from .law import (
     CONTACT_LAW,
     CYLINDER,
@@ -36,10 +45,12 @@ __all__ = [
     "ArrayLaws",
     "CYLINDER",
     "FLAT",
+    "FOOTPRINT_LAW",
     "LAPPED_ALUMINA",
     "LOG_LEAST",
     "LOG_MOST",
     "SEPARATION",
+    "TABLE_FORCES",
     "THERMOSTAT_FACE",
     "ContactArea",
     "Gas",
@@ -55,14 +66,19 @@ __all__ = [
     "contact_conductance",
     "covered_share",
     "cylinder_contact",
+    "cylinder_footprint",
     "cylinder_law",
     "flat_contact",
+    "flat_footprint",
     "flat_law",
+    "footprint",
     "joint",
     "rigid_cylinder",
     "rigid_sphere",
     "sphere_contact",
+    "sphere_footprint",
     "sphere_law",
     "stack_joints",
+    "table_footprint",
     "typical_slope",
 ]

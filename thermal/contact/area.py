@@ -7,19 +7,21 @@ is foundation modulus times local indentation over the pad's thickness (Johnson,
     sphere, radius R:   p = K (a^2 - r^2)/(2 R d),  F = pi K a^4/(4 R d)        while the contact radius a fits the pad
     cylinder, length l: p = K (a^2 - x^2)/(2 R d),  F = 2 K l a^3/(3 R d)       while the half width a fits the pad
 
-with K the foundation modulus and d the pad's thickness; beyond that the contact is cut off at the pad's edges and the
-same pressure is integrated over what is left. All functions work elementwise on arrays of any shape.
+with K the foundation modulus and d the pad's thickness; beyond that, and where the body isn't over the pad's middle,
+the contact is cut off at the pad's edges and the same pressure is integrated over what is left (round_bodies.py). The
+springs on the sensor's face may be stiffer than those around it. All functions work elementwise on arrays of any shape.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, positive
 
-_NEWTON_STEPS = 8  # the residual is convex and the start close: round-off after 5
+from .round_bodies import ball_on_pad, cylinder_on_pad
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +31,7 @@ class Pad:
     width: m, the pad's side. face: m, the sensor face's side. thickness: m (an estimate: as thick as the element it
     holds). youngs_modulus: Pa; 1.14 MPa is a Shore A hardness of 30 by Gent's relation (1958, Rubber Chem. Technol.
     31:896). compression_factor: of Gent & Lindley, 0.93 at that hardness (Lindley 1974, Engineering design with
-    natural rubber).
+    natural rubber). face_stiffness: Pa/m of the springs on the sensor's face, None for those of the pad around it.
     """
 
     width: float = 0.020
@@ -37,10 +39,13 @@ class Pad:
     thickness: float = 0.003
     youngs_modulus: float = 1.14e6
     compression_factor: float = 0.93
+    face_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("width", "face", "thickness", "youngs_modulus", "compression_factor"):
             positive(f"pad: {name}", getattr(self, name))
+        if self.face_stiffness is not None:
+            positive("pad: face_stiffness (Pa/m)", self.face_stiffness)
         if self.face > self.width:
             raise InvalidValueError(f"pad: face {self.face:g} m is wider than the pad, {self.width:g} m")
 
@@ -53,6 +58,13 @@ class Pad:
         """
         shape = self.width / (4 * self.thickness)
         return self.youngs_modulus * (1 + 2 * self.compression_factor * shape**2)
+
+    @property
+    def face_ratio(self) -> float:
+        """Stiffness of the springs on the sensor's face over that of those around it."""
+        if self.face_stiffness is None:
+            return 1.0
+        return self.face_stiffness * self.thickness / self.foundation_modulus
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +100,9 @@ def flat_contact(
     on_pad = _overlap(pad.width, size[0], offset[0]) * _overlap(pad.width, size[1], offset[1])
     on_face = _overlap(pad.face, size[0], offset[0]) * _overlap(pad.face, size[1], offset[1])
     touching = (force > 0) & (on_pad > 0)
-    share = np.divide(on_face, on_pad, out=np.zeros(np.broadcast(on_face, on_pad).shape), where=on_pad > 0)
+    ratio = pad.face_ratio
+    bearing = on_pad + (ratio - 1) * on_face
+    share = np.divide(ratio * on_face, bearing, out=np.zeros(np.shape(bearing)), where=on_pad > 0)
     return ContactArea(
         pad=np.where(touching, on_pad, 0.0),
         face=np.where(touching, on_face, 0.0),
@@ -104,28 +118,33 @@ def _overlap(width: float, size: float, offset: np.ndarray | float) -> np.ndarra
     )
 
 
-def sphere_contact(pad: Pad, force: np.ndarray | float, radius: float) -> ContactArea:
-    """A sphere, or a body of that mean radius of curvature (m), on the middle of the pad. force: N, >= 0.
+def sphere_contact(
+    pad: Pad,
+    force: np.ndarray | float,
+    radius: float,
+    offset: tuple[np.ndarray | float, np.ndarray | float] = (0.0, 0.0),
+) -> ContactArea:
+    """A sphere, or a body of that mean radius of curvature (m). force: N, >= 0. offset: m, its crown from the pad's
+    middle along both sides (arrays as force).
 
     Raises InvalidValueError for a force or radius that is none.
     """
     force = _force(force)
     stiffness = pad.foundation_modulus / (2 * positive("radius (m)", radius) * pad.thickness)  # Pa/m2
-    half = pad.width / 2
-    u = _square_inverse(force / (stiffness * half**4))  # (a / half)^2
-    square = u * half**2
-    half_face = pad.face / 2
-    return ContactArea(
-        pad=half**2 * _square_area(u),
-        face=half_face**2 * _square_area(square / half_face**2),
-        face_force=stiffness * half_face**4 * _square_load(square / half_face**2),
-    )
+    y, z = offset
+    halves = pad.width / 2, pad.face / 2
+    return _solved(ball_on_pad, stiffness, force / stiffness, pad.face_ratio, *halves, y, z)
 
 
 def cylinder_contact(
-    pad: Pad, force: np.ndarray | float, radius: float, length: float = np.inf
+    pad: Pad,
+    force: np.ndarray | float,
+    radius: float,
+    length: float = np.inf,
+    offset: tuple[np.ndarray | float, np.ndarray | float] = (0.0, 0.0),
 ) -> ContactArea:
-    """A cylinder of that radius and length (m) along one side of the pad, over its middle. force: N, >= 0.
+    """A cylinder of that radius and length (m) along one side of the pad. force: N, >= 0. offset: m, its middle from
+    the pad's along that side and across it (arrays as force).
 
     Raises InvalidValueError for a force, radius or length that is none.
     """
@@ -133,17 +152,19 @@ def cylinder_contact(
     if not length > 0:
         raise InvalidValueError(f"length must be above 0 m, got {length!r}")
     stiffness = pad.foundation_modulus / (2 * positive("radius (m)", radius) * pad.thickness)
-    half, half_face = pad.width / 2, pad.face / 2
-    on_pad, on_face = min(length, pad.width), min(length, pad.face)
-    load = force / (stiffness * on_pad)  # m3, the integral of a^2 - x^2
-    narrow = np.cbrt(0.75 * load)
-    half_width_squared = np.where(narrow <= half, narrow**2, (load / half + 2 / 3 * half**2) / 2)
-    across = np.minimum(np.sqrt(half_width_squared), half_face)
-    return ContactArea(
-        pad=on_pad * 2 * np.minimum(np.sqrt(half_width_squared), half),
-        face=on_face * 2 * across,
-        face_force=stiffness * on_face * 2 * (half_width_squared - across**2 / 3) * across,
-    )
+    along = tuple(_overlap(width, length, offset[0]) for width in (pad.width, pad.face))
+    halves = pad.width / 2, pad.face / 2
+    return _solved(cylinder_on_pad, stiffness, force / stiffness, pad.face_ratio, *halves, *along, offset[1])
+
+
+def _solved(
+    body: Callable[..., tuple[float, float, float]], stiffness: float, *numbers: object
+) -> ContactArea:
+    """Element by element: rows never mix."""
+    every = np.broadcast_arrays(*(np.asarray(number, dtype=float) for number in numbers))
+    found = [body(*row) for row in zip(*(each.ravel().tolist() for each in every), strict=True)]
+    on_pad, on_face, load = np.array(found, dtype=float).reshape(-1, 3).T.reshape(3, *every[0].shape)
+    return ContactArea(on_pad, on_face, stiffness * load)
 
 
 def _force(force: np.ndarray | float) -> np.ndarray:
@@ -151,27 +172,3 @@ def _force(force: np.ndarray | float) -> np.ndarray:
     if not (np.isfinite(force) & (force >= 0)).all():
         raise InvalidValueError(f"force must be finite and >= 0 N, got {force.min():g} to {force.max():g}")
     return force
-
-
-def _square_area(u: np.ndarray) -> np.ndarray:
-    """Area common to a disc of radius sqrt(u) and the square of half width 1."""
-    v = np.clip(u, 1.0, 2.0)
-    cut = np.pi * v - 4 * (v * np.arccos(1 / np.sqrt(v)) - np.sqrt(v - 1))
-    return np.where(u <= 1, np.pi * u, np.where(u >= 2, 4.0, cut))
-
-
-def _square_load(u: np.ndarray) -> np.ndarray:
-    """Integral of u - r^2 over that common area; its derivative by u is _square_area."""
-    v = np.clip(u, 1.0, 2.0)
-    root = np.sqrt(v - 1)
-    cut = np.pi / 2 * v**2 - 2 * v**2 * np.arccos(1 / np.sqrt(v)) + 2 * root * v + 4 / 3 * root**3
-    return np.where(u <= 1, np.pi / 2 * u**2, np.where(u >= 2, 4 * u - 8 / 3, cut))
-
-
-def _square_inverse(load: np.ndarray) -> np.ndarray:
-    """u at which _square_load(u) is the load."""
-    u = np.maximum(np.sqrt(2 * load / np.pi), (load + 8 / 3) / 4)
-    for _ in range(_NEWTON_STEPS):
-        area = _square_area(u)
-        u = u - np.divide(_square_load(u) - load, area, out=np.zeros_like(u), where=area > 0)
-    return np.where(load <= np.pi / 2, np.sqrt(2 * load / np.pi), u)
