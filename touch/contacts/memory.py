@@ -16,12 +16,15 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numba import types
+from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.extending import intrinsic
+
+from ...thermal import CONTACT_LAW
 
 CONTACTS, FORCES, XPOS, XMAT, GEOM_XPOS, GEOM_XMAT, STRIDE, POS, FRAME, GEOM, DIM, EFC, LENGTH = range(13)
 """Of a table: addresses of the places where the addresses of mjContact and of efc_force stand, addresses of poses;
 mjContact's size in bytes, and where its fields are, in numbers of their own size."""
+_LAW = from_dtype(CONTACT_LAW)
 _WORD = 8
 _FIELDS = (("pos", POS), ("frame", FRAME), ("geom", GEOM), ("dim", DIM), ("efc_address", EFC))
 _MOST = 1 << 16  # words of an mjData
@@ -44,6 +47,8 @@ class ContactMemory:
         self.follows = places is not None
         """Whether the table needs no `refresh` at each step."""
         words = self._said.ctypes.data + _WORD * np.arange(2)
+        self.address = self.table.ctypes.data
+        """Of the table; it holds as long as this does."""
         self.table[:2] = words if places is None else data._address + _WORD * np.array(places)
 
     def __reduce__(self) -> tuple[type[ContactMemory], tuple[mujoco.MjData]]:
@@ -67,6 +72,10 @@ def _words(context, address):
     return types.CPointer(types.int64)(types.int64), _pointer
 
 
+def _laws(context, address):
+    return types.CPointer(_LAW)(types.int64), _pointer
+
+
 def _pointer(context, builder, signature, arguments):
     return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
 
@@ -74,7 +83,8 @@ def _pointer(context, builder, signature, arguments):
 floats: Any = intrinsic(_floats)
 integers: Any = intrinsic(_integers)
 words: Any = intrinsic(_words)
-"""Of an address, what numba.carray takes: of floating-point numbers, of integers of 32 and of 64 bits."""
+laws: Any = intrinsic(_laws)
+"""Of an address, what numba.carray takes: of floating-point numbers, of integers of 32 and 64 bits, of CONTACT_LAW."""
 
 
 def _contacts(data: mujoco.MjData) -> int:
