@@ -113,7 +113,9 @@ class FixedTouch:
         another number of worlds than the ThermalTouch has."""
         rows = self.origin.heat.shape[0]
         count = rows if worlds is None else worlds
-        if rows not in (1, count) or count < 1:
+        if not isinstance(count, int) or count < 1:
+            raise InvalidValueError(f"worlds must be a whole number from 1 on, or None, got {worlds!r}")
+        if rows not in (1, count):
             raise InvalidValueError(f"worlds must be {rows}, as many as the ThermalTouch has, got {worlds}")
         if rows == count:
             return self.origin
@@ -220,6 +222,9 @@ class FixedTouch:
         InvalidValueError for contacts of another shape."""
         xp = namespace_of(state.heat)
         self._check(state, contacts)
+        expected, given = tuple(state.signal.last.shape), tuple(getattr(noise, "shape", ()))
+        if given not in ((), expected):
+            raise InvalidValueError(f"noise must be a number or have the shape {expected}, got {given}")
         material, worlds = state.material, state.heat.shape[0]
         found = self.reads.felt(contacts, material[:, self.owner], self.of_object)
         pairs = (worlds, len(self.fingertips) * len(self.objects))
@@ -262,6 +267,11 @@ class FixedTouch:
         return (network if len(self.tables.decay) > 1 else 0), pairs + first
 
     def _check(self, state: FixedTouchState, contacts: TouchContacts) -> None:
+        if not isinstance(contacts, TouchContacts):
+            raise InvalidValueError(
+                f"advance takes TouchContacts, got {type(contacts).__name__}: for recorded sensordata "
+                "advance(state, fixed.contacts(record))"
+            )
         worlds, tips, geoms = state.heat.shape[0], len(self.fingertips), self.geoms.shape[0]
         expected = {
             "force": (worlds, self.substeps, tips, geoms, "L", 3),

@@ -296,7 +296,7 @@ class ThermalTouch:
         self,
         like: Array,
         *,
-        materials: Mapping[str, Sequence[str | Material]] | None = None,
+        materials: Mapping[str, str | Material | Sequence[str | Material]] | None = None,
         world: int = 0,
         data: mujoco.MjData | None = None,
     ) -> FixedTouch:
@@ -311,7 +311,11 @@ class ThermalTouch:
         `world` is what starts, as it is now. Raises UnknownNameError, and InvalidValueError beside thermostats of
         finite power, heated sensors and glued elements."""
         (row,) = self._rows([world])
-        of = {name: tuple(map(named_material, own)) for name, own in (materials or {}).items()}
+        given = {
+            name: (own,) if isinstance(own, str | Material) else own
+            for name, own in (materials or {}).items()
+        }
+        of = {name: tuple(map(named_material, own)) for name, own in given.items()}
         for name in of:
             if name not in self.objects:
                 raise unknown_name("object", name, self.objects)

@@ -87,6 +87,40 @@ def test_it_goes_on_as_update_does() -> None:
     assert touch.reading.temperature_drop.min() > 1.0
 
 
+HARD = """
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <body name="left" pos="-.035 0 0"><joint type="slide" axis="1 0 0" damping="20"/>
+    <geom type="box" size=".004 .01 .005" pos="0 0 .005" mass=".1"/>
+    <geom type="box" size=".004 .01 .005" pos="0 0 -.005" mass=".1"/></body>
+  <body name="right" pos=".04 0 0"><joint type="slide" axis="-1 0 0" damping="20"/>
+    <geom name="ball" type="sphere" size=".009" mass=".1"/></body>
+  <body name="can"><geom type="cylinder" size=".03 .05"/></body>
+  <body name="far" pos="0 .5 0"><geom type="box" size=".02 .02 .02"/>
+    <geom type="sphere" size=".02" pos=".02 0 0"/></body>
+</worldbody></mujoco>"""
+
+
+def test_pads_of_two_geoms_round_pads_and_objects_that_nothing_touches() -> None:
+    flat = Fingertip("left", position=(0.004, 0, 0), normal=(1, 0, 0), size=(0.02, 0.02))
+    tips, things = {"left": flat, "right": "ball"}, {"can": "glass", "far": "steel"}
+    model = prepare(mujoco.MjSpec.from_string(HARD), tips, things)
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips=tips, objects=things, worlds=1, chain="ideal")
+    data.qfrc_applied[:2] = 8.0
+    touch.update(recorded(model, data, 100))
+    fixed = touch.fixed_touch(np.zeros(0), materials={"can": "wood"})
+    state = fixed.start(1)
+    for _ in range(10):
+        data.qfrc_applied[:2] += 0.5
+        record = recorded(model, data, 2 * SAMPLE)
+        touch.update(record)
+        for half in (record[:, :SAMPLE], record[:, SAMPLE:]):
+            state, reading = fixed.advance(state, fixed.contacts(half))
+        right = touch.reading
+        np.testing.assert_allclose(reading.temperature_drop, right.temperature_drop, rtol=0, atol=1e-12)
+    assert touch.reading.touching == (("can", "can"),) and touch.reading.temperature_drop.min() > 0.5
+
+
 def test_worlds_have_materials_and_temperatures_of_their_own() -> None:
     """From before the first touch until after the last one."""
     model, record = block()
@@ -212,9 +246,13 @@ def test_what_cannot_be_is_refused() -> None:
         fixed.advance(state, contacts._replace(geom_turn=contacts.geom_turn[..., 0]))
     with pytest.raises(InvalidValueError, match="a record must have the shape"):
         fixed.contacts(part[..., 1:])
-    for worlds in (0, 1, 5):
-        with pytest.raises(InvalidValueError, match="worlds must be 3"):
-            fixed.start(worlds)
+    for worlds in (0, 1, 5, 2.5):
+        with pytest.raises(InvalidValueError, match="worlds must be"):
+            fixed.start(worlds)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(InvalidValueError, match=r"fixed\.contacts\(record\)"):
+        fixed.advance(state, part)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(InvalidValueError, match="noise must be"):
+        fixed.advance(state, contacts, noise=np.zeros(WORLDS))
     for worlds in (np.array([0, 2, 1]), [True, False], 1):
         with pytest.raises(InvalidValueError, match="booleans"):
             fixed.reset(state, worlds)
