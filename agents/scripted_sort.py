@@ -25,7 +25,7 @@ _WIDE = 0.95 * MAX_OPENING  # m, from which the arm may move
 _LEFT_OVER = (
     1 / 3
 )  # of what a fingertip still shows when it touches again, after FEELING: between glass and copper
-_GOING, _FEELING, _LIFTING = range(3)
+GOING, _FEELING, _LIFTING = range(3)  # phases
 
 
 class ScriptedSort:
@@ -50,7 +50,7 @@ class ScriptedSort:
 
     def restart(self, rows: Sequence[int] | np.ndarray) -> None:
         """The rows begin a new episode."""
-        self._phase[rows], self._side[rows], self._pressed[rows] = _GOING, 0, 0.0
+        self._phase[rows], self._side[rows], self._pressed[rows] = GOING, 0, 0.0
         self._felt[rows], self._before[rows] = np.nan, 0.0
 
     def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
@@ -59,14 +59,14 @@ class ScriptedSort:
         lateral = observation["lateral"][:, 0].astype(float)
         volts = observation["voltage"][:, :, -1].mean(axis=1)
         away = self._places[self._side] - lateral
-        going = self._phase == _GOING
+        going = self._phase == GOING
         self._before = np.where(going, volts, self._before)
         self._phase[going & (abs(away) < _NEAR) & (opening > _WIDE)] = _FEELING
-        pressing = np.all(observation["force"][:, :, 0] > FORCE / 2, axis=1) & (self._phase != _GOING)
+        pressing = np.all(observation["force"][:, :, 0] > FORCE / 2, axis=1) & (self._phase != GOING)
         self._pressed = np.where(pressing, self._pressed + self._dt, 0.0)
         for row in np.flatnonzero((self._phase == _FEELING) & (self._pressed >= self.feeling)).tolist():
             self._decide(row, volts[row] - _LEFT_OVER * self._before[row], observation["goal"][row])
-        going = self._phase == _GOING
+        going = self._phase == GOING
         away = self._places[self._side] - lateral
         sideways = np.where(
             going & (opening > _WIDE), np.clip(away / _APPROACH, -MAX_LATERAL_RATE, MAX_LATERAL_RATE), 0
@@ -87,7 +87,7 @@ class ScriptedSort:
         if self._wanted(row, goal):
             self._phase[row] = _LIFTING
         else:
-            self._phase[row], self._side[row] = _GOING, 1 - side
+            self._phase[row], self._side[row] = GOING, 1 - side
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         """Whether what a row has just felt is to be lifted."""

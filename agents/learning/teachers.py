@@ -12,11 +12,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from thermograsp.agents.scripted import FeelingGrasp
-from thermograsp.agents.scripted_sort import ScriptedSort
+from thermograsp.agents.scripted_sort import GOING, ScriptedSort
 from thermograsp.envs import force_window
 from thermograsp.envs.limits import MAX_FORCE
 
 from .inputs import REPEAT
+
+_LEFT = 0.01  # m beside an object's place, from which the arm has left it
 
 
 class Teacher(Protocol):
@@ -78,6 +80,12 @@ class SortTeacher(ScriptedSort):
     def __init__(self, batch: Any) -> None:
         super().__init__(batch)
         self._batch, self._dt = batch, batch.dt * REPEAT
+
+    def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
+        """As the script's, but goes back to its object where the agent has left it."""
+        left = abs(self._places[self._side] - observation["lateral"][:, 0]) > _LEFT
+        self._phase[left] = GOING
+        return super().action(observation)
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         del goal
