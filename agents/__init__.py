@@ -7,7 +7,7 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from thermograsp.agents.episodes import rollout
     from thermograsp.agents.gripper_check import FELT_AFTER, check_gripper
-    from thermograsp.agents.policies import POLICIES, Policy, policy
+    from thermograsp.agents.policies import POLICIES, Policy, load_policy, policy
     from thermograsp.agents.recording import LONGEST, Recording, columns_of, record
     from thermograsp.agents.scripted import ScriptedGrasp
     from thermograsp.agents.stopwatch import Stopwatch
@@ -25,6 +25,7 @@ __all__ = [
     "check_gripper",
     "columns_of",
     "load_network",
+    "load_policy",
     "policy",
     "record",
     "rollout",
@@ -40,6 +41,7 @@ __getattr__ = opened(
         "policies": (
             "POLICIES",
             "Policy",
+            "load_policy",
             "policy",
         ),
         "recording": (

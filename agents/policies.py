@@ -8,13 +8,17 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import gymnasium
 import numpy as np
 
 from thermograsp.assets import ROOT
 from thermograsp.errors import InvalidValueError, unknown_name
+
+if TYPE_CHECKING:
+    from thermograsp.agents.learning.agent import Agent
+    from thermograsp.agents.trained import Network
 
 POLICIES = ("scripted", "feeling", "trained", "random", "zero")
 
@@ -62,14 +66,20 @@ def shipped(env: gymnasium.vector.VectorEnv) -> Path:
     return path
 
 
-def _of_file(env: gymnasium.vector.VectorEnv, path: str | Path) -> Policy:
-    from thermograsp.agents.learning.agent import Acting, is_agent, load_agent
+def load_policy(path: str | Path) -> Agent | Network:
+    """A trained policy's file, of `thermograsp train` or older. Raises InvalidValueError where there is none."""
+    from thermograsp.agents.learning.agent import is_agent, load_agent
+    from thermograsp.agents.trained import load_network
 
-    if is_agent(path):
-        return Acting(env, load_agent(path))
+    return load_agent(path) if is_agent(path) else load_network(path)
+
+
+def _of_file(env: gymnasium.vector.VectorEnv, path: str | Path) -> Policy:
+    from thermograsp.agents.learning.agent import Acting, Agent
     from thermograsp.agents.trained import Trained
 
-    return Trained(env, path)
+    found = load_policy(path)
+    return Acting(env, found) if isinstance(found, Agent) else Trained(env, path)
 
 
 class _Zero:

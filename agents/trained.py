@@ -1,4 +1,5 @@
-"""Trained policies of a grasp: small networks kept as arrays, which need NumPy alone to act.
+"""Trained policies of a grasp in the older form, without a memory: small networks kept as arrays, which need NumPy
+alone to act. learning/agent.py has the newer form.
 
 B: environments at once.
 """
@@ -60,7 +61,7 @@ def load_network(path: str | Path) -> Network:
             layers = tuple((file[f"weight_{at}"], file[f"bias_{at}"]) for at in range(count))
         network = Network(layers, Senses(**setup["senses"]), int(setup["repeat"]), setup["about"])
     except FileNotFoundError as error:
-        raise InvalidValueError(f"no file {path}: give one that examples/train_grasp.py wrote") from error
+        raise InvalidValueError(f"no file {path}: give one that `thermograsp train` wrote") from error
     except (KeyError, TypeError, ValueError, BadZipFile) as error:
         raise InvalidValueError(f"{path} holds no trained policy: {error}") from error
     sizes = [SIZE, *(len(bias) for _, bias in layers)]

@@ -42,10 +42,10 @@ class Agent:
         return np.clip(np.stack(rows), -1.0, 1.0).astype(np.float32)
 
     def save(self, path: str | Path) -> Path:
-        """Writes an .npz file."""
+        """Writes an .npz file, with weights as float16: half the size, and 3 digits of each."""
         arrays: dict[str, Any] = {}
         for at, (weight, bias) in enumerate(self.layers):
-            arrays[f"weight_{at}"], arrays[f"bias_{at}"] = weight.astype(np.float32), bias.astype(np.float32)
+            arrays[f"weight_{at}"], arrays[f"bias_{at}"] = weight.astype(np.float16), bias.astype(np.float32)
         text = json.dumps({"task": self.task, "inputs": asdict(self.inputs), "about": self.about})
         with atomic_write(path) as temporary:
             np.savez_compressed(temporary, agent=np.array(text), **arrays)
@@ -58,7 +58,9 @@ def load_agent(path: str | Path) -> Agent:
         with np.load(path, allow_pickle=False) as file:
             setup = json.loads(str(file["agent"]))
             count = sum(name.startswith("weight_") for name in file.files)
-            layers = tuple((file[f"weight_{at}"], file[f"bias_{at}"]) for at in range(count))
+            layers = tuple(
+                (file[f"weight_{at}"].astype(np.float32), file[f"bias_{at}"]) for at in range(count)
+            )
         agent = Agent(setup["task"], Inputs(**setup["inputs"]), layers, setup["about"])
     except FileNotFoundError as error:
         raise InvalidValueError(f"no file {path}: give one that `thermograsp train` wrote") from error

@@ -35,6 +35,7 @@ ELSEWHERE = {
     "docs/datasets.md": {"python torch", "python minari", "python lerobot"},
     "docs/engines.md": {"python mjlab"},
     "docs/hardware.md": {"python lerobot"},
+    "docs/learning.md": {"python policy"},
     "docs/howto.md": {"python rl", "python tensorboard", "python torchrl"},
 }
 """Kinds of blocks that tests of other folders run, by page."""

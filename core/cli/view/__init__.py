@@ -140,7 +140,7 @@ def _leading_to(url: str) -> Iterator[Path]:
 def _start(args: argparse.Namespace) -> tuple[Stock, Choices]:
     """What visitors may choose, and what they find chosen."""
     from thermograsp import thermal
-    from thermograsp.agents import load_network
+    from thermograsp.agents import load_policy
     from thermograsp.envs import ObjectSpec
     from thermograsp.studio.control import Choices, Stock
     from thermograsp.studio.sources import PlayedGrasp
@@ -161,7 +161,7 @@ def _start(args: argparse.Namespace) -> tuple[Stock, Choices]:
     choices = Choices().changed(wanted, stock)
     # What can't be read is refused here, not to each visitor.
     if args.policy is not None:
-        load_network(args.policy)
+        load_policy(args.policy)
     if args.recording is not None and args.render is None:
         PlayedGrasp(choices, stock)
     return stock, choices
