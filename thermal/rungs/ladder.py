@@ -54,10 +54,10 @@ class RungInfo:
 
 @dataclass(frozen=True, slots=True)
 class Rung:
-    """The model that made a curve. orders: of a network, "" otherwise. error: K of temperature drop from 0.05 s on, a
-    bound measured for boxes like it or against finer models where the rung was chosen by tolerance, NaN where it was
-    asked for; it leaves out what steps of 10 ms add where a conductance or a thermostat varies. reason: why it was
-    chosen."""
+    """The model that made a curve. orders: of a network, "" otherwise. error: K of temperature drop, a bound measured
+    for boxes like it or against finer models where the rung was chosen by tolerance, NaN where it was asked for. It
+    holds from 0.05 s after the touch to the press's last sample and no further: a longer press is another choice. It
+    leaves out what steps of 10 ms add where a conductance or a thermostat varies. reason: why it was chosen."""
 
     name: str
     orders: str
