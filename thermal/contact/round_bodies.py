@@ -4,7 +4,7 @@ With K the foundation's stiffness, Pa per m, R the body's radius and a the half 
 touch, the pressure at a distance r from the body's crown is K (a^2 - r^2)/(2 R) where that is positive (Johnson,
 Contact Mechanics, section 4.3). The pad and the sensor's face are rectangles, so that areas and forces are integrals
 over what a rectangle and a disc, or a strip, have in common: sums over the rectangle's corners, each the integral over
-a quarter. The force gives a^2, by Newton's steps from above on an increasing, convex function.
+a quarter. The force gives a^2, by Newton's steps on an increasing, convex function: after the first, from above.
 """
 
 from __future__ import annotations
@@ -77,15 +77,16 @@ def _ball_square(load, ratio, pad, face, y, z):
     area, moment = 4 * pad * pad, 4 * pad * pad * (2 / 3 * pad * pad + y * y + z * z)
     area += (ratio - 1.0) * 4 * face * face
     moment += (ratio - 1.0) * 4 * face * face * (2 / 3 * face * face + y * y + z * z)
-    square = (load + moment) / area  # as if all were touched: never less than it is
+    most = (load + moment) / area  # as if all were touched: never less than it is
+    square = min(math.sqrt(2 * load / math.pi), most)
     for _ in range(_STEPS):
-        on_pad, on_face = _corners(square, pad, y, z), _corners(square, face, y, z)
-        wrong = on_pad[1] + (ratio - 1.0) * on_face[1] - load
-        rate = on_pad[0] + (ratio - 1.0) * on_face[0]
-        if rate <= 0.0:
-            break
-        square -= wrong / rate
-        if wrong <= _CLOSE * load:
+        touched, pressed = _corners(square, pad, y, z)
+        if ratio != 1.0:
+            on_face = _corners(square, face, y, z)
+            touched, pressed = touched + (ratio - 1.0) * on_face[0], pressed + (ratio - 1.0) * on_face[1]
+        wrong = pressed - load
+        square = min(square - wrong / touched, most) if touched > 0.0 else most
+        if abs(wrong) <= _CLOSE * load:
             break
     return square
 
