@@ -49,7 +49,8 @@ class GraspBody:
 
     spec: its shape and place. material: what it is made of. temperature: °C at first. mode: T or O, where the element
     sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on the object's surface. ambient: °C of
-    the air, None for the object's. anywhere: its heat knows where it is touched, as a mesh's always does in T mode."""
+    the air, None for the object's. anywhere: its heat knows where it is touched, as a mesh's always does in T mode.
+    any_size: its size is drawn from any, so that its network is made where it can be and not searched."""
 
     spec: ObjectSpec
     material: Material
@@ -60,6 +61,7 @@ class GraspBody:
     roughness_factor: float = 1.0
     ambient: float | None = None
     anywhere: bool = False
+    any_size: bool = False
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:

@@ -34,12 +34,14 @@ from ...thermal.stack import HeatedStack, any_sensor, converter, heated_core, hi
 from ..bodies import ObjectSpec, scaled
 from ..footprint import GraspBody
 from ..grippers import SHIPPED_GRIPPER, GripperModel
-from ..limits import LEAST_TOLERANCE, MOST_VOLTAGE, SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
+from ..limits import MOST_VOLTAGE, SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
 from ..mechanics import SHIPPED, SolverSettings
 from .randomization import (
     Cause,
     Delay,
+    ObjectTemperature,
     Size,
+    ThermostatError,
     checked,
     draw,
 )
@@ -311,6 +313,7 @@ class SimulationConfig:
             drawn["roughness_factor"],
             usual if room is None else room,
             self.anywhere,
+            self.any_size,
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
@@ -345,16 +348,47 @@ class SimulationConfig:
     @property
     def causes(self) -> tuple[Cause, ...]:
         """What randomize draws, in its order: sizes by steps where each needs a thermal network to be searched."""
-        free = (
-            self.mode == "T"
-            and self.anywhere
-            and self.tolerance >= LEAST_TOLERANCE
-            and all(
-                shape.shape == "box" and not shape.parts and shape.reservoir is None for shape in self.shapes
-            )
+        listed, any_size = checked(self.randomize), self.any_size
+        return tuple(
+            cause if any_size or not isinstance(cause, Size) else cause.in_steps() for cause in listed
         )
-        listed = checked(self.randomize)
-        return tuple(cause if free or not isinstance(cause, Size) else cause.in_steps() for cause in listed)
+
+    @property
+    def any_size(self) -> bool:
+        """Whether sizes are drawn, and each object may have any of them: its network comes from heat kernels."""
+        drawn = next((cause for cause in self.randomize if isinstance(cause, Size)), None)
+        if drawn is None or self.mode == "O":
+            return False
+        from ..sensing import served_anywhere, served_in_the_middle
+
+        if self.anywhere:
+            return all(served_anywhere(shape, self.tolerance) for shape in self.shapes)
+        return all(
+            served_in_the_middle(
+                scaled(shape, min(drawn.extremes)), self.stack, self.tolerance, self._most_difference(shape)
+            )
+            for shape in self.shapes
+        )
+
+    def _most_difference(self, shape: ObjectSpec) -> float:
+        """K between a sensor and the object or the air, at most."""
+        shifts, errors = [0.0], [0.0]
+        for cause in self.randomize:
+            if isinstance(cause, ObjectTemperature):
+                shifts += [cause.low, cause.high]
+            elif isinstance(cause, ThermostatError):
+                errors += [cause.low, cause.high]
+        own = self.object_temperature if shape.temperature is None else shape.temperature
+        around = [own + shift for shift in shifts]
+        if self.air > 0:
+            fixed = self.ambient_temperature is not None
+            around += [self.room + shift for shift in ([0.0] if fixed else shifts)]
+        return max(
+            abs(sensor + error - celsius)
+            for sensor in self.sensor_temperatures
+            for error in errors
+            for celsius in around
+        )
 
 
 def check_fields(plant: str, given: Iterable[str], *more: str) -> None:

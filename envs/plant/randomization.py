@@ -71,10 +71,10 @@ class ObjectTemperature(_Shift):
 @dataclass(frozen=True, slots=True)
 class Size:
     """Factor on the object's size: log-uniform between low and high, or one of factors, evenly, where these are given.
-    The networks of boxes in mode T follow any size at once; of anything else every size needs one of its own, which
-    takes a second the first time and then comes from the cache, so that factors are SIZES there where none are given
-    (docs/environments.md). Raises InvalidValueError unless 0 < low <= high, and for no factor or one that is not above
-    0."""
+    The networks of most boxes in mode T follow any size at once; of anything else every size needs one of its own,
+    which takes a second the first time and then comes from the cache, so that factors are SIZES there where none are
+    given (docs/environments.md). Raises InvalidValueError unless 0 < low <= high, and for no factor or one that is not
+    above 0."""
 
     factors: tuple[float, ...] | None = None
     low: float = 0.8

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
+    from .boxes import served_anywhere, served_in_the_middle
     from .cores import HeatedCores
     from .electronics import Electronics, ElectronicsState
     from .face_temperature import FaceTemperature, FaceTemperatureState
@@ -27,11 +28,17 @@ __all__ = [
     "SceneHeatState",
     "SceneHeatStep",
     "Thermostats",
+    "served_anywhere",
+    "served_in_the_middle",
 ]
 
 __getattr__ = opened(
     __name__,
     {
+        "boxes": (
+            "served_anywhere",
+            "served_in_the_middle",
+        ),
         "cores": ("HeatedCores",),
         "electronics": (
             "Electronics",

@@ -1,7 +1,7 @@
 """Boxes under fingertips: their networks from heat kernels, made as they are touched, and what goes on in them.
 
-An object remembers MOST_PLACES places, those under fingertips among them; what flowed elsewhere counts as if through
-the nearest of them, or is in its mean.
+An object that is touched anywhere remembers MOST_PLACES places, those under fingertips among them; what flowed
+elsewhere counts as if through the nearest of them, or is in its mean. Any other has one on each face, in the middle.
 
 B: rows, F: fingertips, S: substeps.
 """
@@ -33,12 +33,18 @@ from ...thermal.batch import (
     tip_residues,
 )
 from ...thermal.kernels import Patches, Resolution, box_side, tip
+from ..bodies import ObjectSpec
 from ..footprint import GraspBody
 from ..limits import LEAST_TOLERANCE
 from .places import BOX_ROW, MOST_PLACES, Place, Rectangle, Touched, place_of, strayed
 
 MOST_DIFFERENCE = 15.5
 """K between sensor and object up to which a tolerance is meant to be kept."""
+_MIDDLES_SHARE = 3e-3
+"""Largest error of the drop where fingertips are in the middle of the faces of a box that is LEAST_SIDE thick and CLEAR
+sensors wide, as a share of the difference: 1.9e-3 of 300 drawn boxes of any material, beside networks of one touch,
+whose own is thermal/network/boxes.py's SHARE."""
+_CLEAR, _LEAST_SIDE = 1.2, 0.01  # m
 _SOON = 1.0  # s, how warm a place will be then decides whether it is remembered
 _KEPT = 512  # networks
 
@@ -49,8 +55,7 @@ class BoxHeat:
     """The boxes among `rows` rows. dt: s of a heat sample. tolerance: K."""
 
     def __init__(self, rows: int, tolerance: float, dt: float) -> None:
-        self._level = FIXED_LEVEL if tolerance >= LEAST_TOLERANCE else None
-        self._dt = dt
+        self._tolerance, self._dt = tolerance, dt
         self._tips = 0
         self._stack: SensorStack | None = None
         self._bodies: dict[int, tuple[GraspBody, float]] = {}
@@ -62,28 +67,22 @@ class BoxHeat:
     @property
     def rung(self) -> str:
         """The model's name."""
-        level = self._of_level
+        level = FIXED_LEVEL
         return f"kernels:{level.rates}x{level.patterns}"
 
     def serves(self, body: GraspBody, difference: float) -> bool:
         """Whether it keeps the tolerance for that object, that is up to difference K from a sensor."""
-        spec = body.spec
-        return (
-            self._level is not None
-            and body.anywhere
-            and difference <= MOST_DIFFERENCE
-            and body.mode == "T"
-            and spec.shape == "box"
-            and not spec.parts
-            and spec.reservoir is None
-            and self._stack in (None, body.stack)
-        )
+        if body.mode == "O" or self._stack not in (None, body.stack):
+            return False
+        if body.anywhere:
+            return served_anywhere(body.spec, self._tolerance) and difference <= MOST_DIFFERENCE
+        return body.any_size and served_in_the_middle(body.spec, body.stack, self._tolerance, difference)
 
     def start(self, row: int, body: GraspBody, film: float) -> None:
         """The row's object is this one, touched nowhere yet, in air of W/(m2 K), its state zeros."""
         if self._stack is None:
             self._stack, self._tips = body.stack, body.fingertips
-            level = self._of_level
+            level = FIXED_LEVEL
             whole = tip(body.stack, _whole(body.stack), level).side
             self.tables = fixed_tables(
                 len(self._rows), self._tips, MOST_PLACES, level.patterns, whole, self._dt
@@ -93,6 +92,7 @@ class BoxHeat:
         record = self._rows[row]
         record["size"], record["face"], record["boxed"] = body.spec.size, -1, 1
         record["normal"] = 3 - int(body.law["across"].sum())
+        record["middled"] = not body.anywhere
         self.tables.links[row] = 0
         self.tables.links[row, WHERE : WHERE + self._tips] = -1
 
@@ -104,9 +104,7 @@ class BoxHeat:
 
     def wait(self, row: int, state: np.ndarray) -> None:
         """The row's network is made before anything touches it, with places in the middle of its faces."""
-        middles = np.zeros((2, 3))
-        middles[:, self._rows["normal"][row]] = -1.0, 1.0
-        self.settle(row, [0], middles, state)
+        self.settle(row, [0], self._middles(row), state)
 
     def strayed(self, force: np.ndarray, place: np.ndarray, samples: int) -> list[tuple[int, int, list[int]]]:
         """(sample, row, fingertips) of those that begin to press in that one of a step's samples where they have no
@@ -126,6 +124,8 @@ class BoxHeat:
         touched, record, tables = self._touched[row], self._rows[row], self.tables
         body, _ = self._bodies[row]
         size, width = body.spec.size, body.stack.width
+        if record["middled"]:
+            middles = self._middles(row)
         new = [f for f in range(self._tips) if touched.contacts[f] < 0 and f not in fingertips]
         before = fixed_heat(tables, row, state)
         for f in (*fingertips, *new):
@@ -181,10 +181,11 @@ class BoxHeat:
         """The row's network is that of these places; its state is left alone."""
         self._make(row, touched)
 
-    @property
-    def _of_level(self) -> Resolution:
-        assert self._level is not None
-        return self._level
+    def _middles(self, row: int) -> np.ndarray:
+        """(F, 3) m of the faces that the fingers close on."""
+        middles = np.zeros((2, 3))
+        middles[:, self._rows["normal"][row]] = -1.0, 1.0
+        return middles
 
     def _element(self, row: int, fingertip: int) -> int:
         return int(self.tables.links[row, WHERE + self._tips + fingertip])
@@ -210,7 +211,7 @@ class BoxHeat:
         """The tables of the row's box and elements are those of these places."""
         tables, record, last = self.tables, self._rows[row], self._touched[row]
         body, film = self._bodies[row]
-        size, stack, level = body.spec.size, body.stack, self._of_level
+        size, stack, level = body.spec.size, body.stack, FIXED_LEVEL
         with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
             if touched.places != last.places:
                 places = touched.places
@@ -228,6 +229,21 @@ class BoxHeat:
                     )
         self._touched[row] = touched
         set_gram(tables, row)
+
+
+def served_anywhere(spec: ObjectSpec, tolerance: float) -> bool:
+    """Whether heat kernels keep the tolerance K of that object wherever it is touched."""
+    return _plain(spec) and tolerance >= LEAST_TOLERANCE
+
+
+def served_in_the_middle(spec: ObjectSpec, stack: SensorStack, tolerance: float, difference: float) -> bool:
+    """Whether they keep it where a sensor, difference K warmer or cooler at most, is in the middle of a face."""
+    roomy = min(spec.size) >= max(_LEAST_SIDE, _CLEAR * stack.width)
+    return _plain(spec) and roomy and _MIDDLES_SHARE * difference <= tolerance
+
+
+def _plain(spec: ObjectSpec) -> bool:
+    return spec.shape == "box" and not spec.parts and spec.reservoir is None
 
 
 def _whole(stack: SensorStack) -> Rectangle:

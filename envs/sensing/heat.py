@@ -337,7 +337,7 @@ class GraspHeat:
         """The row is a box, all at its first temperature and touched nowhere yet."""
         body, record = self._things[row], self._rows[row]
         self._boxes.start(row, body, self._air)
-        record["lasting"], record["fed"], record["network"] = 1, 0, 0
+        record["lasting"], record["fed"], record["network"] = body.anywhere, 0, 0
         record["capacity"] = body.box_capacity
         self._make_room()
 

@@ -21,6 +21,7 @@ from ...thermal.batch import (
     advance_row,
     fingertips_of,
     fixed_room,
+    forget_fixed,
     forget_row,
 )
 from ...thermal.contact import FLAT, conductance, footprint
@@ -110,6 +111,8 @@ def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *nu
                 for f in range(tips):
                     if tables.links[b, WHERE + f] < 0:
                         conducts[k, f] = 0.0
+                if row.lasting == 0 and _renewed(one, conducts, k):
+                    forget_fixed(tables, b, state[b])
                 advance_fixed(
                     tables, b, state[b], conducts[k], row.difference, row.ambient, room, reading, 0, k
                 )

@@ -32,10 +32,12 @@ BOX_ROW = np.dtype(
         ("face", "i8", (2,)),
         ("normal", "i8"),
         ("boxed", "u1"),
+        ("middled", "u1"),
     ]
 )
 """Of a row, for compiled code. size: m. pad, face: of each fingertip's place, see Place; face -1 for none. normal: the
-axis on which the fingers close. boxed: whether it is a box at all."""
+axis on which the fingers close. boxed: whether it is a box at all. middled: wherever a fingertip touches, its place is
+the middle of the face."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +157,7 @@ def strayed(rows, force, place, tips, width, found):
             pressed = False
             for s in range(force.shape[1]):
                 pressed |= force[b, s, f] > 0
-            if pressed and _away(row, f, place[b, f], width):
+            if pressed and (row.face[f] < 0 if row.middled else _away(row, f, place[b, f], width)):
                 found[count, 0], found[count, 1] = b, f
                 count += 1
     return count

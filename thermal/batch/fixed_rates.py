@@ -273,6 +273,24 @@ def fixed_room(ports):
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def forget_fixed(tables, i, x):
+    """The heat of row i's box, state x in place, is evenly in it from now on, for compiled callers."""
+    slow, body, index = tables.slow[i], tables.body[i], tables.links[i]
+    most = tables.places * tables.patterns
+    heats, still = most * most, most * most + most
+    used, aired = index[USED] * tables.patterns, index[AIRED] > 0
+    capacity = slow[HELD] * slow[HELD]
+    heat = _held(slow, body, heats, still, x, used, aired)
+    if aired:
+        for r in range(RATES):
+            capacity += body[still, r]
+    mean = heat / capacity
+    x[0] = slow[HELD] * mean
+    x[1 : 1 + RATES] = mean
+    x[1 + RATES : 1 + RATES * (1 + most)] = 0.0
+
+
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def advance_fixed(tables, i, x, conductance, difference, around, room, reading, b, k):
     """One step of row i, state x in place, for compiled callers. conductance: (F,) W/K, 0 of a fingertip without a
     place. difference: (F,) K, what element less box was when both were uniform. around: K, the air above the box's

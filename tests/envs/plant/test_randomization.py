@@ -23,6 +23,7 @@ from thermograsp.envs import (
     ThermostatError,
     action_of,
 )
+from thermograsp.envs.plant.config import SimulationConfig
 from thermograsp.envs.plant.randomization import CAUSES
 from thermograsp.errors import InvalidValueError
 
@@ -53,7 +54,7 @@ def test_a_cause_is_drawn_within_its_range_and_told(cause):
         assert list(info["randomized"]) == [name]
         drawn.append(info["randomized"][name])
     if isinstance(cause, Size):
-        assert set(drawn) <= set(cause.in_steps().factors or ())
+        assert all(cause.low < value < cause.high for value in drawn) and len(set(drawn)) == len(drawn)
     elif isinstance(cause, Delay):
         assert set(drawn) <= set(range(cause.most + 1))
     else:
@@ -61,6 +62,23 @@ def test_a_cause_is_drawn_within_its_range_and_told(cause):
     env.reset(seed=0)
     again = env.reset(seed=0)[1]["randomized"][name]
     assert again == drawn[0]
+
+
+@pytest.mark.parametrize(
+    "keywords",
+    [
+        {"objects": ObjectSpec(shape="cylinder", size=(0.05, 0.05, 0.06))},
+        {"objects": ObjectSpec(size=(0.009, 0.04, 0.04))},
+        {"tolerance": 0.03},
+        {"object_temperature": 10.0},
+        {"mode": "O"},
+    ],
+    ids=["cylinder", "thin", "tolerance", "cold", "O"],
+)
+def test_sizes_are_drawn_by_steps_where_each_needs_a_network_that_is_searched(keywords):
+    config = SimulationConfig(**keywords, randomize=[Size()])
+    assert config.causes == (Size((0.8, 0.9, 1.0, 1.1, 1.2)),) and not config.any_size
+    assert not SimulationConfig(randomize=[Mass()]).any_size and SimulationConfig(randomize=[Size()]).any_size
 
 
 def test_causes_do_what_they_say():

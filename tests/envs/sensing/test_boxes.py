@@ -236,6 +236,45 @@ def test_drawn_sizes_vector_and_single_agree_bit_for_bit():
                 assert np.array_equal(value[0], together.observation[key][row])
 
 
+@pytest.mark.parametrize("name", ["cotton", "glass", "stainless_steel", "aluminium"])
+def test_a_box_of_any_size_is_touched_in_the_middle_as_one_whose_network_is_searched(name):
+    """Pressed, let go and pressed beside the first place, where only the object's mean is remembered."""
+    spec = ObjectSpec(size=(0.0331, 0.0417, 0.038), mass=0.1, friction=0.8)
+    searched = GraspBody(spec, thermal.material(name), 24.0, "T", STACK, ambient=20.0)
+    heat = heat_of(replace(searched, any_size=True), searched, tolerance=0.05, air=5.0)
+    assert heat.rung(0).startswith("kernels") and heat.rung(1).startswith("network")
+    middles, found, events = spec.element_places, [], []
+    for seconds, at in ((2.0, middles), (0.5, None), (2.0, middles + [0, 0.008, 0])):
+        told = press(heat, seconds, at, at)
+        found += [each.drop for each in told]
+        events.append([row["events"].tolist() for row in told[0].info])
+        for each in told:
+            kernels = each.info[0]
+            assert abs(kernels["imbalance"]) < 1e-10 * max(kernels["exchanged"], 1.0)
+    assert all(kernels == network for kernels, network in events)
+    drops = np.concatenate(found, axis=1)
+    # tolerances are promised from .05 s after a touch on
+    late = np.ones(drops.shape[1], bool)
+    for begun in (0, 200, 250):
+        late[begun : begun + 5] = False
+    assert np.abs(drops[0] - drops[1])[late].max() < 0.05
+    assert np.abs(drops).max() > 0.2 and len(heat._boxes.touched(0).places) == 2
+
+
+def test_everything_drawn_searches_nothing_and_keeps_nothing(monkeypatch: pytest.MonkeyPatch):
+    """As shipped but for what is drawn."""
+    monkeypatch.setattr("thermograsp.envs.sensing.networks.network_for", None)
+    batch = GraspBatch(3, randomize=EVERYTHING)
+    for episode in range(3):
+        batch.reset(range(3), [np.random.default_rng(3 * episode + i) for i in range(3)])
+        for _ in range(70):
+            batch.step(grasp_action(batch))
+        assert batch.reading is not None
+        truth = batch.reading.truth
+        assert all(rung.startswith("kernels") for rung in truth["rung"])
+        assert np.abs(truth["temperature_drop"]).min() > 0
+
+
 def test_however_many_sizes_and_places_are_drawn_what_is_kept_stays_the_same():
     boxes_module._network.cache_clear()
     heat, rng, kept = heat_of(thing(), thing()), np.random.default_rng(0), []
