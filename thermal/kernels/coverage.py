@@ -3,8 +3,10 @@
 Those of one touch follow from what lies on its two sides, at a few moments and conductances. Those of any touch are
 found once per coverage, for four materials, sheets and edges together, so that a fingertip keeps the same states
 whatever it touches. That is what most of the error of fixed rates comes from: over 150 drawn overlaps of a face with a
-box (12 rates, 3 patterns) 22 were more than .05 K of 12 off, at most .148; on each touch's own patterns 5, at most
-.064. P: patterns known (patterns.py), M: kept, N: contacts.
+box (12 rates, 3 patterns) 22 were more than .05 K of 12 off, at most .15; on each touch's own patterns 5, at most .06.
+The judge was studies/laplace_judge.py at its coarse resolution, which is itself up to .016 K off.
+
+P: patterns known (patterns.py), M: kept, N: contacts.
 """
 
 from __future__ import annotations
