@@ -163,7 +163,8 @@ build/.backends: PINS := torch==2.13.0 mujoco-mjx==3.17.0
 build/.view: EXTRA := [test]
 build/.view: PINS := playwright
 build/.rl: EXTRA := [test,rl]
-build/.rl: PINS := torch==2.13.0 torchrl
+# RLlib by its parts: its extra holds Gymnasium back for all the other tiers.
+build/.rl: PINS := torch==2.13.0 torchrl ray dm-tree lz4 ormsgpack pyyaml pandas tensorboardX requests pyarrow fsspec pydantic
 build/.grippers: EXTRA := [test,grippers]
 # Of robosuite only the files are read, and what it depends on holds numpy back.
 build/.grippers: ALONE := robosuite==1.5.2
