@@ -116,11 +116,9 @@ class GraspBody:
         return Geometry(self.stack, self.material, self.mode, area, "square", self.plate, self.fingertips)
 
     def contact(self, force: np.ndarray) -> ContactArea:
-        """Areas and force share at that normal force N on a pad, where the fingers are to close on it."""
-        if self.mode == "O":
-            return self._contact(force, (0.0, 0.0))
-        aside = self.spec.position[1 if self._across[0] == 1 else 0]
-        return self._contact(force, (aside, self.spec.grasp_height - self.spec.size[2] / 2))
+        """Areas and force share at that normal force N on a pad, at the height at which the fingers are to close."""
+        up = 0.0 if self.mode == "O" else self.spec.grasp_height - self.spec.size[2] / 2
+        return self._contact(force, (0.0, up))
 
     def _contact(self, force: np.ndarray, offset: tuple[float, float]) -> ContactArea:
         """The same of a pad whose middle is so far from the object's, m across and up. A mesh has its own place."""
