@@ -144,7 +144,7 @@ def _scenes(axes: Axes, scenes: Sequence[Record]) -> None:
     for row, each in zip(rows, scenes, strict=True):
         low, high = each["quartiles"]
         axes.text(0.01, row, each["scene"], va="center", color="white", size=9)
-        axes.text(high + 0.01, row, f"{each['ratio']:.2f}", va="center", color=INK)
+        axes.text(max(high, 1.0) + 0.01, row, f"{each['ratio']:.2f}", va="center", color=INK)
         axes.plot((low, high), (row, row), color=INK, lw=1.2)
     axes.axvline(1.0, color=FAINT, lw=1.0, ls=(0, (4, 3)))
     axes.set_yticks([])
