@@ -36,7 +36,7 @@ ELSEWHERE = {
     "docs/engines.md": {"python mjlab"},
     "docs/hardware.md": {"python lerobot"},
     "docs/learning.md": {"python policy"},
-    "docs/howto.md": {"python rl", "python tensorboard", "python torchrl"},
+    "docs/howto.md": {"python rl", "python rllib", "python tensorboard", "python torchrl"},
 }
 """Kinds of blocks that tests of other folders run, by page."""
 PORTS = {"/dev/ttyACM0": "tips", "/dev/ttyUSB0": "gripper"}

@@ -13,7 +13,6 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError
 
-from ..numerics import FAST
 from .area import ContactArea, Pad
 from .law import CONTACT_LAW, CYLINDER, FLAT, SPHERE, cylinder_law, flat_law, sphere_law
 from .rough_faces import Joint
@@ -74,7 +73,7 @@ def _followed(pad: Pad, law: np.void, **numbers: float | np.ndarray) -> np.void:
     return record[0]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def footprint(law, force, place):
     """(area m2 on the face, its force N) at a normal force N > 0 on the pad.
 
@@ -101,7 +100,7 @@ def footprint(law, force, place):
     return _from_table(law, force)
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _overlap(law, place):
     """(m2 on the pad, m2 on the face) under a flat object."""
     on_pad, on_face = 1.0, 1.0
@@ -112,14 +111,14 @@ def _overlap(law, place):
     return on_pad, on_face
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _common(half, other, offset):
     """m, that two intervals of these half widths have in common, their middles that far apart."""
     off = abs(offset)
     return max(min(half, other - off) + min(half, other + off), 0.0)
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _from_table(law, force):
     """Between two forces the area is a power of the force, and below the first as between the first two."""
     last = len(law.areas) - 2

@@ -13,13 +13,11 @@ import math
 
 from thermograsp.compiled import njit
 
-from ..numerics import FAST
-
 _STEPS = 60
 _CLOSE = 1e-9  # of the load: Newton's next step from there is exact to rounding
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def ball_on_pad(load, ratio, pad, face, y, z):
     """(area m2 on the pad, area m2 on the face, the face's load m4) under a ball.
 
@@ -37,7 +35,7 @@ def ball_on_pad(load, ratio, pad, face, y, z):
     return on_pad[0], on_face[0], ratio * on_face[1]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def cylinder_on_pad(load, ratio, pad, face, along_pad, along_face, x):
     """The same under a cylinder. along_pad, along_face: m of it that lie over the pad and over the face. x: m, where
     its line of contact is from their middle, across it. pad, face: m, half of what they are wide that way."""
@@ -53,7 +51,7 @@ def cylinder_on_pad(load, ratio, pad, face, along_pad, along_face, x):
     return along_pad * a[0], along_face * b[0], ratio * along_face * b[1]
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, inner=True, error_model="numpy")
 def _strip_square(load, more, pad, face, along_pad, x):
     """m2, a^2."""
     first = 2 * (along_pad * pad + more * face)
@@ -71,7 +69,7 @@ def _strip_square(load, more, pad, face, along_pad, x):
     return square
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, inner=True, error_model="numpy")
 def _ball_square(load, ratio, pad, face, y, z):
     """m2, a^2."""
     area, moment = 4 * pad * pad, 4 * pad * pad * (2 / 3 * pad * pad + y * y + z * z)
@@ -91,7 +89,7 @@ def _ball_square(load, ratio, pad, face, y, z):
     return square
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _strip(square, half, x):
     """(m, m3): over a width of 2 half whose middle is x from the line of contact, what is touched, and the integral of
     a^2 - r^2 over it."""
@@ -100,7 +98,7 @@ def _strip(square, half, x):
     return high - low, square * (high - low) - (high**3 - low**3) / 3
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _corners(square, half, y, z):
     """(m2, m4): of the disc and a square of half width `half` whose middle is y, z from its centre, the area in common
     and the integral of a^2 - r^2 over it."""
@@ -119,7 +117,7 @@ def _corners(square, half, y, z):
     return max(area, 0.0), max(load, 0.0)
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, inner=True, error_model="numpy")
 def _quarter(square, reach, v, w):
     """The same for a rectangle of sides v and w, m, at most `reach`, the disc's radius, that has a corner in the
     disc's centre."""

@@ -24,6 +24,7 @@ from thermograsp.envs.bodies.object_solids import object_solid
 from thermograsp.envs.limits import LEAST_TOLERANCE
 from thermograsp.envs.sensing.heat import GraspHeat
 from thermograsp.envs.sensing.touches import first_touches
+from thermograsp.thermal.batch import FIXED_LEVEL
 from thermograsp.thermal.kernels import Patches, box_side, tip
 from thermograsp.thermal.meshes.touched import field_carried, surface_normal
 
@@ -205,7 +206,7 @@ def test_two_fingers_warm_a_small_block_as_the_two_port_network_says():
         place, force = spec.element_places[None], np.full((1, 10, 2), 10.0)
         told = [heat.advance(force, place).info[0] for _ in range(250)][-1]
         rise[tips] = told["object_temperature"] - 24.0
-        level = heat._boxes._of_level
+        level = FIXED_LEVEL
         sensor = tip(STACK, ((0.0, 0.009), (0.0, 0.009)), level)
         patches = Patches(np.arange(tips), np.full((tips, 2), 0.01), np.full((tips, 2), 0.0045))
         size = (0.02, 0.02, 0.02)
