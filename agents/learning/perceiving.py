@@ -18,10 +18,12 @@ from .tasks import LearningTask
 class Perceiving(VecEnvWrapper):
     """`num_envs` environments of a task. raw: the observations (B, ...) as they are, of the last step. batch: the
     environments' core, which knows the truth. An action lasts REPEAT control steps, and the time limit is part of the
-    task."""
+    task. practice: with what differs while a teacher is imitated."""
 
-    def __init__(self, task: LearningTask, num_envs: int, heat: bool, load: bool) -> None:
-        env = task.make(num_envs)
+    def __init__(
+        self, task: LearningTask, num_envs: int, heat: bool, load: bool, practice: bool = False
+    ) -> None:
+        env = task.make(num_envs, practice)
         self.inputs = Inputs(heat, load, goals_of(env))
         self.batch: Any = env.unwrapped.batch  # pyright: ignore[reportAttributeAccessIssue]
         self.raw: Any = {}

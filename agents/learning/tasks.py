@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
@@ -16,16 +16,19 @@ from thermograsp.errors import unknown_name
 
 @dataclass(frozen=True, slots=True)
 class LearningTask:
-    """An environment and its keywords. name: of this task, as in `thermograsp train NAME`."""
+    """An environment and its keywords. name: of this task, as in `thermograsp train NAME`. practice: keywords that are
+    different while a teacher is imitated."""
 
     name: str
     env_id: str
     keywords: Mapping[str, Any]
+    practice: Mapping[str, Any] = field(default_factory=dict)
 
-    def make(self, num_envs: int) -> gymnasium.vector.VectorEnv:
+    def make(self, num_envs: int, practice: bool = False) -> gymnasium.vector.VectorEnv:
         """`num_envs` of them in one array step."""
+        keywords = {**self.keywords, **(self.practice if practice else {})}
         return gymnasium.make_vec(
-            self.env_id, num_envs=num_envs, vectorization_mode="vector_entry_point", **self.keywords
+            self.env_id, num_envs=num_envs, vectorization_mode="vector_entry_point", **keywords
         )
 
 
@@ -33,7 +36,8 @@ TASKS: Mapping[str, LearningTask] = MappingProxyType(
     {
         each.name: each
         for each in (
-            LearningTask("grasp", "thermograsp/Grasp-v0", STAKES),
+            # No success ends practice, so that the agent learns to go on holding.
+            LearningTask("grasp", "thermograsp/Grasp-v0", STAKES, {"hold_seconds": STAKES["seconds"]}),
             LearningTask("identify", "thermograsp/Identify-v0", {}),
             LearningTask("sort", "thermograsp/Sort-v0", {}),
             LearningTask("hotter", "thermograsp/Sort-v0", {"goal": "hotter"}),

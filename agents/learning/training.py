@@ -79,6 +79,7 @@ class Training:
         self._state: dict[str, Any] = {**self.about, "rounds_done": 0, "evaluations": []}
         self._take_up(resume)
         torch.set_num_threads(1)
+        self._practice = Perceiving(task, self.recipe.num_envs, heat, load, practice=True)
         self._env = Perceiving(task, self.recipe.num_envs, heat, load)
         self._judging = task.make(self.recipe.evaluated)
         made_folder(self.out)
@@ -99,6 +100,7 @@ class Training:
             self._env.seed(self.seed * 100_000 + _PPO + self._model.num_timesteps)
             self._model.learn(left, callback=_Checkpoints(self), reset_num_timesteps=False)
             self.evaluate("ppo")
+        self._practice.close()
         self._env.close()
         self._judging.close()
         return dict(self.best)
@@ -139,9 +141,9 @@ class Training:
     def _imitation(self) -> None:
         """The rounds that are left."""
         recipe, seen = self.recipe, self._seen()
-        teacher = TEACHERS[self.task.name](self._env.batch)
+        teacher = TEACHERS[self.task.name](self._practice.batch)
         while (done := self._state["rounds_done"]) < recipe.rounds:
-            self._env.seed(self.seed * 100_000 + done * _ROUND)
+            self._practice.seed(self.seed * 100_000 + done * _ROUND)
             steps = self.steps
 
             def advance(more: int) -> None:
@@ -150,7 +152,7 @@ class Training:
                 self.tell("imitation", steps)
 
             agent = self._mean_action if done else None
-            new = watched(self._env, teacher, agent, self._per_round, recipe.gamma, advance)
+            new = watched(self._practice, teacher, agent, self._per_round, recipe.gamma, advance)
             seen = new if seen is None else seen.and_also(new)
             error = imitate(self._model.policy, seen, recipe, self.seed + done)
             self._model.logger.record("imitation/error", error)
