@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -19,21 +20,30 @@ def imports_by_syntax(module: str) -> set[str]:
     waiting = [module]
     while waiting:
         name = waiting.pop()
-        parts = name.split(".")
-        folder = ROOT.joinpath(*parts[1:])
-        path = folder / "__init__.py" if (folder / "__init__.py").is_file() else folder.with_suffix(".py")
-        if parts[0] != "thermograsp" or name in found or not path.is_file():
-            continue
-        found.add(name)
-        package = parts if path.name == "__init__.py" else parts[:-1]
-        for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.Import):
-                waiting += [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom):
-                base = package[: len(package) + 1 - node.level] if node.level else []
-                origin = ".".join([*base, *([node.module] if node.module else [])])
-                waiting += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
+        if name not in found and (imported := imports_of(name)) is not None:
+            found.add(name)
+            waiting += imported
     return found
+
+
+@cache
+def imports_of(module: str) -> tuple[str, ...] | None:
+    """By one source of ours; None for what is no module of ours."""
+    parts = module.split(".")
+    folder = ROOT.joinpath(*parts[1:])
+    path = folder / "__init__.py" if (folder / "__init__.py").is_file() else folder.with_suffix(".py")
+    if parts[0] != "thermograsp" or not path.is_file():
+        return None
+    package = parts if path.name == "__init__.py" else parts[:-1]
+    found: list[str] = []
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) + 1 - node.level] if node.level else []
+            origin = ".".join([*base, *([node.module] if node.module else [])])
+            found += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
+    return tuple(found)
 
 
 @pytest.mark.parametrize(
