@@ -113,7 +113,7 @@ BEHIND_TRAINING = {
     ("agents/learning/perceiving.py", "stable_baselines3"),
     ("agents/learning/training.py", "torch"),
 }
-"""Imported after training.py has found stable-baselines3, which brings PyTorch."""
+"""The command comes to them when training.py has found stable-baselines3, which brings PyTorch."""
 BY_MJLAB = {(f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "keep_cube", "sort_cubes", "tasks")}
 """mjlab itself imports its tasks; the door goes on without it."""
 WHERE_INSTALLED = {("benchmarks/speed/fetch.py", "gymnasium_robotics")}

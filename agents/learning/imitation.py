@@ -11,7 +11,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports]
+
+from thermograsp.errors import MissingDependencyError, install
+
+try:
+    import torch  # pyright: ignore[reportMissingImports]
+except ImportError as error:
+    raise MissingDependencyError(f"PyTorch is not installed: {install('rl')}") from error
 
 from .inputs import REPEAT
 from .perceiving import Perceiving

@@ -6,9 +6,14 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from stable_baselines3.common.vec_env import VecEnvWrapper  # pyright: ignore[reportMissingImports]
 
 from thermograsp.envs.sb3 import StableBaselinesVecEnv
+from thermograsp.errors import MissingDependencyError, install
+
+try:
+    from stable_baselines3.common.vec_env import VecEnvWrapper  # pyright: ignore[reportMissingImports]
+except ImportError as error:
+    raise MissingDependencyError(f"stable-baselines3 is not installed: {install('rl')}") from error
 
 from .agent import goals_of
 from .inputs import REPEAT, Inputs, Memory
