@@ -11,19 +11,22 @@ C: patterns of a patch, S: samples, M: lateral eigenfunctions.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from ..matter import Layer
+from .lateral_sum import lateral_sum
 from .patch import Patch
-from .section import Section
+from .section import Rectangle, Section
 
 Far = Literal["adiabatic", "isothermal"]
 
 _LOG_STEP = 0.3  # trapezoidal rule in ln(tau): relative error exp(-pi^2 / step)
 _NEGLIGIBLE_DEPTH = 20.0  # wave numbers times depth beyond which the far side is not seen, exp(-2 * 20)
+_MOST_MODES = 5e4  # of a rectangle, summed one by one; more are interpolated
 _DECAYED = 45.0  # exponent of a kernel that is below round-off
 
 
@@ -151,15 +154,20 @@ def stack_profile(
 def layered_impedance(
     layers: tuple[Layer, ...], far: Far, section: Section, patch: Patch, s: np.ndarray
 ) -> Sampled:
-    """Impedance of a stack, near face first, for real s (S,) > 0, an adiabatic stack's pole at 0 included."""
+    """Impedance of a stack, near face first, for real s (S,) > 0, an adiabatic stack's pole at 0 included. A thin
+    first layer takes no more memory than a thick one: what lies behind it is then interpolated between wave numbers."""
     near = layers[0]
-    kappa2, overlaps = section.modes(patch, _NEGLIGIBLE_DEPTH / near.thickness)
 
-    def correction(at: np.ndarray) -> np.ndarray:
+    def correction(at: np.ndarray, kappa2: np.ndarray) -> np.ndarray:
         half_space = 1 / (near.conductivity * np.sqrt(at / near.diffusivity + kappa2))
         return stack_impedance(layers, far, at, kappa2) - half_space
 
-    return half_space_impedance(near, section, patch, s) + _sum_modes(correction, s, overlaps, overlaps)
+    first = half_space_impedance(near, section, patch, s)
+    seen = _NEGLIGIBLE_DEPTH / near.thickness
+    if isinstance(section, Rectangle) and (seen / np.pi) ** 2 * section.half_x * section.half_y > _MOST_MODES:
+        return first + _complex_step(lambda at: lateral_sum(section, patch, patch)(correction, at), s)
+    kappa2, overlaps = section.modes(patch, seen)
+    return first + _sum_modes(lambda at: correction(at, kappa2), s, overlaps, overlaps)
 
 
 def transfer_impedance(
@@ -175,9 +183,18 @@ def transfer_impedance(
     )
 
 
-def _sum_modes(function, s: np.ndarray, left: np.ndarray, right: np.ndarray) -> Sampled:
+def _sum_modes(
+    function: Callable[[np.ndarray], np.ndarray], s: np.ndarray, left: np.ndarray, right: np.ndarray
+) -> Sampled:
     """Sum over the eigenfunctions of left^T f(s, kappa) right, its slope by a complex step."""
     tiny = 1e-30
     values = function((s * (1 + 1j * tiny))[:, None])
     slopes = values.imag / (tiny * s[:, None])
     return Sampled((left.T * values.real[:, None]) @ right, (left.T * slopes[:, None]) @ right)
+
+
+def _complex_step(function: Callable[[np.ndarray], np.ndarray], s: np.ndarray) -> Sampled:
+    """A matrix function (S, C, C) at s (S,), and its slope."""
+    tiny = 1e-30
+    values = function(s * (1 + 1j * tiny))
+    return Sampled(values.real, values.imag / (tiny * s[:, None, None]))

@@ -1,5 +1,6 @@
 """Impedances from heat kernels against transmission lines and against sums over eigenfunctions."""
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -165,3 +166,17 @@ def test_uniform_spreading_resistance_of_a_disc() -> None:
     length = np.sqrt(GLASS.diffusivity / 1e-4)
     static = expected - patch.radius**2 / (2 * GLASS.conductivity * length)
     assert patch.uniform @ z @ patch.uniform == pytest.approx(static, rel=1e-3)
+
+
+@pytest.mark.parametrize("far", ["adiabatic", "isothermal"])
+def test_a_layer_is_the_same_where_it_is_cut_a_micrometre_below_its_face(far: Far) -> None:
+    whole, *below = STACK
+    thin, rest = replace(whole, thickness=1e-6), replace(whole, thickness=whole.thickness - 1e-6)
+    section, patch = Rectangle(0.0045, 0.003), SquarePatch(0.002, square=False)
+    expected = layered_impedance(STACK, far, section, patch, S)
+    found = layered_impedance((thin, rest, *below), far, section, patch, S)
+    for at in range(len(S)):
+        scale = np.abs(expected.value[at]).max()
+        np.testing.assert_allclose(found.value[at], expected.value[at], rtol=0, atol=1e-6 * scale)
+        scale = np.abs(expected.slope[at]).max()
+        np.testing.assert_allclose(found.slope[at], expected.slope[at], rtol=0, atol=1e-6 * scale)
