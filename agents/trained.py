@@ -62,7 +62,7 @@ def load_network(path: str | Path) -> Network:
         network = Network(layers, Senses(**setup["senses"]), int(setup["repeat"]), setup["about"])
     except FileNotFoundError as error:
         raise InvalidValueError(f"no file {path}: give one that `thermograsp train` wrote") from error
-    except (KeyError, TypeError, ValueError, BadZipFile) as error:
+    except (AttributeError, EOFError, KeyError, OSError, TypeError, ValueError, BadZipFile) as error:
         raise InvalidValueError(f"{path} holds no trained policy: {error}") from error
     sizes = [SIZE, *(len(bias) for _, bias in layers)]
     if not layers or [weight.shape for weight, _ in layers] != list(zip(sizes[1:], sizes[:-1], strict=True)):

@@ -64,7 +64,7 @@ def load_agent(path: str | Path) -> Agent:
         agent = Agent(setup["task"], Inputs(**setup["inputs"]), layers, setup["about"])
     except FileNotFoundError as error:
         raise InvalidValueError(f"no file {path}: give one that `thermograsp train` wrote") from error
-    except (KeyError, TypeError, ValueError, BadZipFile) as error:
+    except (AttributeError, EOFError, KeyError, OSError, TypeError, ValueError, BadZipFile) as error:
         raise InvalidValueError(f"{path} holds no trained policy: {error}") from error
     sizes = [agent.inputs.size, *(len(bias) for _, bias in layers)]
     if not layers or [weight.shape for weight, _ in layers] != list(zip(sizes[1:], sizes[:-1], strict=True)):
@@ -77,7 +77,7 @@ def is_agent(path: str | Path) -> bool:
     try:
         with np.load(path, allow_pickle=False) as file:
             return "agent" in file.files
-    except (AttributeError, OSError, ValueError, BadZipFile):
+    except (AttributeError, EOFError, OSError, TypeError, ValueError, BadZipFile):
         return False
 
 

@@ -14,6 +14,7 @@ from thermograsp.agents.learning import Agent, learning_task, load_agent, score
 from thermograsp.agents.learning.agent import Acting
 from thermograsp.agents.learning.inputs import AGES, FRAME, REPEAT, Inputs, Memory
 from thermograsp.agents.learning.scoring import wilson
+from thermograsp.agents.policies import load_policy
 from thermograsp.cli import main
 from thermograsp.errors import InvalidValueError, UnknownNameError
 
@@ -139,6 +140,20 @@ def test_an_agent_is_scored_from_its_file(tmp_path: Path) -> None:
     assert score(learning_task("identify"), path, 2).episodes == 2
     with pytest.raises(InvalidValueError, match="12 numbers"):
         score(learning_task("grasp"), path, 1)
+
+
+@pytest.mark.parametrize("kind", ["empty", "text", "array", "folder"])
+def test_a_file_that_holds_no_agent_is_refused(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "one.npz"
+    if kind == "folder":
+        path.mkdir()
+    elif kind == "array":
+        with path.open("wb") as file:
+            np.save(file, np.zeros(3))
+    else:
+        path.write_text("" if kind == "empty" else "nothing")
+    with pytest.raises(InvalidValueError, match="holds no trained policy"):
+        load_policy(path)
 
 
 def test_episodes_that_begin_at_different_times_do_not_disturb_each_other() -> None:
