@@ -173,9 +173,10 @@ class FixedTouch:
                 "this model has no contact sensors for its fingertips and objects: make it by "
                 "thermograsp.touch.prepare(spec, fingertips, objects), or fill a TouchContacts"
             )
-        if record.ndim not in (2, 3) or record.shape[-1] != places.size:
+        if getattr(record, "ndim", 0) not in (2, 3) or record.shape[-1] != places.size:
+            found = tuple(record.shape) if hasattr(record, "shape") else type(record).__name__
             raise InvalidValueError(
-                f"a record must have the shape (worlds, substeps, {places.size}), got {tuple(record.shape)}"
+                f"a record must have the shape (worlds, substeps, {places.size}), got {found}"
             )
         if record.ndim == 2:
             record = record[:, None]
@@ -220,8 +221,8 @@ class FixedTouch:
     ) -> tuple[FixedTouchState, FixedTouchReading]:
         """State and reading dt later. noise: (B, F) standard normal numbers; 0 for electronics without noise. Raises
         InvalidValueError for contacts of another shape."""
-        xp = namespace_of(state.heat)
         self._check(state, contacts)
+        xp = namespace_of(state.heat)
         expected, given = tuple(state.signal.last.shape), tuple(getattr(noise, "shape", ()))
         if given not in ((), expected):
             raise InvalidValueError(f"noise must be a number or have the shape {expected}, got {given}")
@@ -267,6 +268,10 @@ class FixedTouch:
         return (network if len(self.tables.decay) > 1 else 0), pairs + first
 
     def _check(self, state: FixedTouchState, contacts: TouchContacts) -> None:
+        if not isinstance(state, FixedTouchState):
+            raise InvalidValueError(
+                f"advance takes a FixedTouchState, got {type(state).__name__}: begin with the one of start()"
+            )
         if not isinstance(contacts, TouchContacts):
             raise InvalidValueError(
                 f"advance takes TouchContacts, got {type(contacts).__name__}: for recorded sensordata "

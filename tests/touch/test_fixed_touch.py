@@ -246,6 +246,12 @@ def test_what_cannot_be_is_refused() -> None:
         fixed.advance(state, contacts._replace(geom_turn=contacts.geom_turn[..., 0]))
     with pytest.raises(InvalidValueError, match="a record must have the shape"):
         fixed.contacts(part[..., 1:])
+    with pytest.raises(InvalidValueError, match="a record must have the shape.*NoneType"):
+        fixed.contacts(None)
+    with pytest.raises(InvalidValueError, match="advance takes a FixedTouchState, got NoneType"):
+        fixed.advance(None, contacts)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(InvalidValueError, match="advance takes TouchContacts, got NoneType"):
+        fixed.advance(state, None)  # pyright: ignore[reportArgumentType]
     for worlds in (0, 1, 5, 2.5):
         with pytest.raises(InvalidValueError, match="worlds must be"):
             fixed.start(worlds)  # pyright: ignore[reportArgumentType]
