@@ -48,9 +48,11 @@ class Called:
         """(B, n) float32 for copies of the observations."""
         given = {name: values.copy() for name, values in observation.items()}
         action = np.asarray(self._act(given), np.float32)
-        if action.shape != self._shape or not np.isfinite(action).all():
+        if action.shape != self._shape:
             raise InvalidValueError(
-                f"policy {self._name!r} returned actions of shape {action.shape}: it must return finite numbers "
-                f"of shape {self._shape}"
+                f"policy {self._name!r} returned actions of shape {action.shape}: it must return {self._shape}"
             )
+        if not np.isfinite(action).all():
+            wrong = float(action[~np.isfinite(action)][0])
+            raise InvalidValueError(f"policy {self._name!r} returned {wrong}: it must return finite numbers")
         return action
