@@ -189,12 +189,12 @@ def _sum_modes(
     """Sum over the eigenfunctions of left^T f(s, kappa) right, its slope by a complex step."""
     tiny = 1e-30
     values = function((s * (1 + 1j * tiny))[:, None])
-    slopes = values.imag / (tiny * s[:, None])
-    return Sampled((left.T * values.real[:, None]) @ right, (left.T * slopes[:, None]) @ right)
+    slopes = np.imag(values) / (tiny * s[:, None])
+    return Sampled((left.T * np.real(values)[:, None]) @ right, (left.T * slopes[:, None]) @ right)
 
 
 def _complex_step(function: Callable[[np.ndarray], np.ndarray], s: np.ndarray) -> Sampled:
     """A matrix function (S, C, C) at s (S,), and its slope."""
     tiny = 1e-30
     values = function(s * (1 + 1j * tiny))
-    return Sampled(values.real, values.imag / (tiny * s[:, None, None]))
+    return Sampled(np.real(values), np.imag(values) / (tiny * s[:, None, None]))
