@@ -177,6 +177,9 @@ def without(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Hide:
                 monkeypatch.delitem(sys.modules, name)
         ours = packaged(file).removesuffix(".py").replace("/", ".")
         monkeypatch.delitem(sys.modules, f"thermograsp.{ours}", raising=False)
+        package, _, name = f"thermograsp.{ours}".rpartition(".")
+        if name in vars(sys.modules.get(package, object)):
+            monkeypatch.delattr(sys.modules[package], name)
         monkeypatch.setitem(sys.modules, module, None)
 
     monkeypatch.chdir(tmp_path)

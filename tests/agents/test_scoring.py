@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from thermograsp.agents import learning
 from thermograsp.agents.learning import Agent, learning_task, load_agent, score
 from thermograsp.agents.learning.agent import Acting
 from thermograsp.agents.learning.inputs import AGES, FRAME, REPEAT, Inputs, Memory
@@ -114,6 +115,8 @@ def test_training_without_its_extra_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
     monkeypatch.delitem(sys.modules, "thermograsp.agents.learning.training", raising=False)
+    if "training" in vars(learning):
+        monkeypatch.delattr(learning, "training")
     monkeypatch.setitem(sys.modules, "tensorboard", None)
     assert main(["train", "identify", "--out", str(tmp_path / "run")]) == 2
     assert "pip install 'thermograsp[rl]'" in capsys.readouterr().err
