@@ -20,8 +20,8 @@ class Called:
     """A function of the observations (B, ...) that returns actions (B, n), or a class without arguments whose instances
     are such functions: each batch of episodes gets a new one, which may remember what it has observed.
 
-    The module may lie in the current folder. Raises InvalidValueError where there is no such callable, where it raises
-    an exception, and for actions of another shape or that are not finite."""
+    The module may lie in the current folder. Raises InvalidValueError where there is no such callable, and for actions
+    of another shape or that are not finite numbers. What the policy raises itself goes on with its own traceback."""
 
     def __init__(self, env: gymnasium.vector.VectorEnv, name: str) -> None:
         module, _, attribute = name.partition(":")
@@ -47,7 +47,11 @@ class Called:
     def action(self, observation: Any) -> np.ndarray:
         """(B, n) float32 for copies of the observations."""
         given = {name: values.copy() for name, values in observation.items()}
-        action = np.asarray(self._act(given), np.float32)
+        returned = self._act(given)
+        try:
+            action = np.asarray(returned, np.float32)
+        except (TypeError, ValueError) as error:
+            raise InvalidValueError(f"policy {self._name!r} returned no array of numbers: {error}") from error
         if action.shape != self._shape:
             raise InvalidValueError(
                 f"policy {self._name!r} returned actions of shape {action.shape}: it must return {self._shape}"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class Training:
     """One agent in the making, in a folder of its own. report: is told how far it is.
 
     resume: go on where a run in that folder was interrupted, or begin there. Raises InvalidValueError for a seed beyond
-    0 .. MOST_SEED, and for a folder that holds another training, or with `resume` off any."""
+    0 .. MOST_SEED, and for a folder that holds another training or damaged files, or with `resume` off any training."""
 
     def __init__(
         self,
@@ -171,8 +172,11 @@ class Training:
         """What an interrupted imitation has seen."""
         if not 0 < self._state["rounds_done"] < self.recipe.rounds:
             return None
-        with np.load(self.out / SEEN) as file:
-            return Seen(file["vector"], file["right"], file["gained"])
+        try:
+            with np.load(self.out / SEEN) as file:
+                return Seen(file["vector"], file["right"], file["gained"])
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
+            raise InvalidValueError(f"{self.out / SEEN} is damaged ({error}): give another --out") from error
 
     def _fresh(self) -> Any:
         """A network that nobody has taught anything: the same for all tasks and grippers."""
@@ -199,7 +203,10 @@ class Training:
 
     def _loaded(self) -> Any:
         """The network and its optimizer as the last checkpoint has them."""
-        return PPO.load(self.out / MODEL, VecMonitor(self._env), device="cpu")
+        try:
+            return PPO.load(self.out / MODEL, VecMonitor(self._env), device="cpu")
+        except (OSError, ValueError, KeyError, EOFError, AttributeError, RuntimeError, BadZipFile) as error:
+            raise InvalidValueError(f"{self.out / MODEL} is damaged ({error}): give another --out") from error
 
     def _keep(self) -> None:
         """Writes a checkpoint. A run that is killed between the two files does its last part again."""
@@ -218,7 +225,10 @@ class Training:
             return
         if not path.exists():
             return
-        state = json.loads(path.read_text(encoding="utf-8"))
+        try:
+            state = dict(json.loads(path.read_text(encoding="utf-8")))
+        except (ValueError, TypeError) as error:
+            raise InvalidValueError(f"{path} is damaged ({error}): give another --out") from error
         differing = [name for name, value in self.about.items() if state.get(name) != value]
         if differing:
             raise InvalidValueError(

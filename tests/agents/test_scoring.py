@@ -44,6 +44,12 @@ class Patient:
 def short(observation):
     return np.zeros((1, 3))
 
+def words(observation):
+    return "glass"
+
+def unknown(observation):
+    return np.full((len(observation["gripper"]), 12), np.nan)
+
 number = 3
 """
 
@@ -95,6 +101,8 @@ def test_a_class_is_made_anew_for_each_batch_of_episodes(guess: Any) -> None:
     [
         ("guess_materials:short", r"shape \(1, 3\)"),
         ("guess_materials:number", "is a int"),
+        ("guess_materials:words", "no array of numbers"),
+        ("guess_materials:unknown", "returned nan"),
         ("guess_materials:nobody", "nobody"),
         ("no_such_module:act", "no_such_module"),
     ],

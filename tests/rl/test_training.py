@@ -24,7 +24,7 @@ from thermograsp.agents.learning import TASKS, LearningTask, Recipe, learning_ta
 from thermograsp.agents.learning.inputs import REPEAT
 from thermograsp.agents.learning.perceiving import Perceiving
 from thermograsp.agents.learning.teachers import TEACHERS
-from thermograsp.agents.learning.training import MODEL, POLICY, STATE, Progress, Training
+from thermograsp.agents.learning.training import MODEL, POLICY, SEEN, STATE, Progress, Training
 from thermograsp.errors import InvalidValueError
 
 
@@ -136,6 +136,18 @@ def test_a_folder_is_not_overwritten_and_not_resumed_as_another(tmp_path: Path) 
         Training(task, tmp_path, recipe=TINY, resume=True)
     with pytest.raises(InvalidValueError, match="seed must be"):
         Training(task, tmp_path / "new", seed=1000, recipe=TINY)
+
+
+@pytest.mark.parametrize("damaged", [STATE, SEEN, MODEL])
+def test_a_damaged_folder_is_refused_by_the_name_of_its_file(tmp_path: Path, damaged: str) -> None:
+    task = brief("identify")
+    about = Training(task, tmp_path / "fresh", recipe=TINY).about
+    state = {**about, "rounds_done": 1, "evaluations": []}
+    (tmp_path / STATE).write_text("{" if damaged == STATE else json.dumps(state))
+    if damaged != STATE:
+        (tmp_path / damaged).write_bytes(b"half a file")
+    with pytest.raises(InvalidValueError, match=f"{damaged} is damaged"):
+        Training(task, tmp_path, recipe=TINY, resume=True).run()
 
 
 @pytest.mark.parametrize("name", sorted(TASKS))
