@@ -46,5 +46,5 @@ state = fixed.reset(fixed.start(WORLDS), material=which[:, None])
 for _ in range(100):  # 1 s
     data, state, reading = control_step(data, state)
 for number, material in enumerate(MATERIALS):
-    felt = which == number
-    print(f"{material}: {reading.temperature_drop[felt].mean():.2f} K at {reading.force[felt].mean():.2f} N")
+    rows = which == number
+    print(f"{material}: {reading.temperature_drop[rows].mean():.2f} K at {reading.force[rows].mean():.2f} N")

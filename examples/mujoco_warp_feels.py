@@ -31,7 +31,7 @@ for _ in range(100):  # 1 s
         record[:, substep] = sensed
     state, reading = fixed.advance(state, fixed.contacts(record))
 for number, material in enumerate(fixed.materials[0]):
-    felt = state.material[:, 0] == number
+    rows = state.material[:, 0] == number
     print(
-        f"{material.name}: {reading.temperature_drop[felt].mean():.2f} K at {reading.force[felt].mean():.2f} N"
+        f"{material.name}: {reading.temperature_drop[rows].mean():.2f} K at {reading.force[rows].mean():.2f} N"
     )

@@ -59,9 +59,9 @@ class Hand:
         A later command ends it; cancelled() stops the fingers where they are. Raises ThermograspError."""
         with self._one:
             self._commands += 1
-            mine = self._commands
+            number = self._commands
             self.gripper.move(position, effort, SPEED)
-        while mine == self._commands:
+        while number == self._commands:
             time.sleep(PERIOD)
             if cancelled():
                 self.gripper.stop()

@@ -113,13 +113,13 @@ class ThermograspHand(Robot):
         if len(samples):
             self._newest = samples[-1:]
         columns = self._newest.columns
-        felt = {name: float(columns[name][0]) for name in _FELT}
+        outputs = {name: float(columns[name][0]) for name in _FELT}
         if self._gripper is None:
-            return felt
+            return outputs
         status = self._gripper.status()
         if status.fault:
             raise GripperFaultError(f"gripper: {status.fault}")
-        return {**felt, "opening_m": status.opening}
+        return {**outputs, "opening_m": status.opening}
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         """Sends the fingers there and returns what was sent: an opening that the gripper does not have becomes the

@@ -70,9 +70,9 @@ def carry_steps(systems: Sequence[ContactSystem], states: int) -> tuple[np.ndarr
         here, there = tip_rows(system), tip_rows(between)
         out, back = carry_matrix(here, there), carry_matrix(there, here)
         for f in range(fingertips):
-            mine = slice(first + f * own, first + (f + 1) * own)
-            theirs = slice(f * shared, (f + 1) * shared)
-            leave[i, mine, theirs], enter[i, theirs, mine] = out.T, back.T
+            of_tip = slice(first + f * own, first + (f + 1) * own)
+            of_body = slice(f * shared, (f + 1) * shared)
+            leave[i, of_tip, of_body], enter[i, of_body, of_tip] = out.T, back.T
     return leave, enter
 
 

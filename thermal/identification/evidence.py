@@ -70,9 +70,9 @@ def gather(
     # What the nuisances explain is taken out: C^-1 = 1 - N (1 + N^T N)^-1 N^T, by singular values of N.
     directions, size_of, _ = np.linalg.svd(spread, full_matrices=False)
     shrink = size_of**2 / (1 + size_of**2)
-    inside, told = directions.T @ seen, directions.T @ heard
+    inside, projected = directions.T @ seen, directions.T @ heard
     matrix = seen.T @ seen - (inside.T * shrink) @ inside
-    vector = seen.T @ heard - (inside.T * shrink) @ told
+    vector = seen.T @ heard - (inside.T * shrink) @ projected
     weights, turn = np.linalg.eigh(matrix * np.outer(typical, typical))
     kept = weights > _FAINTEST**2
     root, turn = np.sqrt(weights[kept]), turn[:, kept]

@@ -100,8 +100,10 @@ def curve_library(
     core = setup.core
 
     def curves(conductivity: float, capacity: float) -> np.ndarray:
-        felt = answer(family.system(conductivity, capacity), core)
-        return np.array([felt.curve(c, knots, setup.converter.bandwidth) for c in np.exp(-log_resistance)])
+        response = answer(family.system(conductivity, capacity), core)
+        return np.array(
+            [response.curve(c, knots, setup.converter.bandwidth) for c in np.exp(-log_resistance)]
+        )
 
     def objects() -> dict[str, np.ndarray]:
         deviations = np.linspace(-_WIDEST, _WIDEST, _CAPACITIES)

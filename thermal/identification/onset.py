@@ -68,7 +68,7 @@ def smooth_curve(
 def _log_likelihood(spread: np.ndarray, values: np.ndarray, noise: float, offset: float) -> float:
     """Of values (n,) that are normal with covariance spread spread^T + offset^2 + noise^2."""
     wide = np.column_stack((spread, np.full(len(values), offset))) / noise
-    told = wide.T @ values / noise
+    projected = wide.T @ values / noise
     matrix = np.eye(wide.shape[1]) + wide.T @ wide
     sign_free = np.linalg.slogdet(matrix)[1]
-    return float(told @ np.linalg.solve(matrix, told) - sign_free) / 2
+    return float(projected @ np.linalg.solve(matrix, projected) - sign_free) / 2

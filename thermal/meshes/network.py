@@ -63,7 +63,7 @@ def body_network(
     surface ends within it, heat flows through what is there. The grid is aligned with the last patch's normal and
     with the object's sides; it resolves a patch whose normal is along one of its axes to about 0.3 % of its impedance
     from 0.05 s on, any other more coarsely (glass: 5 % in 0.05 s, 1 % in 0.2 s), so the patch that matters comes last.
-    points: (Q, 3) m in the object's frame, where the object's own temperature is told, such as where it may be
+    points: (Q, 3) m in the object's frame, where the object's own temperature is an output, such as where it may be
     touched next.
     walls: (F, 3, 3) m, triangles of the surface that something wets, with outputs "wet", their mean temperature, and
     "film:0" ..., of which the sum of squares is their mean square temperature.
@@ -88,8 +88,8 @@ def body_network(
         grid, placed = _gridded(body, patches, frame, gridding, patterns)
         rates, ports, basis = _reduced(grid, placed)
         cells = _nearest(grid, where @ frame.T)
-        told = {"points": basis[cells], "walls": _walls(grid, basis, wetted @ frame.T)}
-        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), **told}
+        outputs = {"points": basis[cells], "walls": _walls(grid, basis, wetted @ frame.T)}
+        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), **outputs}
 
     key = {**_key(body, patches, patterns, where, gridding), "walls": wetted}
     arrays = cached_arrays(key, build, enabled=cache)
@@ -172,10 +172,10 @@ def _walls(grid: MeshGrid, basis: np.ndarray, triangles: np.ndarray) -> np.ndarr
     areas = np.linalg.norm(faces, axis=-1)
     held = (areas > 0) & (grid.index >= 0)
     shares = areas[held] / areas[held].sum()
-    told = basis[grid.index[held]]
-    _, sizes, vectors = np.linalg.svd(np.sqrt(shares)[:, None] * told, full_matrices=False)
+    fields = basis[grid.index[held]]
+    _, sizes, vectors = np.linalg.svd(np.sqrt(shares)[:, None] * fields, full_matrices=False)
     kept = sizes > _LEAST_WALL * sizes[0]
-    return np.concatenate(((shares @ told)[None], sizes[kept, None] * vectors[kept]))
+    return np.concatenate(((shares @ fields)[None], sizes[kept, None] * vectors[kept]))
 
 
 def _key(

@@ -180,8 +180,8 @@ def touched_body(
         centres = np.array([place_patch(body.outside, patch, np.eye(3)).centre for patch in patches])
         full = TouchedBody(geometry, learned["sensor"], whole, patches, centres, 0.0)
         reduced = _smallest(full, basis.vectors, basis.weights, demand, film)
-        told = {"centres": centres, "error": np.array(reduced.error)}
-        return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), **told}
+        shared = {"centres": centres, "error": np.array(reduced.error)}
+        return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), **shared}
 
     arrays = cached_arrays(key, build, enabled=cache)
     sensor, whole = _unpack("sensor", arrays), _unpack("object", arrays)
@@ -266,10 +266,10 @@ def _smallest(
         basis = replace(basis, weights=np.append(np.inf, basis.weights))
     last = range(len(full.patches) - full.geometry.fingertips, len(full.patches))
 
-    def felt(body: TouchedBody) -> np.ndarray:
+    def answer(body: TouchedBody) -> np.ndarray:
         return responses(body.filled(film, 0.0).system(last) if film else body.system(last), demand)
 
-    reference = felt(full)
+    reference = answer(full)
     error = np.inf
     for cut in _CUTS:
         smaller = TouchedBody(
@@ -280,7 +280,7 @@ def _smallest(
             full.centres,
             0.0,
         )
-        error = float(np.max(np.abs(felt(smaller) - reference)))
+        error = float(np.max(np.abs(answer(smaller) - reference)))
         if error <= demand.tolerance / 2:
             return replace(smaller, error=error)
     raise InvalidValueError(

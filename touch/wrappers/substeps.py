@@ -47,18 +47,18 @@ def heard(data: mujoco.MjData, touch: ThermalTouch) -> Iterator[None]:
     """While it lasts, the touch hears every step that MuJoCo takes of these data."""
     step, second = mujoco.mj_step, mujoco.mj_step2
 
-    def heard_step(model: mujoco.MjModel, theirs: mujoco.MjData, nstep: int = 1) -> None:
-        if theirs is not data:
-            step(model, theirs, nstep)
+    def heard_step(model: mujoco.MjModel, stepped: mujoco.MjData, nstep: int = 1) -> None:
+        if stepped is not data:
+            step(model, stepped, nstep)
             return
         for _ in range(nstep):
-            step(model, theirs)
-            touch.update(theirs)
+            step(model, stepped)
+            touch.update(stepped)
 
-    def heard_second(model: mujoco.MjModel, theirs: mujoco.MjData) -> None:
-        second(model, theirs)
-        if theirs is data:
-            touch.update(theirs)
+    def heard_second(model: mujoco.MjModel, stepped: mujoco.MjData) -> None:
+        second(model, stepped)
+        if stepped is data:
+            touch.update(stepped)
 
     mujoco.mj_step, mujoco.mj_step2 = heard_step, heard_second
     try:
