@@ -24,7 +24,7 @@ from ...thermal.batch import (
     forget_fixed,
     forget_row,
 )
-from ...thermal.contact import FLAT, conductance, footprint
+from ...thermal.contact import FLAT, footprint, gas_conduction, solid_conduction
 from ...thermal.network import NODE, workspace
 from ...thermal.numerics import FAST
 from ..bodies import reservoir_step, reservoir_temperature
@@ -232,20 +232,25 @@ def _along_pad(law, place, f, at):
 def _mean_contacts(law, normal, one, f, place, conductances):
     """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends
     fall within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is
-    the mean of all, and whose area is the mean over the substeps that press. place: see footprint. Returns whether any
+    the mean of all, and whose area is the mean over the substeps that touch. place: see footprint. Returns whether any
     does."""
     samples, substeps = len(conductances), len(normal)
-    total, area, pressing = 0.0, 0.0, 0
+    total, area, force, pressing, touching = 0.0, 0.0, 0.0, 0, 0
     for k in range(samples):
         conductances[k, f] = 0.0
     for s in range(substeps):
         if normal[s] > 0:
+            force += normal[s]
+            pressing += 1
+    gas = gas_conduction(law, force / pressing, place) if pressing else 0.0  # changes little with the force
+    for s in range(substeps):
+        if normal[s] > 0:
             face, load = footprint(law, normal[s], place)
-            if face > 0:
-                conducts = conductance(law, load / face) * face
+            conducts = solid_conduction(law, face, load) + gas
+            if conducts > 0:
                 total += conducts
                 area += face
-                pressing += 1
+                touching += 1
                 for k in range(s * samples // substeps, samples):  # in parts of 1/(S N) of the step
                     part = min((s + 1) * samples, (k + 1) * substeps) - max(s * samples, k * substeps)
                     if part <= 0:
@@ -253,9 +258,11 @@ def _mean_contacts(law, normal, one, f, place, conductances):
                     conductances[k, f] += conducts * part
     for k in range(samples):
         conductances[k, f] /= substeps
-    one.area[f] = area / pressing if pressing else 0.0
-    one.conductance[f] = total / substeps / one.area[f] if pressing else 0.0
-    return pressing > 0
+    if touching and area == 0.0:  # gas alone, all over the face
+        area = 4 * law.half_face * law.half_face * touching
+    one.area[f] = area / touching if touching else 0.0
+    one.conductance[f] = total / substeps / one.area[f] if touching else 0.0
+    return touching > 0
 
 
 @njit(cache=True, inner=True, error_model="numpy")

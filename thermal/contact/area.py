@@ -158,12 +158,12 @@ def cylinder_contact(
 
 
 def _solved(
-    body: Callable[..., tuple[float, float, float]], stiffness: float, *numbers: object
+    body: Callable[..., tuple[float, float, float, float]], stiffness: float, *numbers: object
 ) -> ContactArea:
     """Element by element: rows never mix."""
     every = np.broadcast_arrays(*(np.asarray(number, dtype=float) for number in numbers))
     found = [body(*row) for row in zip(*(each.ravel().tolist() for each in every), strict=True)]
-    on_pad, on_face, load = np.array(found, dtype=float).reshape(-1, 3).T.reshape(3, *every[0].shape)
+    on_pad, on_face, load, _ = np.array(found, dtype=float).reshape(-1, 4).T.reshape(4, *every[0].shape)
     return ContactArea(on_pad, on_face, stiffness * load)
 
 

@@ -1,24 +1,36 @@
 """What of a sensor's face an object touches, and with what force: a compiled function of a record, force and place.
 
 A FOOTPRINT_LAW record holds a CONTACT_LAW's numbers and those that follow a pad anywhere on the object: boxes,
-cylinders and spheres by closed forms (area.py), other bodies by a table over the force. `footprint` evaluates one row.
+cylinders and spheres by closed forms (area.py), other bodies by a table over the force. `footprint` evaluates one row;
+`conduction` also tells what the contact conducts, and the gas beside it (gas_beside.py).
+
+A bare face of alumina does not sink in. Under a curved body it is a stiff spring, which takes nearly all of the force
+where the body's crown is over it, and what the pad beside it leaves where the crown is not. With its force the contact
+on it is Hertz's (rigid.py), a disc or a strip that is cut off at a face that is smaller; of a cylinder whose end is
+over the face, the part on it takes its share of the length. A disc is in series with its
+constriction in both bodies, (1/k + 1/k')(1/a - 1/w)/4, w the radius of a disc of the face's area. Beside it the gas
+is 0.7 log(1 + a^2/(2 R d)) more of 2 pi k R than in the wedge on springs, because Hertz's gap opens with a horizontal
+tangent: a fit to the integral over his gap, within 0.15 of that factor up to a^2/(2 R d) = 10.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from thermograsp.compiled import njit
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, positive
 
 from .area import ContactArea, Pad
-from .law import CONTACT_LAW, CYLINDER, FLAT, SPHERE, cylinder_law, flat_law, sphere_law
-from .rough_faces import Joint
-from .round_bodies import ball_on_pad, cylinder_on_pad
+from .gas_beside import beside_ball, beside_strip
+from .law import CONTACT_LAW, CYLINDER, FLAT, SPHERE, conductance, cylinder_law, flat_law, sphere_law
+from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductance, joint
+from .round_bodies import ball_on_pad, cylinder_on_pad, disc_on_face
 
 TABLE = 3
+_WEDGE = 0.7  # see above
 TABLE_FORCES = 0.01 * 3.0 ** np.arange(9)
 """N on the pad, (9,), at which a table is given."""
 _FIRST, _STEP = math.log(0.01), math.log(3.0)
@@ -28,6 +40,12 @@ FOOTPRINT_LAW = np.dtype(
         # stiffness of the springs on the face over that of those around it; length m of a cylinder
         ("ratio", "f8"),
         ("length", "f8"),
+        # of curved bodies: radius m, gap m of faces that touch without force, the temperature jump with it
+        ("radius", "f8"),
+        ("apart", "f8"),
+        # on a bare face: Hertz's modulus Pa, 0 on springs; m K/W, a disc's constriction times its radius
+        ("modulus", "f8"),
+        ("constriction", "f8"),
         # at TABLE_FORCES: m2 of the face in contact, its share of the force
         ("areas", "f8", TABLE_FORCES.shape),
         ("shares", "f8", TABLE_FORCES.shape),
@@ -47,12 +65,42 @@ def flat_footprint(
 
 def cylinder_footprint(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
     """The law of a cylinder along z of that radius and length m; see area.cylinder_contact."""
-    return _followed(pad, cylinder_law(pad, joint, radius, length), length=length)
+    beside = {"radius": radius, "apart": _apart(joint)}
+    return _followed(pad, cylinder_law(pad, joint, radius, length), length=length, **beside)
 
 
 def sphere_footprint(pad: Pad, joint: Joint, radius: float) -> np.void:
     """The law of a sphere of that radius m; see area.sphere_contact."""
-    return _followed(pad, sphere_law(pad, joint, radius))
+    return _followed(pad, sphere_law(pad, joint, radius), radius=radius, apart=_apart(joint))
+
+
+def bare_footprint(
+    pad: Pad,
+    body: Surface,
+    radius: float,
+    length: float | None = None,
+    *,
+    face: Surface = LAPPED_ALUMINA,
+    gas: Gas | None = AIR,
+) -> np.void:
+    """The law of a cylinder of that radius and length m, or of a sphere, on a rigid face that wears no skin. Faces with
+    a skin yield: sphere_footprint and cylinder_footprint are theirs, with a pad of the skin's springs.
+
+    gas: None for vacuum. A network's patch is the whole face, as heat passes gas all over it, and a disc's constriction
+    counts down to it. Raises InvalidValueError for a size that is none."""
+    pad, pair = bared(pad, face), joint(face, body, gas, full_contact=True)
+    if length is not None:
+        law = cylinder_footprint(pad, pair, positive("radius (m)", radius), positive("length (m)", length))
+    else:
+        law = sphere_footprint(pad, pair, positive("radius (m)", radius))
+        law["constriction"] = (1 / face.conductivity + 1 / body.conductivity) / 4
+    law["modulus"] = 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in (face, body))
+    return law
+
+
+def bared(pad: Pad, face: Surface = LAPPED_ALUMINA) -> Pad:
+    """The pad with springs on the sensor's face as stiff as a column of it, as deep as the pad: a rigid face."""
+    return replace(pad, face_stiffness=face.youngs_modulus / pad.thickness)
 
 
 def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:
@@ -62,6 +110,13 @@ def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:
     law = _followed(pad, flat_law(pad, joint, (pad.width, pad.width)), areas=contact.face)
     law["shape"], law["shares"] = TABLE, contact.face_force / TABLE_FORCES
     return law
+
+
+def _apart(joint: Joint) -> float:
+    """m of gas between faces that touch without force, the temperature jump with it; 0 in vacuum."""
+    if not joint.gas_conductivity:
+        return 0.0
+    return float(joint.gas_conductivity) / float(gas_conductance(replace(joint, flatness=0.0), 0.0))
 
 
 def _followed(pad: Pad, law: np.void, **numbers: float | np.ndarray) -> np.void:
@@ -79,25 +134,99 @@ def footprint(law, force, place):
 
     place: (3,) m, the pad's middle from the object's in the object's frame; of curved bodies what of it lies along the
     pad. Tables leave it aside."""
+    area, load, _ = _touched(law, force, place)
+    return area, load
+
+
+@njit(cache=True, error_model="numpy")
+def conduction(law, force, place):
+    """(area m2 on the face, W/K that it conducts, gas beside it with it) at a normal force N > 0 on the pad; see
+    footprint. Gas conducts where nothing on the face touches, too."""
+    area, load, square = _touched(law, force, place)
+    gas = _beside(law, square, place) if law.apart > 0.0 else 0.0
+    return area, solid_conduction(law, area, load) + gas
+
+
+@njit(cache=True, error_model="numpy")
+def gas_conduction(law, force, place):
+    """W/K of the gas beside the contact; see conduction."""
+    if law.apart == 0.0:
+        return 0.0
+    return _beside(law, _touched(law, force, place)[2], place)
+
+
+@njit(cache=True, error_model="numpy")
+def solid_conduction(law, area, load):
+    """W/K of that area m2 of the face under that force N, by its mean pressure: where a curved body's varies, that is
+    within 2.5 % of the sum over places, as the spots conduct nearly in proportion to it, the gas nearly without it."""
+    if area <= 0.0:
+        return 0.0
+    conducts = conductance(law, load / area) * area
+    if law.constriction > 0.0:
+        more = math.sqrt(math.pi / area) - 0.5 * math.sqrt(math.pi) / law.half_face
+        if more > 0.0:
+            conducts /= 1.0 + conducts * law.constriction * more
+    return conducts
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _beside(law, square, place):
+    """W/K of the gas beside a curved contact, whose half width has that square m2; 0 beside others."""
+    off = math.sqrt(place[0] * place[0] + place[1] * place[1])
+    if law.shape == SPHERE:
+        wedge = beside_ball(square, law.apart, law.radius, law.half_face, off, place[2])
+        if law.modulus > 0.0 and square > 0.0:
+            on_face, _ = disc_on_face(square, law.half_face, off, place[2])
+            more = _WEDGE * math.log1p(square / (2 * law.radius * law.apart))
+            wedge += 2 * math.pi * law.radius * on_face * more
+        return law.gas * wedge
+    if law.shape == CYLINDER:
+        along = _common(law.half_face, law.length / 2, place[2])
+        return law.gas * along * beside_strip(square, law.apart, law.radius, law.half_face, off)
+    return 0.0
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _touched(law, force, place):
+    """(area m2 on the face, its force N, of a curved contact the square m2 of its half width)."""
     if law.shape == FLAT:
         if law.size[0] == 0.0:
-            return law.area, force * law.share
+            return law.area, force * law.share, 0.0
         on_pad, on_face = _overlap(law, place)
         bearing = on_pad + (law.ratio - 1.0) * on_face
-        return on_face, force * law.ratio * on_face / bearing if bearing > 0.0 else 0.0
+        return on_face, force * law.ratio * on_face / bearing if bearing > 0.0 else 0.0, 0.0
+    if law.shape == TABLE:
+        area, load = _from_table(law, force)
+        return area, load, 0.0
+    off = math.sqrt(place[0] * place[0] + place[1] * place[1])
+    load = force / law.stiffness
     if law.shape == CYLINDER:
         on_pad = _common(law.half_pad, law.length / 2, place[2])
-        on_face = _common(law.half_face, law.length / 2, place[2])
-        off = math.sqrt(place[0] * place[0] + place[1] * place[1])
-        load = force / law.stiffness
-        _, area, part = cylinder_on_pad(load, law.ratio, law.half_pad, law.half_face, on_pad, on_face, off)
-        return area, law.stiffness * part
-    if law.shape == SPHERE:
-        off = math.sqrt(place[0] * place[0] + place[1] * place[1])
-        load = force / law.stiffness
-        _, area, part = ball_on_pad(load, law.ratio, law.half_pad, law.half_face, off, place[2])
-        return area, law.stiffness * part
-    return _from_table(law, force)
+        along = _common(law.half_face, law.length / 2, place[2])
+        _, area, part, square = cylinder_on_pad(
+            load, law.ratio, law.half_pad, law.half_face, on_pad, along, off
+        )
+        load = law.stiffness * part
+        if law.modulus > 0.0 and along > 0.0:
+            load *= min(along / min(law.length, 2 * law.half_face), 1.0)
+            hertz = 4 * load * law.radius / (math.pi * law.modulus * along)
+            width, held = math.sqrt(hertz), 1.0
+            if width > law.half_face:
+                share = law.half_face / width
+                width, held = law.half_face, (3 - share * share) * share / 2
+            area, load = 2 * width * along, load * held
+            square = max(max(off - law.half_face, 0.0) ** 2, hertz) if load > 0.0 else square
+        return area, load, square
+    _, area, part, square = ball_on_pad(load, law.ratio, law.half_pad, law.half_face, off, place[2])
+    load = law.stiffness * part
+    if law.modulus > 0.0:
+        if load > 0.0:
+            hertz = (0.75 * load * law.radius / law.modulus) ** (2 / 3)
+            part, held = disc_on_face(hertz, law.half_face, 0.0, 0.0)
+            area, load = math.pi * hertz * part, load * held
+            away, aside = max(off - law.half_face, 0.0), max(abs(place[2]) - law.half_face, 0.0)
+            square = max(away * away + aside * aside, hertz)
+    return area, load, square
 
 
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)

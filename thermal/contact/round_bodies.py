@@ -19,7 +19,7 @@ _CLOSE = 1e-9  # of the load: Newton's next step from there is exact to rounding
 
 @njit(cache=True, error_model="numpy")
 def ball_on_pad(load, ratio, pad, face, y, z):
-    """(area m2 on the pad, area m2 on the face, the face's load m4) under a ball.
+    """(area m2 on the pad, area m2 on the face, the face's load m4, a^2 m2) under a ball.
 
     load: m4, the force over K/(2 R) of the pad's springs; ratio: the stiffness of the face's over theirs. pad, face: m,
     half of the squares' sides. y, z: m, where the crown is from their middle."""
@@ -32,7 +32,7 @@ def ball_on_pad(load, ratio, pad, face, y, z):
             square = _ball_square(load, ratio, pad, face, y, z)
     on_face = _corners(square, face, y, z)
     on_pad = _corners(square, pad, y, z)
-    return on_pad[0], on_face[0], ratio * on_face[1]
+    return on_pad[0], on_face[0], ratio * on_face[1], square
 
 
 @njit(cache=True, error_model="numpy")
@@ -41,14 +41,22 @@ def cylinder_on_pad(load, ratio, pad, face, along_pad, along_face, x):
     its line of contact is from their middle, across it. pad, face: m, half of what they are wide that way."""
     x = abs(x)
     if along_pad <= 0.0:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0
     narrow = (0.75 * load / along_pad) ** (1 / 3)
     more = (ratio - 1.0) * along_face
     square = narrow * narrow
     if more != 0.0 or narrow > pad - x:
         square = _strip_square(load, more, pad, face, along_pad, x)
     a, b = _strip(square, pad, x), _strip(square, face, x)
-    return along_pad * a[0], along_face * b[0], ratio * along_face * b[1]
+    return along_pad * a[0], along_face * b[0], ratio * along_face * b[1], square
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def disc_on_face(square, half, y, z):
+    """(share of the area, share of the force) of a disc whose radius has that square m2 > 0 that lie on a square of
+    half width `half` m, its middle y and z m away."""
+    area, load = _corners(square, half, abs(y), abs(z))
+    return area / (math.pi * square), load / (math.pi / 2 * square * square)
 
 
 @njit(cache=True, inner=True, error_model="numpy")
