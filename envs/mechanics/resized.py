@@ -2,7 +2,7 @@
 
 Compiling a scene takes milliseconds, and where every episode draws a size, sixteen episodes that end at once would wait
 for sixteen scenes. What the compiler makes of such an object is known: what stands here, and what `mj_setConst` derives
-from it. The numbers are the compiler's to the last bit (tests/envs/mechanics/test_resized.py).
+from it. The numbers are those of `build_scene` to the last bit (tests/envs/mechanics/test_resized.py).
 """
 
 # mujoco ships no type stubs for its compiled names
@@ -21,7 +21,7 @@ import numpy as np
 from ..bodies import ObjectSpec
 from ..grippers import GripperModel
 from .engine import MODEL_FIELDS
-from .scene import PRIMITIVES, half_sizes, principal
+from .scene import PRIMITIVES, half_sizes, principal, soften_alike
 
 _GIVEN = (
     *("body_pos", "body_quat", "body_mass", "body_ipos", "body_iquat", "body_inertia", "bvh_aabb"),
@@ -52,7 +52,7 @@ class Resized:
         self._data = mujoco.MjData(self._model)
         self._fields = {name: getattr(self._model, name) for name in _FIELDS}
         self._wrist = model.body("wrist").id
-        self._bodies = [model.body(name).id for name in names]
+        self._names, self._bodies = tuple(names), [model.body(name).id for name in names]
         # bvh_aabb goes on with the meshes' boxes, which all environments share
         self._boxes = int(model.body_bvhnum.sum())
 
@@ -64,6 +64,7 @@ class Resized:
         for body, item in zip(self._bodies, objects, strict=True):
             self._put(body, item)
         mujoco.mj_setConst(self._model, self._data)
+        soften_alike(self._model, self._names)
         own = {name: array for name, array in fields.items() if array.tobytes() != self._base[name]}
         if "bvh_aabb" in own:
             own["bvh_aabb"] = own["bvh_aabb"][: self._boxes]

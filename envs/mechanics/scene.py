@@ -28,6 +28,8 @@ PRIMITIVES = {
 }
 _MIDPOINT, _POWER = 0.5, 2.0  # of the impedance's rise with depth, MuJoCo's defaults
 _TORSION, _ROLLING = 0.005, 0.0001  # m, MuJoCo's defaults; a flat patch has its torsion from its corners
+_CUBE = ObjectSpec()
+_COMPLIANCE = 1 / _CUBE.weight, float(np.mean(1 / np.linalg.eigvalsh(_CUBE.inertia[1])))  # 1/kg, 1/(kg m2)
 
 
 def contact_sensor(tip: str, name: str) -> str:
@@ -50,8 +52,26 @@ def build_scene(
 ) -> mujoco.MjModel:
     """Compile gripper, table and objects; the gripper is down at the first object's grasp height.
 
-    All else is that of `scene_spec`, whose result it compiles."""
-    return scene_spec(objects, library=library, settings=settings, lateral=lateral, gripper=gripper).compile()
+    All else is that of `scene_spec`, whose result it compiles, but contacts of all objects are equally soft: MuJoCo
+    would make those of heavier bodies stiffer, so that the opening would tell an object's mass (`soften_alike`)."""
+    objects = tuple(objects)
+    spec = scene_spec(objects, library=library, settings=settings, lateral=lateral, gripper=gripper)
+    model = spec.compile()
+    soften_alike(model, [item.name for item in objects])
+    return model
+
+
+def soften_alike(model: mujoco.MjModel, names: Iterable[str]) -> None:
+    """Gives these bodies' contacts the compliance that those of `ObjectSpec()` have, a cube of .1 kg, whatever they
+    weigh.
+
+    MuJoCo regularises a contact with R = (1 - d)/d (w1 + w2), d its impedance and w the bodies' `body_invweight0`
+    (documentation, "Computation: Constraint model"). At rest R f = k r, so that the depth r under a force f would go
+    with 1/mass. What yields at a real touch is the pad, which is the same for all objects. `body_invweight0` of a free
+    body has no other use.
+    """
+    for name in names:
+        model.body_invweight0[model.body(name).id] = _COMPLIANCE
 
 
 def scene_spec(
