@@ -1,5 +1,7 @@
 """How far pads sink into an object says nothing of its mass."""
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
@@ -24,9 +26,9 @@ def held(force: float) -> np.ndarray:
 @pytest.mark.parametrize("force", [2.0, 10.0, 30.0])
 def test_depth_is_that_of_a_cube_of_a_tenth_of_a_kilogram(force: float) -> None:
     """At rest R f = k d r at each of a pad's four corners, with R = (1 - d)/d (w1 + w2) and k = 1/(d1 T)^2 (MuJoCo's
-    documentation, "Computation: Constraint model"). It holds as it stands for the lightest; the discrete integrator lets
-    heavier ones sink less, by up to a third of this depth, some micrometres. Before contacts were equally soft the depth
-    went with 1/mass: 10 N came .7 mm into polystyrene and 7 um into brass."""
+    documentation, "Computation: Constraint model"). It holds as it stands for the lightest. The discrete integrator
+    lets heavier ones sink less, by up to a third of this depth, some micrometres. Before contacts were equally soft the
+    depth went with 1/mass: 10 N came .7 mm into polystyrene and 7 um into brass."""
     settings = SolverSettings()
     weakest, strongest, width = settings.solimp
     mechanics = Mechanics((ObjectSpec(),))
@@ -43,7 +45,7 @@ def test_depth_is_that_of_a_cube_of_a_tenth_of_a_kilogram(force: float) -> None:
 
 
 @pytest.mark.parametrize("shape", ["box", "cylinder", "sphere"])
-def test_heavy_and_light_rest_on_the_table(shape: str) -> None:
+def test_heavy_and_light_rest_on_the_table(shape: Literal["box", "cylinder", "sphere"]) -> None:
     """Gold sinks less than .2 mm into the table, and moves by less than 20 um in a second."""
     specs = [ObjectSpec(shape=shape, size=(SIDE, SIDE, SIDE), density=density) for density in DENSITIES]
     mechanics = Mechanics((specs[0],), len(specs))
@@ -64,7 +66,7 @@ def test_row_by_row_contacts_stay_equally_soft() -> None:
     first = ObjectSpec()
     for elements in (None, (0.009, 0.0035)):
         specs = [
-            ObjectSpec(size=(0.03 + 0.01 * k,) * 3, density=density, elements=elements)
+            ObjectSpec(size=(0.03 + 0.01 * k, 0.04, 0.04), density=density, elements=elements)
             for k, density in enumerate(DENSITIES)
         ]
         mechanics = Mechanics((specs[0],), len(specs))
