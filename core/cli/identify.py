@@ -34,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--materials", metavar="FILE", help="your own TOML table in place of the package's")
     add("--mode", default="T", help="T: element on the thermostat, O: on the object")
     add("--sensor", default="seed", help="a sensor's name")
+    add("--skin", help="over its face, in T mode: a skin's name, such as filled_silicone (default: bare)")
     add(
         "--fingertips",
         type=int,
@@ -127,6 +128,7 @@ def _setup(args: argparse.Namespace, columns: int) -> TouchSetup:
         conductance=tuple(args.conductance),
         model_error=args.model_error,
         tolerance=args.tolerance,
+        skin=args.skin,
     )
 
 

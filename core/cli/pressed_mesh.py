@@ -22,7 +22,6 @@ SIDES = {
 
 _AREA = 81e-6  # m2
 _PLATES = {
-    "skin": None,
     "mode": "T",
     "shape": "square",
     "rung": "auto",
@@ -39,6 +38,7 @@ _KEYWORDS = (
     "seconds",
     "dt",
     "tolerance",
+    "skin",
 )
 
 

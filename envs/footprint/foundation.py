@@ -19,11 +19,22 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
+from ...thermal import Pad
+
 _STEPS = 50
 _SECANTS = 20
 _TOLERANCE = 1e-11  # of the force, which must balance to that
 _NEARER = (1.0, 0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.0)
 _RIDGE = 1e-3  # springs, added where those that push can't resist a tilt
+
+
+def face_springs(
+    pad: Pad, places: np.ndarray, sides: float | tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) each: what of the points' rectangles lies on the sensor's face, and how much stiffer their springs are than
+    those around it, by which pressure_map's cover counts. places (n, 2): m. sides: m, of a rectangle."""
+    within = np.clip((pad.face / 2 - np.abs(places)) / sides + 0.5, 0.0, 1.0).prod(axis=1)
+    return within, 1 + (pad.face_ratio - 1) * within
 
 
 @njit(cache=True, error_model="numpy")

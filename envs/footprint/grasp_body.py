@@ -21,6 +21,7 @@ from ...thermal import (
     Mode,
     Pad,
     SensorStack,
+    Skin,
     Surface,
     cylinder_contact,
     flat_contact,
@@ -31,6 +32,8 @@ from ...thermal.contact import (
     TABLE_FORCES,
     cylinder_footprint,
     flat_footprint,
+    met,
+    skinned,
     sphere_footprint,
     table_footprint,
 )
@@ -50,7 +53,8 @@ class GraspBody:
     spec: its shape and place. material: what it is made of. temperature: °C at first. mode: T or O, where the element
     sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on the object's surface. ambient: °C of
     the air, None for the object's. anywhere: its heat knows where it is touched, as a mesh's always does in T mode.
-    any_size: its size is drawn from any, so that its network is made where it can be and not searched."""
+    any_size: its size is drawn from any, so that its network is made where it can be and not searched. skin: of the
+    fingertips, whose layer is the stack's last; None where they are bare."""
 
     spec: ObjectSpec
     material: Material
@@ -62,6 +66,12 @@ class GraspBody:
     ambient: float | None = None
     anywhere: bool = False
     any_size: bool = False
+    skin: Skin | None = None
+
+    @cached_property
+    def pad(self) -> Pad:
+        """What presses on it: the pad with its skin. O: the thermostat, bare."""
+        return skinned(PAD, self.skin)
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:
@@ -75,7 +85,7 @@ class GraspBody:
         """What the pads meet of a mesh, at TABLE_FORCES."""
         from .mesh_contact import mesh_contact
 
-        return mesh_contact(PAD, self.spec, tuple(TABLE_FORCES.tolist()))
+        return mesh_contact(self.pad, self.spec, tuple(TABLE_FORCES.tolist()))
 
     @cached_property
     def plate(self) -> tuple[float, float, float]:
@@ -95,16 +105,17 @@ class GraspBody:
 
     @cached_property
     def joint(self) -> Joint:
-        """The opening contact's faces: the lapped element on the object (T) or on the thermostat (O)."""
+        """The opening contact's faces: the lapped element or its skin on the object (T), or the element on the
+        thermostat (O)."""
         if self.mode == "O":
             return joint(LAPPED_ALUMINA, THERMOSTAT_FACE)
         surface = Surface.of(self.touched)
-        return joint(LAPPED_ALUMINA, replace(surface, roughness=surface.roughness * self.roughness_factor))
+        return met(self.skin, replace(surface, roughness=surface.roughness * self.roughness_factor))
 
     @cached_property
     def geometry(self) -> Geometry:
         """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE, its middle before the pad's."""
-        nominal = self._contact(np.array(NOMINAL_FORCE), (0.0, 0.0))
+        nominal = self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, 0.0))
         area = float(nominal.face)
         if self.contact_shape == "mesh" and not area > 0:  # it may slip to where the sensor is
             area = float(nominal.pad)
@@ -117,25 +128,29 @@ class GraspBody:
 
     def contact(self, force: np.ndarray) -> ContactArea:
         """Areas and force share at that normal force N on a pad, at the height at which the fingers are to close."""
-        up = 0.0 if self.mode == "O" else self.spec.grasp_height - self.spec.size[2] / 2
-        return self._contact(force, (0.0, up))
+        return self._contact(self.pad, force, (0.0, self._up))
 
-    def _contact(self, force: np.ndarray, offset: tuple[float, float]) -> ContactArea:
+    def _contact(self, pad: Pad, force: np.ndarray, offset: tuple[float, float]) -> ContactArea:
         """The same of a pad whose middle is so far from the object's, m across and up. A mesh has its own place."""
         aside, up = offset
         if self.contact_shape == "cylinder":
-            return cylinder_contact(PAD, force, *self._round, offset=(up, aside))
+            return cylinder_contact(pad, force, *self._round, offset=(up, aside))
         if self.contact_shape == "sphere":
-            return sphere_contact(PAD, force, self._round[0], offset=offset)
+            return sphere_contact(pad, force, self._round[0], offset=offset)
         if self.contact_shape == "flat":
-            return flat_contact(PAD, force, self._face, offset)
+            return flat_contact(pad, force, self._face, offset)
         from .mesh_contact import mesh_contact
 
         every = np.atleast_1d(force)
-        found = mesh_contact(PAD, self.spec, tuple(every.ravel().tolist()))
+        found = mesh_contact(pad, self.spec, tuple(every.ravel().tolist()))
         assert found is not None  # or else something flat stands for it
         shaped = (each.reshape(np.shape(force)) for each in (found.pad, found.face, found.face_force))
         return ContactArea(*shaped)
+
+    @property
+    def _up(self) -> float:
+        """m, where the pads' middles are above the object's as the fingers close."""
+        return 0.0 if self.mode == "O" else self.spec.grasp_height - self.spec.size[2] / 2
 
     @property
     def _face(self) -> tuple[float, float]:
@@ -170,14 +185,14 @@ class GraspBody:
     def law(self) -> np.void:
         """Area and conductance by force and place, for compiled code; FOOTPRINT_LAW."""
         if self.contact_shape == "cylinder":
-            return cylinder_footprint(PAD, self.joint, *self._round)
+            return cylinder_footprint(self.pad, self.joint, *self._round)
         if self.contact_shape == "sphere":
-            return sphere_footprint(PAD, self.joint, self._round[0])
+            return sphere_footprint(self.pad, self.joint, self._round[0])
         if self.contact_shape == "flat":
             followed = self.mode == "T" and self.spec.shape == "box"
-            return flat_footprint(PAD, self.joint, self._face, self._across if followed else None)
+            return flat_footprint(self.pad, self.joint, self._face, self._across if followed else None)
         assert self._mesh_table is not None
-        return table_footprint(PAD, self.joint, self._mesh_table)
+        return table_footprint(self.pad, self.joint, self._mesh_table)
 
     @cached_property
     def heat_capacity(self) -> float:
@@ -217,7 +232,9 @@ class GraspBody:
 
     @cached_property
     def crushing_force(self) -> float:
-        """N on one pad at which the object breaks, by the pad's mean pressure; inf for what does not."""
+        """N on one pad at which the object breaks, by the mean pressure of a pad that is as soft all over as its
+        silicone, since what breaks gives way under a stiffer face; inf for what does not."""
         if self.touched.crushing_stress is None:
             return np.inf
-        return self.touched.crushing_stress * float(self.contact(np.array(NOMINAL_FORCE)).pad)
+        soft = self._contact(PAD, np.array(NOMINAL_FORCE), (0.0, self._up))
+        return self.touched.crushing_stress * float(soft.pad)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...thermal import ContactArea, Pad
 from ..bodies import MeshShape, ObjectSpec
-from .foundation import pressure_map
+from .foundation import face_springs, pressure_map
 from .surface_height import MAP_PITCH, HeightMap, map_heights, mesh_map
 
 _POINTS = 80  # along the pad's side, of the foundation
@@ -55,21 +55,23 @@ def _side(
     if not cover.any():
         return None
     area = (pad.width / _POINTS) ** 2
+    _, stiffer = face_springs(pad, places, pad.width / _POINTS)
+    springs = cover * stiffer
     stiffness = pad.foundation_modulus / pad.thickness
     centre = cover @ places / cover.sum()
     pressure = np.zeros(len(places))
     fine, heights, covered = _seen(pad, frame, seen, _POINTS * _FINER)
     pitch = pad.width / (_POINTS * _FINER)
-    within = np.clip((pad.face / 2 - np.abs(fine)) / pitch + 0.5, 0.0, 1.0).prod(axis=1)
+    within, stiffer = face_springs(pad, fine, pitch)
     contacts = []
     for force in forces:
         depth, tilt, other = pressure_map(
-            *(surface, cover, places, area, stiffness, pad.thickness, force, centre, pressure)
+            *(surface, springs, places, area, stiffness, pad.thickness, force, centre, pressure)
         )
         sunk = depth + tilt * fine[:, 0] + other * fine[:, 1] - heights
         touched = np.where(sunk > 0, covered, 0.0)
-        pressed = touched * sunk
-        share = pressed @ within / pressed.sum()
+        pressed = touched * sunk * stiffer
+        share = (touched * sunk * pad.face_ratio) @ within / pressed.sum()
         contacts.append([touched.sum() * pitch**2, touched @ within * pitch**2, share * force])
     return np.array(contacts).T
 

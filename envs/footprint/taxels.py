@@ -13,10 +13,12 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from ...thermal import Skin
+from ...thermal.contact import skinned
 from ..bodies import ObjectSpec
 from ..limits import TIPS
 from ..mechanics import Mechanics
-from .foundation import pressure_map
+from .foundation import face_springs, pressure_map
 from .grasp_body import PAD
 from .surface_height import (
     BOX,
@@ -36,15 +38,17 @@ _SHAPES = {"box": BOX, "cylinder": CYLINDER, "sphere": SPHERE}
 
 class Taxels:
     """Pressure maps of `shape` (n, m): n rows from the fingertip's end up to the wrist, m columns across, along the
-    pad's horizontal axis. Raises InvalidValueError for a shape that is none."""
+    pad's horizontal axis. skin: over the pad and the sensor's face, None for a pad that is as soft all over. Raises
+    InvalidValueError for a shape that is none."""
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.shape = checked_taxels(shape)
+    def __init__(self, shape: tuple[int, int], skin: Skin | None = None) -> None:
+        self.shape, self._pad = checked_taxels(shape), skinned(PAD, skin)
         fine = [side * -(-_FINENESS // side) for side in self.shape]
         self._blocks = (self.shape[0], fine[0] // self.shape[0], self.shape[1], fine[1] // self.shape[1])
         z, y = (_middles(count) for count in fine)
         self._places = np.stack(np.broadcast_arrays(y[None, :], z[:, None]), axis=-1).reshape(-1, 2).copy()
         self._sides = PAD.width / fine[1], PAD.width / fine[0]
+        _, self._springs = face_springs(self._pad, self._places, self._sides)
         self._height, self._cover, self._fine, self._elements = (
             np.zeros(len(self._places)) for _ in range(4)
         )
@@ -75,9 +79,10 @@ class Taxels:
     def _map(self, spec: ObjectSpec, pad: np.ndarray, force: float, centre: np.ndarray) -> np.ndarray:
         self._surface(spec, pad)
         area = self._sides[0] * self._sides[1]
-        stiffness = PAD.foundation_modulus / PAD.thickness
+        sheet, springs = self._pad, self._cover * self._springs
+        stiffness = sheet.foundation_modulus / sheet.thickness
         pressure_map(
-            *(self._height, self._cover, self._places, area, stiffness, PAD.thickness),
+            *(self._height, springs, self._places, area, stiffness, sheet.thickness),
             *(force, centre, self._fine),
         )
         return self._fine.reshape(self._blocks).mean(axis=(1, 3))

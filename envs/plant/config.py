@@ -25,11 +25,13 @@ from ...thermal import (
     Mode,
     SensorStack,
     SignalChain,
+    Skin,
     Thermostat,
     material,
     materials,
-    sensor,
 )
+from ...thermal.matter import USUAL_SKIN
+from ...thermal.matter import skin as named_skin
 from ...thermal.stack import HeatedStack, any_sensor, converter, heated_core, highest_voltage
 from ..bodies import ObjectSpec, scaled
 from ..footprint import GraspBody
@@ -50,6 +52,9 @@ if TYPE_CHECKING:
     from ..footprint import Taxels
     from ..sensing import FaceTemperature
 
+AUTO = "auto"
+"""A skin where one is needed; see SimulationConfig."""
+
 
 @dataclass(frozen=True, slots=True)
 class SimulationConfig:
@@ -68,7 +73,9 @@ class SimulationConfig:
     meshes in mode T; without, each patch is the middle of a face. gripper: an MJCF file, an MjSpec or what
     load_gripper makes of them, None for the shipped one. solver: MuJoCo's time step and settings. substeps: of
     MuJoCo in a control step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache:
-    keep thermal networks on disk. taxels: (n, m) of the map of pressure over each pad, None for none.
+    keep thermal networks on disk. skin: over the fingertips, a name of thermal.SKINS or a Skin, None for bare ones, or
+    "auto": bare where all objects are boxes whose material is `material`'s, in mode O, and where the sensor has a
+    heater of its own, else filled_silicone. taxels: (n, m) of the map of pressure over each pad, None for none.
     face_temperature: (n, m) of the map of temperature over each sensor's face (T mode), None for none."""
 
     material: str | Material | Sequence[str | Material] | None = None
@@ -94,6 +101,7 @@ class SimulationConfig:
     cache: bool = True
     taxels: tuple[int, int] | None = None
     face_temperature: tuple[int, int] | None = None
+    skin: str | Skin | None = "auto"
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -119,6 +127,7 @@ class SimulationConfig:
             non_negative("placement (m, degree)", value)
         within("placement", self.placement[0], 0.0, LONGEST, "m")
         checked(self.randomize)
+        object.__setattr__(self, "skin", self._chosen_skin())
         _ = self.tactile  # checks it
         if self.face_temperature is not None:
             self._check_face()
@@ -135,10 +144,35 @@ class SimulationConfig:
             )
 
     @property
+    def worn(self) -> Skin | None:
+        """The fingertips' skin."""
+        return named_skin(self.skin)
+
+    def _chosen_skin(self) -> Skin | None:
+        """Raises UnknownNameError, and InvalidValueError for what is none or cannot be worn."""
+        if self.skin != AUTO:
+            return named_skin(self.skin, self.mode)
+        given = self.objects if self.scene is None else self.scene
+        several = [given] if given is None or isinstance(given, str | ObjectSpec) else given
+        if (
+            all(map(_plain_box, several))
+            or self.mode == "O"
+            or isinstance(any_sensor(self.sensor), HeatedStack)
+        ):
+            return None
+        return named_skin(USUAL_SKIN)
+
+    @property
+    def _sensor(self) -> SensorStack | HeatedStack:
+        """The sensor with its skin."""
+        found, skin = any_sensor(self.sensor), self.worn
+        return found if skin is None else skin.over(found)
+
+    @property
     def heated(self) -> HeatedStack | None:
         """The sensor, where it has a heater of its own. Raises UnknownNameError for a name that is none, and
         InvalidValueError for what it cannot be together with."""
-        found = any_sensor(self.sensor)
+        found = self._sensor
         if not isinstance(found, HeatedStack):
             return None
         if self.mode == "O" or self.thermostat is not None:
@@ -164,11 +198,11 @@ class SimulationConfig:
 
     @property
     def stack(self) -> SensorStack:
-        """The sensor's layers that networks know: all, or those in front of its heater."""
+        """The layers of sensor and skin that networks know: all, or those in front of the sensor's heater."""
         heated = self.heated
         if heated is not None:
             return heated_core(heated, SAMPLE_PERIOD).element
-        return sensor(self.sensor)  # pyright: ignore[reportArgumentType]
+        return self._sensor  # pyright: ignore[reportReturnType]
 
     @property
     def choices(self) -> tuple[Material, ...]:
@@ -225,7 +259,7 @@ class SimulationConfig:
             return None
         from ..footprint import Taxels  # nothing that taxels need is loaded without them
 
-        return Taxels(self.taxels)
+        return Taxels(self.taxels, self.worn)
 
     def face_maps(self, num_envs: int, stack: SensorStack) -> FaceTemperature | None:
         """What maps the temperature over the sensors' faces."""
@@ -233,7 +267,9 @@ class SimulationConfig:
             return None
         from ..sensing import FaceTemperature  # nothing that it needs is loaded without it
 
-        return FaceTemperature(self.face_temperature, num_envs, stack, self.samples * SAMPLE_PERIOD)
+        return FaceTemperature(
+            self.face_temperature, num_envs, stack, self.samples * SAMPLE_PERIOD, self.worn
+        )
 
     def _check_face(self) -> None:
         from ..footprint import checked_taxels
@@ -314,6 +350,7 @@ class SimulationConfig:
             usual if room is None else room,
             self.anywhere,
             self.any_size,
+            self.worn,
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
@@ -397,6 +434,11 @@ def check_fields(plant: str, given: Iterable[str], *more: str) -> None:
     for name in given:
         if name not in known:
             raise unknown_keyword(f"plant {plant!r}", name, known)
+
+
+def _plain_box(one: str | ObjectSpec | None) -> bool:
+    """Whether it is a box without a material of its own, on which a bare, rigid face lies flat."""
+    return one is None or (isinstance(one, ObjectSpec) and one.shape == "box" and one.material is None)
 
 
 def _numbered(scene: Sequence[ObjectSpec]) -> tuple[ObjectSpec, ...]:

@@ -85,7 +85,9 @@ def pair_config(*, goal: Goal = "material", **simulation: Any) -> PairConfig:
     settings = SimulationConfig(object_temperature=given[0], **simulation)
     alike = [_of_one_weight(shape) for shape in settings.shapes]
     return PairConfig(
-        goal, (given[0], given[-1]), replace(settings, objects=alike, material=settings.choices)
+        goal,
+        (given[0], given[-1]),
+        replace(settings, objects=alike, material=settings.choices, skin=settings.worn),
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ...thermal import Layer, SensorStack
+from ...thermal import Layer, SensorStack, Skin
 from ...thermal.batch import (
     CELLS,
     FaceField,
@@ -51,14 +51,16 @@ class FaceTemperatureState:
 
 class FaceTemperature:
     """Maps of `shape` (n, m) in num_envs environments: n rows from the fingertip's end up to the wrist, m columns along
-    the pad's horizontal axis, equal parts of the sensor's face. dt: s, a control step. Raises InvalidValueError for a
-    shape that is none."""
+    the pad's horizontal axis, equal parts of the sensor's face, or of its skin's, whose layer is the stack's last. dt:
+    s, a control step. Raises InvalidValueError for a shape that is none."""
 
-    def __init__(self, shape: tuple[int, int], num_envs: int, stack: SensorStack, dt: float) -> None:
+    def __init__(
+        self, shape: tuple[int, int], num_envs: int, stack: SensorStack, dt: float, skin: Skin | None = None
+    ) -> None:
         self.shape = checked_taxels(shape, "face_temperature")
         self._stack, self._dt = stack, dt
         self._parts = tuple(cosine_means(side) for side in self.shape)
-        self._pads = Taxels((PAD_POINTS, PAD_POINTS))
+        self._pads = Taxels((PAD_POINTS, PAD_POINTS), skin)
         self._on_face = _shares(stack.width)
         each = (num_envs, len(TIPS))
         fields, surface, contact = (np.zeros((*each, *part.shape)) for part in face_state())

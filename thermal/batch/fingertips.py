@@ -31,10 +31,13 @@ from ..contact import (
     contact_conductance,
     flat_contact,
     joint,
+    met,
+    skinned,
     stack_joints,
 )
-from ..matter import Material, Mode, SensorStack, material
+from ..matter import Material, Mode, SensorStack, Skin, material
 from ..matter import sensor as sensor_preset
+from ..matter import skin as named_skin
 from ..network import Demand, network_for
 from ..numerics import Array, as_integers, as_like, namespace_of
 from ..plates import Geometry
@@ -191,6 +194,7 @@ def array_fingertips(
     object_size: Size | list[Size] = (0.04, 0.04, 0.04),
     fingertips: Literal[1, 2] = 2,
     sensor: str | SensorStack = "seed",
+    skin: str | Skin | None = None,
     chain: SignalChain = ADS1115,
     tolerance: float = 0.05,
     air: float = 5.0,
@@ -202,11 +206,11 @@ def array_fingertips(
 
     materials: of the objects; where there are several, `which` of the methods tells row by row. dt: s, a step, after
     which a voltage is sampled. mode: T or O. object_size: m, width, depth and, between the fingertips, thickness; a
-    list of these where the objects differ. fingertips: 1, or 2 on opposite faces. sensor: a preset or a stack. chain:
-    the electronics. tolerance: K of temperature drop that the networks keep from 0.05 to 20 s after a touch, in air
-    too. air: W/(m2 K) on the objects. sensor_temperature, object_temperature: °C. Networks are built once and kept on
-    disk. Raises UnknownNameError, and InvalidValueError for a value that none can have, or a tolerance that no network
-    keeps.
+    list of these where the objects differ. fingertips: 1, or 2 on opposite faces. sensor: a preset or a stack. skin:
+    over the fingertips (T mode), a name of thermal.SKINS or a Skin, None for bare ones. chain: the electronics.
+    tolerance: K of temperature drop that the networks keep from 0.05 to 20 s after a touch, in air too. air: W/(m2 K)
+    on the objects. sensor_temperature, object_temperature: °C. Networks are built once and kept on disk. Raises
+    UnknownNameError, and InvalidValueError for a value that none can have, or a tolerance that no network keeps.
     """
     positive("dt (s)", dt)
     non_negative("air (W/(m2 K))", air)
@@ -222,11 +226,13 @@ def array_fingertips(
     if not named or len(sizes) != len(named):
         raise InvalidValueError(f"give one object_size or a list of one per material, got {object_size!r}")
     sizes = [_size(size) for size in sizes]
-    stack = sensor_preset(sensor)
+    stack, worn = sensor_preset(sensor), named_skin(skin, mode)
+    if worn is not None:
+        stack = worn.over(stack)
     demand = Demand(tolerance, max(abs(difference), LEAST_DIFFERENCE))
     systems, joints, areas = [], [], []
     for of, size in zip(map(material, named), sizes, strict=True):
-        faces, newton = _contact(stack, of, mode, size)
+        faces, newton = _contact(stack, worn, of, mode, size)
         touched = min(float(newton.face), stack.face_area)
         geometry = Geometry(stack, of, mode, touched, "square", size, fingertips)
         systems.append(network_for(geometry, demand, air=air).system)
@@ -265,14 +271,16 @@ def _size(size: Size) -> Size:
     return width, depth, thickness
 
 
-def _contact(stack: SensorStack, of: Material, mode: Mode, size: Size) -> tuple[Joint, ContactArea]:
+def _contact(
+    stack: SensorStack, skin: Skin | None, of: Material, mode: Mode, size: Size
+) -> tuple[Joint, ContactArea]:
     """The faces that meet, and the contact at 1 N: flat ones keep their area and their share of the force."""
     if min(size[:2]) < stack.width:
         raise InvalidValueError(
             f"object_size must be (width, depth, thickness) in m, no narrower than the sensor's face of "
             f"{stack.width:g} m, got {size!r}"
         )
-    pad = Pad(face=stack.width)
+    pad = skinned(Pad(face=stack.width), skin)
     if mode == "O":  # the thermostat meets the element that is glued to the object
         return joint(LAPPED_ALUMINA, THERMOSTAT_FACE), flat_contact(pad, 1.0, (stack.width, stack.width))
-    return joint(LAPPED_ALUMINA, Surface.of(of)), flat_contact(pad, 1.0, size[:2])
+    return met(skin, Surface.of(of)), flat_contact(pad, 1.0, size[:2])

@@ -2,6 +2,7 @@
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
 from .array_law import ArrayLaws, array_conductance, array_contact, array_laws
+from .fingertip import met, skinned, touching
 from .footprint import (
     FOOTPRINT_LAW,
     TABLE_FORCES,
@@ -82,13 +83,16 @@ __all__ = [
     "footprint",
     "gas_conduction",
     "joint",
+    "met",
     "rigid_cylinder",
     "rigid_sphere",
+    "skinned",
     "solid_conduction",
     "sphere_contact",
     "sphere_footprint",
     "sphere_law",
     "stack_joints",
     "table_footprint",
+    "touching",
     "typical_slope",
 ]

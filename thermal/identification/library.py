@@ -95,7 +95,7 @@ def curve_library(
         "object_size": geometry.object_size,
         "axes": [knots, log_resistance, log_effusivity],
         "bandwidth": float(setup.converter.bandwidth),
-        "heated": "" if isinstance(setup.stack, SensorStack) else repr(setup.stack),
+        "heated": "" if isinstance(setup.worn, SensorStack) else repr(setup.worn),
     }
     core = setup.core
 

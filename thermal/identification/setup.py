@@ -9,7 +9,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
 
-from ..matter import Material, Mode, SensorStack, Shape, sensor
+from ..matter import Material, Mode, SensorStack, Shape, Skin, sensor
+from ..matter import skin as named_skin
 from ..plates import Geometry
 from ..readout import ADS1115, SignalChain, saturated
 from ..stack import HeatedCore, HeatedStack, converter, fallen, heated_core, require_linear
@@ -30,7 +31,9 @@ class TouchSetup:
     slow deviations of real curves from the model, as a share of the curve's largest value. tolerance: K that the
     network which simulated a curve may be off, however small the curve is: a quarter of it, the rms of such networks'
     errors, is added; 0 where no network did. touch_error: s, standard deviation of a touch time that is given.
-    horizon: s after the touch; later samples are not used. Raises InvalidValueError.
+    horizon: s after the touch; later samples are not used. skin: over the sensor's face (T mode), a name of
+    thermal.SKINS or a Skin, None for a bare one, or for a stack whose last layer is one already. Raises
+    InvalidValueError and UnknownNameError.
     """
 
     stack: SensorStack | HeatedStack = field(default_factory=lambda: sensor("seed"))
@@ -47,8 +50,10 @@ class TouchSetup:
     tolerance: float = 0.05
     touch_error: float = 0.0
     horizon: float = 10.0
+    skin: str | Skin | None = None
 
     def __post_init__(self) -> None:
+        named_skin(self.skin, self.mode)  # checks it
         low, high = self.conductance
         if not positive("lowest conductance (W/(m2 K))", low) < positive(
             "highest conductance (W/(m2 K))", high
@@ -82,15 +87,22 @@ class TouchSetup:
         return warm - cold, float(np.hypot(a, b))
 
     @property
+    def worn(self) -> SensorStack | HeatedStack:
+        """The sensor with its skin."""
+        skin = named_skin(self.skin)
+        return self.stack if skin is None else skin.over(self.stack)
+
+    @property
     def core(self) -> HeatedCore | None:
         """What is behind a heated sensor's element; None of an element on a thermostat."""
-        return heated_core(self.stack, _STEP) if isinstance(self.stack, HeatedStack) else None
+        worn = self.worn
+        return heated_core(worn, _STEP) if isinstance(worn, HeatedStack) else None
 
     @property
     def element(self) -> SensorStack:
         """The layers that networks know."""
         core = self.core
-        return core.element if core is not None else self.stack  # pyright: ignore[reportReturnType]
+        return core.element if core is not None else self.worn  # pyright: ignore[reportReturnType]
 
     @property
     def converter(self) -> SignalChain:

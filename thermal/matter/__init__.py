@@ -4,11 +4,12 @@ from .layers import Layer
 from .materials import SEED_MATERIALS, Material, load_materials, material, materials
 from .mounting import Mode, Shape
 from .sensors import SensorStack, load_sensors, sensor, sensors, write_sensor
-from .skins import SKINS, Skin, skin
+from .skins import SKINS, USUAL_SKIN, Skin, skin
 
 __all__ = [
     "SEED_MATERIALS",
     "SKINS",
+    "USUAL_SKIN",
     "Layer",
     "Material",
     "Mode",

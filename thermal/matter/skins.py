@@ -1,4 +1,8 @@
-"""A skin over a sensor's face: a soft sheet that conforms to what is touched, and that heat must pass."""
+"""A skin over a fingertip: a soft sheet that conforms to what is touched, and that heat must pass.
+
+From the outside in, a fingertip is its skin, if it wears one, over the sensor's layers in the middle and over the
+pad's silicone around them.
+"""
 
 from __future__ import annotations
 
@@ -11,14 +15,17 @@ from thermograsp.errors import InvalidValueError, positive, unknown_name, within
 
 from .layers import Layer
 from .materials import Material, material
+from .mounting import Mode
 
 _Stack = TypeVar("_Stack")
 _THINNEST, _THICKEST = 1e-6, 5e-3  # m; a thicker one feels nothing
+_POISSON = 0.3  # where a material has none, as of its surface
+_RUBBER_BULK = 2e9  # Pa, of rubbers, whose Poisson ratio tables round to 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """A sheet of one material, thickness 1e-6 .. 5e-3 m, bonded to the sensor's face without a resistance of its own.
+    """A sheet of one material, thickness 1e-6 .. 5e-3 m, bonded to the fingertip without a resistance of its own.
 
     material: a name of thermal.materials() or a Material, with Young's modulus and roughness, for its contact. Raises
     UnknownNameError and InvalidValueError."""
@@ -49,37 +56,66 @@ class Skin:
         """m2 K/W."""
         return self.thickness / self.made_of.conductivity
 
+    @property
+    def stiffness(self) -> float:
+        """Pa/m, pressure per indentation of the sheet on a rigid face: its modulus of compression without bulging,
+        K + 4 G/3, over its thickness. It holds under contacts several times as wide as the sheet is thick (Johnson,
+        Contact Mechanics, section 5.8); under smaller ones the sheet bulges and is softer."""
+        made = self.made_of
+        assert made.youngs_modulus is not None  # checked at first
+        ratio = _POISSON if made.poisson_ratio is None else made.poisson_ratio
+        bulk = made.youngs_modulus / (3 * (1 - 2 * ratio)) if ratio < 0.5 else _RUBBER_BULK
+        shear = made.youngs_modulus / (2 * (1 + ratio))
+        return (bulk + 4 * shear / 3) / self.thickness
+
     def over(self, stack: _Stack) -> _Stack:
         """A SensorStack or a HeatedStack with this skin on its face: one more layer, which is read and heated where it
         was."""
         return replace(stack, layers=(*stack.layers, self.layer))  # pyright: ignore
 
 
+_SHEET = "Henkel, technical data sheet of Bergquist Sil Pad TSP 1800ST (once Sil-Pad 1500ST)"
+
 SKINS: Mapping[str, Skin] = MappingProxyType(
     {
         "filled_silicone": Skin(
             Material(
                 "filled_silicone",
-                conductivity=1.6,
+                conductivity=1.8,
                 density=2200.0,
                 specific_heat=1000.0,
                 family="elastomer",
                 youngs_modulus=1.7e6,
                 poisson_ratio=0.49,
                 roughness=2e-6,
+                sources={
+                    "conductivity": _SHEET,
+                    **dict.fromkeys(
+                        ("density", "specific_heat", "youngs_modulus", "poisson_ratio", "roughness"),
+                        "estimate",
+                    ),
+                },
             ),
-            thickness=0.2e-3,
+            thickness=0.203e-3,
         )
     }
 )
-"""By name. filled_silicone: a sheet of silicone filled with ceramic powder, of the kind that is sold in 0.2 to 0.25 mm
-as insulation under power transistors. Every number is an estimate of a usual value, no datasheet's: 1.6 W/(m K) is
-within the 1.5 to 3 of such sheets, 1.7 MPa a Shore A hardness of 40 by Gent's relation."""
+"""By name. filled_silicone: silicone filled with ceramic powder, as it is sold for insulation under power transistors.
+Thickness and conductivity are those of Henkel's Bergquist Sil Pad TSP 1800ST. Its data sheet gives 0.20 K in2/W, or
+1.29e-4 m2 K/W, between two faces at 200 psi; the sheet alone is 1.13e-4. Everything else is an estimate of a usual
+value: 1.7 MPa is a Shore A hardness of 40 by Gent's relation."""
+
+USUAL_SKIN = "filled_silicone"
+"""What meets objects where the environments choose (see envs.SimulationConfig)."""
 
 
-def skin(name: str | Skin | None) -> Skin | None:
-    """What a keyword `skin` stands for: a name of SKINS, the skin itself, None for a bare face. Raises
-    InvalidValueError and UnknownNameError."""
+def skin(name: str | Skin | None, mode: Mode = "T") -> Skin | None:
+    """What a keyword `skin` stands for: a name of SKINS, the skin itself, None for a bare fingertip. Raises
+    UnknownNameError, and InvalidValueError for what is none, or any in mode O."""
+    if name is not None and mode == "O":
+        raise InvalidValueError(
+            "a skin is what touches the object, on which the element is glued in mode 'O': leave it out"
+        )
     if name is None or isinstance(name, Skin):
         return name
     if not isinstance(name, str):

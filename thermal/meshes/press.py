@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from thermograsp.errors import InvalidValueError, positive
 
-from ..matter import SensorStack
+from ..matter import SensorStack, Skin
 from ..network import Demand
 from ..readout import Thermostat
 from ..rungs import Conductance, Press, PressProblem, Rung, as_felt, expected, pressed_sensor, sample_times
@@ -24,6 +24,7 @@ def press_body(
     patch: SurfacePatch,
     *,
     sensor: str | SensorStack | HeatedStack = "seed",
+    skin: str | Skin | None = None,
     conductance: Conductance | None = None,
     force: Conductance | None = None,
     air: float = 0.0,
@@ -45,7 +46,7 @@ def press_body(
     Raises UnknownNameError for names, InvalidValueError for values that make no sense, and MeshError where the patch
     does not meet the surface.
     """
-    pressed = pressed_sensor(sensor, conductance, force)
+    pressed = pressed_sensor(sensor, conductance, force, skin)
     stack = pressed.stack
     problem = PressProblem(
         stack=stack,

@@ -87,10 +87,7 @@ def press(
 
     Raises UnknownNameError for names and InvalidValueError for values that make no sense, or that the rung cannot do.
     """
-    if skin is not None and mode == "O":
-        raise InvalidValueError(
-            "a skin is what touches the object, on which the element is glued in mode 'O': leave it out"
-        )
+    named_skin(skin, mode)  # checks it
     pressed = pressed_sensor(sensor, conductance, force, skin)
     problem = PressProblem(
         stack=pressed.stack,

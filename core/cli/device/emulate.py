@@ -25,6 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what they press: a name of `thermograsp materials`",
     )
     add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add(
+        "--skin",
+        help="over the fingertips, in T mode: a skin's name, such as filled_silicone (default: bare)",
+    )
     add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K)")
     add("--force", type=float, default=10.0, help="while touching, N")
     add("--replay", metavar="FILE", help="feel a recording again instead of a press")
@@ -79,4 +83,6 @@ def _source(args: argparse.Namespace) -> Source:
 
     if args.replay is not None:
         return samples_source(replay(args.replay).samples)
-    return press_source(args.material, mode=args.mode, conductance=args.conductance, force=args.force)
+    return press_source(
+        args.material, mode=args.mode, skin=args.skin, conductance=args.conductance, force=args.force
+    )

@@ -25,6 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="seed",
         help="a sensor's name, or a file of `thermograsp device fit`",
     )
+    add(
+        "--skin",
+        help="over the fingertips, in T mode: a skin's name, such as filled_silicone (default: bare)",
+    )
     add("--link", metavar="PATH", help="a stable name for the fingertips' port (default: none)")
     add("--gripper-link", metavar="PATH", help="a stable name for the gripper's port (default: none)")
     add("--seed", type=int, default=0, help="of the objects' places and the noise")
@@ -43,7 +47,8 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     seconds = None if args.seconds is None else positive("seconds", args.seconds)
     material = chosen_material(args.material, args.materials)
-    simulation = SimulatedPlant(1, SimulationConfig(material=material, mode=args.mode, sensor=args.sensor))
+    config = SimulationConfig(material=material, mode=args.mode, sensor=args.sensor, skin=args.skin)
+    simulation = SimulatedPlant(1, config)
     hand = SimulatedHand(simulation, args.seed)
     with PtyDevice(hand.fingertips, args.link) as tips, PtyDevice(hand.gripper, args.gripper_link) as gripper:
         url = f"serial://{tips.path}?gripper=robotiq://{gripper.path}"

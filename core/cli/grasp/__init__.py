@@ -75,6 +75,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="seed",
         help="a sensor's name, or a file of `thermograsp device fit`",
     )
+    add(
+        "--skin",
+        default="auto",
+        help="over the fingertips, in T mode: a skin's name, none for bare ones, or auto: filled_silicone with "
+        "--object and on what is no box",
+    )
     add("--gripper", metavar="FILE", help="your own in simulation, an MJCF file (default: the shipped one)")
     add(
         "--plant",
@@ -118,6 +124,7 @@ def run(args: argparse.Namespace) -> int:
         tolerance=args.tolerance,
         object_temperature=args.temperature if args.object is None else _ROOM,
         sensor=args.sensor,
+        skin=None if args.skin == "none" else args.skin,
         gripper=args.gripper,
         cache=not args.no_cache,
         **placement,

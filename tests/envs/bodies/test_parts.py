@@ -36,7 +36,8 @@ COATED = ObjectSpec(
 
 def held(seconds: float = 4.0, rows: int = 1, **config):
     """Temperature drops (steps, rows) K of the left fingertip, and the last step, of a grasp with 10 N."""
-    batch = GraspBatch(rows, task=ENDLESS, signal="ideal", placement=(0.0, 0.0), tolerance=0.02, **config)
+    words = {"signal": "ideal", "placement": (0.0, 0.0), "tolerance": 0.02, "skin": None}
+    batch = GraspBatch(rows, task=ENDLESS, **words, **config)
     batch.reset(range(rows), [np.random.default_rng(row) for row in range(rows)])
     steps = [batch.step(np.tile(action_of(0.0, 10.0, 0.0), (rows, 1))) for _ in range(round(seconds / 0.02))]
     drops = np.array([[step.info(row)["temperature_drop"][0] for row in range(rows)] for step in steps])
@@ -187,7 +188,8 @@ def test_vector_and_single_environments_agree_bit_for_bit_and_scenes_take_parts(
     config = {"objects": [COATED, replace(COATED, parts=())], "material": None}
     together, _ = held(0.8, 3, **config)
     for row in range(3):
-        batch = GraspBatch(1, task=ENDLESS, signal="ideal", placement=(0.0, 0.0), tolerance=0.02, **config)
+        words = {"signal": "ideal", "placement": (0.0, 0.0), "tolerance": 0.02, "skin": None}
+        batch = GraspBatch(1, task=ENDLESS, **words, **config)
         batch.reset([0], [np.random.default_rng(row)])
         alone = [
             batch.step(action_of(0.0, 10.0, 0.0)[None]).info(0)["temperature_drop"][0]

@@ -52,7 +52,7 @@ def test_what_is_not_touched_has_no_network():
 def test_the_first_object_among_others_is_felt_as_if_it_were_alone():
     """Up to the fingertips' states, of which scenes have as many as carrying them over asks for."""
     among, alone = (
-        batch(1, ObjectSpec(), ASIDE, material="glass"),
+        batch(1, ObjectSpec(), ASIDE, material="glass", skin=None),
         GraspBatch(1, objects=ObjectSpec(), material="glass", task=ENDLESS, placement=(0.0, 0.0)),
     )
     alone.reset([0], [np.random.default_rng(0)])

@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import trimesh
 
 from thermograsp.errors import InvalidValueError, UnknownNameError
-from thermograsp.thermal import SKINS, Material, Skin, press, sensor
+from thermograsp.thermal import (
+    IDEAL,
+    SKINS,
+    Material,
+    Skin,
+    SurfacePatch,
+    TouchSetup,
+    array_fingertips,
+    material,
+    press,
+    press_body,
+    sensor,
+    solid,
+)
+from thermograsp.thermal.identification.response import SystemFamily, unit_response
 from thermograsp.thermal.stack import heated_stack
 
 SILICONE = SKINS["filled_silicone"]
@@ -31,6 +48,69 @@ def test_a_press_is_that_of_the_semi_analytic_solution_of_the_same_layers(name: 
     assert np.abs(found.temperature_drop - exact.temperature_drop).max() < 0.02
 
 
+def test_on_a_body_of_any_shape_it_is_the_same_layer() -> None:
+    cube = (0.04, 0.04, 0.04)
+    mesh = trimesh.creation.box(cube)
+    body = solid(mesh.vertices, mesh.faces, material("aluminium"))
+    top = SurfacePatch((0, 0, 0.02), (0, 0, 1))
+    found = press_body(body, top, skin=SILICONE, tolerance=0.025, cache=False, **WORDS)  # pyright: ignore[reportArgumentType]
+    stack = SILICONE.over(sensor("seed"))
+    exact = press("aluminium", sensor=stack, object_size=cube, rung="semi_analytic", **WORDS)  # pyright: ignore[reportArgumentType]
+    assert np.abs(found.temperature_drop - exact.temperature_drop)[1:].max() < 0.02
+
+
+def test_fingertips_of_arrays_wear_one_row_by_row() -> None:
+    """What a press feels at their own conductance, the same bits alone and among others."""
+    words = {"dt": 0.05, "like": np.zeros(0), "fingertips": 1, "air": 0.0, "chain": IDEAL, "tolerance": 0.05}
+    size = (0.04, 0.03, 0.02)
+    tips = array_fingertips("aluminium", skin=SILICONE, object_size=size, **words)  # pyright: ignore[reportArgumentType]
+    force = np.array([[2.0], [10.0], [0.0]])
+    felt = tips.conductance(force)
+    state, volts = tips.start(3), np.zeros((0, 3))
+    for _ in range(40):
+        state, voltage, _ = tips.step(state, felt)
+        volts = np.vstack((volts, voltage[:, 0]))
+    alone, one = tips.start(1), np.zeros(0)
+    for _ in range(40):
+        alone, voltage, _ = tips.step(alone, tips.conductance(force[1:2]))
+        one = np.append(one, voltage[0, 0])
+    assert np.array_equal(volts[:, 1], one) and not volts[:, 2].any()
+    area = sensor("seed").face_area
+    pressed = press(
+        "aluminium",
+        skin=SILICONE,
+        conductance=float(felt[1, 0]) / area,
+        object_size=size,
+        seconds=2.0,
+        dt=0.05,
+    )
+    assert np.abs(pressed.voltage[1:] - one).max() < 0.1 * sensor("seed").seebeck
+
+
+def test_the_sheet_is_the_data_sheet_s_impedance_less_two_faces() -> None:
+    """0.20 K in2/W at 200 psi, between two flat faces."""
+    impedance = 0.20 * 0.0254**2
+    assert 0.8 * impedance < SILICONE.resistance < impedance
+
+
+def test_its_springs_are_those_of_a_sheet_that_cannot_bulge() -> None:
+    for ratio in (0.3, 0.45, 0.49):
+        made = Material("sheet", 1.0, 1e3, 1e3, youngs_modulus=2e6, poisson_ratio=ratio, roughness=1e-6)
+        modulus = 2e6 * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio))  # Johnson, Contact Mechanics, 5.8
+        assert Skin(made, 1e-4).stiffness == pytest.approx(modulus / 1e-4)
+    assert Skin(replace(made, poisson_ratio=0.5), 1e-4).stiffness == pytest.approx(2e13, rel=0.01)
+
+
+def test_curves_to_identify_by_are_those_of_the_same_layers() -> None:
+    setup, glass, t = TouchSetup(skin="filled_silicone"), material("glass"), np.array([0.1, 0.5, 2.0])
+    family = SystemFamily(setup.geometry(glass))
+    system = family.system(glass.conductivity, glass.volumetric_heat_capacity)
+    found = 12 * unit_response(system, 5e3, t)
+    exact = press("glass", sensor=setup.element, conductance=5e3, seconds=2.0, dt=0.1, rung="semi_analytic")
+    assert setup.element == SILICONE.over(sensor("seed"))
+    assert np.abs(found - np.interp(t, exact.t, exact.temperature_drop)).max() < 0.02
+
+
 def test_it_holds_heat_back_by_its_resistance() -> None:
     """Settled on a body that stays as it is, thin and wide of a good conductor: resistances in series."""
     bulk = Material("bulk", 1e5, 1e4, 1e4)
@@ -38,7 +118,7 @@ def test_it_holds_heat_back_by_its_resistance() -> None:
     found = press(bulk, skin=SILICONE, conductance=h, seconds=40.0, dt=1.0, tolerance=0.01)
     layers = [layer.thickness / layer.conductivity for layer in stack.layers]
     whole = sum(layers) + SILICONE.resistance + 1 / h
-    assert SILICONE.resistance == pytest.approx(1.25e-4)
+    assert SILICONE.resistance == pytest.approx(0.203e-3 / 1.8)
     assert found.temperature_drop[-1] == pytest.approx(12 * layers[1] / whole, abs=0.02)
 
 
@@ -72,5 +152,17 @@ def test_refuses_what_is_none() -> None:
         press("glass", skin={"silicone": 1e-4})  # pyright: ignore[reportArgumentType]
     with pytest.raises(InvalidValueError, match="youngs_modulus"):
         Skin(Material("m", 1, 1, 1), 1e-4)
-    with pytest.raises(InvalidValueError, match="mode"):
-        press("glass", skin=SILICONE, mode="O")
+    with pytest.raises(UnknownNameError, match="silicone"):
+        Skin("silicnoe", 1e-4)
+    for refused in (
+        lambda: press("glass", skin=SILICONE, mode="O"),
+        lambda: TouchSetup(skin=SILICONE, mode="O"),
+        lambda: array_fingertips("glass", dt=0.1, like=np.zeros(0), skin="filled_silicone", mode="O"),
+    ):
+        with pytest.raises(InvalidValueError, match="mode"):
+            refused()
+    for nothing in (np.nan, -1e-4, np.inf, True):
+        with pytest.raises(InvalidValueError, match="thickness"):
+            Skin("silicone", nothing)
+    with pytest.raises(UnknownNameError, match="filled_silicone"):
+        TouchSetup(skin="filled_silicon")

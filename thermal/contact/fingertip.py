@@ -1,0 +1,29 @@
+"""What of a fingertip touches: its pad with the skin that it wears, and the faces that meet."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..matter import Skin
+from .area import Pad
+from .rough_faces import LAPPED_ALUMINA, Joint, Surface, joint
+
+
+def skinned(pad: Pad, skin: Skin | None) -> Pad:
+    """The pad under a skin, whose springs are in series with the silicone's around the sensor and alone on its face,
+    which is rigid. Without a skin the pad itself, whose springs are the same all over."""
+    if skin is None:
+        return pad
+    own = pad.foundation_modulus / pad.thickness
+    softer = skin.stiffness / (skin.stiffness + own)
+    return replace(pad, youngs_modulus=softer * pad.youngs_modulus, face_stiffness=skin.stiffness)
+
+
+def touching(skin: Skin | None) -> Surface:
+    """The sensor's face, or the skin's."""
+    return LAPPED_ALUMINA if skin is None else Surface.of(skin.made_of)
+
+
+def met(skin: Skin | None, other: Surface) -> Joint:
+    """The faces of a fingertip and of what it touches. Under a skin spots conduct no more than at full contact."""
+    return joint(touching(skin), other, full_contact=skin is not None)
