@@ -106,12 +106,13 @@ def test_maps_press_with_its_springs() -> None:
 
 
 def test_refuses_what_cannot_be_worn() -> None:
-    for wrong, error in (
+    refused: list[tuple[dict[str, Any], type[Exception]]] = [
         ({"skin": "filled_silicon"}, UnknownNameError),
         ({"skin": 2e-4}, InvalidValueError),
         ({"skin": ""}, UnknownNameError),
         ({"skin": "filled_silicone", "mode": "O"}, InvalidValueError),
         ({"skins": None}, UnknownKeywordError),
-    ):
+    ]
+    for wrong, error in refused:
         with pytest.raises(error):
             GraspBatch(1, task=ENDLESS, **wrong)
