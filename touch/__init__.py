@@ -12,7 +12,7 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from .contacts import TouchContacts, prepare
     from .engine import install, load_plugin
-    from .fixed_touch import FixedTouch, FixedTouchReading, FixedTouchState
+    from .fixed_touch import FixedTouch, FixedTouchReading, FixedTouchState, grasp_touch
     from .heat import FixedPlaces, HeatBalance
     from .scene import (
         Face,
@@ -42,6 +42,7 @@ __all__ = [
     "TouchReading",
     "TouchState",
     "flat_faces",
+    "grasp_touch",
     "install",
     "largest_face",
     "load_plugin",
@@ -55,7 +56,7 @@ __getattr__ = opened(
     {
         "contacts": ("TouchContacts", "prepare"),
         "engine": ("install", "load_plugin"),
-        "fixed_touch": ("FixedTouch", "FixedTouchReading", "FixedTouchState"),
+        "fixed_touch": ("FixedTouch", "FixedTouchReading", "FixedTouchState", "grasp_touch"),
         "heat": ("FixedPlaces", "HeatBalance"),
         "scene": (
             "Face",

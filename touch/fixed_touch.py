@@ -11,6 +11,7 @@ states of all fields, R: states of a narrow contact.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -30,8 +31,12 @@ from .contacts import (
     TouchContacts,
     array_contacts,
 )
-from .heat import ArrayNarrow, FixedNetworks, array_narrow, network_tables
+from .heat import ArrayNarrow, FixedNetworks, JoinedHeat, array_narrow, network_tables
 from .scene import BodyShape, PadPlace
+
+MOST_NETWORKS = 4096
+"""Of combinations of materials and ways to grasp objects that grasp_touch makes tables of."""
+_SAME = 1e-9  # of a box's sides, by which they may differ and count as equal
 
 
 class FixedTouchState(NamedTuple):
@@ -85,7 +90,8 @@ class FixedTouch:
 
     fingertips, objects: names. materials: those that each object may be of; a world's number counts along them.
     bodies (F,) that carry the pads and geoms (G,) of the objects, integers: their numbers in the model. origin: the
-    states of the ThermalTouch's worlds, or of one of them. ambient: °C."""
+    states of the ThermalTouch's worlds, or of one of them. ambient: °C. own: (O, K), 1 at the states of each
+    object, and mean: (O, K), 1 at the one of its mean temperature."""
 
     dt: float
     substeps: int
@@ -103,6 +109,7 @@ class FixedTouch:
     narrow: ArrayNarrow
     held: Array
     mean: Array
+    own: Array
     owner: Array
     of_object: Array
     reads: ArrayContacts
@@ -356,8 +363,9 @@ def fixed_touch(
     tips = tuple(pad.label for pad in pads)
     objects = tuple(shape.name for shape in shapes)
     of = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
-    mean = np.zeros((len(objects), len(networks.state)))
-    mean[np.arange(len(objects)), networks.mean] = 1.0
+    begin, at = networks.begin, np.arange(len(networks.state))
+    mean = (at == begin[:-1, None]).astype(float)
+    own = ((at >= begin[:-1, None]) & (at < begin[1:, None])).astype(float)
 
     def array(values: np.ndarray | Sequence[float]) -> Array:
         return as_like(np.asarray(values, float), like)
@@ -392,6 +400,7 @@ def fixed_touch(
         array_narrow(networks.narrow, networks.width, networks.decay, networks.dt, like),
         array(networks.held),
         array(mean),
+        array(own),
         integers([o for o, _ in of]),
         array(np.eye(len(objects))[[o for o, _ in of]]),
         array_contacts(model, pads, kinds, like),
@@ -401,6 +410,72 @@ def fixed_touch(
         return replace(made, origin=made.reset(origin))
     filtered, last, voltage = (array(own[None]) for own in now)
     return replace(made, origin=origin._replace(signal=SignalState(filtered, last), voltage=voltage))
+
+
+def grasp_touch(
+    model: mujoco.MjModel,
+    pads: Sequence[PadPlace],
+    shapes: Sequence[BodyShape],
+    materials: Sequence[Sequence[Material]],
+    *,
+    dt: float,
+    substeps: int,
+    tolerance: float,
+    ambient: float,
+    air: float,
+    chain: SignalChain,
+    samples: int,
+    like: Array,
+) -> tuple[FixedTouch, int]:
+    """Fingertips that touch every object in the middles of two opposite faces of its box, those that look alike in the
+    model's first pose on the same one; and in how many ways. There are three, across the box's sides, or one where all
+    objects are cubes. materials: of each object. A world's number is that of its material times the ways, plus the
+    way. One sample each dt s of so many substeps. Raises InvalidValueError beside thermostats of finite power, heated
+    sensors and glued elements, and for more combinations than MOST_NETWORKS."""
+    cubes = all(np.ptp(shape.size) <= _SAME * shape.size.max() for shape in shapes)
+    ways = 1 if cubes else 3
+    combinations = math.prod(len(own) * ways for own in materials)
+    if combinations > MOST_NETWORKS:
+        raise InvalidValueError(
+            f"objects: their materials and the sides that they may be grasped across combine in {combinations} ways, "
+            f"more than {MOST_NETWORKS}: name fewer objects, or fewer materials of each"
+        )
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    looks = np.array([data.xmat[pad.body].reshape(3, 3) @ pad.axes[:, 0] for pad in pads])
+    side = np.where(looks @ looks[0] < 0, -1.0, 1.0)
+    poses = np.zeros((ways, len(pads), len(shapes), 6))
+    for o, shape in enumerate(shapes):
+        poses[:, :, o, :3] = shape.centre
+        poses[:, :, o, 3:] = side[:, None] * shape.axes.T[:ways, None]
+    first = [replace(shape, material=own[0]) for shape, own in zip(shapes, materials, strict=True)]
+    heat = JoinedHeat(pads, (), first, worlds=1, dt=dt, tolerance=tolerance, film=air, ambient=ambient)
+    most = max(map(len, materials))
+    kinds = [
+        tuple(
+            replace(shape, material=own[min(v, len(own) - 1)])
+            for shape, own in zip(shapes, materials, strict=True)
+        )
+        for v in range(most)
+        for _ in range(ways)
+    ]
+    fixed = fixed_touch(
+        model,
+        pads,
+        shapes,
+        kinds,
+        [[one for one in own for _ in range(ways)] for own in materials],
+        heat.fixed_networks(0, materials, poses),
+        substeps=substeps,
+        ambient=ambient,
+        chain=chain,
+        places=None,
+        worlds=(np.zeros((1, len(shapes)), int), np.full((1, len(shapes)), ambient)),
+        now=None,
+        samples=samples,
+        like=like,
+    )
+    return fixed, ways
 
 
 def _record(places: SensorPlaces, pads: Sequence[PadPlace], geoms: int, like: Array) -> RecordPlaces:

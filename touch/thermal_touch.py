@@ -350,7 +350,9 @@ class ThermalTouch:
             self._shapes,
             kinds,
             every,
-            self._heat.fixed_networks(row, every, pad_poses(self._model, data, self._pads, self._shapes)),
+            self._heat.fixed_networks(
+                row, every, pad_poses(self._model, data, self._pads, self._shapes)[None]
+            ),
             substeps=self._sample_steps,
             ambient=self._ambient,
             chain=self._chain,

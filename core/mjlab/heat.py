@@ -1,147 +1,115 @@
-"""Heat of a pair of fingertips in every world of a simulation, advanced in place on its device.
+"""Heat of fingertips in every world of a simulation: touch.FixedTouch, advanced in place on its device.
 
-B: worlds, F: fingertips (1 or 2), O: objects, V: materials, S: samples.
+B: worlds, F: fingertips, O: objects, G: geoms of the objects, H: substeps, K: states of all fields.
 """
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError
-from thermograsp.thermal import Material, SignalChain, array_fingertips
 from thermograsp.thermal.numerics import as_like
-from thermograsp.touch.scene import BodyShape, PadPlace
+from thermograsp.touch import FixedTouch, FixedTouchReading, FixedTouchState, TouchContacts, rotation
+from thermograsp.touch.scene import BodyShape
 
 Tensor = Any
-_SAME = 1e-9  # m, by which sides of a box may differ and count as equal
 
 
-class PairHeat:
-    """The state of all worlds, of fixed size, and its steps of dt s. Everything is written in place.
+class WorldsHeat:
+    """The state of all worlds, of fixed size, and its steps. Everything is written in place.
 
-    kinds: the objects once for each number that a world's material may be. One or two fingertips are on the object that
-    they press hardest, two on opposite faces of its box. An object that they leave is at its first temperature when
-    they come back; they keep their own warmth. like: a tensor (B,) whose dtype and device are taken.
-    Raises InvalidValueError for fingertips that cannot be, and boxes narrower than the sensor.
-    """
+    fixed: of touch.grasp_touch, in which each material comes once for each way of grasping an object: across which
+    sides. A grasp keeps its way. An object that is grasped another way has its mean temperature throughout. like: a
+    tensor (B,) whose dtype and device are taken."""
 
     def __init__(
         self,
-        pads: Sequence[PadPlace],
-        kinds: Sequence[Sequence[BodyShape]],
+        model: mujoco.MjModel,
+        fixed: FixedTouch,
+        shapes: Sequence[BodyShape],
         *,
-        dt: float,
-        samples: int,
-        tolerance: float,
-        ambient: float,
-        air: float,
-        chain: SignalChain,
+        ways: int,
         like: Tensor,
     ) -> None:
-        _refuse(pads)
-        numbers: dict[tuple[Material, tuple[int, ...]], int] = {}
-        of: list[Material] = []
-        sizes: list[tuple[float, float, float]] = []
-        lookup = np.zeros((len(kinds[0]), len(kinds), 3))
-        for v, shapes in enumerate(kinds):
-            for o, shape in enumerate(shapes):
-                for axis, thickness in enumerate(shape.size.tolist()):
-                    width, depth = sorted(np.delete(shape.size, axis).tolist())
-                    key = shape.material, tuple(round(side / _SAME) for side in (width, depth, thickness))
-                    if key not in numbers:
-                        numbers[key] = len(of)
-                        of.append(shape.material)
-                        sizes.append((width, depth, thickness))
-                    lookup[o, v, axis] = numbers[key]
-        self._tips = array_fingertips(
-            of,
-            dt=dt,
-            like=like,
-            object_size=sizes,
-            fingertips=2 if len(pads) == 2 else 1,
-            sensor=pads[0].stack,
-            chain=chain,
-            tolerance=tolerance,
-            air=air,
-            sensor_temperature=pads[0].temperature,
-            object_temperature=ambient,
+        self._fixed, self._ways = fixed, ways
+        self.state: FixedTouchState = _each(fixed.start(len(like)), lambda one: one.clone())
+        none = 0.0 * self.state.signal.last
+        self.reading = FixedTouchReading(
+            self.state.voltage,
+            none,
+            none.clone(),
+            none.clone(),
+            none[..., None].repeat(1, 1, len(shapes)),
+            (none - 1).long(),
+            none[:, :1].repeat(1, len(shapes)),
         )
-        self._chain = chain
-        self._numbers = as_like(lookup, like).long()
-        self._axes = as_like(np.array([shape.axes for shape in kinds[0]]), like)
-        self._state = self._tips.start(len(like))
-        self.drop = 0.0 * self._state.difference
-        """(B, F) K over the sensed layers."""
-        _, resting, _ = self._tips.step(self._state, self.drop, self._state.which)
-        self._resting = float(resting[0, 0])
-        self.voltage = (0.0 * self.drop[..., None]).repeat(1, 1, samples) + self._resting
-        """(B, F, S) V as the driver reports it, oldest first."""
-        self.touching = 0 * self._state.which - 1
-        """(B,) the object, -1 for none."""
-        self._rows = (0 * self.touching + 1).cumsum(0) - 1
+        """The tensors that every step writes into."""
+        of = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
+        boxes = [rotation(model.geom_quat[geom]).T @ shapes[o].axes for o, geom in of]
+        self._boxes = as_like(np.array(boxes), like)  # (G, 3, 3), the box's axes in the geom's frame
+        self._of_object = fixed.of_object
+        self._uneven = (
+            fixed.own - fixed.mean
+        )  # (O, K), 1 at the states of an object beside its mean temperature's
+        self._held = self.state.material < 0
+        self._way = 0 * self.state.material
 
-    def advance(
-        self,
-        conductance: Tensor,
-        force: Tensor,
-        material: Tensor,
-        object_turn: Tensor,
-        normal: Tensor,
-        noise: Tensor | float,
-    ) -> None:
-        """A step of dt. conductance (B, F, O) W/K and force (B, F, O) N: means over it. material: (B, O) whole
-        numbers. object_turn: (B, O, 3, 3) of the objects' bodies, and normal: (B, F, 3) of the pads, in the world's
-        frame. noise: (B, F) standard normal numbers, or 0."""
-        pressed = force.sum(1)  # (B, O)
-        hardest, which = pressed.max(-1)
-        touched = hardest > 0
-        rows = self._rows
-        turn = (object_turn[rows, which, :, :, None] * self._axes[which, None]).sum(
-            -2
-        )  # (B, 3, 3) of the box
-        looking = (normal[..., None] * turn[:, None]).sum(-2).abs()  # (B, F, 3)
-        weight = force[rows, :, which]
-        axis = (weight[..., None] * looking).sum(1).argmax(-1)
-        found = self._numbers[which, material[rows, which], axis]
-        # The same grasp keeps its axis: another one would be a fresh object.
-        same = (which == self.touching) | ~touched
-        number = found.where(~same, self._state.which)
-        own = conductance[rows, :, which]
-        state, volts, reading = self._tips.step(self._state, own, number, noise)
-        for old, new in zip(_leaves(self._state), _leaves(state), strict=True):
+    def advance(self, contacts: TouchContacts, material: Tensor, noise: Tensor | float) -> None:
+        """A step of fixed.dt. material: (B, O) integers. noise: (B, F) standard normal numbers, or 0."""
+        state = self.state
+        if self._ways > 1:
+            heat, way = self._grasped(contacts)
+            state = state._replace(heat=heat, material=material * self._ways + way)
+        else:
+            state = state._replace(material=material)
+        state, reading = self._fixed.advance(state, contacts, noise)
+        _write(self.state, state)
+        for old, new in zip(self.reading[1:], reading[1:], strict=True):
             old.copy_(new)
-        self.drop.copy_(reading.drop)
-        self.voltage.copy_(self.voltage.roll(-1, -1))
-        self.voltage[..., -1] = volts
-        self.touching.copy_(which.where(touched, which * 0 - 1))
 
     def reset(self, worlds: Tensor | slice) -> None:
         """Those worlds at their first temperatures, the electronics at rest."""
-        state = self._state
-        state.heat[worlds], state.signal.filtered[worlds], state.signal.last[worlds] = 0.0, 0.0, 0.0
-        state.which[worlds], self.touching[worlds] = 0, -1
-        self.drop[worlds], self.voltage[worlds] = 0.0, self._resting
+        chosen = self._held[:, 0] & False
+        chosen[worlds] = True
+        _write(self.state, self._fixed.reset(self.state, chosen))
+        self._held[worlds] = False
+        for own in self.reading[1:]:
+            own[worlds] = 0
+        self.reading.touching[worlds] = -1
+        self.reading.object_temperature[worlds] = self._fixed.ambient
+
+    def _grasped(self, contacts: TouchContacts) -> tuple[Tensor, Tensor]:
+        """Heat (B, K) and the way (B, O) in which each object is grasped: across the sides that its forces look along
+        when it is first touched."""
+        force = contacts.force.sum(4).sum(1)  # (B, F, G, 3)
+        turn = (contacts.geom_turn[:, -1, :, :, :, None] * self._boxes[:, None]).sum(-2)  # (B, G, 3, 3)
+        along = (turn[:, None] * force[..., None]).sum(-2).abs().sum(1)  # (B, G, 3)
+        load = (along[:, :, None] * self._of_object[..., None]).sum(1)  # (B, O, 3)
+        touched = load.sum(-1) > 0
+        way = load.argmax(-1).where(touched & ~self._held, self._way)
+        other = (way != self._way).to(load.dtype)
+        self._held.copy_(touched)
+        self._way.copy_(way)
+        return self.state.heat * (1 - (other[..., None] * self._uneven).sum(1)), way
 
 
-def _leaves(state: Any) -> tuple[Tensor, ...]:
-    return state.heat, state.signal.filtered, state.signal.last, state.which
+def _each(state: FixedTouchState, made: Any) -> FixedTouchState:
+    heat, narrow, signal, voltage, material, first = state
+    return FixedTouchState(
+        made(heat), made(narrow), type(signal)(*map(made, signal)), made(voltage), made(material), made(first)
+    )
 
 
-def _refuse(pads: Sequence[PadPlace]) -> None:
-    first = pads[0]
-    if len(pads) > 2:
-        raise InvalidValueError(
-            f"fingertips: at most two share an object here, got {len(pads)}; ThermalTouch takes any"
-        )
-    for pad in pads:
-        if pad.heated is not None or pad.bare or pad.thermostat is not None:
-            raise InvalidValueError(
-                f"fingertip {pad.label!r}: give a sensor on an ideal thermostat here; ThermalTouch takes others"
-            )
-        if pad.stack != first.stack or pad.temperature != first.temperature:
-            raise InvalidValueError(
-                f"fingertips {first.label!r} and {pad.label!r} must have one kind of sensor and one temperature"
-            )
+def _write(state: FixedTouchState, after: FixedTouchState) -> None:
+    for old, new in zip(_leaves(state), _leaves(after), strict=True):
+        old.copy_(new)
+
+
+def _leaves(state: FixedTouchState) -> tuple[Tensor, ...]:
+    return state.heat, state.narrow, *state.signal, state.voltage, state.material, state.first

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import mujoco
@@ -23,10 +23,10 @@ from thermograsp.errors import (
 )
 from thermograsp.thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
 from thermograsp.thermal import material as named_material
-from thermograsp.touch.contacts import array_contacts
+from thermograsp.touch import TouchContacts, grasp_touch
 from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads
 
-from .heat import PairHeat
+from .heat import WorldsHeat
 
 try:
     import torch
@@ -42,9 +42,9 @@ Worlds = torch.Tensor | slice | None
 class ThermalTouchCfg(SensorCfg):
     """Fingertips that feel heat, in the scene of an mjlab task.
 
-    fingertips: label -> name of a geom, site or body of the scene (`robot/left_finger`), or a Fingertip; one, or two of
-    the same sensor. objects: name of a body or geom -> a material, or several of which each world has the first until
-    randomize_material draws another. dt: s between samples, whole steps of the simulation. samples: of the voltage that
+    fingertips: label -> name of a geom, site or body of the scene (`robot/left_finger`), or a Fingertip. objects:
+    name of a body or geom -> a material, or several of which each world has the first until randomize_material draws
+    another. dt: s between samples, whole steps of the simulation. samples: of the voltage that
     the data hold. tolerance: K of temperature drop that the heat models are made for. ambient: °C of the air and of the
     objects at first. air: W/(m2 K), of the air round the objects. chain: the electronics.
     """
@@ -67,8 +67,8 @@ class ThermalTouchCfg(SensorCfg):
 class ThermalTouchData:
     """Tensors on the simulation's device, the same ones after every step. voltage: (worlds, fingertips, samples) V as
     the driver reports it, oldest first. temperature_drop: (worlds, fingertips) K over the sensed layer. force: (worlds,
-    fingertips) N normal on the pads and conductance: (worlds, fingertips) W/K, means over the last dt, of the object
-    that is pressed hardest. touching: (worlds, fingertips) that object's number, -1 for none."""
+    fingertips) N normal on the pads, and conductance: (worlds, fingertips) W/K to the object that a fingertip presses
+    hardest, means over the last dt. touching: (worlds, fingertips) that object's number, -1 for none."""
 
     voltage: torch.Tensor
     temperature_drop: torch.Tensor
@@ -143,47 +143,59 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
         cfg = self.cfg
         self._substeps = _whole_steps(cfg.dt, float(mj_model.opt.timestep))
         for sensor in self._sensors:
-            sensor.cfg.history_length = self._substeps
             sensor.initialize(mj_model, model, data, device)
-        kinds = self._kinds(mj_model)
-        shapes = kinds[0]
+        shapes = self._shapes(mj_model)
         tips = pads(mj_model, cfg.fingertips, shapes)
         worlds = data.time.shape[0]
         like = torch.zeros(worlds, device=device)
-        self._contacts = array_contacts(mj_model, tips, kinds, like)
-        self._heat = PairHeat(
+        self._fixed, ways = grasp_touch(
+            mj_model,
             tips,
-            kinds,
+            shapes,
+            tuple(self._materials.values()),
             dt=cfg.dt,
-            samples=cfg.samples,
+            substeps=self._substeps,
             tolerance=cfg.tolerance,
             ambient=cfg.ambient,
             air=cfg.air,
             chain=self._chain,
+            samples=cfg.samples,
             like=like,
         )
-
-        def numbers(values: Sequence[int]) -> torch.Tensor:
-            return torch.tensor(list(values), device=device)
-
-        owner = [o for o, shape in enumerate(shapes) for _ in shape.geoms]
-        self._tip_bodies = numbers([pad.body for pad in tips])
-        self._geoms = numbers([geom for shape in shapes for geom in shape.geoms])
-        self._object_bodies = numbers([shape.body for shape in shapes])
-        self._owner = numbers(owner)
-        self._of_object = torch.nn.functional.one_hot(self._owner, len(shapes)).to(like.dtype)  # (G, O)
+        self._heat = WorldsHeat(mj_model, self._fixed, shapes, ways=ways, like=like)
         self._mj_data = data
         self._material = torch.zeros((worlds, len(shapes)), dtype=torch.long, device=device)
-        none = torch.zeros((worlds, len(tips)), device=device)
+        count, geoms = len(tips), len(self._fixed.geoms)
+
+        def record(*shape: int) -> torch.Tensor:
+            return torch.zeros((worlds, self._substeps, *shape), device=device)
+
+        self._record = TouchContacts(
+            record(count, geoms, 1, 3),
+            record(count, geoms, 1, 3),
+            record(count, 3),
+            record(count, 3, 3),
+            record(geoms, 3),
+            record(geoms, 3, 3),
+        )
+        self._conductance = torch.zeros((worlds, count), device=device)
+        read = self._heat.reading
         self._read = ThermalTouchData(
-            self._heat.voltage, self._heat.drop, none, none.clone(), none.long() - 1
+            read.voltage, read.temperature_drop, read.force, self._conductance, read.touching
         )
 
     def update(self, dt: float) -> None:
         """After every substep; the heat goes on once every cfg.dt."""
         super().update(dt)
-        for sensor in self._sensors:
+        data, at, record = self._mj_data, self._count, self._record
+        for g, sensor in enumerate(self._sensors):
             sensor.update(dt)
+            told = sensor.data
+            record.force[:, at, :, g, 0], record.place[:, at, :, g, 0] = told.force, told.pos
+        bodies_, geoms = self._fixed.bodies, self._fixed.geoms
+        record.tip_position[:, at], record.tip_turn[:, at] = data.xpos[:, bodies_], data.xmat[:, bodies_]
+        record.geom_position[:, at] = data.geom_xpos[:, geoms]
+        record.geom_turn[:, at] = data.geom_xmat[:, geoms]
         self._count += 1
         if self._count == self._substeps:
             self._count = 0
@@ -196,7 +208,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
             sensor.reset(env_ids)
         worlds = slice(None) if env_ids is None else env_ids
         self._heat.reset(worlds)
-        self._read.force[worlds], self._read.conductance[worlds], self._read.touching[worlds] = 0.0, 0.0, -1
+        self._record.force[worlds], self._conductance[worlds] = 0.0, 0.0
 
     def set_material(self, name: str, numbers: torch.Tensor | int, env_ids: Worlds = None) -> None:
         """What an object is of in those worlds, by numbers of `materials`, from a fresh start. A tensor is trusted, so
@@ -219,31 +231,11 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
         return self._read
 
     def _advance(self) -> None:
-        data, heat = self._mj_data, self._heat
-        told = [sensor.data for sensor in self._sensors]
-        force = torch.stack([one.force_history for one in told], 2)  # (B, F, G, H, 3)
-        place = torch.stack([one.pos for one in told], 2)
-        tip_turn = data.xmat[:, self._tip_bodies]
-        conductance, pressed = self._contacts.read(
-            force,
-            place,
-            data.xpos[:, self._tip_bodies],
-            tip_turn,
-            data.geom_xpos[:, self._geoms],
-            data.geom_xmat[:, self._geoms],
-            self._material[:, self._owner],
-        )
-        conducts = (conductance.mean(-1)[..., None] * self._of_object).sum(2)  # (B, F, O)
-        presses = (pressed.mean(-1)[..., None] * self._of_object).sum(2)
-        normal = (tip_turn * self._contacts.axes[:, None, :, 0]).sum(-1)
-        noise = torch.randn_like(heat.drop) if self._chain.noise else 0.0
-        heat.advance(conducts, presses, self._material, data.xmat[:, self._object_bodies], normal, noise)
-        most = heat.touching.clamp(min=0)[:, None, None].expand(-1, heat.drop.shape[1], 1)
-        self._read.force.copy_(presses.gather(2, most)[..., 0])
-        self._read.conductance.copy_(conducts.gather(2, most)[..., 0])
-        self._read.touching.copy_(
-            torch.where(self._read.force > 0, heat.touching[:, None], torch.full_like(most[..., 0], -1))
-        )
+        heat = self._heat
+        noise = torch.randn_like(self._conductance) if self._chain.noise else 0.0
+        heat.advance(self._record, self._material, noise)
+        most = heat.reading.touching.clamp(min=0)[..., None]
+        self._conductance.copy_(heat.reading.conductance.gather(2, most)[..., 0])
 
     def _object(self, name: str) -> int:
         if name not in self._materials:
@@ -261,18 +253,6 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
         """The objects, of their first materials; those that the MJCF itself names are left out."""
         told = {name: several[0] for name, several in self._materials.items()}
         return tuple(shape for shape in bodies(model, told, self.cfg.ambient) if shape.name in told)
-
-    def _kinds(self, model: mujoco.MjModel) -> list[tuple[BodyShape, ...]]:
-        """The objects once for each number of a material; one of fewer materials has its last one there."""
-        first = self._shapes(model)
-        most = max(map(len, self._materials.values()))
-        return [
-            tuple(
-                replace(shape, material=several[min(v, len(several) - 1)])
-                for shape, several in zip(first, self._materials.values(), strict=True)
-            )
-            for v in range(most)
-        ]
 
 
 def _several(name: str, told: str | Material | Sequence[str | Material]) -> tuple[Material, ...]:

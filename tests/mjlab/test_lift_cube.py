@@ -6,10 +6,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -25,22 +26,34 @@ from thermograsp.mjlab import (
     ThermalTouchSensor,
     temperature_drop,
 )
+from thermograsp.mjlab.heat import WorldsHeat
+from thermograsp.touch import Fingertip, FixedTouch, TouchContacts, grasp_touch
+from thermograsp.touch.contacts import AREA, CLOSED, COLUMNS, CONDUCTANCE, LENGTH, NORMAL, PLACE
+from thermograsp.touch.heat import JoinedHeat
+from thermograsp.touch.scene import BodyShape, PadPlace, bodies, pads
 
 WORLDS = 8
 MATERIALS = ("aluminium", "wood")
 FINGERTIPS = {"left": "robot/lf_down", "right": "robot/rf_down"}
 HOLD = 50  # control steps, 1 s
 
+BRICK = """
+<mujoco><worldbody>
+  <body name="brick"><freejoint/><geom name="brick" type="box" size=".01 .015 .03"/></body>
+  <body pos="-.05 0 0"><geom name="left" type="box" size=".004 .01 .01"/></body>
+  <body pos=".05 0 0"><geom name="right" type="box" size=".004 .01 .01"/></body>
+</worldbody></mujoco>"""
+
 
 @dataclass(frozen=True)
 class Held:
-    """The environment after its grippers have closed on their cubes and held them. conductance: (steps, B, F) W/K and
-    drop: (steps, B, F) K of every control step since the reset. observation: the last. addresses: of the data's tensors
-    before."""
+    """The environment after its grippers have closed on their cubes and held them. Of every control step since the
+    reset: contacts in double precision, and drop: (steps, B, F) K. observation: the last. addresses: of the data's
+    tensors before."""
 
     env: Any
     touch: ThermalTouchSensor
-    conductance: np.ndarray
+    contacts: list[TouchContacts]
     drop: np.ndarray
     observation: torch.Tensor
     addresses: list[int]
@@ -60,7 +73,7 @@ def held() -> Held:
     env = names["env"]
     touch = env.scene["touch"]
     touch.set_material("cube/cube", torch.arange(WORLDS) % len(MATERIALS))
-    before, noted = addresses(touch), []
+    before, contacts, drop = addresses(touch), [], []
     action = torch.zeros(WORLDS, env.action_manager.total_action_dim)
     observation: Any = {}
     for step in range(HOLD + 30):
@@ -68,10 +81,9 @@ def held() -> Held:
         if step < 25:  # the cube stays between the pads until they have it
             place(env)
         observation, *_ = env.step(action)
-        data = touch.data
-        noted.append((data.conductance.numpy().copy(), data.temperature_drop.numpy().copy()))
-    conductance, drop = map(np.array, zip(*noted, strict=True))
-    return Held(env, touch, conductance, drop, observation["actor"], before)
+        contacts.append(TouchContacts(*(part.numpy().astype(float) for part in touch._record)))
+        drop.append(touch.data.temperature_drop.numpy().copy())
+    return Held(env, touch, contacts, np.array(drop), observation["actor"], before)
 
 
 def place(env: Any) -> None:
@@ -101,45 +113,133 @@ def test_the_observation_ends_with_the_voltages(held: Held) -> None:
     assert torch.equal(temperature_drop(env, "touch"), data.temperature_drop)
 
 
+def in_double(held: Held) -> tuple[FixedTouch, list[BodyShape], tuple[PadPlace, ...]]:
+    """The sensor's FixedTouch in NumPy's double precision, its objects and its pads."""
+    cfg, model = held.touch.cfg, held.env.sim.mj_model
+    shapes = [
+        replace(shape, temperature=cfg.ambient) for shape in bodies(model, {"cube/cube": "wood"}, cfg.ambient)
+    ]
+    tips = pads(model, cfg.fingertips, tuple(shapes))
+    fixed, ways = grasp_touch(
+        model,
+        tips,
+        shapes,
+        [held.touch.materials("cube/cube")],
+        dt=cfg.dt,
+        substeps=4,
+        tolerance=cfg.tolerance,
+        ambient=cfg.ambient,
+        air=cfg.air,
+        chain=thermal.IDEAL,
+        samples=cfg.samples,
+        like=np.zeros(0),
+    )
+    assert ways == 1
+    return fixed, shapes, tips
+
+
+def test_single_precision_is_near_to_double(held: Held) -> None:
+    fixed, _, _ = in_double(held)
+    state = fixed.reset(fixed.start(WORLDS), material=np.arange(WORLDS)[:, None] % 2)
+    for contacts, drop in zip(held.contacts, held.drop, strict=True):
+        state, reading = fixed.advance(state, contacts)
+        np.testing.assert_allclose(drop, reading.temperature_drop, rtol=0, atol=1e-4)
+    assert held.drop.max() > 5.0
+
+
 def test_it_is_the_heat_of_the_cpu_environments(held: Held) -> None:
-    """On the same conductances, in double precision and a cube at a time."""
+    """ThermalTouch's compiled kernel on the same contacts, the pads in the middles of the cubes' faces."""
     cfg = held.touch.cfg
-    worst = 0.0
-    for world in range(WORLDS):
-        tips = thermal.array_fingertips(
-            MATERIALS[world % 2], dt=cfg.dt, like=np.zeros(0), chain=thermal.IDEAL, air=cfg.air
-        )
-        state = tips.start(1)
-        for conductance, drop in zip(held.conductance[:, world], held.drop[:, world], strict=True):
-            state, _, reading = tips.step(state, conductance[None].astype(float))
-            worst = max(worst, float(np.abs(reading.drop[0] - drop).max()))
-    assert held.drop.max() > 1.0
-    assert worst < 1e-4
+    fixed, (cube,), tips = in_double(held)
+    heat = JoinedHeat(
+        tips,
+        (),
+        (cube,),
+        worlds=WORLDS,
+        dt=cfg.dt,
+        tolerance=cfg.tolerance,
+        film=cfg.air,
+        ambient=cfg.ambient,
+    )
+    worlds = range(WORLDS)
+    heat.set_materials(worlds, [(thermal.material(MATERIALS[w % 2]),) for w in worlds])
+    heat.reset(worlds, np.full((WORLDS, 1), cfg.ambient))
+    touches = np.zeros((WORLDS, 2, 3, COLUMNS))
+    touches[..., PLACE : PLACE + 3] = cube.centre
+    touches[:, 0, 0, NORMAL : NORMAL + 3], touches[:, 1, 0, NORMAL : NORMAL + 3] = (
+        cube.axes[:, 0],
+        -cube.axes[:, 0],
+    )
+    material = np.arange(WORLDS)[:, None] % 2
+    for contacts, drop in zip(held.contacts, held.drop, strict=True):
+        felt = fixed.reads.felt(contacts, material, fixed.of_object)
+        touches[:, :, :1, CONDUCTANCE], touches[:, :, :1, AREA] = felt.conductance, felt.area
+        touches[:, :, :1, LENGTH], touches[:, :, :1, CLOSED] = felt.area * felt.length, felt.area > 0
+        heat.advance(touches, 1)
+        np.testing.assert_allclose(drop, heat.drop, rtol=0, atol=1e-4)
 
 
-def test_it_is_the_heat_of_the_compiled_kernel(held: Held) -> None:
-    """Another solver of the same networks: the one that the Gymnasium environments run."""
-    cfg = held.touch.cfg
-    sizes = (0.04, 0.04, 0.04)
-    for world in range(2):
-        stack = thermal.sensor("seed")
-        cube = thermal.Geometry(
-            stack, thermal.material(MATERIALS[world]), "T", stack.face_area, "square", sizes, 2
+def test_an_object_that_is_grasped_another_way_keeps_its_mean_temperature() -> None:
+    """A brick across one side, then across another: what was warm in it is even by then."""
+    model = mujoco.MjModel.from_xml_string(BRICK)
+    tips = {
+        "left": Fingertip("left", (0.004, 0, 0), (1, 0, 0)),
+        "right": Fingertip("right", (-0.004, 0, 0), (-1, 0, 0)),
+    }
+    shapes = bodies(model, {"brick": "glass"}, 24.0)
+    like = torch.zeros(1, dtype=torch.float64)
+    fixed, ways = grasp_touch(
+        model,
+        pads(model, tips, shapes),
+        shapes,
+        [(thermal.material("glass"),)],
+        dt=0.02,
+        substeps=1,
+        tolerance=0.05,
+        ambient=24.0,
+        air=5.0,
+        chain=thermal.IDEAL,
+        samples=1,
+        like=like,
+    )
+    assert ways == 3
+
+    def pressed(angle: float, force: float) -> TouchContacts:
+        turn = torch.tensor(
+            [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]]
         )
-        system = thermal.network_for(cube, thermal.Demand(cfg.tolerance, 12.0), air=cfg.air).system
-        tables = thermal.heat_tables([system], [cfg.air], cfg.dt)
-        state = np.zeros((1, len(system.rates)))
-        for conductance, drop in zip(held.conductance[:, world], held.drop[:, world], strict=True):
-            state, reading = thermal.advance_heat(
-                tables,
-                np.zeros(1, np.int64),
-                state,
-                conductance[None].astype(float),
-                np.full((1, 2), 12.0),
-                np.ones(1, bool),
-                1,
-            )
-            np.testing.assert_allclose(np.ravel(reading.drop), drop, atol=1e-4)
+        half = 0.01 if angle == 0 else 0.015
+        place = torch.tensor([[-half, 0, 0], [half, 0, 0]]).double()
+        push = torch.tensor([[force, 0, 0], [-force, 0, 0]]).double()
+        eye = torch.eye(3).double()
+        return TouchContacts(
+            push[None, None, :, None, None],
+            place[None, None, :, None, None],
+            torch.stack((place[0] - eye[0] * 0.004, place[1] + eye[0] * 0.004))[None, None],
+            torch.stack((eye, eye))[None, None],
+            torch.zeros(1, 1, 1, 3).double(),
+            turn.double()[None, None, None],
+        )
+
+    heat, glass = WorldsHeat(model, fixed, shapes, ways=ways, like=like), torch.zeros(1, 1, dtype=torch.long)
+    for _ in range(100):
+        heat.advance(pressed(0.0, 10.0), glass, 0.0)
+    assert heat.state.material.item() == 0
+    heat.advance(pressed(0.0, 0.0), glass, 0.0)
+    uneven = (fixed.own - fixed.mean)[0]
+    assert (heat.state.heat * uneven).abs().max() > 0.01
+    even = heat.state._replace(heat=heat.state.heat * (1 - uneven), material=glass + 1)
+    _, wanted = fixed.advance(even, pressed(np.pi / 2, 10.0))
+    heat.advance(pressed(np.pi / 2, 10.0), glass, 0.0)
+    assert heat.state.material.item() == 1
+    for own, right in zip(heat.reading, wanted, strict=True):
+        assert torch.equal(own, right)
+    heat.reset(slice(None))
+    fresh = WorldsHeat(model, fixed, shapes, ways=ways, like=like)
+    for one in (heat, fresh):
+        one.advance(pressed(0.0, 10.0), glass, 0.0)
+    assert heat.reading.temperature_drop.min() > 0.1
+    assert torch.equal(heat.reading.temperature_drop, fresh.reading.temperature_drop)
 
 
 def test_tensors_stay_where_they_are(held: Held) -> None:
@@ -188,8 +288,7 @@ def test_resets_go_by_ids(held: Held) -> None:
 
 def test_a_world_that_breaks_down_fails_alone(held: Held) -> None:
     touch = held.touch
-    force = touch._sensors[0]._history_state["force"]  # pyright: ignore[reportOptionalSubscript]
-    force[2] = float("nan")
+    touch._record.force[2] = float("nan")
     touch._advance()
     drop = touch.data.temperature_drop
     broken = torch.arange(WORLDS) == 2

@@ -15,8 +15,8 @@ from thermograsp.touch.contacts import (
     CONDUCTANCE,
     FORCE,
     ContactReader,
+    TouchContacts,
     array_contacts,
-    constrictions,
     sensor_places,
 )
 from thermograsp.touch.scene import bodies, pads
@@ -70,37 +70,30 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
     places = sensor_places(model, tips, kinds[0])
     readers = [ContactReader(model, tips, shapes, 1) for shapes in kinds]
     data, touched = mujoco.MjData(model), 0
-    small = [constrictions(tips, shapes)[:, 0] for shapes in kinds]
-    width = np.array([tip.stack.width for tip in tips])
     data.ctrl[:] = 1.0
     bearers, geom = [pad.body for pad in tips], kinds[0][0].geoms[0]
     for _ in range(150):
         mujoco.mj_step(model, data)
-        force, place = np.zeros((2, 2, 1, 1, 3)), np.zeros((2, 2, 1, 3))
+        force = np.zeros((2, 1, 2, 1, 1, 3))
+        place = force.copy()
         for f, thing, at in places.pairs:
             if thing < 1:  # of the object, not of the other fingertip
-                force[:, f, 0, 0] = data.sensordata[at + 1 : at + 4]
-                place[:, f, 0] = data.sensordata[at + 4 : at + 7]
-        conducts, pressed = contacts.read(
+                force[:, 0, f, 0, 0] = data.sensordata[at + 1 : at + 4]
+                place[:, 0, f, 0, 0] = data.sensordata[at + 4 : at + 7]
+        poses = TouchContacts(
             force,
             place,
-            np.tile(data.xpos[bearers], (2, 1, 1)),
-            np.tile(data.xmat[bearers].reshape(1, 2, 3, 3), (2, 1, 1, 1)),
-            np.tile(data.geom_xpos[[geom]], (2, 1, 1)),
-            np.tile(data.geom_xmat[[geom]].reshape(1, 1, 3, 3), (2, 1, 1, 1)),
-            np.array([[0], [1]]),
+            np.tile(data.xpos[bearers], (2, 1, 1, 1)),
+            np.tile(data.xmat[bearers].reshape(1, 1, 2, 3, 3), (2, 1, 1, 1, 1)),
+            np.tile(data.geom_xpos[[geom]], (2, 1, 1, 1)),
+            np.tile(data.geom_xmat[[geom]].reshape(1, 1, 1, 3, 3), (2, 1, 1, 1, 1)),
         )
+        felt = contacts.felt(poses, np.array([[0], [1]]), np.ones((1, 1)))
         for world, reader in enumerate(readers):
             reader.clear()
             reader.sense(data.sensordata[None], places)
-            np.testing.assert_allclose(pressed[world, :, 0, 0], reader.touches[0, :, 0, FORCE], rtol=1e-6)
-            # arrays add the steady constriction of a narrow contact, which ThermalTouch lets build up
             read = reader.touches[0, :, 0]
-            closed = read[:, CONDUCTANCE] > 0
-            through = 1 / conducts[world, closed, 0, 0]
-            side = np.minimum(np.sqrt(read[closed, AREA]), width[closed])
-            through -= small[world][closed] * (1 / side - 1 / width[closed])
-            np.testing.assert_array_equal(conducts[world, :, 0, 0] > 0, closed)
-            np.testing.assert_allclose(1 / through, read[closed, CONDUCTANCE], rtol=1e-6)
-        touched += (conducts > 0).all(axis=(0, 2, 3)).sum() >= feeling
+            for own, column in ((felt.force, FORCE), (felt.conductance, CONDUCTANCE), (felt.area, AREA)):
+                np.testing.assert_allclose(own[world, :, 0], read[:, column], rtol=1e-6)
+        touched += (felt.conductance > 0).all(axis=(0, 2)).sum() >= feeling
     assert touched > 50

@@ -298,6 +298,38 @@ def test_without_a_compiler_it_says_what_is_missing(tmp_path: Path) -> None:
 
 
 @TIER
+@pytest.mark.skipif(shutil.which("xvfb-run") is None, reason="needs xvfb-run, a screen for nobody")
+def test_the_passive_viewer_changes_nothing(model: mujoco.MjModel, tmp_path: Path) -> None:
+    mujoco.mj_saveModel(model, str(tmp_path / "hand.mjb"), None)
+    code = f"""
+import os
+import mujoco, mujoco.viewer
+import numpy as np
+from thermograsp.touch import load_plugin
+load_plugin()
+model = mujoco.MjModel.from_binary_path({str(tmp_path / "hand.mjb")!r})
+plain, shown = mujoco.MjData(model), mujoco.MjData(model)
+for data in (plain, shown):
+    data.ctrl[:3] = 10.0
+mujoco.mj_step(model, plain, 200)
+with mujoco.viewer.launch_passive(model, shown) as viewer:
+    for _ in range(200):
+        with viewer.lock():
+            mujoco.mj_step(model, shown)
+        viewer.sync()
+    assert viewer.is_running()
+assert plain.sensor("heat").data.any() and np.array_equal(plain.plugin_state, shown.plugin_state)
+print("the same", flush=True)
+os._exit(0)  # without any plugin too the viewer's thread may crash as the process ends
+"""
+    there = os.environ | {"MUJOCO_GL": "glfw"}
+    done = subprocess.run(
+        ["xvfb-run", "-a", sys.executable, "-c", code], env=there, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0 and done.stdout.strip() == "the same", done.stderr
+
+
+@TIER
 def test_processes_that_build_at_once_load_the_same(tmp_path: Path) -> None:
     there = os.environ | {"THERMOGRASP_CACHE": str(tmp_path)}
     code = "from thermograsp.touch import load_plugin; print(load_plugin())"

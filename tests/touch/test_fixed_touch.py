@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from thermograsp.errors import InvalidValueError, UnknownNameError
-from thermograsp.thermal import Thermostat
-from thermograsp.touch import Fingertip, FixedTouch, ThermalBody, ThermalTouch, prepare
+from thermograsp.thermal import IDEAL, Thermostat, material
+from thermograsp.touch import Fingertip, FixedTouch, ThermalBody, ThermalTouch, grasp_touch, prepare
 
 pytestmark = pytest.mark.skipif(
     not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"), reason="this MuJoCo has no contact sensors"
@@ -285,3 +285,71 @@ def test_what_cannot_be_is_refused() -> None:
 def _flat(state: object) -> list[np.ndarray]:
     heat, narrow, signal, voltage, material, first = state  # pyright: ignore[reportGeneralTypeIssues]
     return [heat, narrow, *signal, voltage, material, first]
+
+
+BRICK = """
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <body name="brick"><geom name="brick" type="box" size=".015 .01 .03" euler="0 0 {}"/></body>
+  <body name="left" pos="-.035 0 0"><joint type="slide" axis="1 0 0" damping="20"/>
+    <geom name="left" type="box" size=".004 .01 .01" mass=".1"/></body>
+  <body name="right" pos=".035 0 0"><joint type="slide" axis="-1 0 0" damping="20"/>
+    <geom name="right" type="box" size=".004 .01 .01" mass=".1"/></body>
+</worldbody></mujoco>"""
+GRASP = {
+    "left": Fingertip("left", (0.004, 0, 0), (1, 0, 0)),
+    "right": Fingertip("right", (-0.004, 0, 0), (-1, 0, 0)),
+}
+
+
+@pytest.mark.parametrize(("turned", "way"), [(0, 0), (90, 1)])
+def test_a_grasp_across_the_middle_has_a_way_for_each_side(turned: int, way: int) -> None:
+    model = prepare(mujoco.MjSpec.from_string(BRICK.format(turned)), GRASP, {"brick": "glass"})
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips=GRASP, objects={"brick": "glass"}, worlds=1, chain="ideal")
+    fixed, ways = grasp_touch(
+        model,
+        touch._pads,
+        touch._shapes,
+        [tuple(map(material, ("wood", "glass")))],
+        dt=0.01,
+        substeps=SAMPLE,
+        tolerance=0.05,
+        ambient=24.0,
+        air=5.0,
+        chain=IDEAL,
+        samples=4,
+        like=np.zeros(0),
+    )
+    assert ways == 3
+    recorder = touch.fixed_touch(np.zeros(0))
+    state = fixed.reset(fixed.start(1), material=np.array([[ways + way]]))
+    data.qfrc_applied[:2], right = 8.0, np.zeros(2)
+    for _ in range(40):
+        record = recorded(model, data, 2 * SAMPLE)
+        touch.update(record)
+        for half in (record[:, :SAMPLE], record[:, SAMPLE:]):
+            state, reading = fixed.advance(state, recorder.contacts(half))
+        right = touch.reading.temperature_drop
+        # as in test_worlds_have_materials_and_temperatures_of_their_own, until both touch
+        np.testing.assert_allclose(reading.temperature_drop, right, rtol=0, atol=2e-5)
+    assert right.min() > 2.0
+
+
+def test_more_combinations_than_fit_are_refused() -> None:
+    model = mujoco.MjModel.from_xml_string(BRICK.format(0))
+    touch = ThermalTouch(model, fingertips=GRASP, objects={"brick": "glass"})
+    with pytest.raises(InvalidValueError, match="combine in 6000 ways"):
+        grasp_touch(
+            model,
+            touch._pads,
+            touch._shapes,
+            [[material("glass")] * 2000],
+            dt=0.01,
+            substeps=SAMPLE,
+            tolerance=0.05,
+            ambient=24.0,
+            air=5.0,
+            chain=IDEAL,
+            samples=4,
+            like=np.zeros(0),
+        )

@@ -5,8 +5,8 @@ depends on a value: it can be traced, compiled, vectorised and differentiated. I
 setting that lets matrix products be taken in TF32 or bfloat16 coarsens it, and no complex numbers, which compilers of
 tensor programs hardly know.
 
-The M x M systems of each pole pair are eliminated in the order of the ports, unrolled. With t = h/(1 + h g), a port's
-conductance in series with the bodies behind it,
+The M x M systems of each pole pair are eliminated in the order of the ports, one port at a time. With t = h/(1 + h g),
+a port's conductance in series with the bodies behind it,
 
     g_kl <- g_kl - g_kj t_j g_jl,    v_k <- v_k - g_kj t_j v_j,    y_j = t_j (v_j - sum_{l > j} g_jl y_l)
 
@@ -20,12 +20,9 @@ pairs.
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import add
-
 from thermograsp.errors import InvalidValueError
 
-from ..numerics import Array
+from ..numerics import Array, namespace_of
 from .rows import HeatReading
 from .tables import ArrayTables
 
@@ -51,20 +48,24 @@ def array_step(
             f"{tuple(conductance.shape)} and {tuple(difference.shape)}"
         )
     modes = ports // fingertips
+    xp, system = namespace_of(state), 2 * ports * pairs
     heard = (state[..., None] * hear).sum(-2)
-    drive = []
-    for j in range(ports):
-        real, imag = (heard[..., (c * ports + j) * pairs : (c * ports + j + 1) * pairs] for c in range(2))
-        f, mode = divmod(j, modes)
-        drive.append((difference[..., f, None] - real if mode == 0 else -real, -imag))
-    contact = [conductance[..., j // modes, None] for j in range(ports)]
-    bodies = [[(gram[..., 0, j, k, :], gram[..., 1, j, k, :]) for k in range(j, ports)] for j in range(ports)]
-    flows = _flows(contact, bodies, drive)
-
-    pushed = reduce(
-        add,
-        ((flows[j][c][..., None] * push[..., c, j, :, :]).sum(-2) for j in range(ports) for c in range(2)),
+    rows = heard.shape[:-1]
+    real, imag = (
+        heard[..., c * system // 2 : (c + 1) * system // 2].reshape((*rows, fingertips, modes, pairs))
+        for c in range(2)
     )
+    even = difference[..., None, None] - real[..., :1, :]
+    drive = (
+        xp.concatenate((even, -real[..., 1:, :]), -2).reshape((*rows, ports, pairs)),
+        -imag.reshape((*rows, ports, pairs)),
+    )
+    contact = xp.broadcast_to(conductance[..., None], (*rows, fingertips, modes)).reshape((*rows, ports, 1))
+    flows = xp.stack(_flows(contact, (gram[..., 0, :, :, :], gram[..., 1, :, :, :]), drive), -3)
+    pushed = (
+        flows.reshape((*rows, system, 1)) * push.reshape((*push.shape[:-4], system, push.shape[-1]))
+    ).sum(-2)
+
     states = state.shape[-1]
     state = state + (decay * state + pushed[..., :states])
     rows = (state[..., None] * read).sum(-2)
@@ -87,25 +88,28 @@ def array_forget(tables: ArrayTables, network: Array | int, state: Array, rows: 
     return state * (tables.settled[network] + (1 - tables.settled[network]) * ~rows[..., None])
 
 
-def _flows(contact: list[Array], bodies: list[list[_Complex]], drive: list[_Complex]) -> list[_Complex]:
-    """y of (1 + H g) y = H v: the first port is eliminated, the others are solved for, the first one follows.
+def _flows(contact: Array, bodies: _Complex, drive: _Complex) -> _Complex:
+    """y (..., M, Q) of (1 + H g) y = H v: the first port is eliminated, the others are solved for, it follows.
 
-    contact: h of each port. bodies: g, of each port the entries from the diagonal on. drive: v.
+    contact: h (..., M, 1). bodies: g (..., M, M, Q). drive: v (..., M, Q).
     """
-    if not drive:
-        return []
-    (h, *contacts), ((diagonal, *row), *rows), (v, *others) = contact, bodies, drive
-    series = _in_series(h, diagonal)
-    factors = [_times(series, g) for g in row]
-    left = [
-        [_minus(g, _times(factor, across)) for g, across in zip(entries, row[k:], strict=True)]
-        for k, (factor, entries) in enumerate(zip(factors, rows, strict=True))
-    ]
-    later = _flows(contacts, left, [_minus(w, _times(f, v)) for f, w in zip(factors, others, strict=True)])
-    first = _times(series, v)
-    for factor, flow in zip(factors, later, strict=True):
-        first = _minus(first, _times(factor, flow))
-    return [first, *later]
+    if not contact.shape[-2]:
+        return drive
+    row, v = _part(bodies, (0, slice(1, None))), _part(drive, (slice(None, 1),))
+    series = _in_series(contact[..., :1, :], _part(bodies, (0, slice(None, 1))))
+    factor = _times(series, row)
+    across = _times(_part(factor, (slice(None), None)), _part(row, (None, slice(None))))
+    left = _minus(_part(bodies, (slice(1, None), slice(1, None))), across)
+    later = _flows(contact[..., 1:, :], left, _minus(_part(drive, (slice(1, None),)), _times(factor, v)))
+    back = _times(factor, later)
+    first = _minus(_times(series, v), (back[0].sum(-2)[..., None, :], back[1].sum(-2)[..., None, :]))
+    xp = namespace_of(contact)
+    return xp.concatenate((first[0], later[0]), -2), xp.concatenate((first[1], later[1]), -2)
+
+
+def _part(values: _Complex, at: tuple[int | slice | None, ...]) -> _Complex:
+    """Of both parts, what stands there along the axes before the pole pairs'."""
+    return values[0][(..., *at, slice(None))], values[1][(..., *at, slice(None))]
 
 
 def _in_series(conductance: Array, g: _Complex) -> _Complex:

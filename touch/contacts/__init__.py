@@ -3,7 +3,7 @@
 from .array_contacts import ArrayContacts, FeltContacts, TouchContacts, array_contacts
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
-from .laws import constrictions, pair_laws
+from .laws import pair_laws
 from .reader import ContactReader
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
@@ -27,7 +27,6 @@ __all__ = [
     "TouchContacts",
     "array_contacts",
     "bends",
-    "constrictions",
     "curves",
     "pair_laws",
     "prepare",

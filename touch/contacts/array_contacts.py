@@ -24,9 +24,11 @@ from ...thermal.contact import ArrayLaws, array_conductance, array_contact, arra
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .array_round import array_round_contact
-from .laws import constrictions, pair_laws
+from .laws import pair_laws
 from .reader import DEPTH, RIM
 from .round_pads import bends, curves
+
+_ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
 
 
 class TouchContacts(NamedTuple):
@@ -58,58 +60,23 @@ class FeltContacts(NamedTuple):
 class ArrayContacts:
     """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
     half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
-    and axis of the geom's frame. small: (V, F, G) K m/W. numbers: (F, G) integers, the laws' of the first material.
-    bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) which pads are round. Flat ones have
-    the bend of a round one, whose contact is not used."""
+    and axis of the geom's frame.  numbers: (F, G) integers, the laws' of the first material.
+    bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) 1 for pads that are round. Flat ones
+    have the bend of a round one, whose contact is not used. units (3, 3) and across (3, 2, 3): an axis and the two
+    others."""
 
     position: Array
     axes: Array
     half: Array
     width: Array
     laws: ArrayLaws
-    small: Array
     numbers: Array
     bend: Array
     curve: Array
-    bulging: tuple[bool, ...]
-
-    def read(
-        self,
-        force: Array,
-        place: Array,
-        tip_position: Array,
-        tip_turn: Array,
-        geom_position: Array,
-        geom_turn: Array,
-        material: Array,
-    ) -> tuple[Array, Array]:
-        """(conductance W/K, force N on the pad), (B, F, G, H) each; a contact beside its pad has neither. The
-        conductance of a contact that is narrower than the face is less by its steady constriction.
-
-        force: (B, F, G, H, 3) N net on each geom from each fingertip, in each substep, and place: (B, F, G, 3) m where
-        it acts in the last of them, in the world's frame. tip_position (B, F, 3) m and tip_turn (B, F, 3, 3): of the
-        bodies that carry the pads; geom_position (B, G, 3) m and geom_turn (B, G, 3, 3): of the geoms, all at the last
-        substep. material: (B, G) integers. Substeps before the last are taken to act where the last one does, and on
-        the pad where the last one does not touch."""
-        xp = namespace_of(force)
-        tips, geoms = self.numbers.shape
-        axes = _product(tip_turn, self.axes)  # (B, F, 3, 3), columns normal, y and z
-        middle = tip_position + _rotated(tip_turn, self.position)
-        normal = axes[..., 0]
-        pressed = (force * normal[:, :, None, None, :]).sum(-1)
-        at = _seen(axes[:, :, None], place - middle[:, :, None])  # (B, F, G, 3) along the pad's axes
-        last = pressed[..., 0] > 0
-        sides = (abs(at[..., 1:]) <= self.half[:, None] + RIM).all(-1)
-        on = (sides & (abs(at[..., 0]) <= DEPTH)) | ~last
-        pressed = xp.where(on[..., None] & ~(pressed <= 0), pressed, 0.0 * pressed)
-
-        off = xp.where(last[..., None], at[..., 1:], 0.0 * at[..., 1:])
-        conducts, area, _ = self._joined(pressed, off, middle, axes, geom_position, geom_turn, material)
-        closed, width = conducts > 0, self.width[:, None, None]
-        safe = xp.where(closed, area, area * 0 + width**2)
-        small = self._small(material)[..., None] * (1 / xp.minimum(safe**0.5, width) - 1 / width)
-        series = 1 / xp.where(closed, conducts, 1.0 + 0.0 * conducts) + small
-        return xp.where(closed, 1 / series, conducts), pressed
+    bulging: Array
+    any_bulging: bool
+    units: Array
+    across: Array
 
     def felt(self, contacts: TouchContacts, material: Array, of_object: Array) -> FeltContacts:
         """What `contacts` are to the heat of a step, each substep with its own places. material: (B, G) integers.
@@ -178,7 +145,7 @@ class ArrayContacts:
         area, share = array_contact(law, pressed, from_geom[..., None, :])
         kept = self._kept(law, area, off, axes, geom_turn)
         longer = 1.0 + 0.0 * area
-        if any(self.bulging):
+        if self.any_bulging:
             area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
         width = self.width[:, None, None]
         pressure = share / xp.where(area > 0, area, area + width**2)
@@ -186,7 +153,7 @@ class ArrayContacts:
         closed = (area > 0) & (pressure > 0)
         safe = xp.where(closed, area, area * 0 + width**2)
         h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
-        bulging = (as_like(np.array(self.bulging, float), pressed) > 0)[:, None, None]
+        bulging = self.bulging[:, None, None] > 0
         long = xp.where((law.cylinder > 0) & ~bulging, law.face_length + 0.0 * safe, (safe * longer) ** 0.5)
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
         none = 0.0 * pressed
@@ -206,14 +173,11 @@ class ArrayContacts:
         """Area, force and share on the face and how many times as long as broad they are, (B, F, G, H) each, of round
         pads in place of flat ones'."""
         xp = namespace_of(pressed)
-        of_axis = as_like(np.eye(3), pressed)[axis]  # (B, F, G, 3)
-        across = as_like(
-            np.array([[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]), pressed
-        )
+        of_axis = self.units[axis]  # (B, F, G, 3)
         curve = (of_axis[..., None] * self.curve).sum(-2)
         # the geom's axes along the pad's y and z, then the two of them that lie across
         seen = (geom_turn[:, None, :, :, :, None] * axes[:, :, None, :, None, 1:]).sum(-3)  # (B, F, G, 3, 2)
-        picked = (of_axis[..., None, None] * across).sum(-3)  # (B, F, G, 2, 3)
+        picked = (of_axis[..., None, None] * self.across).sum(-3)  # (B, F, G, 2, 3)
         sides = (picked[..., None] * seen[..., None, :, :]).sum(-2)
         touching = pressed > 0
         force = xp.where(touching, pressed, 1.0 + 0.0 * pressed)
@@ -225,19 +189,13 @@ class ArrayContacts:
             off[..., None, 0],
             off[..., None, 1],
         )
-        bulging = (as_like(np.array(self.bulging, float), pressed) > 0)[:, None, None]
+        bulging = self.bulging[:, None, None] > 0
         zero = 0.0 * pressed
         told = xp.where(touching, found[0], zero), xp.where(touching, found[1], zero), found[2] + zero
         area, share, kept = (
             xp.where(bulging, new, old) for new, old in zip(told, (area, share, kept), strict=True)
         )
         return area, share, kept, xp.where(bulging, found[3] + zero, 1.0 + zero)
-
-    def _small(self, material: Array) -> Array:
-        """(B, F, G) K m/W of each world's materials."""
-        tips, geoms = self.numbers.shape
-        flat = self.small.reshape(-1)
-        return flat[as_integers(material[:, None] * (tips * geoms) + self.numbers)]
 
     def _kept(self, law: ArrayLaws, area: Array, off: Array, axes: Array, geom_turn: Array) -> Array:
         """Share of a round object's contact that is on the sensor's face; 1 of a flat one's. off: (B, F, G, 2) m."""
@@ -269,7 +227,6 @@ def array_contacts(
     each number that a world's `material` may be, alike but for their materials."""
     laws = np.stack([pair_laws(model, pads, shapes)[:, : _geoms(shapes)] for shapes in kinds])
     owner = [o for o, shape in enumerate(kinds[0]) for _ in shape.geoms]
-    small = np.stack([constrictions(pads, shapes)[:, owner] for shapes in kinds])
     numbers = np.arange(len(pads) * len(owner)).reshape(len(pads), len(owner))
     bulging = tuple(sum(pad.curvature) > 0 for pad in pads)
     bend = bends(pads)
@@ -280,11 +237,13 @@ def array_contacts(
         half=as_like(np.array([pad.size / 2 for pad in pads]), like),
         width=as_like(np.array([pad.stack.width for pad in pads]), like),
         laws=array_laws(laws.reshape(-1), like),
-        small=as_like(small, like),
         numbers=as_integers(as_like(numbers.astype(float), like)),
         bend=as_like(bend, like),
         curve=as_like(curves(model, pads, kinds[0])[: len(owner)], like),
-        bulging=bulging,
+        bulging=as_like(np.array(bulging, float), like),
+        any_bulging=any(bulging),
+        units=as_like(np.eye(3), like),
+        across=as_like(np.array(_ACROSS, float), like),
     )
 
 

@@ -67,13 +67,3 @@ def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) ->
         sizes = 2 * model.geom_size[geom]
         return flat_law(pad, faces, (float(sizes[first]), float(sizes[second])), (first, second))
     return flat_law(pad, faces, (_WIDE, _WIDE))
-
-
-def constrictions(pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.ndarray:
-    """(F, O + F) K m/W: of a contact smaller than the sensor's face, the steady resistance on both sides that networks
-    of the whole face lack is this times (1/side - 1/width). Of objects, then of other fingertips."""
-    conducting = [shape.material.conductivity for shape in shapes]
-    conducting += [pad.stack.layers[-1].conductivity for pad in pads]
-    return np.array(
-        [[SQUARE * (1 / pad.stack.layers[-1].conductivity + 1 / k) for k in conducting] for pad in pads]
-    )

@@ -21,7 +21,8 @@ class FixedNetworks:
     through the materials of the last object, then of the one before.
 
     rates (T, K) 1/s. ports (T, K, N M) sqrt(K/J). drop (N, K): what a pair's fingertip feels. difference (N,) K of the
-    fingertips above the air. mean (O,): the states of the objects' mean temperatures, and held (O, V) J in one of them.
+    fingertips above the air. begin (O + 1,): where the states of the objects begin, the first ones those of their mean
+    temperatures, and where the last object's end. held (O, V): J in one of the first ones.
     narrow (N V, 2, J, S) K/J of narrow.py, the materials of a pair behind one another, width (N,) m and decay (S,) 1/s.
     state (K,) and narrow_state (N, S): as they are now."""
 
@@ -30,7 +31,7 @@ class FixedNetworks:
     ports: np.ndarray
     drop: np.ndarray
     difference: np.ndarray
-    mean: np.ndarray
+    begin: np.ndarray
     held: np.ndarray
     narrow: np.ndarray
     width: np.ndarray
@@ -85,7 +86,7 @@ def fixed_networks(
         ports,
         drop,
         np.repeat(warm, objects),
-        begin[:objects],
+        begin[: objects + 1],
         held,
         narrow,
         width,

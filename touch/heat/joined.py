@@ -273,26 +273,30 @@ class JoinedHeat:
         self, w: int, materials: Sequence[Sequence[Material]], poses: np.ndarray
     ) -> FixedNetworks:
         """World w's fingertips on the places that they have, or would have where they have not touched an object.
-        materials: that each object may be of, the world's own among them. poses: (F, O, 6) the pads' PLACE and NORMAL
-        on every object (contacts/columns.py)."""
+        materials: that each object may be of, the world's own among them. poses: (ways, F, O, 6) the pads' PLACE and
+        NORMAL on every object (contacts/columns.py), in each way of touching it; every material comes once a way, and
+        the state is that of the first."""
         self._refuse_backs()
         tips, objects = self._current.shape[1:]
         pads, level = self._pads[:tips], self._level
-        places = [list(field.places) for field in self._fields[w]]
         current = self._current[w].copy()
-        expected = self._expected(poses)
-        for f, o in np.argwhere(current < 0).tolist():
-            current[f, o] = len(places[o])
-            places[o].append(expected[f][o])
-        after = [[self._field(o, one, tuple(places[o])) for one in own] for o, own in enumerate(materials)]
+        places = [[list(field.places) for field in self._fields[w]] for _ in poses]
+        for own, expected in zip(places, map(self._expected, poses), strict=True):
+            for f, o in np.argwhere(self._current[w] < 0).tolist():
+                current[f, o] = len(own[o])
+                own[o].append(expected[f][o])
+        after = [
+            [self._field(o, one, tuple(way[o])) for one in own for way in places]
+            for o, own in enumerate(materials)
+        ]
         states = []
         for o, before in enumerate(self._fields[w]):
-            own = self._field(o, self._materials[w][o], tuple(places[o]))
+            own = self._field(o, self._materials[w][o], tuple(places[0][o]))
             held = self._x[w, o, : len(before.rates)]
             states.append(held if own is before else carried(before, own, level.patterns) @ held)
         states += [self._x[w, objects + f, : len(tip.side.rates)] for f, tip in enumerate(self._tips)]
         most = max(map(len, materials))
-        kinds = [[own[min(v, len(own) - 1)] for v in range(most)] for own in materials]
+        kinds = [[own[min(v, len(own) - 1)] for v in range(most) for _ in poses] for own in materials]
         tables = [narrow_of(pad, one, level) for pad in pads for own in kinds for one in own]
         return fixed_networks(
             self._dt,
