@@ -1,0 +1,60 @@
+"""Footprints beside finite elements of a ball on a half-space, on a skin and on the pad."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+pytest.importorskip("skfem")
+ROOT = Path(__file__).parents[2]
+FORCES = (1.0, 10.0, 30.0)
+
+
+@pytest.fixture(scope="module")
+def study() -> Iterator[ModuleType]:
+    sys.path.insert(0, str(ROOT / "studies"))
+    yield importlib.import_module("ball_contact")
+    sys.path.remove(str(ROOT / "studies"))
+    del sys.modules["ball_contact"]
+
+
+@pytest.mark.parametrize(
+    ("name", "radius", "peak", "conductance"),
+    [
+        # Hertz's solution, which shows what the finite elements themselves are good to
+        ("bare", 0.01, 0.02, 0.01),
+        # a skin that can be compressed is its springs, at a contact six times as wide as it is thick or more
+        ("skin 0.2 mm, compressible", 0.03, 0.02, 0.14),
+        # springs do not carry along the pad, which is nearly incompressible: docs/physics.md states this
+        ("pad", 0.18, 0.75, 0.27),
+    ],
+)
+def test_a_footprint_is_that_of_finite_elements(
+    study: ModuleType, name: str, radius: float, peak: float, conductance: float
+) -> None:
+    layer, pair, law = study.cases()[name]
+    flexible = study.compliance(layer, 80)
+    for force in FORCES:
+        fem, own = study.contact_of(*flexible, pair, force), study.ours(law, force, name != "bare")
+        assert own.radius == pytest.approx(fem.radius, rel=radius)
+        assert own.peak == pytest.approx(fem.peak, rel=peak)
+        assert own.conductance == pytest.approx(fem.conductance, rel=conductance)
+        assert own.share == pytest.approx(fem.share, abs=0.01)
+
+
+def test_nodes_press_or_part_and_the_forces_balance(study: ModuleType) -> None:
+    layer, _, _ = study.cases()["skin 0.2 mm"]
+    places, rings, flexible = study.compliance(layer, 60)
+    assert np.allclose(flexible, flexible.T, rtol=1e-6, atol=1e-12 * flexible.max())
+    for force in FORCES:
+        loads, gap, depth = study.pressed(places, flexible, force, study.RADIUS)
+        assert loads.sum() == pytest.approx(force, rel=1e-6)
+        assert (loads >= 0).all() and depth > 0
+        assert abs(loads * gap).max() < 1e-9 * force * depth
+    assert rings.sum() == pytest.approx(np.pi * places[-1] ** 2, rel=0.05)
