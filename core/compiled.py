@@ -17,14 +17,20 @@ import os
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numba
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.dispatcher import Dispatcher
+from numba.core.environment import lookup_environment
 from numba.core.extending import _Intrinsic
 from numba.core.serialize import dumps
+from numba.core.sigutils import normalize_signature
+from numba.core.targetconfig import TargetConfig
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.notice import notice
@@ -32,6 +38,12 @@ from thermograsp.notice import notice
 _LOG = logging.getLogger(__name__)
 _TOLD: list[str] = []
 """The first function that this process has compiled."""
+
+_ENVIRONMENT = "_ZN08NumbaEnv"
+"""How numba names what holds a function's environment."""
+
+_DEFAULTS: dict[type, dict[str, Any]] = {}
+"""The default of every option of a kind of numba's configurations."""
 
 _BELOW = ("numpy", "numba", "scipy")
 """Packages whose functions numba compiles in its own way: their names say it."""
@@ -47,10 +59,12 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
 
     def compiled(function: Callable[..., Any]) -> Any:
         entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
+        if inner:
+            entries["pipeline_class"] = _InnerCompiler
         dispatcher: Any = numba.njit(**options, **entries)(function)
         if cache:
             dispatcher._cache = _Cache(dispatcher)
-        dispatcher.compile = _uncollected(dispatcher.compile)
+        dispatcher.compile = _quickly(dispatcher)
         if inner:  # numba would take the entry that is not there
             dispatcher._insert = _nothing
             dispatcher._compile_for_args = functools.partial(_refused, function.__name__)
@@ -59,21 +73,76 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
     return compiled
 
 
-def _uncollected(compile_: Callable[..., Any]) -> Callable[..., Any]:
-    """The same without Python's collection of cycles: of what a compilation builds, it would search all a thousand
-    times, and find little."""
+class _InnerLibrary(JITCodeLibrary):
+    """Code that is compiled into its callers' only: optimised as any other, but no machine code is made of it."""
+
+    @property
+    def codegen(self) -> Any:
+        """Without an engine, where numba would note the function's environment: its callers' code holds that too."""
+        return _NoEngine
+
+    def serialize_using_object_code(self) -> Any:
+        return self.serialize_using_bitcode()
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+
+class _NoEngine:
+    @staticmethod
+    def set_env(name: str, environment: Any) -> None:
+        pass
+
+
+class _InnerCompiler(Compiler):
+    """numba's, into an _InnerLibrary."""
+
+    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
+        inner = _InnerLibrary(targetctx.codegen(), "inner")
+        inner.enable_object_caching()
+        super().__init__(typingctx, targetctx, inner, *rest)
+
+
+def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
+    """The dispatcher's compile in less time. The code then learns the environments of inner functions."""
+    compile_ = dispatcher.compile
 
     @functools.wraps(compile_)
     def run(signature: Any) -> Any:
-        if not gc.isenabled():
-            return compile_(signature)
-        gc.disable()
-        try:
-            return compile_(signature)
-        finally:
-            gc.enable()
+        with _in_less_time():
+            entry = compile_(signature)
+        library = dispatcher.overloads[tuple(normalize_signature(signature)[0])].library
+        for held in library._final_module.global_variables:
+            if held.name.startswith(_ENVIRONMENT) and (found := lookup_environment(held.name)) is not None:
+                library.codegen.set_env(held.name, found)
+        return entry
 
     return run
+
+
+@contextmanager
+def _in_less_time() -> Iterator[None]:
+    """While it lasts, Python collects no cycles: of what a compilation builds, it would search all a thousand times
+    and find little. And numba's options, which it compares tens of thousands of times, make their dictionaries at once
+    in place of calling a property for each."""
+    collects, values = gc.isenabled(), TargetConfig.values
+    gc.disable()
+    TargetConfig.values = _values
+    try:
+        yield
+    finally:
+        TargetConfig.values = values
+        if collects:
+            gc.enable()
+
+
+def _values(self: Any) -> dict[str, Any]:
+    """TargetConfig.values, in the options' order."""
+    if (kind := type(self)) not in _DEFAULTS:
+        _DEFAULTS[kind] = {name: option.default for name, option in kind.options.items()}
+    return {**_DEFAULTS[kind], **self._values}
 
 
 def _nothing(*_: Any) -> None:

@@ -5,6 +5,7 @@ import os
 import pkgutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -211,3 +212,42 @@ def test_every_kernel_of_the_package_has_a_hash() -> None:
                     assert len(compiled_hash(value)) == 64
                     kernels += 1
     assert kernels > 50
+
+
+def test_what_an_inner_function_raises_arrives(tmp_path: Path) -> None:
+    """From several callers, compiled or found compiled, also where only one of them was edited in between."""
+    lines = """
+        from thermograsp.compiled import njit
+        @njit(cache=True, inner=True)
+        def deepest(x, y):
+            if x < 0:
+                raise ValueError("negative", 3)
+            return x / y
+        @njit(cache=True, inner=True, forceinline=True)
+        def between(x, y):
+            return deepest(x, y) + 1
+        @njit(cache=True)
+        def one(x, y):
+            return between(x, y)
+        @njit(cache=True)
+        def other(x, y):
+            return 2 * between(x, y) + deepest(x, y)
+    """
+    (tmp_path / "inner.py").write_text(textwrap.dedent(lines))
+    code = """
+import pytest
+from inner import one, other, between
+for function in (one, other, one):
+    with pytest.raises(ValueError) as raised:
+        function(-1.0, 1.0)
+    assert raised.value.args == ("negative", 3)
+    with pytest.raises(ZeroDivisionError):
+        function(1.0, 0.0)
+with pytest.raises(TypeError, match="for compiled functions"):
+    between(1.0, 1.0)
+print(one(3.0, 2.0), other(3.0, 2.0))
+"""
+    for factor, expected in ("2", "2.5 6.5"), ("2", "2.5 6.5"), ("3", "2.5 9.0"):
+        edit(tmp_path, "inner.py", "return 2 * between", f"return {factor} * between")
+        run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+        assert (run.returncode, run.stdout.strip()) == (0, expected), run.stderr
