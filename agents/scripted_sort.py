@@ -14,7 +14,7 @@ from thermograsp.envs import sliding_action_of
 from thermograsp.envs.limits import MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
 from thermograsp.envs.tasks import LIFTED
 from thermograsp.thermal import press
-from thermograsp.thermal.contact import conductance, contact
+from thermograsp.thermal.contact import conduction
 
 FORCE = 10.0  # N
 FEELING = 0.8  # s that both fingertips press before it decides
@@ -103,11 +103,11 @@ def expected_voltages(layout: Any) -> np.ndarray:
     volts = []
     config = layout.config
     for body in layout.one_of_each:
-        face, load = contact(body.law, FORCE, np.zeros(3))
+        face, conducts = conduction(body.law, FORCE, np.zeros(3))
         pressed = press(
             body.material,
             sensor=body.stack,
-            conductance=float(conductance(body.law, load / face)),
+            conductance=float(conducts / face),
             area=float(face),
             object_size=body.plate,
             sensor_temperature=config.sensor_temperatures[0],

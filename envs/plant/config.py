@@ -150,7 +150,7 @@ class SimulationConfig:
 
     def _chosen_skin(self) -> Skin | None:
         """Raises UnknownNameError, and InvalidValueError for what is none or cannot be worn."""
-        if self.skin != AUTO:
+        if not isinstance(self.skin, str) or self.skin != AUTO:
             return named_skin(self.skin, self.mode)
         given = self.objects if self.scene is None else self.scene
         several = [given] if given is None or isinstance(given, str | ObjectSpec) else given
