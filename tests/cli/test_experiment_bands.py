@@ -25,6 +25,7 @@ def test_rough_slack_contacts_conduct_less() -> None:
         assert (rough_conductances(mode, Rig(pressure=1e5)) > usual).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mode", "name", "air", "tolerance"),
     [

@@ -72,6 +72,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return named
 
 
+@pytest.mark.slow
 def test_ten_recordings_tell_the_sensor_to_2_percent_and_the_simulation_loads_it(
     recordings: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -206,6 +206,7 @@ def test_rubber_on_a_steel_core_is_the_layered_plate(thickness):
     assert beside == pytest.approx(nested, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_sleeve_on_a_round_core_is_the_same_nested_or_beside():
     core = trimesh.creation.cylinder(0.008, 0.06, sections=64)
     outer = trimesh.creation.cylinder(0.011, 0.06, sections=64)

@@ -46,6 +46,7 @@ def test_auto_goes_up_where_no_network_is_fine_enough() -> None:
     assert found.rung.error <= 0.0045
 
 
+@pytest.mark.slow
 def test_auto_takes_a_grid_for_a_conductance_that_varies(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise InvalidValueError("no network keeps it")
