@@ -1,8 +1,8 @@
 """What the silicone around the sensor does to a touch, by axisymmetric finite elements with scikit-fem.
 
 The package takes the sensor's sides as adiabatic and lets nothing but the sensor touch. Here the sensor is a disc of
-its face's area in a pad of silicone as deep, which lies on the same thermostat and touches the object too; both start warm.
-Beside it the same elements without the pad. The object is a disc of 40 x 40 x 10 mm. Biquadratic elements, a
+its face's area in a pad of silicone as deep, which lies on the same thermostat and touches the object too; both start
+warm. Beside it the same elements without the pad. The object is a disc of 40 x 40 x 10 mm. Biquadratic elements, a
 conductance between the two meshes, SDIRK2 in time.
 
     python studies/pad_heat.py           the change of the temperature drop, K of 12, for five materials
