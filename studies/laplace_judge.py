@@ -3,6 +3,7 @@
     python studies/laplace_judge.py                 the touches that plates did not serve, then 20 drawn scenes
     python studies/laplace_judge.py --no-known --centred --scenes 60
     python studies/laplace_judge.py --scenes 100 --seed 7 --json
+    python studies/laplace_judge.py --no-known --resolution coarse --seed 2026 --scenes 1000
 
 Fingertips touch rectangles anywhere on the low and high faces of a box, each the part of a sensor's face that the box
 covers. The heat flow is even on each of graded strips' products; element and box are sums over eigenfunctions (cosines,
@@ -26,11 +27,25 @@ import numpy as np
 
 from thermograsp.compiled import njit
 from thermograsp.thermal import Material, SensorStack, material, materials, sensor
-from thermograsp.thermal.kernels import Detail, Patches, Resolution, box_side, tip, touch_sides
+from thermograsp.thermal.batch import FIXED_LEVEL
+from thermograsp.thermal.kernels import (
+    Detail,
+    Footprint,
+    Patches,
+    Resolution,
+    Spot,
+    box_side,
+    tip_at,
+    touch_sides,
+)
 from thermograsp.thermal.network import LEVELS
 
 TIMES = np.array([0.05, 0.15, 0.5, 1.5, 5.0, 12.0, 30.0])
 """(T,) s after the touch at which drops are compared, as far as LEVELS are promised."""
+JUDGED = (*(level for level, _ in LEVELS), FIXED_LEVEL)
+"""The last one is the environments'."""
+WITHIN = 0.05 / 12
+"""Share of the first difference, over which touches are counted."""
 FACE = {"low": 4, "high": 5}
 """The box's faces of this axis, as thermal/kernels numbers them."""
 
@@ -277,7 +292,7 @@ def judged(scene: Scene, times: np.ndarray = TIMES, accuracy: Accuracy = FINE) -
 
 def networks(scene: Scene, level: Resolution | Detail, times: np.ndarray = TIMES) -> np.ndarray:
     """(F, T) K per K of first difference: the same from networks, solved exactly. level: a Resolution for fixed rates,
-    on the patterns that fingertips keep whatever they touch, a Detail for networks of just this touch."""
+    as the environments have them, a Detail for networks of just this touch."""
     touches, count = scene.touches, level.patterns
     elements = [
         (
@@ -296,7 +311,18 @@ def networks(scene: Scene, level: Resolution | Detail, times: np.ndarray = TIMES
         half,
     )
     if isinstance(level, Resolution):
-        tips = tuple(tip(stack, covered, level) for stack, covered in elements)
+        (*sides, depth), made = scene.size, scene.material
+        prints = [
+            Footprint(covered, tuple(middle), tuple(wide))
+            for (_, covered), middle, wide in zip(
+                elements, patches.centre.tolist(), patches.half.tolist(), strict=True
+            )
+        ]
+        behind = prints[::-1] if len(prints) == 2 else [None]
+        tips = tuple(
+            tip_at(scene.stack, Spot(made, (sides[0], sides[1]), depth, own, other), level)
+            for own, other in zip(prints, behind, strict=True)
+        )
         box = box_side(scene.material, scene.size, scene.film, patches, tips, level)
     else:
         tips, box = touch_sides(scene.material, scene.size, scene.film, patches, elements, level)
@@ -318,9 +344,9 @@ def networks(scene: Scene, level: Resolution | Detail, times: np.ndarray = TIMES
 
 
 def shares(scene: Scene, accuracy: Accuracy = FINE) -> list[float]:
-    """Largest error of the drop at any fingertip for each of LEVELS, as a share of the first difference."""
+    """Largest error of the drop at any fingertip for each of JUDGED, as a share of the first difference."""
     exact = judged(scene, accuracy=accuracy)
-    return [float(np.abs(networks(scene, level) - exact).max()) for level, _ in LEVELS]
+    return [float(np.abs(networks(scene, level) - exact).max()) for level in JUDGED]
 
 
 def _touch(rng: np.random.Generator, size: tuple[float, float, float], width: float, face: str) -> Touch:
@@ -406,7 +432,7 @@ def _described(scene: Scene) -> str:
 
 
 def main() -> None:
-    """Prints a line a scene: its errors at each of LEVELS; then the largest, and quantiles over the drawn ones."""
+    """Prints a line a scene: its errors at each of JUDGED; then the largest, and how many scenes are over WITHIN."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -428,13 +454,15 @@ def main() -> None:
         (_described(scene), scene)
         for scene in (drawn(rng, arguments.centred) for _ in range(arguments.scenes))
     ]
-    largest = np.zeros(len(LEVELS))
+    largest, over = np.zeros(len(JUDGED)), np.zeros(len(JUDGED))
     for name, scene in scenes:
         start = time.perf_counter()
         found = shares(scene, accuracy)
         largest = np.maximum(largest, found)
+        over += np.array(found) > WITHIN
         _print(arguments.json, name, found, time.perf_counter() - start)
     _print(arguments.json, "largest", largest.tolist(), 0.0)
+    _print(arguments.json, f"share of {len(scenes)} over {WITHIN:.5f}", (over / len(scenes)).tolist(), 0.0)
 
 
 def _print(as_json: bool, name: str, found: list[float], seconds: float) -> None:

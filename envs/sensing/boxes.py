@@ -19,6 +19,7 @@ from ...thermal.batch import (
     FIXED_LEVEL,
     HELD,
     POLE_HEAT,
+    RATES,
     WHERE,
     BodyResidues,
     FixedTables,
@@ -32,11 +33,11 @@ from ...thermal.batch import (
     set_gram,
     tip_residues,
 )
-from ...thermal.kernels import Patches, Resolution, box_side, tip
+from ...thermal.kernels import GRAM, Footprint, Patches, Resolution, Spot, Tip, box_side, tip, tip_at
 from ..bodies import ObjectSpec
 from ..footprint import GraspBody
 from ..limits import LEAST_TOLERANCE
-from .places import BOX_ROW, MOST_PLACES, Place, Rectangle, Touched, place_of, strayed
+from .places import BOX_ROW, MOST_PLACES, Place, Rectangle, Touched, opposite, place_of, strayed
 
 MOST_DIFFERENCE = 15.5
 """K between sensor and object up to which a tolerance is meant to be kept."""
@@ -141,8 +142,12 @@ class BoxHeat:
                         state[self._field(heir)] += field
         if not touched.places:
             return
-        tips = [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)]
+        tips, last = (
+            [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)],
+            self._touched[row],
+        )
         self._make(row, touched)
+        self._turn(row, last, state)
         for f in range(self._tips):
             now = fixed_tip_rows(tables, self._element(row, f)).heat
             self._keep_heat(state[self.fingertip(f)], tips[f], now)
@@ -203,6 +208,29 @@ class BoxHeat:
         field = state[self._field(place)][: tables.rates.shape[1]] * np.exp(-_SOON * tables.rates[0])
         return abs(float((tables.body[row, even * (most + 1)] * field).sum()))
 
+    def _turn(self, row: int, last: Touched, state: np.ndarray) -> None:
+        """Puts the fields of places whose patterns of flow are others now, since a fingertip has come or gone behind
+        them, on these; the even one is the same."""
+        now, (body, _) = self._touched[row], self._bodies[row]
+        if self._rows[row]["middled"] or last.places == now.places:
+            return
+        size, stack, level = body.spec.size, body.stack, FIXED_LEVEL
+        for number, (one, other) in enumerate(zip(last.places, now.places, strict=False)):
+            if one != other:
+                continue
+            before, after = (
+                _tip(body.material, size, number, each.places, stack, level).basis for each in (last, now)
+            )
+            if np.array_equal(before, after):
+                continue
+            turn, fields = after.T @ GRAM @ before, [state[self._field(number)]]
+            for f in range(self._tips):
+                if last.contacts[f] == now.contacts[f] == number:
+                    fields.append(state[self.fingertip(f)][self.tables.poles.shape[1] + RATES :])
+            for field in fields:
+                each = field.reshape(level.patterns, -1)
+                each[:] = turn @ each
+
     def _keep_heat(self, state: np.ndarray, before: np.ndarray, after: np.ndarray) -> None:
         """Puts the heat that a fingertip's states (n,) have by one row and not by the other into its slowest."""
         state[0] += ((before - after) * state).sum() / after[0]
@@ -215,13 +243,14 @@ class BoxHeat:
         with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
             if touched.places != last.places:
                 places = touched.places
-                set_body(tables, row, _network(body.material, size, film, places, stack, level))
+                shared = bool(record["middled"])
+                set_body(tables, row, _network(body.material, size, film, places, stack, level, shared))
             for f, number in enumerate(touched.contacts):
                 if number >= 0:
-                    covered = touched.places[number].covered(size, stack.width)
-                    element = 0 if covered == _whole(stack) else 1 + row * self._tips + f
+                    element = 0 if record["middled"] else 1 + row * self._tips + f
                     if element:
-                        tables.tips[element] = _element(stack, covered, level)
+                        at = number, touched.places
+                        tables.tips[element] = _element(body.material, size, *at, stack, level)
                     tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
                     record["face"][f], record["pad"][f] = (
                         touched.places[number].face,
@@ -251,8 +280,45 @@ def _whole(stack: SensorStack) -> Rectangle:
 
 
 @lru_cache(maxsize=_KEPT)
-def _element(stack: SensorStack, covered: Rectangle, level: Resolution) -> np.ndarray:
-    return tip_residues(tip(stack, covered, level).side)
+def _element(
+    material: Material,
+    size: tuple[float, float, float],
+    number: int,
+    places: tuple[Place, ...],
+    stack: SensorStack,
+    level: Resolution,
+) -> np.ndarray:
+    return tip_residues(_tip(material, size, number, places, stack, level).side)
+
+
+def _tip(
+    material: Material,
+    size: tuple[float, float, float],
+    number: int,
+    places: tuple[Place, ...],
+    stack: SensorStack,
+    level: Resolution,
+) -> Tip:
+    """The element on the patterns of flow of that one of the places."""
+    own, width = places[number], stack.width
+    behind = opposite(own, places, width)
+    spot = Spot(
+        material,
+        own.sides(size),
+        size[own.face // 2],
+        _footprint(own, size, width),
+        None if behind is None else _footprint(behind, size, width),
+    )
+    return tip_at(stack, spot, level)
+
+
+def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:
+    first, second = covered = place.covered(size, width)
+    (x, half_x), (y, half_y) = (
+        (middle + (low + high - width) / 2, (high - low) / 2)
+        for middle, (low, high) in zip(place.middle, covered, strict=True)
+    )
+    return Footprint((first, second), (x, y), (half_x, half_y))
 
 
 @lru_cache(maxsize=_KEPT)
@@ -263,12 +329,17 @@ def _network(
     places: tuple[Place, ...],
     stack: SensorStack,
     level: Resolution,
+    shared: bool,
 ) -> BodyResidues:
-    """Of a box that is touched there by such sensors."""
+    """Of a box that is touched there by such sensors. shared: their patterns are those of the whole face anywhere."""
     covered = np.array([place.covered(size, stack.width) for place in places])
     corner = np.array([place.middle for place in places]) - stack.width / 2
     half = (covered[:, :, 1] - covered[:, :, 0]) / 2
     patches = Patches(np.array([place.face for place in places]), corner + covered.mean(axis=2), half)
-    tips = tuple(tip(stack, place.covered(size, stack.width), level) for place in places)
+    whole = tip(stack, _whole(stack), level)
+    tips = tuple(
+        whole if shared else _tip(material, size, number, places, stack, level)
+        for number in range(len(places))
+    )
     capacity = material.volumetric_heat_capacity * math.prod(size)
     return body_residues(box_side(material, size, film, patches, tips, level), capacity, film > 0)

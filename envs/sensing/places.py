@@ -70,6 +70,17 @@ class Place:
         return distance <= NEAR * width and bool(np.abs(first - second).max() <= EDGE * width)
 
 
+def opposite(place: Place, places: Sequence[Place], width: float) -> Place | None:
+    """The one on the face behind that a sensor of that width at the place is most nearly over; None for none."""
+    behind = [other for other in places if other.face == (place.face ^ 1)]
+
+    def apart(other: Place) -> float:
+        return max(abs(a - b) for a, b in zip(place.middle, other.middle, strict=True))
+
+    nearest = min(behind, key=apart, default=None)
+    return nearest if nearest is not None and apart(nearest) < width else None
+
+
 @dataclass(frozen=True, slots=True)
 class Touched:
     """Where a box has been touched; picklable. places: by number. contacts: (F,) the number of each fingertip's, -1 for

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..matter import Material, SensorStack
 from .box import BoxSamples, Patches, box_samples
-from .coverage import Rectangle, contact_patterns
+from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
 from .element import POLES, Element, element, element_samples
 from .exponentials import misfit, residues, states
 from .outputs import output_row
@@ -93,10 +93,19 @@ def contact_weight(impedance: np.ndarray, area: float) -> np.ndarray:
 
 @lru_cache(maxsize=1024)
 def tip(stack: SensorStack, covered: Rectangle, level: Resolution) -> Tip:
-    """The element under a contact that covers that rectangle of its face, m from the face's corner."""
+    """The element under a contact that covers that rectangle of its face, m from the face's corner, wherever it is."""
+    return _tip(stack, covered, level, contact_patterns(stack, covered, level.patterns))
+
+
+@lru_cache(maxsize=1024)
+def tip_at(stack: SensorStack, spot: Spot, level: Resolution) -> Tip:
+    """The element under a contact, on the patterns of that place."""
+    return _tip(stack, spot.own.covered, level, spot_patterns(stack, spot, level.patterns))
+
+
+def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
     known = element(stack)
     (x0, x1), (y0, y1) = covered
-    basis = contact_patterns(stack, covered, level.patterns)
     impedance = basis.T @ element_samples(stack, covered).value[OF_GRASP] @ basis
     even = GRAM[0] @ basis
     even[1:] = 0.0

@@ -1,10 +1,10 @@
-"""The few patterns of flow that a contact excites: of one touch, or of any that covers so much of a sensor's face.
+"""The few patterns of flow that a contact excites: at its place on a box, or at any that covers so much of a sensor's
+face.
 
-Those of one touch follow from what lies on its two sides, at a few moments and conductances. Those of any touch are
-found once per coverage, for four materials, sheets and edges together, so that a fingertip keeps the same states
-whatever it touches. That is what most of the error of fixed rates comes from: over 150 drawn overlaps of a face with a
-box (12 rates, 3 patterns) 22 were more than .05 K of 12 off, at most .15; on each touch's own patterns 5, at most .06.
-The judge was studies/laplace_judge.py at its coarse resolution, which is itself up to .016 K off.
+Those of a place follow from what lies on its two sides, at a few moments and conductances: how much of the sensor's
+face is covered, which edges of it and of the box are near, the box's thickness and material. Those of any place are
+found once per coverage, for four materials, sheets and edges together; they serve where a fingertip must keep its
+states whatever it touches, at two to three times the error (studies/laplace_judge.py).
 
 P: patterns known (patterns.py), M: kept, N: contacts.
 """
@@ -12,11 +12,13 @@ P: patterns known (patterns.py), M: kept, N: contacts.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
-from ..matter import SensorStack
+from ..matter import Material, SensorStack
 from .box import Patches, box_samples
 from .element import Rectangle, element_samples
 from .patterns import EVENNESS, GRAM
@@ -26,8 +28,30 @@ CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
 _SHOWN = slice(6, 20, 3)  # of MOMENTS
 _BLOCK = (0.04, 0.04, 0.01)  # m, a box on which they are found, narrower where the contact ends at its edges
 _SHEET = 5e-4  # m, thickness of another
+_THIN = 0.5  # of the sensor's width, a box's depth from which on opposite fingertips do not shape each other's patterns
 _MARGIN = 0.08  # of the sensor's width, between a contact and the near edge of others
 _MATERIALS = ((237.0, 2.42e6), (16.2, 4.0e6), (1.0, 2.1e6), (0.15, 1.02e6))  # W/(m K), J/(m3 K)
+
+
+class Footprint(NamedTuple):
+    """What a fingertip touches of a face. covered: of its element's face, from that one's corner. centre, half: m along
+    the touched face's sides from its corner, the same rectangle's middle and half widths."""
+
+    covered: Rectangle
+    centre: tuple[float, float]
+    half: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a fingertip touches a box. sides: m of the face, whichever it is, and depth: m of the box behind it.
+    opposite: what such a fingertip touches of the face behind, from the same corner; None for nothing."""
+
+    material: Material
+    sides: tuple[float, float]
+    depth: float
+    own: Footprint
+    opposite: Footprint | None = None
 
 
 def touch_patterns(
@@ -45,13 +69,14 @@ def touch_patterns(
         own = slice(n * known, (n + 1) * known)
         told[n] += _flows(box[_SHOWN, own, own] + across[_SHOWN], area)
     if count > 1:
-        both = box[_SHOWN].copy()
-        for n, (across, area) in enumerate(zip(elements, areas, strict=True)):
-            own = slice(n * known, (n + 1) * known)
-            both[:, own, own] += across[_SHOWN] + GRAM / (max(CONDUCTANCES) * area)
-        flow = np.linalg.solve(both, np.tile(GRAM[0], count)[:, None])[..., 0]
-        for n in range(count):
-            told[n].append(flow[:, n * known : (n + 1) * known])
+        for conductance in CONDUCTANCES:
+            both = box[_SHOWN].copy()
+            for n, (across, area) in enumerate(zip(elements, areas, strict=True)):
+                own = slice(n * known, (n + 1) * known)
+                both[:, own, own] += across[_SHOWN] + GRAM / (conductance * area)
+            flow = np.linalg.solve(both, np.tile(GRAM[0], count)[:, None])[..., 0]
+            for n in range(count):
+                told[n].append(flow[:, n * known : (n + 1) * known])
     if shared:
         return [_leading(np.concatenate([each for flows in told for each in flows]), kept)] * count
     return [_leading(np.concatenate(flows), kept) for flows in told]
@@ -66,15 +91,19 @@ def _leading(flows: np.ndarray, kept: int) -> np.ndarray:
     """(P, M) that say most of flows (n, P), whatever their size."""
     shown = flows @ EVENNESS
     shown /= np.linalg.norm(shown, axis=1, keepdims=True)
-    even = EVENNESS[0]
-    shown -= np.outer(shown @ even, even)
-    others = np.linalg.eigh(shown.T @ shown)[1][:, ::-1][:, : kept - 1]
-    return np.linalg.solve(EVENNESS.T, np.column_stack((even, others)))
+    # the first coefficient is the even pattern's; without it, no combination has any of it, however even the flows are
+    uneven = shown[:, 1:]
+    others = np.linalg.eigh(uneven.T @ uneven)[1][:, ::-1][:, : kept - 1]
+    # from one place to the next they keep their signs, and states on them their meaning
+    others *= np.where(others.sum(axis=0) < 0, -1.0, 1.0)
+    chosen = np.zeros((len(EVENNESS), kept))
+    chosen[0, 0], chosen[1:, 1:] = 1.0, others
+    return np.linalg.solve(EVENNESS.T, chosen)
 
 
 def contact_patterns(stack: SensorStack, covered: Rectangle, kept: int) -> np.ndarray:
-    """(P, M) orthonormal combinations of the patterns, the even one first. covered: of the element's face, from its
-    corner."""
+    """(P, M) orthonormal combinations of the patterns, the even one first, for any place. covered: of the element's
+    face, from its corner."""
     steps = []
     for low, high in covered:
         first = round(low / stack.width * STEPS)
@@ -82,6 +111,36 @@ def contact_patterns(stack: SensorStack, covered: Rectangle, kept: int) -> np.nd
         shift = max(last - STEPS, 0)
         steps.append((first - shift, last - shift))
     return _patterns(stack, (steps[0], steps[1]), kept)
+
+
+def spot_patterns(stack: SensorStack, spot: Spot, kept: int) -> np.ndarray:
+    """(P, M) orthonormal combinations of the patterns, the even one first, of that place on that box. In a thin sheet
+    they end where the opposite fingertip does."""
+    pair = (spot.own,)
+    if spot.opposite is not None and spot.depth < _THIN * stack.width:
+        # one order for both of them, so that they are found together
+        pair = (min(spot.own, spot.opposite), max(spot.own, spot.opposite))
+    return _patterns_of(stack, spot.material, (*spot.sides, spot.depth), pair, kept)[pair.index(spot.own)]
+
+
+@lru_cache(maxsize=256)
+def _patterns_of(
+    stack: SensorStack,
+    made: Material,
+    size: tuple[float, float, float],
+    touched: tuple[Footprint, ...],
+    kept: int,
+) -> list[np.ndarray]:
+    """Of one or of two on opposite faces."""
+    centre, half = (np.array([getattr(each, name) for each in touched]) for name in ("centre", "half"))
+    patches = Patches(np.array([5, 4][: len(touched)]), centre, half)
+    # what the air takes changes no pattern to speak of
+    box = box_samples(size, made.conductivity, made.volumetric_heat_capacity, 0.0, patches)
+    elements = [element_samples(stack, each.covered).value for each in touched]
+    found = touch_patterns(box.whole(), elements, patches.areas, kept, shared=False)
+    for each in found:
+        each.setflags(write=False)
+    return found
 
 
 @lru_cache(maxsize=4096)

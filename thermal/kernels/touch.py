@@ -22,7 +22,7 @@ from .coverage import touch_patterns
 from .element import Rectangle, element, element_samples
 from .outputs import output_row
 from .patterns import GRAM
-from .projection import misfit, states
+from .projection import states
 from .samples import MOMENTS
 
 
@@ -92,21 +92,15 @@ def _box_side(box: BoxSamples, film: float, tips: tuple[Tip, ...], detail: Detai
     ]
     weight = np.min(weights, axis=0)
     if film == 0:
-        rates, ports = states(value, slope, detail.indices)
-        error = misfit(value, rates, ports, weight, detail.indices)
+        rates, ports, error = states(value, slope, weight, detail.indices)
         rates, ports = np.concatenate(([0.0], rates)), np.concatenate((port[None], ports))
         held = np.zeros(len(rates))
         held[0] = box.held
         return Side(rates, ports, {"object": held, "loss": np.zeros(len(rates))}, error)
     value, slope, heat = _shielded(box, film, Sampled(value, slope), port, turn, tips)
-    rates, ports = states(value, slope, detail.indices)
+    rates, ports, error = states(value, slope, weight, detail.indices)
     held = output_row(MOMENTS, heat, rates, ports, MOMENTS, np.concatenate([one.even for one in tips]))
-    return Side(
-        rates,
-        ports,
-        {"object": held, "loss": held * rates},
-        misfit(value, rates, ports, weight, detail.indices),
-    )
+    return Side(rates, ports, {"object": held, "loss": held * rates}, error)
 
 
 def _shielded(
@@ -136,7 +130,7 @@ def _element_side(
     own, slow = np.outer(even, even), 1 / (MOMENTS[:, None] + known.rates)
     value = whole.value - (slow @ known.ports**2)[:, None, None] * own
     slope = whole.slope + (slow**2 @ known.ports**2)[:, None, None] * own
-    fast, ports = states(value, slope, detail.indices)
+    fast, ports, error = states(value, slope, weight, detail.indices)
     drop = output_row(MOMENTS, np.outer(known.drop_rest, even), fast, ports, weight)
     # all heat that goes in is in
     jump = (1 - known.heat @ known.ports) * even
@@ -145,5 +139,5 @@ def _element_side(
         np.concatenate((known.rates, fast)),
         np.concatenate((known.ports[:, None] * even, ports)),
         {"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
-        misfit(value, fast, ports, weight, detail.indices),
+        error,
     )

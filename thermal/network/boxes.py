@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ..kernels import Detail, Patches, Resolution, Side, Tip, box_side, tip, touch_sides
+from ..kernels import Detail, Footprint, Patches, Resolution, Side, Spot, Tip, box_side, tip_at, touch_sides
 from ..plates import Geometry
 from .air import with_air
 from .choice import Choice, Demand, drops
@@ -113,9 +113,13 @@ def _sides(geometry: Geometry, detail: Detail, air: float) -> tuple[tuple[Tip, .
 def box_system(geometry: Geometry, level: Resolution, air: float) -> ContactSystem:
     """On fixed rates, one fingertip in the middle of the box's top, or two on opposite faces, in air W/(m2 K) that does
     not reach under them."""
-    touching = tip(geometry.stack, _covered(geometry), level)
+    (width, depth, thickness), patches = geometry.object_size, _patches(geometry)
+    first, second = patches.half[0].tolist()
+    own = Footprint(_covered(geometry), (width / 2, depth / 2), (first, second))
+    spot = Spot(geometry.material, (width, depth), thickness, own, own if geometry.fingertips == 2 else None)
+    touching = tip_at(geometry.stack, spot, level)
     tips = (touching,) * geometry.fingertips
-    box = box_side(geometry.material, geometry.object_size, air, _patches(geometry), tips, level)
+    box = box_side(geometry.material, geometry.object_size, air, patches, tips, level)
     return joined(geometry, box, network_of_tip(touching.side), level.patterns)
 
 
