@@ -26,9 +26,9 @@ from ..numerics import FAST
 from .carry import TipRows
 from .residues import summed
 
-FIXED_LEVEL = Resolution(12, 3, slowest=2e-3, fastest=300.0)
-"""Of all networks; slower ones than a touch lasts, since in sheets of poor conductors heat stays where it is. None is
-faster than what a tolerance is kept for: nearer to each other they tell more."""
+FIXED_LEVEL = Resolution(12, 3, slowest=3e-3)
+"""Of all networks; slower ones than a touch lasts, since in sheets of poor conductors heat stays where it is. With
+slower ones still, the others would be too far from each other for metals under a small, good contact."""
 SHARED = FIXED_LEVEL.decay
 """1/s: the rates of all networks."""
 _PAIRS = len(POLES)

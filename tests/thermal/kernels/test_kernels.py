@@ -10,15 +10,19 @@ from scipy.linalg import block_diag, eigh_tridiagonal
 
 from thermograsp.thermal import Geometry, SensorStack, material, sensor
 from thermograsp.thermal.kernels import (
+    GRAM,
     MOMENTS,
     Detail,
+    Footprint,
     Patches,
     Resolution,
     Side,
+    Spot,
     box_samples,
     box_side,
     contact_patterns,
     tip,
+    tip_at,
     touch_sides,
 )
 from thermograsp.thermal.kernels.axis import MODES, SWITCH, images, overlaps, wave_numbers
@@ -155,6 +159,22 @@ def test_few_patterns_are_combinations_of_all(film: float) -> None:
         np.testing.assert_allclose(
             few.heat, every.heat @ turn, rtol=0, atol=1e-11 * float(np.abs(every.heat).max())
         )
+
+
+def test_a_spot_s_patterns_are_orthonormal_and_the_even_one_is_the_first() -> None:
+    """Also where the flow is even: a box as wide as the sensor; and between fingertips in a sheet."""
+    half, part = WIDTH / 2, ((0.0, 0.006), (0.0, WIDTH))
+    whole = Footprint(FULL, (half, half), (half, half))
+    beside = Footprint(part, (0.003, half), (0.003, half))
+    for sides, depth, own, other in (
+        ((WIDTH, WIDTH), 0.01, whole, None),
+        ((WIDTH, WIDTH), 0.01, whole, whole),
+        ((0.04, 0.04), 2e-4, beside, whole),
+        ((0.04, 0.04), 2e-4, whole, beside),
+    ):
+        touched = tip_at(SEED, Spot(material("glass"), sides, depth, own, other), Resolution(8, 4))
+        np.testing.assert_allclose(touched.basis.T @ GRAM @ touched.basis, np.eye(4), atol=1e-9)
+        np.testing.assert_allclose(touched.basis[:, 0], np.eye(len(GRAM))[0], atol=1e-12)
 
 
 def test_heat_that_no_film_takes_stays() -> None:
