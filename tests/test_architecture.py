@@ -103,6 +103,7 @@ ROOMS = {
         "episode",
         "identify",
         "peer",
+        "stopping",
     ),
 }
 """Rooms (and single files) of a folder, from the ground up: each may import those before it."""

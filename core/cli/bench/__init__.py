@@ -20,7 +20,7 @@ from thermograsp.files import made_folder, write_text
 NAME = "bench"
 HELP = "Measure what accuracy and touch cost, map where time steps fail, compare with a peer's published figures."
 
-BENCHMARKS = ("accuracy", "stability", "grasp", "speed", "episode", "peer", "identify")
+BENCHMARKS = ("accuracy", "stability", "grasp", "speed", "episode", "peer", "identify", "stopping")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
