@@ -25,7 +25,7 @@ _WIDE = 0.95 * MAX_OPENING  # m, from which the arm may move
 _LEFT_OVER = (
     1 / 3
 )  # of what a fingertip still shows when it touches again, after FEELING: between glass and copper
-GOING, _FEELING, _LIFTING = range(3)  # phases
+GOING, PRESSING, _LIFTING = range(3)  # phases
 
 
 class ScriptedSort:
@@ -61,10 +61,10 @@ class ScriptedSort:
         away = self._places[self._side] - lateral
         going = self._phase == GOING
         self._before = np.where(going, volts, self._before)
-        self._phase[going & (abs(away) < _NEAR) & (opening > _WIDE)] = _FEELING
+        self._phase[going & (abs(away) < _NEAR) & (opening > _WIDE)] = PRESSING
         pressing = np.all(observation["force"][:, :, 0] > FORCE / 2, axis=1) & (self._phase != GOING)
         self._pressed = np.where(pressing, self._pressed + self._dt, 0.0)
-        for row in np.flatnonzero((self._phase == _FEELING) & (self._pressed >= self.feeling)).tolist():
+        for row in np.flatnonzero((self._phase == PRESSING) & (self._pressed >= self.feeling)).tolist():
             self._decide(row, volts[row] - _LEFT_OVER * self._before[row], observation["goal"][row])
         going = self._phase == GOING
         away = self._places[self._side] - lateral

@@ -12,12 +12,15 @@ from typing import Any, Protocol
 import numpy as np
 
 from thermograsp.agents.scripted import FeelingGrasp
-from thermograsp.agents.scripted_sort import GOING, ScriptedSort
+from thermograsp.agents.scripted_sort import GOING, PRESSING, ScriptedSort
 from thermograsp.envs import force_window
-from thermograsp.envs.limits import MAX_FORCE
+from thermograsp.envs.limits import MAX_FORCE, MAX_LIFT_RATE, MAX_OPENING
 
 from .inputs import REPEAT
 
+_CLOSING = 0.9 * MAX_OPENING  # m, below which fingers close on what is between them
+_BESIDE = 0.006  # m beside an object's place, where they hold it as well
+_SINKING = 0.1  # s, time constant of an arm that goes down
 _LEFT = 0.01  # m beside an object's place, from which the arm has left it
 
 
@@ -82,10 +85,16 @@ class SortTeacher(ScriptedSort):
         self._batch, self._dt = batch, batch.dt * REPEAT
 
     def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
-        """As the script's, but goes back to its object where the agent has left it."""
-        left = abs(self._places[self._side] - observation["lateral"][:, 0]) > _LEFT
-        self._phase[left] = GOING
-        return super().action(observation)
+        """As the script's, but goes back to its object where the agent has left it, is content where the agent closes a
+        few millimetres beside its place, and lowers the arm where the agent has raised open fingers."""
+        away = abs(self._places[self._side] - observation["lateral"][:, 0])
+        opening, height = observation["gripper"][:, 0], observation["gripper"][:, 2]
+        self._phase[away > _LEFT] = GOING
+        self._phase[(self._phase == GOING) & (away < _BESIDE) & (opening < _CLOSING)] = PRESSING
+        action = super().action(observation)
+        sinking = np.clip(-height / _SINKING, -MAX_LIFT_RATE, 0.0) / MAX_LIFT_RATE
+        action[:, 2] = np.where(self._phase == GOING, sinking, action[:, 2])
+        return action
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         del goal
