@@ -33,6 +33,7 @@ _VARYING = (1e2, 1e3, 1e4, 1e5)  # W/(m2 K)
 _PATTERNS = 1e-4  # of the difference, error of the semi-analytic rung
 _GRIDS = (1, 2, 4)  # resolutions
 _FINEST = 8e-5  # of the difference, what the finest of them is within
+_FALL = 4.0  # of the gap between two of them, at most, where resolution doubles: grids are of second order
 
 Solver = Callable[[PressProblem, np.ndarray], PressCurves]
 
@@ -225,6 +226,8 @@ def _above(
         if error <= tolerance:
             name = "grid_3d" if grid is grid_3d else "axisymmetric"
             return Rung(name, "", error, f"no network is within {tolerance:g} K; from a coarser grid"), fine
+        if error > _FALL * tolerance:
+            break  # a grid twice as fine is not within it either
         coarse = fine
     raise refusal
 

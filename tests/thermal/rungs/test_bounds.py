@@ -1,6 +1,7 @@
 """What `press` says of its error holds, and `auto` goes up the ladder where no network is fine enough."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,6 +115,22 @@ def test_auto_takes_a_grid_in_air_where_no_network_is_fine_enough(monkeypatch: p
         cache=False,
     )
     assert found.rung.name == "grid_3d"
+
+
+def test_the_finest_grid_is_not_solved_where_it_would_not_serve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A gap that falls by four with each grid, the most it can: at 31 K these say .8 K, then .2 K."""
+    solved, coarse = [], grid_3d.solve
+
+    def grid(problem: PressProblem, t: np.ndarray, resolution: int) -> PressCurves:
+        solved.append(resolution)
+        curves = coarse(problem, t, 1)
+        return replace(curves, temperature_drop=curves.temperature_drop + 16 / 15 / resolution**2)
+
+    monkeypatch.setattr(grid_3d, "solve", grid)
+    asked = {"air": 10.0, "sensor_temperature": 55.0, "seconds": 10.0, "dt": 1.0, "cache": False}
+    with pytest.raises(InvalidValueError, match="no network keeps"):
+        press("glass", tolerance=0.01, **asked)
+    assert solved == [1, 2]
 
 
 def test_a_conductance_that_varies_is_expected_up_to_its_most() -> None:
