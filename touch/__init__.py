@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .engine import install, load_plugin
     from .fixed_touch import FixedTouch, FixedTouchReading, FixedTouchState, grasp_touch
     from .heat import FixedPlaces, HeatBalance
+    from .readings import SAMPLES, TouchReading
     from .scene import (
         Face,
         Fingertip,
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
         rotation,
         triangles,
     )
-    from .thermal_touch import SAMPLES, ThermalTouch, TouchReading, TouchState
+    from .thermal_touch import ThermalTouch, TouchState
 
 __all__ = [
     "SAMPLES",
@@ -68,6 +69,7 @@ __getattr__ = opened(
             "rotation",
             "triangles",
         ),
-        "thermal_touch": ("SAMPLES", "ThermalTouch", "TouchReading", "TouchState"),
+        "readings": ("SAMPLES", "TouchReading"),
+        "thermal_touch": ("ThermalTouch", "TouchState"),
     },
 )

@@ -15,18 +15,18 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
-from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name
 
 from ..thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
 from ..thermal import material as named_material
 from ..thermal.numerics import Array
-from ..thermal.readout import chain_numbers, measure_rows
+from ..thermal.readout import chain_numbers
 from ..thermal.stack import converter
-from .contacts import FORCE, ContactReader, sensor_places
+from .contacts import ContactReader, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
 from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
+from .readings import SAMPLES, Electronics, Layout, Noise, TouchReading
 from .scene import (
     Fingertip,
     Objects,
@@ -38,34 +38,9 @@ from .scene import (
     refuse_overlap,
 )
 
-SAMPLES = 16
-"""Of the voltage that a reading holds."""
 SAMPLE_TIME = 0.01  # s between samples of the converter, about: a whole part of dt and whole substeps
 _WHOLE = 1e-6
 _ON_TIME = 1e-3  # of a step, by which the data's time may be off for each step since the last update
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TouchReading:
-    """What the fingertips feel at `time` s. voltage: (F, SAMPLES) V as the driver reports it, oldest first.
-    temperature_drop: (F,) K over the sensed layer. force: (F,) N normal on the pads, and beside: (F,) N on the
-    fingertips off their pads, means over the last dt. touching: (F,) names of objects or other fingertips, the one that
-    presses most where there are several, "" where none. object_temperature: °C by object, its mean. failed:
-    whether the simulation broke down; its numbers are nan then. element_voltage (E, SAMPLES) V and element_drop (E,) K:
-    of the elements that are glued on objects, in the order of `ThermalTouch.elements`.
-
-    Of many worlds, everything has a leading axis of worlds, and `touching` is a tuple of tuples."""
-
-    time: float | np.ndarray
-    voltage: np.ndarray
-    temperature_drop: np.ndarray
-    force: np.ndarray
-    beside: np.ndarray
-    touching: tuple[str, ...] | tuple[tuple[str, ...], ...]
-    object_temperature: Mapping[str, float | np.ndarray]
-    failed: bool | np.ndarray
-    element_voltage: np.ndarray
-    element_drop: np.ndarray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,7 +103,6 @@ class ThermalTouch:
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
         self._glued = glued_elements(model, self._shapes, ambient)
-        self._names = (*self.objects, *self.fingertips, "")
         self._many, count = worlds is not None, worlds or 1
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
@@ -145,16 +119,24 @@ class ThermalTouch:
             film=air,
             ambient=ambient,
         )
-        tips, targets = self._reader.touches.shape[1:3]
         self._chain, sample = _chain(chain), dt / self._samples
         chains = [_numbers(self._chain, pad, sample) for pad in (*self._pads, *self._glued)]
-        self._chains, sensors = np.tile(np.concatenate(chains), count), len(chains)
-        # the low-pass's output and its last input, V, and voltages under way: none
-        self._filtered, self._last = np.zeros((count * sensors, 1)), np.zeros((count * sensors, 1))
-        self._late = np.zeros((count * sensors, 0, 1))
-        self._sampled = np.zeros((count * sensors, 1, 1))
-        self._voltage = np.zeros((count, sensors, SAMPLES))
-        self._pressed, self._off = np.zeros((count, tips, targets)), np.zeros((count, tips))
+        first = np.random.SeedSequence().entropy if seed is None else seed
+        heat, reader = self._heat, self._reader
+        self._sent = heat.sent.copy() if heat.backed else heat.drop
+        names = *self.objects, *self.fingertips, ""
+        self._electronics = Electronics(
+            np.tile(np.concatenate(chains), count),
+            Layout(len(self._pads), len(chains), len(self._shapes), names, self._many),
+            Noise([first + w for w in range(count)], len(chains)),  # pyright: ignore[reportOperatorIssue]
+            touches=reader.touches,
+            beside=reader.beside,
+            sent=self._sent,
+            drop=heat.drop,
+            warmth=heat.warmth,
+            substeps=self._substeps,
+            ambient=ambient,
+        )
         self._time, self._started, self._count = np.zeros(count), False, 0
         self._heard: mujoco.MjData | None = None  # the last update's, which are of this model
         self._fresh = (
@@ -162,8 +144,6 @@ class ThermalTouch:
         )
         self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
         self._heat.reset(range(count), self._first)
-        first = np.random.SeedSequence().entropy if seed is None else seed
-        self._rngs = [np.random.default_rng(first + w) for w in range(count)]  # pyright: ignore[reportOperatorIssue]
         self._rest(range(count))
         self._reading = self._read()
 
@@ -266,13 +246,12 @@ class ThermalTouch:
             if len(seeds) != len(rows):
                 raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
             for w, own in zip(rows, seeds, strict=True):
-                self._rngs[w] = np.random.default_rng(own)
+                self._electronics.noise.seed(w, own)
         self._fresh = True
         self._make(rows, made_of, warm)
         self._heat.reset(rows, first)
         reader = self._reader
         reader.touches[rows], reader.beside[rows], reader.broken[rows] = 0.0, 0.0, False
-        self._pressed[rows], self._off[rows] = 0.0, 0.0
         if len(rows) == len(self._time):
             reader.clear()
             self._count = 0
@@ -338,11 +317,16 @@ class ThermalTouch:
         if hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
             with suppress(InvalidValueError):  # a model that touch.prepare has not made
                 places = sensor_places(self._model, self._pads, self._shapes)
-        tips, own = len(self._pads), slice(row * self._voltage.shape[1], None)
+        tips, electronics = len(self._pads), self._electronics
+        own = slice(row * electronics.voltage.shape[1], None)
         now = (
             None
             if fresh
-            else (self._filtered[own][:tips, 0], self._last[own][:tips, 0], self._voltage[row, :tips])
+            else (
+                electronics.filtered[own][:tips, 0],
+                electronics.last[own][:tips, 0],
+                electronics.voltage[row, :tips],
+            )
         )
         return fixed_touch(
             self._model,
@@ -376,22 +360,23 @@ class ThermalTouch:
 
     def state(self) -> TouchState:
         """A copy of what it remembers, to go with a saved state of the simulation."""
-        reader = self._reader
+        reader, electronics = self._reader, self._electronics
         return TouchState(
             self._time.copy(),
             self._started,
             self._heat.state(),
             self._first.copy(),
-            (self._filtered.copy(), self._last.copy(), self._voltage.copy()),
+            (electronics.filtered.copy(), electronics.last.copy(), electronics.voltage.copy()),
             (reader.touches.copy(), reader.beside.copy(), reader.broken.copy(), reader.substeps),
-            (self._pressed.copy(), self._off.copy(), self._count),
-            tuple(dict(rng.bit_generator.state) for rng in self._rngs),
+            (electronics.pressed.copy(), electronics.off.copy(), self._count),
+            tuple(electronics.noise.state(w) for w in range(len(self._time))),
             self._reading,
         )
 
     def set_state(self, state: TouchState) -> None:
         """Puts it into a state taken by `state` of a ThermalTouch made alike."""
-        if state.sums[0].shape != self._reader.touches.shape or state.signal[2].shape != self._voltage.shape:
+        reader, electronics = self._reader, self._electronics
+        if state.sums[0].shape != reader.touches.shape or state.signal[2].shape != electronics.voltage.shape:
             raise InvalidValueError(
                 f"the state is of other fingertips, objects or worlds: {state.sums[0].shape[:3]} in place of "
                 f"{self._reader.touches.shape[:3]}"
@@ -400,12 +385,11 @@ class ThermalTouch:
         self._heat.set_state(state.heat)
         self._materials, self._first[:] = list(state.heat.materials), state.first
         self._reader.set_materials(range(len(self._time)), self._materials)
-        reader = self._reader
         reader.touches[:], reader.beside[:], reader.broken[:], reader.substeps = state.sums
-        self._filtered[:], self._last[:], self._voltage[:] = state.signal
-        self._pressed[:], self._off[:], self._count = state.period
-        for rng, own in zip(self._rngs, state.generators, strict=True):
-            rng.bit_generator.state = own
+        electronics.filtered[:], electronics.last[:], electronics.voltage[:] = state.signal
+        electronics.pressed[:], electronics.off[:], self._count = state.period
+        for w, own in enumerate(state.generators):
+            electronics.noise.set_state(w, own)
 
     def _make(
         self, rows: Sequence[int], materials: dict[str, list[Material]], temperatures: dict[str, np.ndarray]
@@ -427,23 +411,11 @@ class ThermalTouch:
 
     def _rest(self, rows: Sequence[int]) -> None:
         """Those worlds' electronics as if at rest for as long as a reading reaches back."""
-        tips = self._voltage.shape[1]
         for w in rows:
-            own = slice(w * tips, (w + 1) * tips)
-            sent = self._heat.sent[w][:, None]  # nothing, or what a divider sends of a sensor at rest
-            self._filtered[own], self._last[own] = sent, sent
-            noise = self._rngs[w].standard_normal((SAMPLES, tips)).T[:, :, None]
-            volts = np.zeros((tips, SAMPLES, 1))
-            measure_rows(
-                self._chains[own],
-                self._filtered[own],
-                self._last[own],
-                self._late[own],
-                np.repeat(sent, SAMPLES, axis=1)[:, :, None],
-                np.ascontiguousarray(noise),
-                volts,
-            )
-            self._voltage[w] = volts[:, :, 0]
+            self._electronics.rest(
+                w, self._heat.sent[w]
+            )  # nothing, or what a divider sends of a sensor at rest
+        self._electronics.start_anew(rows)
 
     def _rows(self, worlds: Sequence[int] | np.ndarray | None) -> list[int]:
         count = len(self._time)
@@ -510,96 +482,20 @@ class ThermalTouch:
 
     def _sample(self) -> None:
         """A whole sample has passed: heat, then the converter."""
-        reader = self._reader
-        self._heat.advance(reader.touches, reader.substeps)
-        noise = [rng.standard_normal(self._voltage.shape[1]) for rng in self._rngs]
-        _close_sample(
-            reader.touches,
-            reader.beside,
-            self._pressed,
-            self._off,
-            self._chains,
-            self._filtered,
-            self._last,
-            self._late,
-            self._heat.sent,
-            noise[0] if len(noise) == 1 else np.concatenate(noise),
-            self._sampled,
-            self._voltage,
-        )
+        reader, heat = self._reader, self._heat
+        heat.advance(reader.touches, reader.substeps)
         reader.substeps = 0
+        if heat.backed:
+            self._sent[:] = heat.sent
         self._count += 1
-        if self._count == self._samples:
-            self._reading = self._read()
+        due = self._count == self._samples
+        self._electronics.sample(due)
+        if due:
             self._count = 0
+            self._reading = self._read()
 
     def _read(self) -> TouchReading:
-        names, broken = self._names, self._reader.broken
-        force, beside, most = _close_reading(self._pressed, self._off, self._substeps, len(self._shapes))
-        warmth = self._heat.object_temperature
-        volts, drop, tips = self._voltage.copy(), self._heat.drop.copy(), len(self._pads)
-        touching = tuple([tuple([names[t] for t in own]) for own in most.tolist()])
-        if not self._many:
-            means = dict(zip(names, warmth[0].tolist(), strict=False))
-            now, volts, drop = self._time.item(), volts[0], drop[0]
-            felt = volts[:tips], drop[:tips], force[0], beside[0], touching[0]
-            return TouchReading(now, *felt, means, False, volts[tips:], drop[tips:])
-        for array in (volts, drop, force, beside, warmth):
-            array[broken] = np.nan
-        columns = dict(zip(names, warmth.T, strict=False))
-        felt = volts[:, :tips], drop[:, :tips], force, beside, touching
-        return TouchReading(self._time.copy(), *felt, columns, broken.copy(), volts[:, tips:], drop[:, tips:])
-
-
-@njit(cache=True, error_model="numpy")
-def _close_sample(touches, beside, pressed, off, chains, filtered, last, late, drop, noise, sampled, voltage):
-    """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages."""
-    worlds, tips, targets = pressed.shape
-    for w in range(worlds):
-        for f in range(tips):
-            off[w, f] += beside[w, f]
-            beside[w, f] = 0.0
-            for t in range(targets):
-                pressed[w, f, t] += touches[w, f, t, FORCE]
-                for k in range(touches.shape[3]):
-                    touches[w, f, t, k] = 0.0
-    sensors = voltage.shape[1]
-    rows = worlds * sensors
-    measure_rows(
-        chains, filtered, last, late, drop.reshape((rows, 1, 1)), noise.reshape((rows, 1, 1)), sampled
-    )
-    for w in range(worlds):
-        for f in range(sensors):
-            for k in range(voltage.shape[2] - 1):
-                voltage[w, f, k] = voltage[w, f, k + 1]
-            voltage[w, f, voltage.shape[2] - 1] = sampled[w * sensors + f, 0, 0]
-
-
-@njit(cache=True, error_model="numpy")
-def _close_reading(pressed, off, substeps, objects):
-    """Mean forces (W, F) on the pads and beside them, and what presses most (W, F), -1 where nothing does; the sums
-    start anew. Fingertips on one another are noted with the first of the two."""
-    worlds, tips, targets = pressed.shape
-    force, beside, most = (
-        np.zeros((worlds, tips)),
-        np.empty((worlds, tips)),
-        np.empty((worlds, tips), np.int64),
-    )
-    for w in range(worlds):
-        for f in range(tips):
-            beside[w, f], most[w, f], largest = off[w, f] / substeps, -1, 0.0
-            for t in range(targets):
-                own = pressed[w, f, t]
-                if t >= objects:
-                    own += pressed[w, t - objects, objects + f]
-                force[w, f] += own / substeps
-                if own > largest:
-                    largest, most[w, f] = own, t
-        for f in range(tips):
-            off[w, f] = 0.0
-            for t in range(targets):
-                pressed[w, f, t] = 0.0
-    return force, beside, most
+        return self._electronics.reading(self._time, self._reader.broken)
 
 
 def whole_steps(dt: float, step: float) -> int:

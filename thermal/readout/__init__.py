@@ -1,6 +1,6 @@
 """From a temperature drop to the voltage that a driver reports, and the thermostat behind the sensor."""
 
-from .kernel import chain_numbers, measure_rows
+from .kernel import CHAIN_NUMBERS, chain_numbers, measure_rows
 from .signal import (
     ADS1115,
     ADS1115_DIVIDER,
@@ -23,6 +23,7 @@ from .thermostat import (
 )
 
 __all__ = [
+    "CHAIN_NUMBERS",
     "ADS1115",
     "ADS1115_DIVIDER",
     "IDEAL",

@@ -4,6 +4,7 @@ from .array_contacts import ArrayContacts, FeltContacts, TouchContacts, array_co
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
 from .laws import pair_laws
+from .pointers import chains, complexes, flags, floats, table, words
 from .reader import ContactReader
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
@@ -27,8 +28,14 @@ __all__ = [
     "TouchContacts",
     "array_contacts",
     "bends",
+    "chains",
+    "complexes",
     "curves",
+    "flags",
+    "floats",
     "pair_laws",
     "prepare",
     "sensor_places",
+    "table",
+    "words",
 ]

@@ -12,19 +12,13 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import Any
 
 import mujoco
 import numpy as np
-from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
-from numba.extending import intrinsic
-
-from ...thermal import CONTACT_LAW
 
 CONTACTS, FORCES, XPOS, XMAT, GEOM_XPOS, GEOM_XMAT, STRIDE, POS, FRAME, GEOM, DIM, EFC, LENGTH = range(13)
 """Of a table: addresses of the places where the addresses of mjContact and of efc_force stand, addresses of poses;
 mjContact's size in bytes, and where its fields are, in numbers of their own size."""
-_LAW = from_dtype(CONTACT_LAW)
 _WORD = 8
 _FIELDS = (("pos", POS), ("frame", FRAME), ("geom", GEOM), ("dim", DIM), ("efc_address", EFC))
 _MOST = 1 << 16  # words of an mjData
@@ -58,33 +52,6 @@ class ContactMemory:
     def refresh(self) -> None:
         """Says where the contacts of the step that was just taken are."""
         self._said[:] = _contacts(self._data), self._data.efc_force.ctypes.data
-
-
-def _floats(context, address):
-    return types.CPointer(types.float64)(types.int64), _pointer
-
-
-def _integers(context, address):
-    return types.CPointer(types.int32)(types.int64), _pointer
-
-
-def _words(context, address):
-    return types.CPointer(types.int64)(types.int64), _pointer
-
-
-def _laws(context, address):
-    return types.CPointer(_LAW)(types.int64), _pointer
-
-
-def _pointer(context, builder, signature, arguments):
-    return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
-
-
-floats: Any = intrinsic(_floats)
-integers: Any = intrinsic(_integers)
-words: Any = intrinsic(_words)
-laws: Any = intrinsic(_laws)
-"""Of an address, what numba.carray takes: of floating-point numbers, of integers of 32 and 64 bits, of CONTACT_LAW."""
 
 
 def _contacts(data: mujoco.MjData) -> int:

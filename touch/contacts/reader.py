@@ -40,12 +40,9 @@ from .memory import (
     XMAT,
     XPOS,
     ContactMemory,
-    floats,
-    integers,
-    laws,
-    words,
 )
 from .memory import LENGTH as TABLE
+from .pointers import floats, integers, laws, table, words
 from .round_pads import BEND, CURVES, bends, curves, round_contact
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
 
@@ -117,7 +114,7 @@ class ContactReader:
             *(self._pushed, self.touches, self.beside, self._own_laws),
         )
         sizes = len(self._role), *self.touches.shape[1:3], len(self._met), self._pyramidal
-        self._own = np.array([*(array.ctypes.data for array in arrays), *sizes], np.int64)
+        self._own = table(arrays, sizes)
         self._own_address = self._own.ctypes.data
 
     def read(self, data: mujoco.MjData, weight: int = 1) -> None:

@@ -19,7 +19,6 @@ from ...thermal.kernels import Patches, Resolution, Side, Tip, box_side, glued_e
 from ..scene import BodyShape, PadPlace
 
 NEAR = 0.25  # of the sensor's width: a pad that is as near to a known place is on it
-GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
 MOST_PLACES = 2
 """Of an object that are remembered besides those in use."""
 

@@ -20,11 +20,10 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import Material
 from ...thermal.numerics import Array
-from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
+from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts, table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
 from .fields import (
-    GRID,
     MOST_PLACES,
     NEAR,
     BodyField,
@@ -38,7 +37,7 @@ from .fields import (
 )
 from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
-from .march import march, settle
+from .march import TABLE, sample, settle
 from .narrow import STEPS, narrow_of
 from .systems import Pair, SystemPool, groups
 
@@ -119,6 +118,8 @@ class JoinedHeat:
         self._current = np.full((worlds, count, objects), -1)
         self._faces = np.full((worlds, count, objects), -1)
         self._middles = np.zeros((worlds, count, objects, 2))
+        # the places for which these were found to do, and those for which one is to be found
+        self._asked_faces, self._asked_middles = self._faces.copy(), self._middles.copy()
         self._new_faces, self._new_middles = self._faces.copy(), self._middles.copy()
         self._closed = np.zeros((worlds, count, fields), bool)
         self._stale = np.zeros(worlds, bool)
@@ -133,11 +134,15 @@ class JoinedHeat:
         self._tables = np.zeros((1, 2, STEPS, self._level.rates))
         self._kinds = np.zeros((worlds, count, fields), np.int64)
         self.drop = np.zeros((worlds, count))
-        """(W, S) K over the sensed layers, mean over the face."""
+        """(W, S) K over the sensed layers, mean over the face. It stays where it is."""
+        self.warmth = np.zeros((worlds, objects))
+        """(W, O) K, by how much the objects' means are above the air's temperature. It stays where it is."""
         self._backs = tuple(
             self._back(f, pad, worlds) for f, pad in enumerate(pads) if pad.heated or pad.thermostat
         )
-        self._busy = np.zeros(fields, bool)
+        self._busy, self._seconds, self._reach = np.zeros(fields, bool), np.array([dt]), NEAR * self._widths
+        self._touches, self._touches_at = np.zeros(0), 0
+        self._table: np.ndarray | None = None
         self._forget()
         self.reset(range(worlds), np.tile([shape.temperature for shape in shapes], (worlds, 1)))
 
@@ -158,10 +163,12 @@ class JoinedHeat:
             back.reset(rows)
             self._warm[rows, back.tip] = back.temperature[rows] - self._ambient
         self._current[rows], self._faces[rows], self._plan[rows] = -1, -1, -1
+        self._asked_faces[rows] = -1
         self._closed[rows], self._stale[rows] = False, False
         self._narrow[rows] = 0.0
         self._given[rows], self._air[rows], self.drop[rows] = 0.0, 0.0, 0.0
         self._started[rows] = self._held()[rows]
+        self._warm_up()
 
     def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
         """What those worlds' objects are made of from now on; a reset of these worlds must follow."""
@@ -172,18 +179,11 @@ class JoinedHeat:
         """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps."""
         if self._glued is not None:
             touches = self._glued.felt(touches, substeps)
-        moved, stale = settle(
-            touches,
-            self._boxes,
-            self._widths,
-            NEAR * self._widths,
-            self._faces,
-            self._middles,
-            self._new_faces,
-            self._new_middles,
-            self._closed,
-            self._stale,
-        )
+        if touches is not self._touches:
+            self._touches = np.ascontiguousarray(touches, float)
+            self._touches_at = self._touches.ctypes.data
+        before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
+        moved, stale = sample(self._address(), self._touches_at, substeps, False)
         if moved:
             for w, f, o in np.argwhere(self._new_faces >= 0).tolist():
                 self._settle(w, f, o)
@@ -191,34 +191,8 @@ class JoinedHeat:
             for w in np.flatnonzero(self._stale).tolist():
                 self._stale[w] = False
                 self._join(w)
-        before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
-        pool = self._pool
-        march(
-            self._dt,
-            substeps,
-            self._level.patterns,
-            touches,
-            self._warm,
-            self._plan,
-            pool.starts,
-            pool.integers,
-            pool.numbers,
-            pool.grams,
-            self._fade,
-            self._held_by,
-            self._rows,
-            self._nets,
-            self._level.decay,
-            self._tables,
-            self._kinds,
-            self._widths,
-            self._x,
-            self._narrow,
-            self._given,
-            self._air,
-            self.drop,
-            self._busy,
-        )
+        if moved or stale:
+            sample(self._address(), self._touches_at, substeps, True)
         for back, (held, passed) in zip(self._backs, before, strict=True):
             f = back.tip
             force = touches[:, f, :, FORCE].sum(axis=1) + touches[:, :, len(self._shapes) + f, FORCE].sum(
@@ -227,6 +201,38 @@ class JoinedHeat:
             out = self._passed(back) - passed
             back.step(self._field_of(back), held, out, self.drop[:, f], force / substeps)
             self._warm[:, f] = back.temperature - self._ambient
+
+    def _address(self) -> int:
+        """Of the table of all arrays that `sample` takes."""
+        if self._table is None:
+            pool = self._pool
+            arrays = (
+                *(self._boxes, self._widths, self._reach, self._faces, self._middles),
+                *(self._asked_faces, self._asked_middles, self._new_faces, self._new_middles),
+                *(self._closed, self._stale, self._warm, self._plan),
+                *(pool.starts, pool.integers, pool.numbers, pool.grams),
+                *(self._fade, self._held_by, self._rows, self._nets, self._level.decay, self._tables),
+                *(self._kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
+                *(self.warmth, self._seconds),
+            )
+            worlds, tips, objects = self._current.shape
+            sizes = (
+                *(worlds, tips, objects, self._level.patterns, self._plan.shape[1]),
+                *(len(pool.starts), len(pool.integers), len(pool.numbers), len(pool.grams)),
+                *(len(self._fade), self._x.shape[2], self._rows.shape[1], len(self._tables)),
+                len(self._level.decay),
+            )
+            self._pointed = arrays  # which must live as long as their addresses are in use
+            self._table = np.zeros(TABLE, np.int64)
+            own = table(arrays, sizes)
+            self._table[: len(own)] = own
+            self._table_at = self._table.ctypes.data
+        return self._table_at
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy, whose arrays are elsewhere."""
+        self.__dict__.update(state)
+        self._table, self._touches = None, np.zeros(0)
 
     def fixed_places(self, w: int, like: Array) -> FixedPlaces:
         """World w's fingertips on the places that they have, and on other fingertips that they touch."""
@@ -329,9 +335,10 @@ class JoinedHeat:
         faces, middles = np.full((1, tips, objects), -1), np.zeros((1, tips, objects, 2))
         new = faces.copy(), middles.copy()
         closed, stale = np.zeros((1, tips, objects), bool), np.zeros(1, bool)
-        settle(touches, self._boxes, self._widths, self._widths, faces, middles, *new, closed, stale)
+        known = faces, middles, faces, middles
+        settle(touches, self._boxes, self._widths, self._widths, *known, *new, closed, stale)
         return [
-            [self._on_grid(f, o, int(new[0][0, f, o]), new[1][0, f, o]) for o in range(objects)]
+            [self._wanted(f, int(new[0][0, f, o]), new[1][0, f, o]) for o in range(objects)]
             for f in range(tips)
         ]
 
@@ -341,6 +348,11 @@ class JoinedHeat:
                 "fixed places know fingertips on ideal thermostats alone: leave out thermostat=, heated sensors and "
                 "elements that are glued on"
             )
+
+    @property
+    def backed(self) -> bool:
+        """Whether any sensor has a thermostat of finite power or a heater of its own."""
+        return bool(self._backs)
 
     @property
     def sent(self) -> np.ndarray:
@@ -370,7 +382,7 @@ class JoinedHeat:
     @property
     def object_temperature(self) -> np.ndarray:
         """(W, O) °C, the objects' means."""
-        return self._ambient + self._x[:, : len(self._shapes), 0] / self._held_by
+        return self._ambient + self.warmth
 
     def balance(self, world: int) -> HeatBalance:
         """Where a world's heat has gone."""
@@ -422,6 +434,11 @@ class JoinedHeat:
         for w, f, o in np.ndindex(self._current.shape):
             self._place(w, f, o)
         self._forget()
+        self._warm_up()
+
+    def _warm_up(self) -> None:
+        """Says how warm the objects are."""
+        self.warmth[:] = self._x[:, : len(self._shapes), 0] / self._held_by
 
     def _in_tips(self) -> np.ndarray:
         """(W, S) J in the sensors' elements."""
@@ -450,6 +467,7 @@ class JoinedHeat:
 
     def _forget(self) -> None:
         """Systems are made anew when they are wanted."""
+        self._table = None
         faces = [field.face for field in self._tip_fields]
         self._pool = SystemPool(self._tips, faces, len(self._shapes), self._level.patterns, self._dt)
         self._numbers: dict[BodyField, int] = {}
@@ -465,6 +483,7 @@ class JoinedHeat:
 
     def _know(self, w: int) -> None:
         """Which tables of narrow contacts a world's pairs have."""
+        self._table = None
         for f, pad in enumerate(self._pads):
             for t, target in enumerate((*self._materials[w], *range(len(self._pads)))):
                 if (f, target) not in self._table_of:
@@ -477,6 +496,7 @@ class JoinedHeat:
 
     def _renumber(self, w: int) -> None:
         """Which networks a world's fields have."""
+        self._table = None
         for o, field in enumerate(self._fields[w]):
             if field not in self._numbers:
                 number = self._numbers[field] = len(self._tips) + len(self._numbers)
@@ -496,7 +516,7 @@ class JoinedHeat:
 
     def _settle(self, w: int, f: int, o: int) -> None:
         """The pair's place: one that is known near there, or a new one."""
-        place = self._on_grid(f, o, int(self._new_faces[w, f, o]), self._new_middles[w, f, o])
+        place = self._wanted(f, int(self._new_faces[w, f, o]), self._new_middles[w, f, o])
         known = self._fields[w][o].places
         for number, one in enumerate(known):
             if near(one, place, NEAR * float(self._widths[f])):
@@ -505,21 +525,16 @@ class JoinedHeat:
         else:
             self._add(w, o, place)
         self._place(w, f, o)
+        self._asked_faces[w, f, o], self._asked_middles[w, f, o] = place.face, place.middle
         self._stale[w] = True
 
-    def _on_grid(self, f: int, o: int, face: int, middle: np.ndarray) -> Place:
-        """The place of the grid that is nearest to a middle (2,) m on a face of an object."""
-        width = float(self._widths[f])
-        spacing, found = GRID * width, []
-        sizes = np.delete(self._shapes[o].size, face // 2)
-        for at, size in zip(middle.tolist(), sizes.tolist(), strict=True):
-            room = max(size - width, 0.0) / 2
-            off = min(max(round((at - size / 2) / spacing) * spacing, -room), room)
-            found.append(size / 2 + off)
-        return Place(face, (found[0], found[1]), f)
+    def _wanted(self, f: int, face: int, middle: np.ndarray) -> Place:
+        """Of the grid, as `settle` tells it."""
+        return Place(face, (float(middle[0]), float(middle[1])), f)
 
     def _place(self, w: int, f: int, o: int) -> None:
         number = int(self._current[w, f, o])
+        self._asked_faces[w, f, o] = -1
         if number < 0:
             self._faces[w, f, o] = -1
             return
@@ -549,6 +564,7 @@ class JoinedHeat:
 
     def _join(self, w: int) -> None:
         """The systems of a world's closed contacts."""
+        self._table = None
         if len(self._pool) > MOST_SYSTEMS + 2 * self._plan.size:
             self._forget()
         objects = len(self._shapes)

@@ -6,25 +6,46 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact and fields
 from __future__ import annotations
 
 import numpy as np
+from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
 from ...thermal.network import POLES, StepArrays, advance, workspace
-from ..contacts import AREA, CLOSED, CONDUCTANCE, LENGTH, NORMAL, PLACE
-from .narrow import spread
+from ..contacts import (
+    AREA,
+    CLOSED,
+    COLUMNS,
+    CONDUCTANCE,
+    LENGTH,
+    NORMAL,
+    PLACE,
+    complexes,
+    flags,
+    floats,
+    words,
+)
+from .narrow import STEPS, spread
 from .systems import CONTACTS, FIELDS, FLOATS, GRAM, HEADER, OWN, PORTS, SHARED, STATES
 
 _PAIRS = len(POLES)
+GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
+TABLE = 46
+"""Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
 
 
 @njit(cache=True, error_model="numpy")
-def settle(touches, boxes, widths, reach, faces, middles, new_faces, new_middles, closed, stale):
+def settle(
+    touches, boxes, widths, reach, faces, middles, asked_faces, asked_middles, new_faces, new_middles,
+    closed, stale,
+):  # fmt: skip
     """Notes which contacts are closed, (W, F, T), and where; stale (W,) where that is no longer what it was.
 
     boxes: (O, 18) size, extent and centre m and the axes, row by row. widths: (F,) m of the sensors. reach: (F,) m.
     faces (W, F, O) and middles (W, F, O, 2): the places in use, face -1 for none. A contact that has left its place is
-    told by new_faces, else -1, and new_middles. Returns how many have, and how many worlds are stale."""
+    told by new_faces, else -1, and new_middles, of the nearest place of the grid; not again where that is the one that
+    was asked for last, for which the place in use was found to do. Returns how many have left theirs, and how many
+    worlds are stale."""
     worlds, tips, targets = closed.shape
     objects, moved = len(boxes), 0
     position, looking, outdated = np.empty(3), np.empty(3), 0
@@ -60,28 +81,94 @@ def settle(touches, boxes, widths, reach, faces, middles, new_faces, new_middles
                     if i == most:
                         continue
                     room = max(box[i] - widths[f], 0.0) / 2
-                    at = box[i] / 2 + min(max(position[i], -room), room)
-                    new_middles[w, f, t, j] = at
+                    at, spacing = box[i] / 2 + min(max(position[i], -room), room), GRID * widths[f]
+                    off = min(max(np.rint((at - box[i] / 2) / spacing) * spacing, -room), room)
+                    new_middles[w, f, t, j] = box[i] / 2 + off
                     apart = max(apart, abs(at - middles[w, f, t, j]))
                     j += 1
                 if face != known or apart > reach[f]:
-                    new_faces[w, f, t] = face
-                    moved += 1
+                    answered = face == asked_faces[w, f, t]
+                    for j in range(2):
+                        answered = answered and new_middles[w, f, t, j] == asked_middles[w, f, t, j]
+                    if not answered:
+                        new_faces[w, f, t] = face
+                        moved += 1
         outdated += stale[w]
     return moved, outdated
 
 
 @njit(cache=True, error_model="numpy")
-def march(
+def sample(own_at, touches_at, substeps, settled):
+    """One step of every world; first, unless it is settled, `settle`, and no step where contacts are not where they
+    were. own_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so many
+    substeps. Returns what `settle` does."""
+    own = carray(words(own_at), TABLE)
+    worlds, tips, objects = own[32], own[33], own[34]
+    targets = tips + objects
+    touches, widths = (
+        carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
+        carray(floats(own[1]), tips),
+    )
+    if not settled:
+        moved, stale = settle(
+            touches,
+            carray(floats(own[0]), (objects, 18)),
+            widths,
+            carray(floats(own[2]), tips),
+            carray(words(own[3]), (worlds, tips, objects)),
+            carray(floats(own[4]), (worlds, tips, objects, 2)),
+            carray(words(own[5]), (worlds, tips, objects)),
+            carray(floats(own[6]), (worlds, tips, objects, 2)),
+            carray(words(own[7]), (worlds, tips, objects)),
+            carray(floats(own[8]), (worlds, tips, objects, 2)),
+            carray(flags(own[9]), (worlds, tips, targets)),
+            carray(flags(own[10]), worlds),
+        )
+        if moved or stale:
+            return moved, stale
+    states, rates = own[42], own[45]
+    _march(
+        carray(floats(own[31]), 1)[0],
+        substeps,
+        own[35],
+        touches,
+        carray(floats(own[11]), (worlds, tips)),
+        carray(words(own[12]), (worlds, own[36])),
+        carray(words(own[13]), own[37]),
+        carray(words(own[14]), own[38]),
+        carray(floats(own[15]), own[39]),
+        carray(complexes(own[16]), own[40]),
+        carray(floats(own[17]), (own[41], states)),
+        carray(floats(own[18]), (worlds, objects)),
+        carray(floats(own[19]), (tips, own[43])),
+        carray(words(own[20]), (worlds, targets)),
+        carray(floats(own[21]), rates),
+        carray(floats(own[22]), (own[44], 2, STEPS, rates)),
+        carray(words(own[23]), (worlds, tips, targets)),
+        widths,
+        carray(floats(own[24]), (worlds, targets, states)),
+        carray(floats(own[25]), (worlds, tips, targets, rates)),
+        carray(floats(own[26]), (worlds, tips, targets)),
+        carray(floats(own[27]), worlds),
+        carray(floats(own[28]), (worlds, tips)),
+        carray(flags(own[29]), targets),
+        carray(floats(own[30]), (worlds, objects)),
+    )
+    return 0, 0
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, numbers, grams, fade, held, rows, nets,
-    decay, tables, kinds, widths, x, narrow, given, air, drop, busy,
+    decay, tables, kinds, widths, x, narrow, given, air, drop, busy, warmth,
 ):  # fmt: skip
     """One step of dt s of every world.
 
     touches: (W, F, T, columns), sums over so many substeps. warm: (W, F) K, the thermostats above the air. plan: (W, C)
     the groups' systems, -1 behind the last. fade: (networks, K), what a state keeps in a step alone; nets: (W, T) which
     of them each field is. held: (W, O) J of the mean's state. rows: (F, K) of the drop. x: (W, T, K), given: (W, F, T)
-    J and air: (W,) J go on in place; drop: (W, F) K is filled. busy: room (T,).
+    J and air: (W,) J go on in place; drop: (W, F) K and warmth: (W, O) K, the objects' means, are filled. busy: room
+    (T,).
 
     Narrow contacts (narrow.py): decay (R,) 1/s their rates, tables (N, 2, J, R), kinds (W, F, T) which of these each
     contact has, widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Within a step
@@ -188,3 +275,5 @@ def march(
             for k in range(rows.shape[1]):
                 total += rows[f, k] * x[w, objects + f, k]
             drop[w, f] = total
+        for o in range(objects):
+            warmth[w, o] = x[w, o, 0] / held[w, o]

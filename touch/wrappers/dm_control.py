@@ -14,8 +14,9 @@ import numpy as np
 from thermograsp.errors import MissingDependencyError
 
 from ...thermal import Material
+from ..readings import SAMPLES
 from ..scene import Fingertip, ThermalBody
-from ..thermal_touch import SAMPLES, ThermalTouch
+from ..thermal_touch import ThermalTouch
 from .substeps import SteppedTouch
 
 try:

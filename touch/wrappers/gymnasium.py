@@ -15,8 +15,9 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from ...thermal import Material
+from ..readings import SAMPLES
 from ..scene import Fingertip, ThermalBody
-from ..thermal_touch import SAMPLES, ThermalTouch
+from ..thermal_touch import ThermalTouch
 from .substeps import SteppedTouch
 
 VOLTAGE = "voltage"

@@ -1,0 +1,64 @@
+"""Arrays handed to compiled code as addresses: a table of a dozen is there in a fraction of the time that the arrays
+themselves take, each of which numba takes apart at every call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
+from numba.extending import intrinsic
+
+from ...thermal import CONTACT_LAW
+from ...thermal.readout import CHAIN_NUMBERS
+
+_LAW, _CHAIN = from_dtype(CONTACT_LAW), from_dtype(CHAIN_NUMBERS)
+
+
+def table(arrays: Sequence[np.ndarray], numbers: Sequence[int] = ()) -> np.ndarray:
+    """The addresses of contiguous arrays, and numbers behind them. It holds as long as the arrays live."""
+    return np.array([*(array.ctypes.data for array in arrays), *numbers], np.int64)
+
+
+def _floats(context, address):
+    return types.CPointer(types.float64)(types.int64), _pointer
+
+
+def _complexes(context, address):
+    return types.CPointer(types.complex128)(types.int64), _pointer
+
+
+def _integers(context, address):
+    return types.CPointer(types.int32)(types.int64), _pointer
+
+
+def _words(context, address):
+    return types.CPointer(types.int64)(types.int64), _pointer
+
+
+def _flags(context, address):
+    return types.CPointer(types.boolean)(types.int64), _pointer
+
+
+def _laws(context, address):
+    return types.CPointer(_LAW)(types.int64), _pointer
+
+
+def _chains(context, address):
+    return types.CPointer(_CHAIN)(types.int64), _pointer
+
+
+def _pointer(context, builder, signature, arguments):
+    return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
+
+
+floats: Any = intrinsic(_floats)
+complexes: Any = intrinsic(_complexes)
+integers: Any = intrinsic(_integers)
+words: Any = intrinsic(_words)
+flags: Any = intrinsic(_flags)
+laws: Any = intrinsic(_laws)
+chains: Any = intrinsic(_chains)
+"""Of an address, what numba.carray takes: of floating-point and complex numbers, of integers of 32 and 64 bits, of
+booleans, of CONTACT_LAW and of CHAIN_NUMBERS."""

@@ -1,0 +1,358 @@
+"""What fingertips' electronics say of them, and the readings of which a ThermalTouch tells.
+
+W: worlds, F: fingertips, E: glued elements, S = F + E: sensors, O: objects, T = O + F: targets of a contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import carray  # pyright: ignore[reportPrivateImportUsage]
+
+from thermograsp.compiled import njit
+
+from ..thermal.readout import measure_rows
+from .contacts import COLUMNS, FORCE, chains, floats, table, words
+
+SAMPLES = 16
+"""Of the voltage that a reading holds."""
+NOISE_BLOCK = 32
+"""Samples for which noise is drawn at once."""
+
+
+class Layout(NamedTuple):
+    """What the numbers of a reading are: of each world (W, SIZE), the voltages of all sensors, their drops, the
+    fingertips' forces and those beside, the objects' temperatures, and what each fingertip touches, -1 for nothing.
+    names: of the objects, the fingertips, and "" for the last one."""
+
+    tips: int
+    sensors: int
+    objects: int
+    names: tuple[str, ...]
+    many: bool
+
+    @property
+    def starts(self) -> tuple[int, ...]:
+        """Where drops, forces, forces beside, temperatures and touches begin, and how many numbers there are."""
+        drops = self.sensors * SAMPLES
+        forces = drops + self.sensors
+        beside = forces + self.tips
+        temperatures = beside + self.tips
+        touching = temperatures + self.objects
+        return drops, forces, beside, temperatures, touching, touching + self.tips
+
+
+class TouchReading:
+    """What the fingertips feel at `time` s. failed: whether the simulation broke down; its numbers are nan then.
+
+    Of many worlds, everything has a leading axis of worlds, and `touching` is a tuple of tuples."""
+
+    __slots__ = ("_layout", "_numbers", "failed", "time")
+
+    time: float | np.ndarray
+    failed: bool | np.ndarray
+
+    def __init__(
+        self, time: float | np.ndarray, failed: bool | np.ndarray, numbers: np.ndarray, layout: Layout
+    ) -> None:
+        put = object.__setattr__
+        put(self, "time", time)
+        put(self, "failed", failed)
+        put(self, "_numbers", numbers)
+        put(self, "_layout", layout)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"a TouchReading does not change: {name!r} cannot be set")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a TouchReading does not change: {name!r} cannot be deleted")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return TouchReading, (self.time, self.failed, self._numbers, self._layout)
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name}={getattr(self, name)!r}" for name in _TOLD)
+        return f"TouchReading({told})"
+
+    @property
+    def voltage(self) -> np.ndarray:
+        """(F, SAMPLES) V as the driver reports it, oldest first."""
+        return self._volts()[..., : self._layout.tips, :]
+
+    @property
+    def element_voltage(self) -> np.ndarray:
+        """(E, SAMPLES) V of the elements that are glued on objects, in the order of `ThermalTouch.elements`."""
+        return self._volts()[..., self._layout.tips :, :]
+
+    @property
+    def temperature_drop(self) -> np.ndarray:
+        """(F,) K over the sensed layer."""
+        first = self._layout.starts[0]
+        return self._rows(first, first + self._layout.tips)
+
+    @property
+    def element_drop(self) -> np.ndarray:
+        """(E,) K of the glued elements."""
+        first, last = self._layout.starts[:2]
+        return self._rows(first + self._layout.tips, last)
+
+    @property
+    def force(self) -> np.ndarray:
+        """(F,) N normal on the pads, means over the last dt."""
+        return self._rows(*self._layout.starts[1:3])
+
+    @property
+    def beside(self) -> np.ndarray:
+        """(F,) N on the fingertips off their pads, means over the last dt."""
+        return self._rows(*self._layout.starts[2:4])
+
+    @property
+    def object_temperature(self) -> Mapping[str, float | np.ndarray]:
+        """°C by object, its mean."""
+        found = self._rows(*self._layout.starts[3:5])
+        own = found.T if self._layout.many else found.tolist()
+        return dict(zip(self._layout.names, own, strict=False))
+
+    @property
+    def touching(self) -> tuple[str, ...] | tuple[tuple[str, ...], ...]:
+        """(F,) names of objects or other fingertips, the one that presses most where there are several, "" where
+        none."""
+        names = self._layout.names
+        worlds = self._numbers[:, self._layout.starts[4] :].astype(int).tolist()
+        found = tuple([tuple([names[t] for t in own]) for own in worlds])
+        return found if self._layout.many else found[0]
+
+    def _volts(self) -> np.ndarray:
+        first = self._rows(0, self._layout.starts[0])
+        return first.reshape(*first.shape[:-1], self._layout.sensors, SAMPLES)
+
+    def _rows(self, first: int, last: int) -> np.ndarray:
+        found = self._numbers[:, first:last]
+        return found if self._layout.many else found[0]
+
+
+_TOLD = (
+    *("time", "voltage", "temperature_drop", "force", "beside", "touching", "object_temperature", "failed"),
+    *("element_voltage", "element_drop"),
+)
+
+
+class Noise:
+    """Standard normal numbers of each world's generator, S for each sample, in the order in which the generator would
+    give them one by one; they are drawn for many samples at once. ahead: (W, NOISE_BLOCK, S). at: (W,) the next one."""
+
+    def __init__(self, seeds: Sequence[int], sensors: int) -> None:
+        self.ahead, self.at = np.zeros((len(seeds), NOISE_BLOCK, sensors)), np.zeros(len(seeds), np.int64)
+        self._rngs = [np.random.default_rng(seed) for seed in seeds]
+        self._before = [rng.bit_generator.state for rng in self._rngs]
+        for w in range(len(seeds)):
+            self.draw(w)
+
+    def draw(self, w: int) -> None:
+        """A world's next block."""
+        rng = self._rngs[w]
+        self._before[w] = rng.bit_generator.state
+        rng.standard_normal(out=self.ahead[w])
+        self.at[w] = 0
+
+    def take(self, w: int, samples: int) -> np.ndarray:
+        """(samples, S) of the next samples."""
+        rng = self._now(w)
+        found = rng.standard_normal((samples, self.ahead.shape[2]))
+        self._rngs[w] = rng
+        self.draw(w)
+        return found
+
+    def seed(self, w: int, seed: Any) -> None:
+        """A world's generator starts anew."""
+        self._rngs[w] = np.random.default_rng(seed)
+        self.draw(w)
+
+    def state(self, w: int) -> dict[str, Any]:
+        """Of the generator, had it given no more than what was used."""
+        return dict(self._now(w).bit_generator.state)
+
+    def set_state(self, w: int, state: dict[str, Any]) -> None:
+        """Puts a world's generator into such a state."""
+        self._rngs[w].bit_generator.state = state
+        self.draw(w)
+
+    def _now(self, w: int) -> np.random.Generator:
+        rng = np.random.default_rng(0)
+        rng.bit_generator.state = self._before[w]
+        rng.standard_normal((int(self.at[w]), self.ahead.shape[2]))
+        return rng
+
+
+class Electronics:
+    """Signal chains of all sensors, and what a reading is made of. voltage: (W, S, SAMPLES) V; pressed: (W, F, T) N and
+    off: (W, F) N, sums over the substeps of a reading. filtered and last: (W S, 1) V, the low-pass's output and its
+    last input.
+
+    touches, beside: a ContactReader's. sent: (W, S) what the chains take; drop: (W, S) K and warmth: (W, O) K above
+    `ambient` °C, of a JoinedHeat. These stay where they are. substeps: of a reading."""
+
+    def __init__(
+        self,
+        chain_rows: np.ndarray,
+        layout: Layout,
+        noise: Noise,
+        *,
+        touches: np.ndarray,
+        beside: np.ndarray,
+        sent: np.ndarray,
+        drop: np.ndarray,
+        warmth: np.ndarray,
+        substeps: int,
+        ambient: float,
+    ) -> None:
+        self.noise, self._layout, self._chains = noise, layout, chain_rows
+        self._felt = touches, beside, sent, drop, warmth
+        worlds, tips, targets = touches.shape[:3]
+        rows = worlds * layout.sensors
+        self.filtered, self.last = np.zeros((rows, 1)), np.zeros((rows, 1))
+        self._drawn, self._sampled = np.zeros((rows, 1, 1)), np.zeros((rows, 1, 1))
+        self.voltage = np.zeros((worlds, layout.sensors, SAMPLES))
+        self.pressed, self.off = np.zeros((worlds, tips, targets)), np.zeros((worlds, tips))
+        self._numbers = np.zeros((worlds, layout.starts[-1]))
+        self._means = np.array([float(substeps), ambient])
+        self._point()
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy, whose arrays are elsewhere."""
+        self.__dict__.update(state)
+        self._point()
+
+    def _point(self) -> None:
+        """Says where all arrays are."""
+        layout = self._layout
+        arrays = (
+            *(*self._felt, self.pressed, self.off, self._chains, self.filtered, self.last),
+            *(self.noise.ahead, self.noise.at, self._drawn, self._sampled, self.voltage),
+            *(self._numbers, self._means),
+        )
+        worlds, tips, targets = self.pressed.shape
+        self._table = table(arrays, (worlds, tips, targets, layout.sensors, layout.objects))
+        self._at = self._table.ctypes.data
+
+    def rest(self, w: int, sent: np.ndarray) -> None:
+        """A world's electronics as if at rest for as long as a reading reaches back. sent: (S,) what they take."""
+        sensors = self._layout.sensors
+        own = slice(w * sensors, (w + 1) * sensors)
+        self.filtered[own], self.last[own] = sent[:, None], sent[:, None]
+        volts = np.zeros((sensors, SAMPLES, 1))
+        measure_rows(
+            self._chains[own],
+            self.filtered[own],
+            self.last[own],
+            np.zeros((sensors, 0, 1)),
+            np.repeat(sent[:, None], SAMPLES, axis=1)[:, :, None],
+            np.ascontiguousarray(self.noise.take(w, SAMPLES).T[:, :, None]),
+            volts,
+        )
+        self.voltage[w] = volts[:, :, 0]
+
+    def sample(self, due: bool) -> None:
+        """The converter's next voltages; the contacts' sums of the sample start anew. due: whether it is a reading's
+        last."""
+        if _close(self._at, due):
+            for w in np.flatnonzero(self.noise.at == NOISE_BLOCK).tolist():
+                self.noise.draw(w)
+
+    def start_anew(self, rows: Sequence[int]) -> None:
+        """Those worlds' sums, and what a reading that is made now tells of them."""
+        self.pressed[rows], self.off[rows] = 0.0, 0.0
+        _, _, _, drop, warmth = self._felt
+        drops, forces, _, temperatures, touching, _ = self._layout.starts
+        for w in rows:
+            own = self._numbers[w]
+            own[:drops], own[drops:forces] = self.voltage[w].ravel(), drop[w]
+            own[forces:temperatures], own[touching:] = 0.0, -1.0
+            own[temperatures:touching] = self._means[1] + warmth[w]
+
+    def reading(self, time: np.ndarray, broken: np.ndarray) -> TouchReading:
+        """The last one. time: (W,) s."""
+        layout, numbers = self._layout, self._numbers.copy()
+        if not layout.many:
+            return TouchReading(time.item(), False, numbers, layout)
+        numbers[broken, : layout.starts[4]] = np.nan
+        return TouchReading(time.copy(), broken.copy(), numbers, layout)
+
+
+@njit(cache=True, error_model="numpy")
+def _close(own_at, due):
+    """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages. due:
+    makes the reading too. own_at: the address of Electronics' table. Returns whether noise has run out."""
+    own = carray(words(own_at), 22)
+    worlds, tips, targets, sensors, objects = own[17], own[18], own[19], own[20], own[21]
+    rows = worlds * sensors
+    touches = carray(floats(own[0]), (worlds, tips, targets, COLUMNS))
+    beside = carray(floats(own[1]), (worlds, tips))
+    sent, drop = carray(floats(own[2]), (rows, 1, 1)), carray(floats(own[3]), (worlds, sensors))
+    warmth = carray(floats(own[4]), (worlds, objects))
+    pressed, off = carray(floats(own[5]), (worlds, tips, targets)), carray(floats(own[6]), (worlds, tips))
+    filtered, last = carray(floats(own[8]), (rows, 1)), carray(floats(own[9]), (rows, 1))
+    ahead, at = carray(floats(own[10]), (worlds, NOISE_BLOCK, sensors)), carray(words(own[11]), worlds)
+    drawn, sampled = carray(floats(own[12]), (rows, 1, 1)), carray(floats(own[13]), (rows, 1, 1))
+    voltage = carray(floats(own[14]), (worlds, sensors, SAMPLES))
+    means = carray(floats(own[16]), 2)
+    spent = False
+    for w in range(worlds):
+        for f in range(tips):
+            off[w, f] += beside[w, f]
+            beside[w, f] = 0.0
+            for t in range(targets):
+                pressed[w, f, t] += touches[w, f, t, FORCE]
+                for k in range(COLUMNS):
+                    touches[w, f, t, k] = 0.0
+        for s in range(sensors):
+            drawn[w * sensors + s, 0, 0] = ahead[w, at[w], s]
+        at[w] += 1
+        spent = spent or at[w] == NOISE_BLOCK
+    chain = carray(chains(own[7]), rows)
+    # voltages under way: none
+    measure_rows(chain, filtered, last, carray(floats(own[8]), (rows, 0, 1)), sent, drawn, sampled)
+    for w in range(worlds):
+        for s in range(sensors):
+            for k in range(SAMPLES - 1):
+                voltage[w, s, k] = voltage[w, s, k + 1]
+            voltage[w, s, SAMPLES - 1] = sampled[w * sensors + s, 0, 0]
+    if due:
+        size = sensors * (SAMPLES + 1) + 3 * tips + objects
+        _tell(voltage, drop, warmth, pressed, off, means, carray(floats(own[15]), (worlds, size)))
+    return spent
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _tell(voltage, drop, warmth, pressed, off, means, numbers):
+    """Fills the numbers of a reading (Layout) and starts the sums anew. Fingertips on one another are noted with the
+    first of the two."""
+    worlds, tips, targets = pressed.shape
+    sensors, objects = voltage.shape[1], warmth.shape[1]
+    drops = sensors * SAMPLES
+    forces = drops + sensors
+    for w in range(worlds):
+        for s in range(sensors):
+            for k in range(SAMPLES):
+                numbers[w, s * SAMPLES + k] = voltage[w, s, k]
+            numbers[w, drops + s] = drop[w, s]
+        for f in range(tips):
+            force, most, largest = 0.0, -1, 0.0
+            for t in range(targets):
+                own = pressed[w, f, t]
+                if t >= objects:
+                    own += pressed[w, t - objects, objects + f]
+                force += own / means[0]
+                if own > largest:
+                    largest, most = own, t
+            numbers[w, forces + f] = force
+            numbers[w, forces + tips + f] = off[w, f] / means[0]
+            numbers[w, forces + 2 * tips + objects + f] = most
+        for o in range(objects):
+            numbers[w, forces + 2 * tips + o] = means[1] + warmth[w, o]
+        for f in range(tips):
+            off[w, f] = 0.0
+            for t in range(targets):
+                pressed[w, f, t] = 0.0
