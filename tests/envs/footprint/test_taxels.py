@@ -319,7 +319,7 @@ def test_a_scene_s_objects_press_together() -> None:
         ObjectSpec(name=name, size=(0.04, 0.02, 0.04), position=(0.0, side * 0.0105), material="glass")
         for name, side in (("left", -1), ("right", 1))
     ]
-    env = GraspEnv(scene=halves, taxels=(1, 20), placement=(0.0, 0.0), tolerance=0.5)
+    env = GraspEnv(scene=halves, taxels=(1, 20), placement=(0.0, 0.0), tolerance=0.5, skin=None)
     env.reset(seed=0)
     seen: dict[str, np.ndarray] = {}
     for action in ACTIONS[:60]:
