@@ -67,7 +67,7 @@ def test_it_goes_on_as_update_does() -> None:
     data = mujoco.MjData(model)
     hand.press(data, 8.0)
     touch = ThermalTouch(model, fingertips=PADS, objects={"can": "glass"}, worlds=1)
-    touch._chains["noise"] = 0.0
+    touch._electronics._chains["noise"] = 0.0
     touch.update(recorded(model, data, 250))
     fixed = touch.fixed_touch(np.zeros(0))
     state = fixed.start(2)
