@@ -18,7 +18,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,8 +28,10 @@ from skfem import Basis, BilinearForm, ElementQuad1, ElementVector, MeshQuad
 from thermograsp.thermal import (
     AIR,
     LAPPED_ALUMINA,
+    SKINS,
     Joint,
     Pad,
+    Skin,
     Surface,
     contact_conductance,
     joint,
@@ -227,9 +229,9 @@ def cases() -> dict[str, tuple[Layer, Joint, np.void]]:
         ("skin 0.2 mm, compressible", 0.2e-3, 1.7e6, 0.3),
         ("skin 1 mm", 1e-3, 1.7e6, 0.49),
     ):
-        stiffness = e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / thickness
         soft = Surface(1.6, 2e-6, 0.2, e, nu, np.inf)
-        pad = Pad(face_stiffness=stiffness)
+        sheet = replace(SKINS["filled_silicone"].made_of, youngs_modulus=e, poisson_ratio=nu)
+        pad = Pad(face_stiffness=Skin(sheet, thickness).stiffness)
         pair = joint(soft, steel, full_contact=True)
         every[name] = Layer(e, nu, thickness, 4e-3), pair, sphere_footprint(pad, pair, RADIUS)
     pad = Pad()

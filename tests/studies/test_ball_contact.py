@@ -29,8 +29,11 @@ def study() -> Iterator[ModuleType]:
     [
         # Hertz's solution, which shows what the finite elements themselves are good to
         ("bare", 0.01, 0.02, 0.01),
-        # a skin that can be compressed is its springs, at a contact six times as wide as it is thick or more
-        ("skin 0.2 mm, compressible", 0.03, 0.02, 0.14),
+        # a skin's springs are fitted at one half width to what bulges beside the contact
+        ("skin 0.2 mm", 0.1, 0.27, 0.15),
+        ("skin 1 mm", 0.03, 0.21, 0.18),
+        # what can be compressed bulges less than the springs suppose
+        ("skin 0.2 mm, compressible", 0.07, 0.09, 0.22),
         # springs do not carry along the pad, which is nearly incompressible: docs/physics.md states this
         ("pad", 0.18, 0.75, 0.27),
     ],

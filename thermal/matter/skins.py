@@ -21,6 +21,8 @@ _Stack = TypeVar("_Stack")
 _THINNEST, _THICKEST = 1e-6, 5e-3  # m; a thicker one feels nothing
 _POISSON = 0.3  # where a material has none, as of its surface
 _RUBBER_BULK = 2e9  # Pa, of rubbers, whose Poisson ratio tables round to 0.5
+_HALF_WIDTH = 1.5e-3  # m, of the contact with a ball of 20 mm radius at 10 N
+_BULGING = 3.4, 0.07  # of a layer that keeps its volume, fitted to studies/ball_contact.py
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,15 +60,20 @@ class Skin:
 
     @property
     def stiffness(self) -> float:
-        """Pa/m, pressure per indentation of the sheet on a rigid face: its modulus of compression without bulging,
-        K + 4 G/3, over its thickness. It holds under contacts several times as wide as the sheet is thick (Johnson,
-        Contact Mechanics, section 5.8); under smaller ones the sheet bulges and is softer."""
+        """Pa/m, pressure per indentation of the sheet on a rigid face, under the contacts of curved bodies.
+
+        Two springs in series, over the sheet's thickness d: its modulus of compression without bulging, K + 4 G/3
+        (Johnson, Contact Mechanics, section 5.8), which alone would hold under contacts many times as wide as d, and
+        E (3.4 + 0.07 (a/d)^2) for what bulges beside a contact of half width a. The second is fitted to finite elements
+        of a ball on a nearly incompressible sheet; a is 1.5 mm."""
         made = self.made_of
         assert made.youngs_modulus is not None  # checked at first
         ratio = _POISSON if made.poisson_ratio is None else made.poisson_ratio
         bulk = made.youngs_modulus / (3 * (1 - 2 * ratio)) if ratio < 0.5 else _RUBBER_BULK
         shear = made.youngs_modulus / (2 * (1 + ratio))
-        return (bulk + 4 * shear / 3) / self.thickness
+        constant, square = _BULGING
+        bulging = made.youngs_modulus * (constant + square * (_HALF_WIDTH / self.thickness) ** 2)
+        return 1 / (1 / (bulk + 4 * shear / 3) + 1 / bulging) / self.thickness
 
     def over(self, stack: _Stack) -> _Stack:
         """A SensorStack or a HeatedStack with this skin on its face: one more layer, which is read and heated where it
