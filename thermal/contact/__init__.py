@@ -13,7 +13,6 @@ from .footprint import (
     flat_footprint,
     footprint,
     gas_conduction,
-    solid_conduction,
     sphere_footprint,
     table_footprint,
 )
@@ -28,6 +27,7 @@ from .law import (
     contact,
     cylinder_law,
     flat_law,
+    solid_conduction,
     sphere_law,
 )
 from .rigid import RigidContact, rigid_cylinder, rigid_sphere

@@ -25,7 +25,7 @@ from thermograsp.errors import InvalidValueError, positive
 
 from .area import ContactArea, Pad
 from .gas_beside import beside_ball, beside_strip
-from .law import CONTACT_LAW, CYLINDER, FLAT, SPHERE, conductance, cylinder_law, flat_law, sphere_law
+from .law import CONTACT_LAW, CYLINDER, FLAT, SPHERE, cylinder_law, flat_law, solid_conduction, sphere_law
 from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductance, joint
 from .round_bodies import ball_on_pad, cylinder_on_pad, disc_on_face
 
@@ -153,20 +153,6 @@ def gas_conduction(law, force, place):
     if law.apart == 0.0:
         return 0.0
     return _beside(law, _touched(law, force, place)[2], place)
-
-
-@njit(cache=True, error_model="numpy")
-def solid_conduction(law, area, load):
-    """W/K of that area m2 of the face under that force N, by its mean pressure: where a curved body's varies, that is
-    within 2.5 % of the sum over places, as the spots conduct nearly in proportion to it, the gas nearly without it."""
-    if area <= 0.0:
-        return 0.0
-    conducts = conductance(law, load / area) * area
-    if law.constriction > 0.0:
-        more = math.sqrt(math.pi / area) - 0.5 * math.sqrt(math.pi) / law.half_face
-        if more > 0.0:
-            conducts /= 1.0 + conducts * law.constriction * more
-    return conducts
 
 
 @njit(cache=True, inner=True, error_model="numpy")
