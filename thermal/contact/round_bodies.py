@@ -103,7 +103,8 @@ def _strip(square, half, x):
     a^2 - r^2 over it."""
     a = math.sqrt(max(square, 0.0))
     low, high = min(max(x - half, -a), a), min(max(x + half, -a), a)
-    return high - low, square * (high - low) - (high**3 - low**3) / 3
+    # rounding may leave less than nothing of what is hardly touched
+    return high - low, max(square * (high - low) - (high**3 - low**3) / 3, 0.0)
 
 
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)
