@@ -39,6 +39,9 @@ _LOG = logging.getLogger(__name__)
 _TOLD: list[str] = []
 """The first function that this process has compiled."""
 
+_OWN = {"fastmath": False, "error_model": "python", "forceinline": False}
+"""Options that a function would otherwise take from the caller for which it is first compiled, and keep for all."""
+
 _ENVIRONMENT = "_ZN08NumbaEnv"
 """How numba names what holds a function's environment."""
 
@@ -61,7 +64,7 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
         entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
         if inner:
             entries["pipeline_class"] = _InnerCompiler
-        dispatcher: Any = numba.njit(**options, **entries)(function)
+        dispatcher: Any = numba.njit(**{**_OWN, **options, **entries})(function)
         if cache:
             dispatcher._cache = _Cache(dispatcher)
         dispatcher.compile = _quickly(dispatcher)

@@ -251,3 +251,29 @@ print(one(3.0, 2.0), other(3.0, 2.0))
         edit(tmp_path, "inner.py", "return 2 * between", f"return {factor} * between")
         run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
         assert (run.returncode, run.stdout.strip()) == (0, expected), run.stderr
+
+
+def test_a_function_s_arithmetic_does_not_depend_on_who_calls_it_first() -> None:
+    """A caller that may reassociate sums leaves the functions that it calls their own order."""
+
+    @njit(inner=True)
+    def summed(x):
+        total = 0.0
+        for i in range(len(x)):
+            total += x[i]
+        return total
+
+    @njit(fastmath={"reassoc", "nsz"}, error_model="numpy", forceinline=True)
+    def quick(x):
+        return summed(x) + x[0] + x[1]
+
+    @njit()
+    def plain(x):
+        return summed(x)
+
+    x = np.ones(3)
+    assert quick(x) == 5.0 and plain(x) == 3.0
+    code = {
+        kernel: kernel.overloads[kernel.signatures[0]].library.get_llvm_str() for kernel in (quick, plain)
+    }
+    assert "reassoc" in code[quick] and "reassoc" not in code[plain]
