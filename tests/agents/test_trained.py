@@ -65,9 +65,9 @@ def test_all_that_is_shipped_is_small_and_says_how_it_was_trained() -> None:
         assert f"thermograsp train {agent.task} " in card and f"--seed {agent.about['seed']} " in card
 
 
-@pytest.mark.parametrize(("task", "most_failures"), [("grasp", 1), ("identify", 1)])
+@pytest.mark.parametrize(("task", "most_failures"), [("grasp", 1), ("identify", 1), ("sort", 2)])
 def test_shipped_agents_do_their_task(task: str, most_failures: int) -> None:
-    """A constant force does it in five of eight episodes; chance is a tenth."""
+    """A constant force does it in five of eight episodes, and chance sorts right in half and identifies a tenth."""
     assert score(learning_task(task), "trained", 16, load=False).successes >= 16 - most_failures
 
 
