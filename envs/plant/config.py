@@ -127,6 +127,10 @@ class SimulationConfig:
             non_negative("placement (m, degree)", value)
         within("placement", self.placement[0], 0.0, LONGEST, "m")
         checked(self.randomize)
+        _check_objects(
+            "objects", [self.objects] if isinstance(self.objects, str | ObjectSpec) else self.objects
+        )
+        _check_objects("scene", self.scene)
         object.__setattr__(self, "skin", self._chosen_skin())
         _ = self.tactile  # checks it
         if self.face_temperature is not None:
@@ -434,6 +438,15 @@ def check_fields(plant: str, given: Iterable[str], *more: str) -> None:
     for name in given:
         if name not in known:
             raise unknown_keyword(f"plant {plant!r}", name, known)
+
+
+def _check_objects(name: str, given: Any) -> None:
+    """Raises InvalidValueError for what is no list of objects and names of the library."""
+    several = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
+    if given is not None and not (several and all(isinstance(one, str | ObjectSpec) for one in given)):
+        raise InvalidValueError(
+            f"{name} must be ObjectSpecs or names of the library, several of them in a list, got {given!r}"
+        )
 
 
 def _plain_box(one: str | ObjectSpec | None) -> bool:

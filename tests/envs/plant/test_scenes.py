@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from thermograsp.agents.checks import violations
-from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig
 from thermograsp.errors import InvalidValueError
 
 from ..scripted import grasp_action
@@ -111,3 +111,10 @@ def test_objects_that_meant_the_same_name_get_numbers_and_wrong_scenes_are_refus
     for wrong in ({"scene": []}, {"scene": [LEFT], "objects": RIGHT}, {"scene": [LEFT], "mode": "O"}):
         with pytest.raises(InvalidValueError, match="scene"):
             GraspBatch(1, **wrong)
+
+
+@pytest.mark.parametrize("given", [5, [5], {"a": 1}, [None], ("brick", 1.0)])
+@pytest.mark.parametrize("name", ["objects", "scene"])
+def test_what_is_no_list_of_objects_is_refused_by_name(name: str, given: Any) -> None:
+    with pytest.raises(InvalidValueError, match=f"{name} must be ObjectSpecs or names"):
+        SimulationConfig(**{name: given})
