@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 
 from thermograsp.bench.speed.beside import Pair
+from thermograsp.errors import MissingDependencyError
 from thermograsp.touch import install
 from thermograsp.touch.wrappers import AddThermalObservation
 
@@ -73,10 +74,16 @@ def inside(name: str) -> Pair:
 
 
 def _made() -> gymnasium.Env:
+    """Raises MissingDependencyError where gymnasium-robotics does not run beside the MuJoCo that is installed."""
     import gymnasium_robotics
 
     gymnasium.register_envs(gymnasium_robotics)
-    return gymnasium.make(ID, max_episode_steps=10**9)
+    try:
+        return gymnasium.make(ID, max_episode_steps=10**9)
+    except AssertionError as error:  # it finds joints of no kind that it knows
+        raise MissingDependencyError(
+            f"gymnasium-robotics {gymnasium_robotics.__version__} does not run beside MuJoCo {mujoco.__version__}"
+        ) from error
 
 
 def _grasp(env: gymnasium.Env) -> None:
