@@ -101,7 +101,7 @@ class SimulationConfig:
     cache: bool = True
     taxels: tuple[int, int] | None = None
     face_temperature: tuple[int, int] | None = None
-    skin: str | Skin | None = "auto"
+    skin: str | Skin | None = AUTO
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):

@@ -142,10 +142,8 @@ class BoxHeat:
                         state[self._field(heir)] += field
         if not touched.places:
             return
-        tips, last = (
-            [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)],
-            self._touched[row],
-        )
+        last = self._touched[row]
+        tips = [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)]
         self._make(row, touched)
         self._turn(row, last, state)
         for f in range(self._tips):
@@ -218,9 +216,10 @@ class BoxHeat:
         for number, (one, other) in enumerate(zip(last.places, now.places, strict=False)):
             if one != other:
                 continue
-            before, after = (
-                _tip(body.material, size, number, each.places, stack, level).basis for each in (last, now)
-            )
+            with _BLAS.limit(limits=1, user_api="blas"):  # as in _make
+                before, after = (
+                    _tip(body.material, size, number, each.places, stack, level).basis for each in (last, now)
+                )
             if np.array_equal(before, after):
                 continue
             turn, fields = after.T @ GRAM @ before, [state[self._field(number)]]

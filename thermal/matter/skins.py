@@ -81,8 +81,6 @@ class Skin:
         return replace(stack, layers=(*stack.layers, self.layer))  # pyright: ignore
 
 
-_SHEET = "Henkel, technical data sheet of Bergquist Sil Pad TSP 1800ST (once Sil-Pad 1500ST)"
-
 SKINS: Mapping[str, Skin] = MappingProxyType(
     {
         "filled_silicone": Skin(
@@ -95,22 +93,23 @@ SKINS: Mapping[str, Skin] = MappingProxyType(
                 youngs_modulus=1.7e6,
                 poisson_ratio=0.49,
                 roughness=2e-6,
-                sources={
-                    "conductivity": _SHEET,
-                    **dict.fromkeys(
-                        ("density", "specific_heat", "youngs_modulus", "poisson_ratio", "roughness"),
-                        "estimate",
+                sources=dict.fromkeys(
+                    (
+                        *("conductivity", "density", "specific_heat"),
+                        *("youngs_modulus", "poisson_ratio", "roughness"),
                     ),
-                },
+                    "estimate",
+                ),
             ),
             thickness=0.203e-3,
         )
     }
 )
 """By name. filled_silicone: silicone filled with ceramic powder, as it is sold for insulation under power transistors.
-Thickness and conductivity are those of Henkel's Bergquist Sil Pad TSP 1800ST. Its data sheet gives 0.20 K in2/W, or
-1.29e-4 m2 K/W, between two faces at 200 psi; the sheet alone is 1.13e-4. Everything else is an estimate of a usual
-value: 1.7 MPa is a Shore A hardness of 40 by Gent's relation."""
+The thickness is that of Henkel's Bergquist Sil Pad TSP 1800ST. By a transcription of its data sheet (the sheet itself
+has not been read) it has 0.20 K in2/W, or 1.29e-4 m2 K/W, between two faces at 200 psi; the sheet alone is 1.13e-4
+here. Everything else is an estimate of a usual value: 1.8 W/(m K) agrees with that impedance, and 1.7 MPa is a Shore
+A hardness of 40 by Gent's relation."""
 
 USUAL_SKIN = "filled_silicone"
 """What meets objects where the environments choose (see envs.SimulationConfig)."""
