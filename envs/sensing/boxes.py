@@ -8,8 +8,10 @@ B: rows, F: fingertips, S: substeps.
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from threading import Lock
+from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -21,10 +23,8 @@ from ...thermal.batch import (
     POLE_HEAT,
     RATES,
     WHERE,
-    BodyResidues,
     FixedTables,
     TipRows,
-    body_residues,
     fixed_heat,
     fixed_tables,
     fixed_tip_rows,
@@ -33,7 +33,19 @@ from ...thermal.batch import (
     set_gram,
     tip_residues,
 )
-from ...thermal.kernels import GRAM, Footprint, Patches, Resolution, Spot, Tip, box_side, tip, tip_at
+from ...thermal.kernels import (
+    GRAM,
+    BodyResidues,
+    Footprint,
+    Patches,
+    Resolution,
+    Spot,
+    Tip,
+    TouchedBox,
+    tip,
+    tip_at,
+    touched_boxes,
+)
 from ..bodies import ObjectSpec
 from ..footprint import GraspBody
 from ..limits import LEAST_TOLERANCE
@@ -103,9 +115,13 @@ class BoxHeat:
         self._bodies.pop(row, None)
         self._touched.pop(row, None)
 
-    def wait(self, row: int, state: np.ndarray) -> None:
-        """The row's network is made before anything touches it, with places in the middle of its faces."""
-        self.settle(row, [0], self._middles(row), state)
+    def wait(self, rows: Sequence[int], state: np.ndarray) -> None:
+        """The rows' networks are made before anything touches them, with places in the middle of their faces. state:
+        (B, n)."""
+        middles = np.zeros((len(self._rows), 2, 3))
+        for row in rows:
+            middles[row] = self._middles(row)
+        self.settle([(row, [0]) for row in rows], middles, state)
 
     def strayed(self, force: np.ndarray, place: np.ndarray, samples: int) -> list[tuple[int, int, list[int]]]:
         """(sample, row, fingertips) of those that begin to press in that one of a step's samples where they have no
@@ -119,16 +135,35 @@ class BoxHeat:
             asked.setdefault((begun * samples // force.shape[1], row), []).append(fingertip)
         return [(sample, row, fingertips) for (sample, row), fingertips in asked.items()]
 
-    def settle(self, row: int, fingertips: list[int], middles: np.ndarray, state: np.ndarray) -> None:
-        """These fingertips, and those that have no place yet, are at their middles of (F, 3) m from now on. The heat of
-        the object and of fingertips in the row's state (n,) stays to round-off."""
-        touched, record, tables = self._touched[row], self._rows[row], self.tables
+    def settle(
+        self, strayed: Sequence[tuple[int, Sequence[int]]], middles: np.ndarray, state: np.ndarray
+    ) -> None:
+        """Those fingertips of each row, and those that have no place yet, are at their middles of (B, F, 3) m from now
+        on. The heat of the objects and of fingertips in the state (B, n) stays to round-off."""
+        tables, moved, heat = self.tables, {}, {}
+        for row, fingertips in strayed:
+            heat[row] = fixed_heat(tables, row, state[row]), self._tip_heat(row)
+            touched = self._moved(row, fingertips, middles[row], state[row])
+            if touched.places:
+                moved[row] = touched
+        last = {row: self._touched[row] for row in moved}
+        self._make(moved)
+        for row in moved:
+            self._turn(row, last[row], state[row])
+            before, tips = heat[row]
+            for f, now in enumerate(self._tip_heat(row)):
+                self._keep_heat(state[row, self.fingertip(f)], tips[f], now)
+            state[row, 0] += (before - fixed_heat(tables, row, state[row])) / tables.slow[row, HELD]
+
+    def _moved(self, row: int, fingertips: Sequence[int], middles: np.ndarray, state: np.ndarray) -> Touched:
+        """Where the row's box is touched with these fingertips at their middles of (F, 3) m; the field of a place that
+        is given up, in the row's state (n,), goes to its heir."""
+        touched, record = self._touched[row], self._rows[row]
         body, _ = self._bodies[row]
         size, width = body.spec.size, body.stack.width
         if record["middled"]:
             middles = self._middles(row)
         new = [f for f in range(self._tips) if touched.contacts[f] < 0 and f not in fingertips]
-        before = fixed_heat(tables, row, state)
         for f in (*fingertips, *new):
             place = place_of(record, width, middles[f])
             if place is not None:
@@ -140,16 +175,10 @@ class BoxHeat:
                     state[self._field(gone)] = 0.0
                     if heir >= 0:
                         state[self._field(heir)] += field
-        if not touched.places:
-            return
-        last = self._touched[row]
-        tips = [fixed_tip_rows(tables, self._element(row, f)).heat for f in range(self._tips)]
-        self._make(row, touched)
-        self._turn(row, last, state)
-        for f in range(self._tips):
-            now = fixed_tip_rows(tables, self._element(row, f)).heat
-            self._keep_heat(state[self.fingertip(f)], tips[f], now)
-        state[0] += (before - fixed_heat(tables, row, state)) / tables.slow[row, HELD]
+        return touched
+
+    def _tip_heat(self, row: int) -> list[np.ndarray]:
+        return [fixed_tip_rows(self.tables, self._element(row, f)).heat for f in range(self._tips)]
 
     def shift(self, rows: np.ndarray, state: np.ndarray, change: np.ndarray) -> None:
         """The thermostats moved by change (B, F) K: the fields above them in rows (n,) of state (B, n) are lower."""
@@ -180,9 +209,9 @@ class BoxHeat:
         """For set_touched."""
         return self._touched[row]
 
-    def set_touched(self, row: int, touched: Touched) -> None:
-        """The row's network is that of these places; its state is left alone."""
-        self._make(row, touched)
+    def set_touched(self, touched: Mapping[int, Touched]) -> None:
+        """The rows' networks are those of these places; their states are left alone."""
+        self._make(touched)
 
     def _middles(self, row: int) -> np.ndarray:
         """(F, 3) m of the faces that the fingers close on."""
@@ -234,29 +263,39 @@ class BoxHeat:
         """Puts the heat that a fingertip's states (n,) have by one row and not by the other into its slowest."""
         state[0] += ((before - after) * state).sum() / after[0]
 
-    def _make(self, row: int, touched: Touched) -> None:
-        """The tables of the row's box and elements are those of these places."""
-        tables, record, last = self.tables, self._rows[row], self._touched[row]
-        body, film = self._bodies[row]
-        size, stack, level = body.spec.size, body.stack, FIXED_LEVEL
+    def _make(self, touched: Mapping[int, Touched]) -> None:
+        """The tables of the rows' boxes and elements are those of these places."""
+        tables, level, asked = self.tables, FIXED_LEVEL, {}
         with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-            if touched.places != last.places:
-                places = touched.places
-                shared = bool(record["middled"])
-                set_body(tables, row, _network(body.material, size, film, places, stack, level, shared))
-            for f, number in enumerate(touched.contacts):
-                if number >= 0:
-                    element = 0 if record["middled"] else 1 + row * self._tips + f
-                    if element:
-                        at = number, touched.places
-                        tables.tips[element] = _element(body.material, size, *at, stack, level)
-                    tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
-                    record["face"][f], record["pad"][f] = (
-                        touched.places[number].face,
-                        touched.places[number].middle,
+            for row, now in touched.items():
+                if now != self._touched[row]:
+                    body, film = self._bodies[row]
+                    shared = bool(self._rows[row]["middled"])
+                    asked[row] = _Asked(
+                        body.material, body.spec.size, film, body.stack, shared, *now.in_order()
                     )
+            for row, found in zip(asked, _networks(list(asked.values()), level), strict=True):
+                set_body(tables, row, found, touched[row].numbers())
+            for row, now in touched.items():
+                self._set_contacts(row, now, level)
+                set_gram(tables, row)
+
+    def _set_contacts(self, row: int, touched: Touched, level: Resolution) -> None:
+        """The row's fingertips are on those places."""
+        tables, record = self.tables, self._rows[row]
+        body, _ = self._bodies[row]
+        for f, number in enumerate(touched.contacts):
+            if number >= 0:
+                element = 0 if record["middled"] else 1 + row * self._tips + f
+                if element:
+                    at = number, touched.places
+                    tables.tips[element] = _element(body.material, body.spec.size, *at, body.stack, level)
+                tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
+                record["face"][f], record["pad"][f] = (
+                    touched.places[number].face,
+                    touched.places[number].middle,
+                )
         self._touched[row] = touched
-        set_gram(tables, row)
 
 
 def served_anywhere(spec: ObjectSpec, tolerance: float) -> bool:
@@ -320,25 +359,47 @@ def _footprint(place: Place, size: tuple[float, float, float], width: float) -> 
     return Footprint((first, second), (x, y), (half_x, half_y))
 
 
-@lru_cache(maxsize=_KEPT)
-def _network(
-    material: Material,
-    size: tuple[float, float, float],
-    film: float,
-    places: tuple[Place, ...],
-    stack: SensorStack,
-    level: Resolution,
-    shared: bool,
-) -> BodyResidues:
-    """Of a box that is touched there by such sensors. shared: their patterns are those of the whole face anywhere."""
-    covered = np.array([place.covered(size, stack.width) for place in places])
-    corner = np.array([place.middle for place in places]) - stack.width / 2
-    half = (covered[:, :, 1] - covered[:, :, 0]) / 2
-    patches = Patches(np.array([place.face for place in places]), corner + covered.mean(axis=2), half)
-    whole = tip(stack, _whole(stack), level)
-    tips = tuple(
-        whole if shared else _tip(material, size, number, places, stack, level)
-        for number in range(len(places))
-    )
-    capacity = material.volumetric_heat_capacity * math.prod(size)
-    return body_residues(box_side(material, size, film, patches, tips, level), capacity, film > 0)
+class _Asked(NamedTuple):
+    """A box of that size, in air of W/(m2 K), that such sensors touch at the first `touched` of its places. shared:
+    their patterns are those of the whole face anywhere."""
+
+    material: Material
+    size: tuple[float, float, float]
+    film: float
+    stack: SensorStack
+    shared: bool
+    places: tuple[Place, ...]
+    touched: int
+
+    def box(self, level: Resolution) -> TouchedBox:
+        width = self.stack.width
+        covered = np.array([place.covered(self.size, width) for place in self.places])
+        corner = np.array([place.middle for place in self.places]) - width / 2
+        half = (covered[:, :, 1] - covered[:, :, 0]) / 2
+        patches = Patches(
+            np.array([place.face for place in self.places]), corner + covered.mean(axis=2), half
+        )
+        whole = tip(self.stack, _whole(self.stack), level)
+        tips = tuple(
+            whole if self.shared else _tip(self.material, self.size, number, self.places, self.stack, level)
+            for number in range(len(self.places))
+        )
+        return TouchedBox(self.material, self.size, self.film, patches, tips, self.touched)
+
+
+_made: dict[tuple[_Asked, Resolution], BodyResidues] = {}
+_making = Lock()
+
+
+def _networks(asked: Sequence[_Asked], level: Resolution) -> list[BodyResidues]:
+    """Of each; the _KEPT that were made last are known."""
+    found = {each: _made.get((each, level)) for each in asked}
+    new = [each for each, known in found.items() if known is None]
+    made = touched_boxes([each.box(level) for each in new], level)
+    found.update(zip(new, made, strict=True))
+    with _making:
+        for each, network in zip(new, made, strict=True):
+            _made[each, level] = network
+        while len(_made) > _KEPT:
+            del _made[next(iter(_made))]
+    return [network for each in asked if (network := found[each]) is not None]

@@ -135,8 +135,9 @@ class GraspHeat:
                 fresh["enthalpy"] = body.spec.reservoir.row(body.temperature)[1]
             if fresh["boxed"] or row not in waiting or fresh["begun"]:
                 self._build(row)
-            if fresh["boxed"] and fresh["begun"]:
-                self._boxes.wait(row, self._state[row])
+        begun = [row for row in rows if self._rows[row]["boxed"] and self._rows[row]["begun"]]
+        if begun:
+            self._boxes.wait(begun, self._state)
 
     def rung(self, row: int) -> str:
         """The model that computes an environment's heat."""
@@ -161,9 +162,9 @@ class GraspHeat:
         strayed = self._boxes.strayed(normal, middles, self._samples) if boxed else []
         starts = sorted({0, *(sample for sample, *_ in (*strayed, *carried, *moved))})
         for first, last in pairwise((*starts, self._samples)):
-            for sample, row, tips in strayed:
-                if sample == first:
-                    self._boxes.settle(row, tips, middles[row], self._state[row])
+            now = [(row, tips) for sample, row, tips in strayed if sample == first]
+            if now:
+                self._boxes.settle(now, middles, self._state)
             for sample, source, target, tip in carried:
                 if sample == first:
                     self._leave(info, sample, source, tip)
@@ -171,12 +172,12 @@ class GraspHeat:
             for sample, row, tip in moved:
                 if sample == first:
                     self._touch(row, self._touches[row].moved(tip, place[row, tip]))
-            now = (normal, middles, drop, info, first, last)
+            step = (normal, middles, drop, info, first, last)
             tables = self._networks.tables(self._fingertips)
             if boxed < len(drop):
-                advance_grasps(self._laws, self._reservoirs, self._rows, self._state, *now, *tables)
+                advance_grasps(self._laws, self._reservoirs, self._rows, self._state, *step, *tables)
             if boxed:
-                advance_boxes(self._laws, self._rows, self._state, *now, *self._boxes.tables)
+                advance_boxes(self._laws, self._rows, self._state, *step, *self._boxes.tables)
         return HeatStep(drop, info)
 
     def rest(self) -> HeatStep:
@@ -255,12 +256,13 @@ class GraspHeat:
 
     def set_state(self, rows: Sequence[int], state: HeatState) -> None:
         """Puts the rows into a state taken by `state`."""
+        touched: dict[int, Touched] = {}
         for k, row in enumerate(rows):
             self._place(row, state.things[k], state.rows["sensor_temperature"][k])
             self._build(row)
             places = state.places[k]
             if isinstance(places, Touched):
-                self._boxes.set_touched(row, places)
+                touched[row] = places
             elif places is not None:
                 self._touches[row] = self._touches[row].at(*places)
                 self._rows["network"][row] = self._number(row)
@@ -270,6 +272,7 @@ class GraspHeat:
             width = min(state.state.shape[1], self._state.shape[1])
             self._state[row] = 0.0
             self._state[row, :width] = state.state[k, :width]
+        self._boxes.set_touched(touched)
 
     @property
     def sensor_temperatures(self) -> np.ndarray:

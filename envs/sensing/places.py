@@ -77,7 +77,8 @@ def opposite(place: Place, places: Sequence[Place], width: float) -> Place | Non
     def apart(other: Place) -> float:
         return max(abs(a - b) for a, b in zip(place.middle, other.middle, strict=True))
 
-    nearest = min(behind, key=apart, default=None)
+    # of two as near, the same one in whatever order they come
+    nearest = min(behind, key=lambda other: (apart(other), other.middle), default=None)
     return nearest if nearest is not None and apart(nearest) < width else None
 
 
@@ -88,6 +89,16 @@ class Touched:
 
     places: tuple[Place, ...]
     contacts: tuple[int, ...]
+
+    def numbers(self) -> list[int]:
+        """Of the places, those under fingertips first."""
+        under = sorted(number for number in self.contacts if number >= 0)
+        return [*under, *(number for number in range(len(self.places)) if number not in under)]
+
+    def in_order(self) -> tuple[tuple[Place, ...], int]:
+        """The places in the order of `numbers`, and how many are under fingertips."""
+        under = sum(number >= 0 for number in self.contacts)
+        return tuple(self.places[number] for number in self.numbers()), under
 
     def moved(
         self, fingertip: int, place: Place, warmth: Sequence[float], size: Sequence[float], width: float

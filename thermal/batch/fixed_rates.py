@@ -14,13 +14,14 @@ slow poles, Q: pole pairs, T: elements under different contacts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..kernels import Resolution, Side
+from ..kernels import BodyResidues, Resolution, Side
 from ..network import POLES, WEIGHTS
 from ..numerics import FAST
 from .carry import TipRows
@@ -50,9 +51,9 @@ class FixedTables(NamedTuple):
     patterns, places: P and M. rates (14, K) and poles (17, E): rates 1/s, and what a step makes of them; of poles
     their ports sqrt(K/J), drop and heat too. tips (T, P P + 2 P + 2, K): residues K/J, drop and heat rows, and what
     follows the thermostat of either. slow (B, 15 + N): of a box's slowest state the same, its heat, and its ports.
-    body (B, N N + N + 1, K): residues, heat rows u, heat of what follows the air J/K. gram (B, F P, F P, 2, LANES):
-    real and imaginary K/J of all that is in touch at the poles. links (B, 2 + 2 F): places used, whether the air
-    takes any heat, each fingertip's place (-1 for none) and element.
+    body (B, N N + N + 1, K): residues of the places under fingertips by those of all, heat rows u, heat of what follows
+    the air J/K. gram (B, F P, F P, 2, LANES): real and imaginary K/J of all that is in touch at the poles. links
+    (B, 2 + 2 F): places used, whether the air takes any heat, each fingertip's place (-1 for none) and element.
     """
 
     dt: float
@@ -174,45 +175,21 @@ def tip_residues(side: Side) -> np.ndarray:
     return summed(rates, columns, SHARED).T
 
 
-class BodyResidues(NamedTuple):
-    """Of a box with N ports: rate 1/s, ports (N,) and heat of its slowest state; residues (N, N, K), heat rows (N, K)
-    and heat of what follows the air (K,), zeros where it takes none."""
-
-    rate: float
-    ports: np.ndarray
-    held: float
-    residues: np.ndarray
-    heat: np.ndarray
-    still: np.ndarray
-
-
-def body_residues(box: Side, capacity: float, aired: bool) -> BodyResidues:
-    """Of a box's network at FIXED_LEVEL's rates, its slowest state first. capacity: J/K of the box. aired: the air
-    takes heat."""
-    heat, count = box.outputs["object"], box.ports.shape[1]
-    rates, fast, held = box.rates[1:], box.ports[1:], heat[1:, None]
-    squares = (fast[:, :, None] * fast[:, None]).reshape(-1, count**2)
-    found = summed(rates, squares, SHARED).T.reshape(count, count, RATES)
-    warmed, still = np.zeros((count, RATES)), np.zeros(RATES)
-    if aired:
-        warmed[:] = summed(rates, held * fast, SHARED).T
-        # what the ports hardly see of the heat is hardly known from them: all of it together is the box's
-        own = summed(rates, held * held, SHARED)[:, 0]
-        if own.any():
-            still[:] = own * max(capacity - heat[0] ** 2, 0.0) / own.sum()
-    return BodyResidues(float(box.rates[0]), box.ports[0], float(heat[0]), found, warmed, still)
-
-
-def set_body(tables: FixedTables, row: int, box: BodyResidues) -> None:
-    """Makes a box, with as many ports as its places have patterns, the row's."""
-    count, most = len(box.ports), tables.places * tables.patterns
+def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[int]) -> None:
+    """Makes a box the row's, whose patches, those under fingertips first, are the places of these numbers."""
+    patterns, most = tables.patterns, tables.places * tables.patterns
     slow, body = tables.slow[row], tables.body[row]
+    ports = (np.array(places)[:, None] * patterns + np.arange(patterns)).ravel()
+    touched = ports[: len(box.residues)]
     slow[:] = body[:] = 0.0
     slow[:_RATE_ROWS] = _rate_table(np.asarray(box.rate), tables.dt)
-    slow[HELD], slow[HELD + 1 : HELD + 1 + count] = box.held, box.ports
-    body[: most * most].reshape(most, most, -1)[:count, :count] = box.residues
-    body[most * most :][:count], body[-1] = box.heat, box.still
-    tables.links[row, USED] = count // tables.patterns
+    slow[HELD], slow[HELD + 1 + ports] = box.held, box.ports
+    square = body[: most * most].reshape(most, most, -1)
+    square[touched[:, None], ports] = box.residues
+    even = ports[len(touched) :: patterns]
+    square[even, even] = box.residues[0, 0]  # stands in for their own, which no step asks for
+    body[most * most + ports], body[-1] = box.heat, box.still
+    tables.links[row, USED] = len(places)
     tables.links[row, AIRED] = box.still.any()
 
 

@@ -66,13 +66,40 @@ def box_samples(
     each patch, the orthonormal combinations of patterns to tell instead of all P, the even pattern first.
 
     The film covers the patches too: what lies under a fingertip loses no heat to the air, see `shielded`."""
-    diffusivity = conductivity / heat_capacity
     if bases is None:
         gram = GRAM
         jumps, terms = np.tile(JUMPS, (len(patches.face), 2, 1, 1)), ALONG[:, None]
     else:
         gram = np.eye(bases[0].shape[1])
         jumps, terms = along_axes(bases)
+    known = box_kernel(size, conductivity, heat_capacity, film, patches, jumps, terms, len(patches.face))
+    kernel, rate, port, held, whole = known
+    diffusivity = conductivity / heat_capacity
+    impedance = np.tensordot(TO_MOMENTS, kernel, axes=1)
+    slope = np.tensordot(TO_SLOPES, kernel, axes=1)
+    early = before(diffusivity) / heat_capacity
+    for n, area in enumerate(patches.areas):
+        own = slice(n * len(gram), (n + 1) * len(gram))
+        impedance[:, own, own] += early / area * gram
+    if whole is None:
+        return BoxSamples(impedance, slope, rate, port, held, None)
+    return BoxSamples(impedance, slope, rate, port, held, TO_MOMENTS @ whole)
+
+
+def box_kernel(
+    size: tuple[float, float, float],
+    conductivity: float,
+    heat_capacity: float,
+    film: float,
+    patches: Patches,
+    jumps: np.ndarray,
+    terms: np.ndarray,
+    asked: int,
+) -> tuple[np.ndarray, float, np.ndarray, float, np.ndarray | None]:
+    """Kernel (T, asked P, N P) K/J at TIMES, of the temperatures of the first `asked` patches, less the slowest
+    eigenfunction's part; rate, port and held as in BoxSamples; kernel (T, N P) of the heat in the box, likewise without
+    it, None where no film takes any. jumps, terms: along_axes's."""
+    diffusivity = conductivity / heat_capacity
     kernel, rate, port, whole, held = _kernel(
         np.asarray(size, float),
         film / conductivity,
@@ -83,32 +110,30 @@ def box_samples(
         NODES,
         jumps,
         np.ascontiguousarray(terms),
+        asked,
     )
-    scale = 1 / np.repeat(patches.areas, len(gram))
-    kernel *= np.outer(scale, scale) / heat_capacity
+    scale = 1 / np.repeat(patches.areas, len(terms))
+    own = slice(0, asked * len(terms))
+    kernel *= np.outer(scale[own], scale) / heat_capacity
     port *= scale / np.sqrt(heat_capacity)
-    rate *= diffusivity
-    kernel -= np.outer(port, port) * np.exp(-rate * TIMES)[:, None, None]
-    impedance = np.tensordot(TO_MOMENTS, kernel, axes=1)
-    slope = np.tensordot(TO_SLOPES, kernel, axes=1)
-    early = before(diffusivity) / heat_capacity
-    for n, area in enumerate(patches.areas):
-        own = slice(n * len(gram), (n + 1) * len(gram))
-        impedance[:, own, own] += early / area * gram
     held = float(held * np.sqrt(heat_capacity))
+    rate = float(rate * diffusivity) if film > 0 else 0.0
+    fading = np.exp(-rate * TIMES)
+    kernel -= np.outer(port[own], port) * fading[:, None, None]
     if film == 0:
-        return BoxSamples(impedance, slope, 0.0, port, held, None)
+        return kernel, rate, port, held, None
     whole *= scale
-    whole -= np.exp(-rate * TIMES)[:, None] * port * held
-    return BoxSamples(impedance, slope, float(rate), port, held, TO_MOMENTS @ whole)
+    whole -= fading[:, None] * port * held
+    return kernel, rate, port, held, whole
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
-    """Kernel (T, N P, N P) 1/m3 integrated over both patches' patterns; the slowest eigenfunction's squared wave number
-    1/m2 and its integrals over the patterns; the kernel (T, N P) integrated over the box and a pattern; the slowest
-    eigenfunction's integral over the box. jumps: (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2),
-    a pattern is the sum of X products of one function along either axis, -1 for none."""
+def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms, asked):
+    """Kernel (T, asked P, N P) 1/m3 integrated over both patches' patterns, the first of them one of the first `asked`
+    patches'; the slowest eigenfunction's squared wave number 1/m2 and its integrals over the patterns; the kernel
+    (T, N P) integrated over the box and a pattern; the slowest eigenfunction's integral over the box. jumps:
+    (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one
+    function along either axis, -1 for none."""
     count, functions, patterns = len(face), jumps.shape[2], len(terms)
     total = count * patterns
     slowest, held = 0.0, 1.0
@@ -157,7 +182,7 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
             for n in range(count):
                 mine = functions if order[n] == 1 else 1
                 a = places[n] if order[n] == 1 else places[n, :1]
-                for m in range(n + 1):
+                for m in range(min(n + 1, asked)):
                     others = functions if order[m] == 1 else 1
                     if _unseen(size, face, n, m, tau):
                         now[n, :, m, :] = 0.0
@@ -219,7 +244,8 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
                                 factor = jumps[n, which[axis, n], f, k] if order[n] == 1 else 1.0
                                 value += factor * (table[k, 1] - table[k, 0])
                         everywhere[t, axis, n, f] = value
-    kernel, whole, port = np.zeros((len(taus), total, total)), np.zeros((len(taus), total)), np.zeros(total)
+    own = asked * patterns
+    kernel, whole, port = np.zeros((len(taus), own, total)), np.zeros((len(taus), total)), np.zeros(total)
     for n in range(count):
         for i in range(patterns):
             at = n * patterns + i
@@ -231,7 +257,7 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
                 for t in range(len(taus)):
                     all_over = everywhere[t]
                     whole[t, at] += all_over[0, n, f0] * all_over[1, n, f1] * all_over[2, n, f2]
-                for m in range(n + 1):
+                for m in range(min(n + 1, asked)):
                     for j in range(patterns):
                         for y in range(terms.shape[1]):
                             if terms[j, y, 0] < 0:
@@ -239,13 +265,13 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms):
                             g0, g1, g2 = _functions(terms[j, y], orders, which, m)
                             for t in range(len(taus)):
                                 now = between[t]
-                                kernel[t, at, m * patterns + j] += (
+                                kernel[t, m * patterns + j, at] += (
                                     now[0, n, f0, m, g0] * now[1, n, f1, m, g1] * now[2, n, f2, m, g2]
                                 )
     for t in range(len(taus)):
-        for i in range(total):
+        for i in range(own):
             for j in range(i):
-                kernel[t, j, i] = kernel[t, i, j]
+                kernel[t, i, j] = kernel[t, j, i]
     return kernel, slowest, port, whole, held
 
 

@@ -12,13 +12,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numerics import passive_residues
+from ..numerics import free_residues, passive_residues
 from .samples import GRASP
 
 
 def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(K, N, N) positive semidefinite. impedance: (S, N, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
     return passive_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
+
+
+def past_residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(..., K, M, N) of the temperatures of M ports by what flowed once through N others, where nothing flows any more:
+    no power has to balance, and no sign is asked for. impedance: (..., S, M, N) K/W at GRASP. weight: (..., S)
+    of its errors, W/K."""
+    wanted = (weight[..., None, None] * impedance).reshape(*impedance.shape[:-2], -1)
+    found = free_residues(weight[..., None] / (GRASP[:, None] + rates), wanted)
+    return found.reshape(*found.shape[:-1], *impedance.shape[-2:])
 
 
 def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:

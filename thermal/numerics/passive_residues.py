@@ -15,6 +15,7 @@ from thermograsp.compiled import njit
 _STEPS = 20
 _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
+_FREE_RIDGE = 1e-6  # of residues without constraint
 _RELAXED = 1.6
 _ROUND_OFF = 1e-20  # of squares off the diagonal beside those on it, in the last step
 _ON_THE_WAY = 1e-8  # the same before it: the next step's matrices are turned on from there
@@ -33,6 +34,16 @@ def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     inside = seen @ first
     _in_cone(solve, seen, inside)
     return np.ascontiguousarray((inside / size).transpose(2, 0, 1))
+
+
+def free_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """(..., K, M) of any sign, whose sum with the columns (..., S, K) is nearest to what is wanted (..., S, M), but for
+    a ridge that keeps them small; a fit of its own for each leading index."""
+    size = np.sqrt(np.sum(columns**2, axis=-2))
+    columns = columns / size[..., None, :]
+    turned = columns.swapaxes(-1, -2)
+    solve = np.linalg.inv(turned @ columns + _FREE_RIDGE * np.eye(columns.shape[-1]))
+    return solve @ (turned @ wanted) / size[..., None]
 
 
 @njit(cache=True, error_model="numpy")

@@ -17,7 +17,6 @@ from thermograsp.thermal.batch import (
     WHERE,
     FixedTables,
     advance_fixed,
-    body_residues,
     fixed_heat,
     fixed_room,
     fixed_tables,
@@ -25,7 +24,7 @@ from thermograsp.thermal.batch import (
     set_gram,
     tip_residues,
 )
-from thermograsp.thermal.kernels import Patches, Resolution, box_side, tip
+from thermograsp.thermal.kernels import Patches, Resolution, TouchedBox, box_side, tip, touched_boxes
 from thermograsp.thermal.network import POLES, WEIGHTS
 
 DT = 0.01
@@ -52,10 +51,10 @@ def scene(name: str, film: float) -> FixedTables:
         np.array([[0.01, 0.006], [0.014, 0.00925]]),
         np.array([[0.0045, 0.0045], [0.0045, 0.00275]]),
     )
-    box = box_side(material(name), SIZE, film, Patches(np.array([0, 1]), centre, half), tips, LEVEL)
+    patches = Patches(np.array([0, 1]), centre, half)
+    [box] = touched_boxes([TouchedBox(material(name), SIZE, film, patches, tips, 2)], LEVEL)
     tables = fixed_tables(1, 2, 3, LEVEL.patterns, tips[0].side, DT)
-    capacity = np.prod(SIZE) * material(name).volumetric_heat_capacity
-    set_body(tables, 0, body_residues(box, float(capacity), film > 0))
+    set_body(tables, 0, box, [0, 1])
     tables.tips[2] = tip_residues(tips[1].side)
     tables.links[0, WHERE:] = 0, 1, 0, 2
     set_gram(tables, 0)
@@ -130,11 +129,9 @@ def test_it_is_the_step_of_all_states_together(name, film):
 
 def test_residues_are_the_network_and_keep_its_heat():
     tips = tip(STACK, WHOLE, LEVEL)
-    box = box_side(
-        material("glass"), SIZE, 0.0, Patches(np.array([0]), np.array([[0.01, 0.006]]), np.full((1, 2), 0.0045)),
-        (tips,), LEVEL,
-    )  # fmt: skip
-    found = body_residues(box, 1.0, False)
+    patches = Patches(np.array([0]), np.array([[0.01, 0.006]]), np.full((1, 2), 0.0045))
+    box = box_side(material("glass"), SIZE, 0.0, patches, (tips,), LEVEL)
+    [found] = touched_boxes([TouchedBox(material("glass"), SIZE, 0.0, patches, (tips,), 1)], LEVEL)
     s = np.geomspace(0.03, 100, 30)[:, None]
     told = np.einsum("sk,ijk->sij", 1 / (s + SHARED), found.residues)
     exact = np.einsum("sn,ni,nj->sij", 1 / (s + box.rates[1:]), box.ports[1:], box.ports[1:])
