@@ -100,6 +100,7 @@ _SCHEMES: Mapping[str, str] = MappingProxyType(
         "simulated": "thermograsp.envs.plant.simulated:simulated_plant",
         "simulated-pair": "thermograsp.envs.plant.pair:pair_plant",
         "serial": "thermograsp.hardware.plant.serial:serial_plant",
+        "twin": "thermograsp.twin.plant:twin_plant",
     }
 )
 

@@ -6,11 +6,16 @@ from thermograsp.doors import opened
 
 if TYPE_CHECKING:
     from thermograsp.twin.beside import Beside, grasp_beside, measured_columns
+    from thermograsp.twin.plant import TwinPlant
     from thermograsp.twin.simulated_hand import SimulatedHand
 
-__all__ = ["Beside", "SimulatedHand", "grasp_beside", "measured_columns"]
+__all__ = ["Beside", "SimulatedHand", "TwinPlant", "grasp_beside", "measured_columns"]
 
 __getattr__ = opened(
     __name__,
-    {"beside": ("Beside", "grasp_beside", "measured_columns"), "simulated_hand": ("SimulatedHand",)},
+    {
+        "beside": ("Beside", "grasp_beside", "measured_columns"),
+        "plant": ("TwinPlant",),
+        "simulated_hand": ("SimulatedHand",),
+    },
 )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -30,11 +32,12 @@ _PAUSE = 1.0  # s without a sample, in which the simulation stands still
 class SimulatedHand:
     """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too.
 
-    A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., stands between the
-    fingers whenever an active gripper is wide open. Its simulation goes on, a control step whenever one is due for the
-    next sample, from the first command to close until the fingers are wide open again. While the gripper is not active
-    nothing is between them. The fingers' speed is the simulation's, whatever the command says, there is no lift axis,
-    and the plates keep the simulation's temperature. Two threads may serve the two lines.
+    A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., or as `draw_next`
+    says, stands between the fingers whenever an active gripper is wide open. Its simulation goes on, a control step
+    whenever one is due for the next sample, from the first command to close until the fingers are wide open again.
+    While the gripper is not active nothing is between them. The fingers' speed is the simulation's, whatever the
+    command says, there is no lift axis, and the plates keep the simulation's temperature. Two threads may serve the
+    two lines.
 
     opening, contact, current: see Fingers. episodes: objects so far. Raises InvalidValueError for a plant of more
     than one environment.
@@ -52,9 +55,16 @@ class SimulatedHand:
         self._last_command = (model.units.stroke, 0.0)
         self._reading: Reading | None = None
         self._begun: float | None = None  # s, of the control step that the reading is of
+        self._next: tuple[np.random.Generator, Mapping[str, Any]] | None = None
         self._lock = threading.Lock()
         self.gripper = EmulatedGripper(model, self)
         self.fingertips = EmulatedFingertips(self._feel)  # feels at once
+
+    def draw_next(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
+        """Takes the object away. The next one is drawn from `rng`, with the reset options of the simulation."""
+        with self._lock:
+            self._reading = self._begun = None
+            self._next = (rng, options)
 
     def move(self, target: float, force: float, speed: float, seconds: float) -> None:
         """See Fingers."""
@@ -88,8 +98,9 @@ class SimulatedHand:
             return self._simulated(now)
 
     def _put_object(self) -> None:
-        rng = np.random.default_rng(self._seed + self.episodes)
-        self._reading, self._begun = self._simulation.reset([0], [rng], {}), None
+        rng, options = self._next or (np.random.default_rng(self._seed + self.episodes), {})
+        self._next = None
+        self._reading, self._begun = self._simulation.reset([0], [rng], options), None
         self.opening, self.contact = self._stroke, Contact.NONE
         self.episodes += 1
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
+from typing import Any
 
 from thermograsp.cli.shared import Output, load_mujoco
+from thermograsp.errors import InvalidValueError
 
 NAME = "score"
 HELP = "Count how often a policy succeeds in held-out episodes of a task, the same for every policy."
@@ -22,6 +25,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--task", required=True, help="grasp, identify, sort or hotter")
     add("--episodes", type=int, default=200, help="how many")
     add("--no-load", action="store_true", help="a gripper without load cells: forces read 0")
+    add("--gripper", metavar="FILE", help="MJCF file of another gripper")
+    add(
+        "--randomize", action="store_true", help="draw all that can differ between episodes (envs.EVERYTHING)"
+    )
+    add(
+        "--twin",
+        action="store_true",
+        help="through emulated devices and their serial protocols; identify only",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -31,6 +43,11 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.agents.learning import HELD_OUT, learning_task, score
 
     task = learning_task(args.task)
+    if args.twin and task.name != "identify":
+        raise InvalidValueError(
+            f"--twin: a gripper on a serial line has no lift axis, which {task.name} needs"
+        )
+    task = replace(task, keywords={**task.keywords, **_changes(args)})
     with output.progress(args.episodes) as advance:
         found = score(task, args.policy, args.episodes, not args.no_load, advance)
     output.line(f"{task.name} ({task.env_id}), policy {args.policy}, {found.episodes} held-out episodes")
@@ -45,6 +62,9 @@ def run(args: argparse.Namespace) -> int:
             "env_id": task.env_id,
             "policy": args.policy,
             "load": not args.no_load,
+            "gripper": args.gripper,
+            "randomize": args.randomize,
+            "twin": args.twin,
             "first_seed": HELD_OUT,
             "episodes": found.episodes,
             "successes": found.successes,
@@ -56,3 +76,11 @@ def run(args: argparse.Namespace) -> int:
         }
     )
     return 0
+
+
+def _changes(args: argparse.Namespace) -> dict[str, Any]:
+    """Keywords by which the episodes differ from those of the task."""
+    from thermograsp.envs import EVERYTHING
+
+    asked = {"gripper": args.gripper, "randomize": EVERYTHING if args.randomize else None}
+    return {name: value for name, value in asked.items() if value} | ({"plant": "twin"} if args.twin else {})

@@ -8,6 +8,7 @@ from typing import Any
 from ...thermal import SEED_MATERIALS, Material
 from ..plant import SimulationConfig
 from ..tasks import IdentifyTask
+from .keywords import simulates
 from .single import TouchEnv
 from .vector import TouchVectorEnv
 
@@ -67,7 +68,8 @@ class IdentifyVectorEnv(TouchVectorEnv):
 def _prepare(
     material: Materials, seconds: float, cost: float, config: dict[str, Any]
 ) -> tuple[IdentifyTask, dict[str, Any]]:
-    """The task, and what the plant is told."""
+    """The task, and what the plant is told: of real objects it asks nothing."""
     chosen = SimulationConfig(material=SEED_MATERIALS if material is None else material).choices
     task = IdentifyTask(tuple(each.name for each in chosen), seconds, cost)
-    return task, {**config, "material": list(chosen)}
+    drawn = {"material": list(chosen)} if simulates(config.get("plant", "simulated")) else {}
+    return task, {**config, **drawn}

@@ -23,10 +23,15 @@ def keywords_of(environment: type) -> set[str]:
     return (names | _OF_THE_BATCH) - {"self", "task", "config"}
 
 
+def simulates(plant: str) -> bool:
+    """Whether a plant's objects and materials are given by keywords, as they are of every simulation of ours."""
+    return plant.partition(":")[0] in ("simulated", "simulated-pair", "twin")
+
+
 def check_keywords(environment: type, given: Mapping[str, Any]) -> None:
     """Raises UnknownKeywordError, which names the nearest, where an environment of a simulated plant is given a keyword
     that nothing takes. Other plants know their own."""
-    if given.get("plant", "simulated").partition(":")[0] not in ("simulated", "simulated-pair"):
+    if not simulates(given.get("plant", "simulated")):
         return
     known = keywords_of(environment)
     for name in given:

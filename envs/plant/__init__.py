@@ -15,7 +15,7 @@ from .randomization import (
     Size,
     ThermostatError,
 )
-from .simulated import PlantState, SimulatedPlant
+from .simulated import PlantState, SimulatedPlant, simulated_plant
 from .truth import Truth
 
 __all__ = [
@@ -35,4 +35,5 @@ __all__ = [
     "Size",
     "ThermostatError",
     "Truth",
+    "simulated_plant",
 ]

@@ -1,10 +1,13 @@
 """The serial plant: a real gripper with real fingertips behind the interface of the simulated one."""
 
-from .serial import OVERRUN, PaceCounts, SerialConfig, SerialPlant
+from .pacing import VirtualTime
+from .serial import OVERRUN, PaceCounts, SerialConfig, SerialPlant, without_maps
 
 __all__ = [
     "OVERRUN",
     "PaceCounts",
     "SerialConfig",
     "SerialPlant",
+    "VirtualTime",
+    "without_maps",
 ]

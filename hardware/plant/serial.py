@@ -364,6 +364,15 @@ _SIMULATED = {
 }
 
 
+def without_maps(config: Mapping[str, Any]) -> dict[str, Any]:
+    """An environment's keywords for a plant with real fingertips or their twins. Raises InvalidValueError where they
+    ask for a map over the pad or the sensor's face."""
+    for name, what in _SIMULATED.items():
+        if config.get(name) is not None:
+            raise InvalidValueError(f"{name}: {what}; leave {name} out")
+    return {name: value for name, value in config.items() if name not in _SIMULATED}
+
+
 def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
     """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
     as open_gripper takes it. config: SerialConfig's. Raises InvalidValueError for anything else, and DeviceError."""
@@ -376,11 +385,8 @@ def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
         )
     if num_envs != 1:
         raise InvalidValueError(f"a serial plant is one gripper, so num_envs must be 1, got {num_envs}")
-    for name, what in _SIMULATED.items():
-        if config.pop(name, None) is not None:
-            raise InvalidValueError(f"{name}: {what}; leave {name} out")
     try:
-        settings = SerialConfig(**config)
+        settings = SerialConfig(**without_maps(config))
     except TypeError as error:
         names = ", ".join(SerialConfig.__slots__)
         raise InvalidValueError(f"a serial plant takes {names}: {error}") from error

@@ -16,6 +16,7 @@ from thermograsp.agents.learning.agent import Acting
 from thermograsp.agents.learning.inputs import AGES, FRAME, REPEAT, Inputs, Memory
 from thermograsp.agents.learning.scoring import wilson
 from thermograsp.agents.policies import load_policy
+from thermograsp.assets import asset
 from thermograsp.cli import main
 from thermograsp.errors import InvalidValueError, UnknownNameError
 
@@ -135,6 +136,19 @@ def test_without_load_cells_a_script_that_needs_them_fails() -> None:
     task = learning_task("grasp")
     assert score(task, "feeling", 8).successes == 8
     assert score(task, "feeling", 8, load=False).successes == 0
+
+
+def test_other_grippers_and_drawn_episodes_are_scored(capsys: Any) -> None:
+    line = ["score", "scripted", "--task", "grasp", "--episodes", "2", "--json"]
+    digests = set()
+    for more in ([], ["--randomize"], ["--gripper", str(asset("gripper.xml"))]):
+        assert main(line + more) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert found["randomize"] == ("--randomize" in more) and bool(found["gripper"]) == (
+            "--gripper" in more
+        )
+        digests.add(found["digest"])
+    assert len(digests) == 3
 
 
 def test_an_agent_is_read_back_as_it_was_written(tmp_path: Path) -> None:

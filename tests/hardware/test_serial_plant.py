@@ -219,6 +219,19 @@ def test_the_environment_runs_on_ports_without_a_changed_line(tmp_path: Path) ->
         simulated.close()
 
 
+def test_a_declaration_is_made_on_ports(tmp_path: Path) -> None:
+    pytest.importorskip("serial")
+    with nothing_left(), on_ports(tmp_path, Hand()):
+        url = f"serial://{tmp_path}/tips?gripper=robotiq://{tmp_path}/gripper"
+        env = gymnasium.make("thermograsp/Identify-v0", plant=url, disable_env_checker=True)
+        env.reset(seed=0)
+        action = np.array([0.5, 1.0, 1.0, *[-1.0] * 9], np.float32)
+        _, _, terminated, _, info = env.step(action)
+        assert terminated and info["prediction"].argmax() == 0
+        assert not info["success"]  # nobody knows what it is
+        env.close()
+
+
 def test_an_agent_that_stops_is_noticed(tmp_path: Path) -> None:
     pytest.importorskip("serial")
     hand = Hand()
