@@ -18,19 +18,22 @@ import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, cast
 
 import numba
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.environment import lookup_environment
 from numba.core.extending import _Intrinsic
+from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.core.targetconfig import TargetConfig
+from numba.core.types.functions import BaseFunction
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.notice import notice
@@ -45,6 +48,11 @@ _OWN = {"fastmath": False, "error_model": "python", "forceinline": False}
 _ENVIRONMENT = "_ZN08NumbaEnv"
 """How numba names what holds a function's environment."""
 
+_PLAIN = frozenset(
+    {numba.types.Float, numba.types.Integer, numba.types.Boolean, numba.types.Complex, numba.types.Array}
+)
+"""Kinds of types on which alone depends what an operator makes of them."""
+
 _DEFAULTS: dict[type, dict[str, Any]] = {}
 """The default of every option of a kind of numba's configurations."""
 
@@ -57,27 +65,35 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
 
     cache: keep the compiled code beside the source, or where NUMBA_CACHE_DIR says. inner: only compiled code calls the
     function. No entry from Python is then compiled, which may take longer than the function itself; a call from Python
-    raises TypeError.
+    raises TypeError. Every other function has an inner twin, which compiled code calls; its entry is compiled when
+    Python first calls it.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
         entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
-        if inner:
-            entries["pipeline_class"] = _InnerCompiler
+        entries["pipeline_class"] = _InnerCompiler if inner else _OuterCompiler
         dispatcher: Any = numba.njit(**{**_OWN, **options, **entries})(function)
         if cache:
-            dispatcher._cache = _Cache(dispatcher)
+            dispatcher._cache = _Cache(dispatcher, inner)
         dispatcher.compile = _quickly(dispatcher)
         if inner:  # numba would take the entry that is not there
             dispatcher._insert = _nothing
             dispatcher._compile_for_args = functools.partial(_refused, function.__name__)
+        else:
+
+            @functools.cache
+            def twin() -> Any:
+                return njit(cache=cache, inner=True, **options)(function)
+
+            dispatcher.get_call_template = lambda *arguments: twin().get_call_template(*arguments)
+            dispatcher.get_overload = lambda signature: twin().get_overload(signature)
         return dispatcher
 
     return compiled
 
 
 class _InnerLibrary(JITCodeLibrary):
-    """Code that is compiled into its callers' only: optimised as any other, but no machine code is made of it."""
+    """Code that is compiled into its callers' only: with them it is optimised and becomes machine code."""
 
     @property
     def codegen(self) -> Any:
@@ -86,6 +102,9 @@ class _InnerLibrary(JITCodeLibrary):
 
     def serialize_using_object_code(self) -> Any:
         return self.serialize_using_bitcode()
+
+    def _optimize_final_module(self) -> None:
+        pass
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()
@@ -102,10 +121,18 @@ class _NoEngine:
 class _InnerCompiler(Compiler):
     """numba's, into an _InnerLibrary."""
 
+    _library: type[JITCodeLibrary] = _InnerLibrary
+
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
-        inner = _InnerLibrary(targetctx.codegen(), "inner")
-        inner.enable_object_caching()
-        super().__init__(typingctx, targetctx, inner, *rest)
+        library = self._library(targetctx.codegen(), self._library.__name__)
+        library.enable_object_caching()
+        super().__init__(typingctx, targetctx, library, *rest)
+
+
+class _OuterCompiler(_InnerCompiler):
+    """numba's, into a library that Python can call."""
+
+    _library = JITCodeLibrary
 
 
 def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
@@ -114,7 +141,7 @@ def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
 
     @functools.wraps(compile_)
     def run(signature: Any) -> Any:
-        with _in_less_time():
+        with global_compiler_lock, _in_less_time(), _into(_InnerLibrary):
             entry = compile_(signature)
         library = dispatcher.overloads[tuple(normalize_signature(signature)[0])].library
         for held in library._final_module.global_variables:
@@ -128,17 +155,56 @@ def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
 @contextmanager
 def _in_less_time() -> Iterator[None]:
     """While it lasts, Python collects no cycles: of what a compilation builds, it would search all a thousand times
-    and find little. And numba's options, which it compares tens of thousands of times, make their dictionaries at once
-    in place of calling a property for each."""
-    collects, values = gc.isenabled(), TargetConfig.values
+    and find little. numba's options, which it compares tens of thousands of times, make their dictionaries at once in
+    place of calling a property for each. And numba finds only once what an operator makes of numbers and arrays: at
+    each place it would try all that the operator can mean, for dates too."""
+    collects, values, call_type = gc.isenabled(), TargetConfig.values, BaseFunction.get_call_type
     gc.disable()
     TargetConfig.values = _values
+    if not isinstance(call_type, _CallTypes):
+        setattr(BaseFunction, "get_call_type", _CallTypes(call_type))  # noqa: B010
     try:
         yield
     finally:
         TargetConfig.values = values
+        BaseFunction.get_call_type = call_type
         if collects:
             gc.enable()
+
+
+class _CallTypes:
+    """numba's BaseFunction.get_call_type, which remembers what it found for numbers and arrays. What it finds depends
+    on the caller's options only where it compiles something, and that is not remembered."""
+
+    def __init__(self, search: Any) -> None:
+        self._search = search
+        self._found: dict[Any, Any] = {}
+
+    def __get__(self, function: Any, kind: Any) -> Any:
+        return self if function is None else functools.partial(self, function)
+
+    def __call__(self, function: Any, context: Any, args: Any, kws: Any) -> Any:
+        if kws or any(type(one) not in _PLAIN for one in args):
+            return self._search(function, context, args, kws)
+        key = function, context, args
+        if (known := self._found.get(key)) is None:
+            known = self._search(function, context, args, kws)
+            if function._impl_keys[known.args] is function.typing_key:
+                self._found[key] = known
+        else:
+            function._impl_keys[known.args] = function.typing_key
+        return known
+
+
+@contextmanager
+def _into(library: type[JITCodeLibrary]) -> Iterator[None]:
+    """While it lasts, numba makes libraries of that kind, also of its own functions, which only compiled code calls."""
+    codegen = cast(Any, cpu_target.target_context).codegen()
+    before, codegen._library_class = codegen._library_class, library
+    try:
+        yield
+    finally:
+        codegen._library_class = before
 
 
 def _values(self: Any) -> dict[str, Any]:
@@ -169,14 +235,16 @@ class _Cache(FunctionCache):
     """A kernel's compiled code on disk. The hash is taken when the code is first looked for, as a function may refer
     to what its module defines after it."""
 
-    def __init__(self, dispatcher: Any) -> None:
+    def __init__(self, dispatcher: Any, inner: bool) -> None:
         super().__init__(dispatcher.py_func)
         self._dispatcher = dispatcher
+        self._inner = inner
         self._hashed = False
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         self._hash()
-        found = super().load_overload(sig, target_context)
+        with _into(_InnerLibrary if self._inner else JITCodeLibrary):
+            found = super().load_overload(sig, target_context)
         if found is None:
             _tell(self._dispatcher.py_func.__name__)
         return found
@@ -197,7 +265,8 @@ class _Cache(FunctionCache):
     def _hash(self) -> None:
         if not self._hashed:
             stamp = compiled_hash(self._dispatcher)
-            self._cache_file = _CacheFile(self._cache_path, self._impl.filename_base, stamp)
+            name = self._impl.filename_base + (".inner" if self._inner else "")
+            self._cache_file = _CacheFile(self._cache_path, name, stamp)
             self._hashed = True
 
 
