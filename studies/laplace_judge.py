@@ -319,10 +319,14 @@ def networks(scene: Scene, level: Resolution | Detail, times: np.ndarray = TIMES
             )
         ]
         behind = prints[::-1] if len(prints) == 2 else [None]
-        tips = tuple(
-            tip_at(scene.stack, Spot(made, (sides[0], sides[1]), depth, own, other), level)
+        known = made.conductivity, made.volumetric_heat_capacity
+        spots = [
+            Spot(*known, (sides[0], sides[1]), depth, own, other)
             for own, other in zip(prints, behind, strict=True)
-        )
+        ]
+        if level == FIXED_LEVEL:  # as the environments do
+            spots = [spot.alike(scene.stack.width) for spot in spots]
+        tips = tuple(tip_at(scene.stack, spot, level) for spot in spots)
         box = box_side(scene.material, scene.size, scene.film, patches, tips, level)
     else:
         tips, box = touch_sides(scene.material, scene.size, scene.film, patches, elements, level)

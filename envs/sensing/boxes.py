@@ -27,6 +27,7 @@ from ...thermal.batch import (
     TipRows,
     fixed_heat,
     fixed_tables,
+    fixed_tip_heat,
     fixed_tip_rows,
     no_fixed_tables,
     set_body,
@@ -35,10 +36,10 @@ from ...thermal.batch import (
 )
 from ...thermal.kernels import (
     GRAM,
+    THIN,
     BodyResidues,
     Footprint,
     Patches,
-    Resolution,
     Spot,
     Tip,
     TouchedBox,
@@ -73,6 +74,7 @@ class BoxHeat:
         self._stack: SensorStack | None = None
         self._bodies: dict[int, tuple[GraspBody, float]] = {}
         self._touched: dict[int, Touched] = {}
+        self._prints: dict[int, tuple[_Print, ...]] = {}
         self._rows = np.zeros(rows, BOX_ROW)
         self._strayed = np.zeros((2 * rows, 2), np.int64)
         self.tables: FixedTables = no_fixed_tables(dt)
@@ -102,6 +104,7 @@ class BoxHeat:
             )
         self._bodies[row] = body, film
         self._touched[row] = Touched((), (-1,) * self._tips)
+        self._prints.pop(row, None)
         record = self._rows[row]
         record["size"], record["face"], record["boxed"] = body.spec.size, -1, 1
         record["normal"] = 3 - int(body.law["across"].sum())
@@ -114,6 +117,7 @@ class BoxHeat:
         self._rows["boxed"][row] = 0
         self._bodies.pop(row, None)
         self._touched.pop(row, None)
+        self._prints.pop(row, None)
 
     def wait(self, rows: Sequence[int], state: np.ndarray) -> None:
         """The rows' networks are made before anything touches them, with places in the middle of their faces. state:
@@ -146,10 +150,10 @@ class BoxHeat:
             touched = self._moved(row, fingertips, middles[row], state[row])
             if touched.places:
                 moved[row] = touched
-        last = {row: self._touched[row] for row in moved}
+        last = {row: (self._touched[row], self._prints.get(row, ())) for row in moved}
         self._make(moved)
         for row in moved:
-            self._turn(row, last[row], state[row])
+            self._turn(row, *last[row], state[row])
             before, tips = heat[row]
             for f, now in enumerate(self._tip_heat(row)):
                 self._keep_heat(state[row, self.fingertip(f)], tips[f], now)
@@ -178,7 +182,7 @@ class BoxHeat:
         return touched
 
     def _tip_heat(self, row: int) -> list[np.ndarray]:
-        return [fixed_tip_rows(self.tables, self._element(row, f)).heat for f in range(self._tips)]
+        return [fixed_tip_heat(self.tables, self._element(row, f)) for f in range(self._tips)]
 
     def shift(self, rows: np.ndarray, state: np.ndarray, change: np.ndarray) -> None:
         """The thermostats moved by change (B, F) K: the fields above them in rows (n,) of state (B, n) are lower."""
@@ -203,7 +207,7 @@ class BoxHeat:
         own = self.fingertip(fingertip)
         state[target, own] = state[source, own]
         elements = (self._element(row, fingertip) for row in (source, target))
-        self._keep_heat(state[target, own], *(fixed_tip_rows(self.tables, each).heat for each in elements))
+        self._keep_heat(state[target, own], *(fixed_tip_heat(self.tables, each) for each in elements))
 
     def touched(self, row: int) -> Touched:
         """For set_touched."""
@@ -235,23 +239,14 @@ class BoxHeat:
         field = state[self._field(place)][: tables.rates.shape[1]] * np.exp(-_SOON * tables.rates[0])
         return abs(float((tables.body[row, even * (most + 1)] * field).sum()))
 
-    def _turn(self, row: int, last: Touched, state: np.ndarray) -> None:
+    def _turn(self, row: int, last: Touched, prints: tuple[_Print, ...], state: np.ndarray) -> None:
         """Puts the fields of places whose patterns of flow are others now, since a fingertip has come or gone behind
-        them, on these; the even one is the same."""
-        now, (body, _) = self._touched[row], self._bodies[row]
-        if self._rows[row]["middled"] or last.places == now.places:
-            return
-        size, stack, level = body.spec.size, body.stack, FIXED_LEVEL
-        for number, (one, other) in enumerate(zip(last.places, now.places, strict=False)):
-            if one != other:
+        them, on these; the even one is the same. last, prints: the places before, and what was pressed on them."""
+        now, level = self._touched[row], FIXED_LEVEL
+        for number, (before, after) in enumerate(zip(prints, self._prints[row], strict=False)):
+            if last.places[number] != now.places[number] or before.tip is after.tip:
                 continue
-            with _BLAS.limit(limits=1, user_api="blas"):  # as in _make
-                before, after = (
-                    _tip(body.material, size, number, each.places, stack, level).basis for each in (last, now)
-                )
-            if np.array_equal(before, after):
-                continue
-            turn, fields = after.T @ GRAM @ before, [state[self._field(number)]]
+            turn, fields = after.tip.basis.T @ GRAM @ before.tip.basis, [state[self._field(number)]]
             for f in range(self._tips):
                 if last.contacts[f] == now.contacts[f] == number:
                     fields.append(state[self.fingertip(f)][self.tables.poles.shape[1] + RATES :])
@@ -265,36 +260,50 @@ class BoxHeat:
 
     def _make(self, touched: Mapping[int, Touched]) -> None:
         """The tables of the rows' boxes and elements are those of these places."""
-        tables, level, asked = self.tables, FIXED_LEVEL, {}
+        tables, asked = self.tables, {}
         with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
             for row, now in touched.items():
                 if now != self._touched[row]:
-                    body, film = self._bodies[row]
-                    shared = bool(self._rows[row]["middled"])
-                    asked[row] = _Asked(
-                        body.material, body.spec.size, film, body.stack, shared, *now.in_order()
-                    )
-            for row, found in zip(asked, _networks(list(asked.values()), level), strict=True):
+                    self._prints[row] = self._pressed(row, now)
+                    asked[row] = self._asked(row, now)
+            for row, found in zip(asked, _networks(list(asked.values())), strict=True):
                 set_body(tables, row, found, touched[row].numbers())
-            for row, now in touched.items():
-                self._set_contacts(row, now, level)
-                set_gram(tables, row)
+        for row, now in touched.items():
+            self._set_contacts(row, now)
+            set_gram(tables, row)
 
-    def _set_contacts(self, row: int, touched: Touched, level: Resolution) -> None:
+    def _pressed(self, row: int, touched: Touched) -> tuple[_Print, ...]:
+        """What is pressed on each of the places; those that it knows already are the same."""
+        body, _ = self._bodies[row]
+        size, stack, shared = body.spec.size, body.stack, bool(self._rows[row]["middled"])
+        known = {(each.place, each.behind): each for each in self._prints.get(row, ())}
+        found = []
+        for place in touched.places:
+            # what touches the far side of a thick box shapes no pattern
+            thin = size[place.face // 2] < THIN * stack.width and not shared
+            behind = opposite(place, touched.places, stack.width) if thin else None
+            each = known.get((place, behind))
+            found.append(each or _print(body.material, size, place, behind, stack, shared))
+        return tuple(found)
+
+    def _asked(self, row: int, touched: Touched) -> _Asked:
+        """The row's box as it is touched there."""
+        body, film = self._bodies[row]
+        prints = tuple(self._prints[row][number] for number in touched.numbers())
+        under = sum(number >= 0 for number in touched.contacts)
+        return _Asked(body.material, body.spec.size, film, prints, under)
+
+    def _set_contacts(self, row: int, touched: Touched) -> None:
         """The row's fingertips are on those places."""
         tables, record = self.tables, self._rows[row]
-        body, _ = self._bodies[row]
         for f, number in enumerate(touched.contacts):
             if number >= 0:
                 element = 0 if record["middled"] else 1 + row * self._tips + f
                 if element:
-                    at = number, touched.places
-                    tables.tips[element] = _element(body.material, body.spec.size, *at, body.stack, level)
+                    tables.tips[element] = _element(self._prints[row][number].tip)
                 tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
-                record["face"][f], record["pad"][f] = (
-                    touched.places[number].face,
-                    touched.places[number].middle,
-                )
+                place = touched.places[number]
+                record["face"][f], record["pad"][f] = place.face, place.middle
         self._touched[row] = touched
 
 
@@ -317,37 +326,38 @@ def _whole(stack: SensorStack) -> Rectangle:
     return (0.0, stack.width), (0.0, stack.width)
 
 
-@lru_cache(maxsize=_KEPT)
-def _element(
-    material: Material,
-    size: tuple[float, float, float],
-    number: int,
-    places: tuple[Place, ...],
-    stack: SensorStack,
-    level: Resolution,
-) -> np.ndarray:
-    return tip_residues(_tip(material, size, number, places, stack, level).side)
+class _Print(NamedTuple):
+    """A sensor pressed on a box: its place, the one behind that shapes its patterns of flow, what it covers there, and
+    the element on these patterns. Equal ones are as alike as their boxes."""
+
+    place: Place
+    behind: Place | None
+    foot: Footprint
+    tip: Tip
 
 
-def _tip(
+def _print(
     material: Material,
     size: tuple[float, float, float],
-    number: int,
-    places: tuple[Place, ...],
+    place: Place,
+    behind: Place | None,
     stack: SensorStack,
-    level: Resolution,
-) -> Tip:
-    """The element on the patterns of flow of that one of the places."""
-    own, width = places[number], stack.width
-    behind = opposite(own, places, width)
+    shared: bool,
+) -> _Print:
+    """shared: its patterns are those of the whole face anywhere."""
+    foot, level = _footprint(place, size, stack.width), FIXED_LEVEL
+    if shared:
+        return _Print(place, behind, foot, tip(stack, _whole(stack), level))
     spot = Spot(
-        material,
-        own.sides(size),
-        size[own.face // 2],
-        _footprint(own, size, width),
-        None if behind is None else _footprint(behind, size, width),
+        material.conductivity,
+        material.volumetric_heat_capacity,
+        place.sides(size),
+        size[place.face // 2],
+        foot,
+        None if behind is None else _footprint(behind, size, stack.width),
     )
-    return tip_at(stack, spot, level)
+    # few are made anew: a later touch nearly as far from the ends shares its element with this one
+    return _Print(place, behind, foot, tip_at(stack, spot.alike(stack.width), level))
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:
@@ -359,47 +369,44 @@ def _footprint(place: Place, size: tuple[float, float, float], width: float) -> 
     return Footprint((first, second), (x, y), (half_x, half_y))
 
 
+@lru_cache(maxsize=1024)
+def _element(one: Tip) -> np.ndarray:
+    return tip_residues(one.side)
+
+
 class _Asked(NamedTuple):
-    """A box of that size, in air of W/(m2 K), that such sensors touch at the first `touched` of its places. shared:
-    their patterns are those of the whole face anywhere."""
+    """A box of that size, in air of W/(m2 K), on whose first `touched` prints fingertips are."""
 
     material: Material
     size: tuple[float, float, float]
     film: float
-    stack: SensorStack
-    shared: bool
-    places: tuple[Place, ...]
+    prints: tuple[_Print, ...]
     touched: int
 
-    def box(self, level: Resolution) -> TouchedBox:
-        width = self.stack.width
-        covered = np.array([place.covered(self.size, width) for place in self.places])
-        corner = np.array([place.middle for place in self.places]) - width / 2
-        half = (covered[:, :, 1] - covered[:, :, 0]) / 2
+    def box(self) -> TouchedBox:
+        feet = [each.foot for each in self.prints]
         patches = Patches(
-            np.array([place.face for place in self.places]), corner + covered.mean(axis=2), half
+            np.array([each.place.face for each in self.prints]),
+            np.array([foot.centre for foot in feet]),
+            np.array([foot.half for foot in feet]),
         )
-        whole = tip(self.stack, _whole(self.stack), level)
-        tips = tuple(
-            whole if self.shared else _tip(self.material, self.size, number, self.places, self.stack, level)
-            for number in range(len(self.places))
-        )
+        tips = tuple(each.tip for each in self.prints)
         return TouchedBox(self.material, self.size, self.film, patches, tips, self.touched)
 
 
-_made: dict[tuple[_Asked, Resolution], BodyResidues] = {}
+_made: dict[_Asked, BodyResidues] = {}
 _making = Lock()
 
 
-def _networks(asked: Sequence[_Asked], level: Resolution) -> list[BodyResidues]:
+def _networks(asked: Sequence[_Asked]) -> list[BodyResidues]:
     """Of each; the _KEPT that were made last are known."""
-    found = {each: _made.get((each, level)) for each in asked}
+    found = {each: _made.get(each) for each in asked}
     new = [each for each, known in found.items() if known is None]
-    made = touched_boxes([each.box(level) for each in new], level)
+    made = touched_boxes([each.box() for each in new], FIXED_LEVEL)
     found.update(zip(new, made, strict=True))
     with _making:
         for each, network in zip(new, made, strict=True):
-            _made[each, level] = network
+            _made[each] = network
         while len(_made) > _KEPT:
             del _made[next(iter(_made))]
     return [network for each in asked if (network := found[each]) is not None]

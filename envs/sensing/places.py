@@ -54,9 +54,10 @@ class Place:
         return first, second
 
     def covered(self, size: Sequence[float], width: float) -> Rectangle:
-        """What the face covers of a sensor's of that width, from the sensor's corner."""
+        """What the face covers of a sensor's of that width, from the sensor's corner, to a nanometre: of two places as
+        far from their face's ends it is the same."""
         first, second = (
-            (max(width / 2 - middle, 0.0), min(side - middle + width / 2, width))
+            (max(round(width / 2 - middle, 9), 0.0), min(round(side - middle + width / 2, 9), width))
             for middle, side in zip(self.middle, self.sides(size), strict=True)
         )
         return first, second
@@ -94,11 +95,6 @@ class Touched:
         """Of the places, those under fingertips first."""
         under = sorted(number for number in self.contacts if number >= 0)
         return [*under, *(number for number in range(len(self.places)) if number not in under)]
-
-    def in_order(self) -> tuple[tuple[Place, ...], int]:
-        """The places in the order of `numbers`, and how many are under fingertips."""
-        under = sum(number >= 0 for number in self.contacts)
-        return tuple(self.places[number] for number in self.numbers()), under
 
     def moved(
         self, fingertip: int, place: Place, warmth: Sequence[float], size: Sequence[float], width: float
@@ -161,7 +157,11 @@ def _on_lattice(place: Place, size: Sequence[float], width: float, *, coarse: bo
     along = []
     for at, side in zip(place.middle, place.sides(size), strict=True):
         off, room = at - side / 2, side / 2 - width
-        rough, fine = (side / 2 + step * round(off / step) for step in (_LATTICE, _FINE_LATTICE))
+        rough = side / 2 + _LATTICE * round(off / _LATTICE)
+        # over the face's end as much of the sensor's face as in another box
+        over = at < width / 2, side - at < width / 2
+        start = side / 2 if over[0] == over[1] else side * over[1]
+        fine = start + _FINE_LATTICE * round((at - start) / _FINE_LATTICE)
         along.append(rough if coarse and abs(rough - side / 2) <= room and abs(off) <= room else fine)
     return Place(place.face, (along[0], along[1]))
 

@@ -155,6 +155,13 @@ def fixed_tip_rows(tables: FixedTables, number: int) -> TipRows:
     )
 
 
+def fixed_tip_heat(tables: FixedTables, number: int) -> np.ndarray:
+    """(of_tip,) of such rows, the heat's alone."""
+    patterns, element = tables.patterns, tables.tips[number]
+    first = patterns**2 + patterns
+    return np.concatenate((tables.poles[POLE_HEAT], element[-1], element[first : first + patterns].ravel()))
+
+
 def _rate_table(rates: np.ndarray, dt: float) -> np.ndarray:
     """(14, ...) of rates 1/s: themselves, what of a state is left after a step, how it is seen at the poles, and what
     flows at the poles push it by."""

@@ -28,7 +28,7 @@ and meshes are still in plates/, network/ and meshes/.
 
 from .box import BoxSamples, Patches, box_samples
 from .contact import Resolution, Side, Tip, box_side, tip, tip_at
-from .coverage import Footprint, Spot, contact_patterns
+from .coverage import THIN, Footprint, Spot, contact_patterns
 from .element import Rectangle, element_samples
 from .exponentials import residues
 from .glued import GluedElement, glued_element
@@ -45,6 +45,7 @@ __all__ = [
     "MOMENTS",
     "NODES",
     "OF_GRASP",
+    "THIN",
     "TIMES",
     "TO_MOMENTS",
     "BodyResidues",

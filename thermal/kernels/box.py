@@ -72,7 +72,9 @@ def box_samples(
     else:
         gram = np.eye(bases[0].shape[1])
         jumps, terms = along_axes(bases)
-    known = box_kernel(size, conductivity, heat_capacity, film, patches, jumps, terms, len(patches.face))
+    known = box_kernel(
+        size, conductivity, heat_capacity, film, patches, jumps, terms, len(patches.face), TIMES
+    )
     kernel, rate, port, held, whole = known
     diffusivity = conductivity / heat_capacity
     impedance = np.tensordot(TO_MOMENTS, kernel, axes=1)
@@ -95,15 +97,16 @@ def box_kernel(
     jumps: np.ndarray,
     terms: np.ndarray,
     asked: int,
+    times: np.ndarray,
 ) -> tuple[np.ndarray, float, np.ndarray, float, np.ndarray | None]:
-    """Kernel (T, asked P, N P) K/J at TIMES, of the temperatures of the first `asked` patches, less the slowest
+    """Kernel (T, asked P, N P) K/J at times (T,) s, of the temperatures of the first `asked` patches, less the slowest
     eigenfunction's part; rate, port and held as in BoxSamples; kernel (T, N P) of the heat in the box, likewise without
     it, None where no film takes any. jumps, terms: along_axes's."""
     diffusivity = conductivity / heat_capacity
     kernel, rate, port, whole, held = _kernel(
         np.asarray(size, float),
         film / conductivity,
-        diffusivity * TIMES,
+        diffusivity * times,
         np.asarray(patches.face),
         patches.centre,
         patches.half,
@@ -118,7 +121,7 @@ def box_kernel(
     port *= scale / np.sqrt(heat_capacity)
     held = float(held * np.sqrt(heat_capacity))
     rate = float(rate * diffusivity) if film > 0 else 0.0
-    fading = np.exp(-rate * TIMES)
+    fading = np.exp(-rate * times)
     kernel -= np.outer(port[own], port) * fading[:, None, None]
     if film == 0:
         return kernel, rate, port, held, None

@@ -11,6 +11,8 @@ P: patterns known (patterns.py), M: kept, N: contacts.
 
 from __future__ import annotations
 
+import math
+from bisect import bisect
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..matter import Material, SensorStack
+from ..matter import SensorStack
 from .box import Patches, box_samples
 from .element import Rectangle, element_samples
 from .patterns import EVENNESS, GRAM
@@ -28,8 +30,14 @@ CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
 _SHOWN = slice(6, 20, 3)  # of MOMENTS
 _BLOCK = (0.04, 0.04, 0.01)  # m, a box on which they are found, narrower where the contact ends at its edges
 _SHEET = 5e-4  # m, thickness of another
-_THIN = 0.5  # of the sensor's width, a box's depth from which on opposite fingertips do not shape each other's patterns
+THIN = 0.5
+"""Of the sensor's width, a box's depth from which on opposite fingertips do not shape each other's patterns."""
 _MARGIN = 0.08  # of the sensor's width, between a contact and the near edge of others
+_GAPS, _BETWEEN = (0.0, 0.05, 0.15, 0.4, 1.0), (0.01, 0.09, 0.25, 0.6)
+"""Of the sensor's width: from a contact to the face's end as `alike` has it; and where it goes from one to the next."""
+_APART = 0.02  # of the sensor's width, steps of an opposite contact's edges beyond one's own
+_STEPS_OF_DEPTH = 5  # a decade, of depths up to the sensor's width
+_PROPERTIES = 2  # a decade, of conductivities and heat capacities
 _MATERIALS = ((237.0, 2.42e6), (16.2, 4.0e6), (1.0, 2.1e6), (0.15, 1.02e6))  # W/(m K), J/(m3 K)
 
 
@@ -44,14 +52,64 @@ class Footprint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where a fingertip touches a box. sides: m of the face, whichever it is, and depth: m of the box behind it.
-    opposite: what such a fingertip touches of the face behind, from the same corner; None for nothing."""
+    """Where a fingertip touches a box. conductivity: W/(m K) and heat_capacity: J/(m3 K) of it. sides: m of the face,
+    whichever it is, and depth: m of the box behind it. opposite: what such a fingertip touches of the face behind, from
+    the same corner; None for nothing."""
 
-    material: Material
+    conductivity: float
+    heat_capacity: float
     sides: tuple[float, float]
     depth: float
     own: Footprint
     opposite: Footprint | None = None
+
+    def alike(self, width: float) -> Spot:
+        """One of few whose patterns serve this one as well, for a sensor of that width, m: what is near is nearly as
+        near, the box as deep, the material as good a conductor. The same part of the sensor's face is covered."""
+        centre, sides = [], []
+        for side, middle, half in zip(self.sides, self.own.centre, self.own.half, strict=True):
+            low, high = (_gap(gap, width) for gap in (middle - half, side - middle - half))
+            centre.append(low + half)
+            sides.append(low + high + 2 * half)
+        own = Footprint(self.own.covered, (centre[0], centre[1]), self.own.half)
+        return Spot(
+            _rounded(self.conductivity, _PROPERTIES),
+            _rounded(self.heat_capacity, _PROPERTIES),
+            (sides[0], sides[1]),
+            _rounded(min(self.depth, width), _STEPS_OF_DEPTH),
+            own,
+            self._behind(own, sides, width) if self.depth < THIN * width else None,
+        )
+
+    def _behind(self, own: Footprint, sides: Sequence[float], width: float) -> Footprint | None:
+        """The opposite one in steps from the own one, which has moved."""
+        if self.opposite is None:
+            return None
+        step, found = _APART * width, []
+        for axis, side in enumerate(sides):
+            ends = []
+            for sign in (-1, 1):
+                off = sign * (self.opposite.half[axis] - self.own.half[axis])
+                off += self.opposite.centre[axis] - self.own.centre[axis]
+                end = own.centre[axis] + sign * own.half[axis] + step * round(off / step)
+                ends.append(min(max(end, 0.0), side))
+            low, high = ends[0], min(ends[1], ends[0] + width)
+            if high - low < step:
+                return None
+            begun = step * round(self.opposite.covered[axis][0] / step)
+            begun = min(max(begun, 0.0), width - (high - low))
+            found.append(((begun, begun + high - low), (low + high) / 2, (high - low) / 2))
+        (first, x, half_x), (second, y, half_y) = found
+        return Footprint((first, second), (x, y), (half_x, half_y))
+
+
+def _gap(gap: float, width: float) -> float:
+    return width * _GAPS[bisect(_BETWEEN, gap / width)]
+
+
+def _rounded(value: float, steps: int) -> float:
+    """On the nearest of so many steps a decade."""
+    return 10.0 ** (round(steps * math.log10(value)) / steps)
 
 
 def touch_patterns(
@@ -117,25 +175,26 @@ def spot_patterns(stack: SensorStack, spot: Spot, kept: int) -> np.ndarray:
     """(P, M) orthonormal combinations of the patterns, the even one first, of that place on that box. In a thin sheet
     they end where the opposite fingertip does."""
     pair = (spot.own,)
-    if spot.opposite is not None and spot.depth < _THIN * stack.width:
+    if spot.opposite is not None and spot.depth < THIN * stack.width:
         # one order for both of them, so that they are found together
         pair = (min(spot.own, spot.opposite), max(spot.own, spot.opposite))
-    return _patterns_of(stack, spot.material, (*spot.sides, spot.depth), pair, kept)[pair.index(spot.own)]
+    made = spot.conductivity, spot.heat_capacity
+    return _patterns_of(stack, made, (*spot.sides, spot.depth), pair, kept)[pair.index(spot.own)]
 
 
 @lru_cache(maxsize=256)
 def _patterns_of(
     stack: SensorStack,
-    made: Material,
+    made: tuple[float, float],
     size: tuple[float, float, float],
     touched: tuple[Footprint, ...],
     kept: int,
 ) -> list[np.ndarray]:
-    """Of one or of two on opposite faces."""
+    """Of one or of two on opposite faces. made: W/(m K) and J/(m3 K)."""
     centre, half = (np.array([getattr(each, name) for each in touched]) for name in ("centre", "half"))
     patches = Patches(np.array([5, 4][: len(touched)]), centre, half)
     # what the air takes changes no pattern to speak of
-    box = box_samples(size, made.conductivity, made.volumetric_heat_capacity, 0.0, patches)
+    box = box_samples(size, *made, 0.0, patches)
     elements = [element_samples(stack, each.covered).value for each in touched]
     found = touch_patterns(box.whole(), elements, patches.areas, kept, shared=False)
     for each in found:

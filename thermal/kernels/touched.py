@@ -24,9 +24,17 @@ from .box import Patches, box_kernel
 from .contact import Resolution, Tip
 from .exponentials import past_residues, residues
 from .patterns import along_axes
-from .samples import GRASP, OF_GRASP, TO_MOMENTS, before
+from .samples import GRASP
 
-_TO_GRASP = np.ascontiguousarray(TO_MOMENTS[OF_GRASP])
+_SPACING = 1.0  # of times in ln t: the transforms at GRASP are known to exp(-pi^2 / spacing), 5e-5
+_UNFELT = (
+    2.5e-10  # m2, diffusivity times time up to which every strip of a contact is a half-space of its own
+)
+_FIRST, _LAST = (
+    3e-6,
+    40.0,
+)  # s; and its product with the slowest of GRASP, after which kernels count for nothing
+_BEFORE = 40  # times before the first that count
 _HEAT_RIDGE = 1e-8  # of the heat's residues, beside columns of about unit length
 _SEEN_LEAST = 1e-3  # of the largest resistance, beside one that a port hardly sees
 
@@ -113,20 +121,49 @@ def _of_one_kind(boxes: Sequence[TouchedBox], level: Resolution) -> list[BodyRes
     ]
 
 
+@lru_cache(maxsize=256)
+def _transform(diffusivity: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (T,) s at which kernels of m2/s are needed; (S, T) their transform at GRASP by the trapezoidal rule in
+    ln t, as if they had their first value before; (S,) s of what they have more then if they fall as 1 / sqrt(t)."""
+    first = max(_FIRST, _UNFELT / diffusivity)
+    count = math.ceil(math.log(_LAST / GRASP[0] / first) / _SPACING) + 1
+    times = first * np.exp(_SPACING * np.arange(-_BEFORE, count))
+    rule = _SPACING * times * np.exp(-GRASP[:, None] * times)
+    sooner, to_grasp = rule[:, :_BEFORE], np.ascontiguousarray(rule[:, _BEFORE:])
+    flat = sooner.sum(axis=1)
+    to_grasp[:, 0] += flat
+    return times[_BEFORE:], to_grasp, (sooner * np.sqrt(first / times[:_BEFORE])).sum(axis=1) - flat
+
+
+def _at_first(
+    kernel: np.ndarray, port: np.ndarray, patches: Patches, touched: int, reached: float, capacity: float
+) -> np.ndarray:
+    """(A M, N M) K/J of the first kernel (A M, N M) that falls as 1 / sqrt(t) before: of a patch by itself, that of a
+    half-space; what one has of another that it overlaps, all of it. reached: m2, diffusivity times that time."""
+    own, patterns = len(kernel), len(kernel) // touched
+    falling = kernel + port[:own, None] * port
+    for n, area in enumerate(patches.areas[:touched]):
+        part = slice(n * patterns, (n + 1) * patterns)
+        falling[part, part] = np.eye(patterns) / (capacity * area * math.sqrt(math.pi * reached))
+    return falling
+
+
 def _kernels(boxes: Sequence[TouchedBox]) -> _Kernels:
     impedance, heats, rates, ports, helds = [], [], [], [], []
     for material, size, film, patches, tips, touched in boxes:
         capacity = material.volumetric_heat_capacity
         jumps, terms = along_axes([one.basis for one in tips])
+        diffusivity = material.conductivity / capacity
+        times, to_grasp, early = _transform(diffusivity)
         kernel, rate, port, held, heat = box_kernel(
-            size, material.conductivity, capacity, film, patches, jumps, terms, touched
+            size, material.conductivity, capacity, film, patches, jumps, terms, touched, times
         )
-        at_moments = (_TO_GRASP @ kernel.reshape(len(kernel), -1)).reshape(-1, *kernel.shape[1:])
-        early = before(material.conductivity / capacity) / capacity
-        ends = np.arange(touched * len(terms))
-        at_moments[:, ends, ends] += early / np.repeat(patches.areas[:touched], len(terms))
+        at_moments = (to_grasp @ kernel.reshape(len(kernel), -1)).reshape(-1, *kernel.shape[1:])
+        at_moments += early[:, None, None] * _at_first(
+            kernel[0], port, patches, touched, diffusivity * times[0], capacity
+        )
         impedance.append(at_moments)
-        heats.append(None if heat is None else _TO_GRASP @ heat)
+        heats.append(None if heat is None else to_grasp @ heat)
         rates.append(rate)
         ports.append(port)
         helds.append(held)

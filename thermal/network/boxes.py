@@ -116,7 +116,14 @@ def box_system(geometry: Geometry, level: Resolution, air: float) -> ContactSyst
     (width, depth, thickness), patches = geometry.object_size, _patches(geometry)
     first, second = patches.half[0].tolist()
     own = Footprint(_covered(geometry), (width / 2, depth / 2), (first, second))
-    spot = Spot(geometry.material, (width, depth), thickness, own, own if geometry.fingertips == 2 else None)
+    spot = Spot(
+        geometry.material.conductivity,
+        geometry.material.volumetric_heat_capacity,
+        (width, depth),
+        thickness,
+        own,
+        own if geometry.fingertips == 2 else None,
+    )
     touching = tip_at(geometry.stack, spot, level)
     tips = (touching,) * geometry.fingertips
     box = box_side(geometry.material, geometry.object_size, air, patches, tips, level)

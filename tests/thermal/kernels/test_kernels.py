@@ -172,9 +172,11 @@ def test_a_spot_s_patterns_are_orthonormal_and_the_even_one_is_the_first() -> No
         ((0.04, 0.04), 2e-4, beside, whole),
         ((0.04, 0.04), 2e-4, whole, beside),
     ):
-        touched = tip_at(SEED, Spot(material("glass"), sides, depth, own, other), Resolution(8, 4))
-        np.testing.assert_allclose(touched.basis.T @ GRAM @ touched.basis, np.eye(4), atol=1e-9)
-        np.testing.assert_allclose(touched.basis[:, 0], np.eye(len(GRAM))[0], atol=1e-12)
+        spot = Spot(1.0, 2.1e6, sides, depth, own, other)
+        for each in (spot, spot.alike(WIDTH)):
+            touched = tip_at(SEED, each, Resolution(8, 4))
+            np.testing.assert_allclose(touched.basis.T @ GRAM @ touched.basis, np.eye(4), atol=1e-9)
+            np.testing.assert_allclose(touched.basis[:, 0], np.eye(len(GRAM))[0], atol=1e-12)
 
 
 def test_heat_that_no_film_takes_stays() -> None:

@@ -16,6 +16,7 @@ from thermograsp.thermal.kernels import (
     tip,
     touched_boxes,
 )
+from thermograsp.thermal.kernels import touched as touched_module
 
 SEED = sensor("seed")
 LEVEL = Resolution(12, 3, slowest=2e-3)
@@ -63,6 +64,27 @@ def test_what_flowed_elsewhere_is_told_as_the_kernels_have_it(name):
     whole = np.abs(exact[:, 0, 0] + found.ports[0] ** 2 / GRASP + TIP.impedance)[:, None, None]
     assert (np.abs(told - exact) / whole).max() < 0.01
     assert min(np.linalg.eigvalsh(each).min() for each in found.residues[:, :6].transpose(2, 0, 1)) > -1e-9
+
+
+@pytest.mark.parametrize("name", ["cotton", "cork", "wood", "glass", "stainless_steel", "aluminium"])
+def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
+    """Of patches by themselves and of those that they overlap, which feel each other at once, beside many times from
+    very early on."""
+    box = touched(name, 15.0)
+    few = touched_module._kernels([box])
+    touched_module._transform.cache_clear()
+    monkeypatch.setattr(touched_module, "_SPACING", 0.6)
+    monkeypatch.setattr(touched_module, "_UNFELT", 1e-14)
+    monkeypatch.setattr(touched_module, "_FIRST", 1e-9)
+    many = touched_module._kernels([box])
+    touched_module._transform.cache_clear()
+    exact = many.impedance[0]
+    whole = np.abs(exact[:, 0, 0] + many.port[0, 0] ** 2 / (GRASP + many.rate[0]) + TIP.impedance)
+    apart = np.abs(few.impedance[0] - exact) / whole[:, None, None]
+    assert apart[..., :6].max() < 5e-4
+    assert apart.max() < 1e-2  # of what flowed elsewhere once, at the fastest moments
+    assert many.heat is not None and few.heat is not None
+    assert (np.abs(few.heat - many.heat)[0] * GRASP[:, None]).max() < 1e-3
 
 
 @pytest.mark.parametrize("film", [5.0, 300.0])
