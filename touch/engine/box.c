@@ -15,6 +15,7 @@ enum { MODES = 12, STEPS = 20 };
 #define RELAXED 1.6
 #define ON_THE_WAY 1e-8 /* squares off the diagonal that all steps but the last may leave, beside those on it */
 #define AT_LAST 1e-20
+#define LAST_OF_ALL 1e-24
 static const double pi = 3.14159265358979323846;
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. told: with eigenfunctions. */
@@ -191,45 +192,33 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
   int square = wide * wide;
   size_t whole = (size_t)rates * square;
   double *seen = room, *dual = seen + whole, *turn = dual + whole, *half = turn + whole, *moved = half + whole;
-  double size[rates], normal[rates * rates], solve[rates * rates], guess[rates * rates];
+  double size[rates], normal[rates * rates], guess[rates * rates];
   for (int k = 0; k < rates; k++) {
     size[k] = 0;
     for (int s = 0; s < MOMENTS; s++) size[k] += columns[s * rates + k] * columns[s * rates + k];
     size[k] = sqrt(size[k]);
     for (int s = 0; s < MOMENTS; s++) columns[s * rates + k] /= size[k];
   }
-  for (int ridge = 0; ridge < 2; ridge++) {
-    for (int k = 0; k < rates; k++) {
-      for (int m = 0; m < rates; m++) {
-        double total = k == m ? (ridge ? RIDGE : PENALTY) : 0;
-        for (int s = 0; s < MOMENTS; s++) total += columns[s * rates + k] * columns[s * rates + m];
-        normal[k * rates + m] = total;
-      }
-    }
-    heat_inverse(rates, normal, ridge ? guess : solve);
+  mju_mulMatTMat(normal, columns, columns, MOMENTS, rates, rates);
+  memcpy(guess, normal, sizeof normal);
+  for (int k = 0; k < rates; k++) {
+    normal[k * rates + k] += PENALTY;
+    guess[k * rates + k] += RIDGE;
   }
+  mju_cholFactor(normal, rates, 0);
+  mju_cholFactor(guess, rates, 0);
 #define AT(what, i, j) (what + ((size_t)(i) * wide + (j)) * rates)
-  memset(seen, 0, sizeof(double) * 3 * whole); /* dual and turn too */
-  memset(inside, 0, sizeof(double) * whole);
-  for (int i = 0; i < square; i++)
-    for (int s = 0; s < MOMENTS; s++)
-      for (int k = 0; k < rates; k++) seen[(size_t)i * rates + k] += columns[s * rates + k] * wanted[s * square + i];
-  for (int i = 0; i < square; i++)
-    for (int m = 0; m < rates; m++)
-      for (int k = 0; k < rates; k++)
-        inside[(size_t)i * rates + k] += guess[m * rates + k] * seen[(size_t)i * rates + m];
+  memset(dual, 0, sizeof(double) * 2 * whole); /* turn too */
+  mju_mulMatTMat(seen, wanted, columns, MOMENTS, square, rates);
+  for (int i = 0; i < square; i++) mju_cholSolve(inside + i * rates, guess, seen + i * rates, rates);
   for (int i = 0; i < wide; i++)
     for (int k = 0; k < rates; k++) AT(turn, i, i)[k] = 1;
   for (int step = 0; step < STEPS; step++) {
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
         double *own = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
-        for (int k = 0; k < rates; k++) {
-          pulled[k] = from[k] + PENALTY * (own[k] - left[k]);
-          free[k] = 0;
-        }
-        for (int m = 0; m < rates; m++)
-          for (int k = 0; k < rates; k++) free[k] += solve[m * rates + k] * pulled[m];
+        for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (own[k] - left[k]);
+        mju_cholSolve(free, normal, pulled, rates);
         for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * own[k] + left[k];
         memcpy(AT(dual, j, i), left, sizeof free);
       }
@@ -244,7 +233,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
       for (int j = 0; j <= i; j++)
         for (int m = 0; m < wide; m++)
           for (int k = 0; k < rates; k++) AT(moved, i, j)[k] += AT(turn, i, m)[k] * AT(half, j, m)[k];
-    heat_diagonalise_all(wide, rates, moved, turn, step < STEPS - 1 ? ON_THE_WAY : AT_LAST);
+    heat_diagonalise(wide, rates, moved, turn, step < STEPS - 1 ? ON_THE_WAY : AT_LAST);
     for (int m = 0; m < wide; m++)
       for (int i = 0; i < wide; i++)
         for (int k = 0; k < rates; k++) AT(half, m, i)[k] = fmax(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];
@@ -271,6 +260,13 @@ size_t heat_network_room(const Numbers* numbers) {
   size_t wide = (size_t)numbers->places * numbers->patterns, square = wide * wide;
   size_t along = 3 * (size_t)numbers->places * (sizeof(Along) / sizeof(double) + 1);
   return along + wide + MOMENTS * (square + 1 + numbers->rates) + 6 * numbers->rates * square;
+}
+
+void heat_copy_network(const Numbers* numbers, const Network* from, Network* to) {
+  size_t size = from->ports - from->places + (size_t)numbers->states * numbers->places * numbers->patterns;
+  to->count = from->count;
+  to->n = from->n;
+  memcpy(to->places, from->places, sizeof(double) * size);
 }
 
 /* Makes the network of the places that stand in it. */
@@ -301,13 +297,14 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
     for (int j = 0; j < wide; j++) network->ports[(size_t)j * numbers->states] = port[j];
     for (int k = 0; k < rates; k++) {
       double* own = found + k * square;
-      heat_diagonalise(wide, own, turn);
+      for (int i = 0; i < wide * wide; i++) turn[i] = i % (wide + 1) == 0;
+      heat_diagonalise(wide, 1, own, turn, LAST_OF_ALL);
       for (int m = 0; m < wide; m++) {
         double value = own[m * wide + m];
         if (!(value / numbers->decay[k] > least)) continue;
         network->rates[network->n] = numbers->decay[k];
         for (int j = 0; j < wide; j++)
-          network->ports[(size_t)j * numbers->states + network->n] = turn[j * wide + m] * sqrt(value);
+          network->ports[(size_t)j * numbers->states + network->n] = turn[m * wide + j] * sqrt(value);
         network->n++;
       }
     }

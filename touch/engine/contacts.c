@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contacts.h"
+#include "heat.h"
 
 #define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it */
 #define RIM 0.0005   /* m beyond the pad's sides */
@@ -45,11 +45,6 @@ static bool lies(const double* pad, const Pose* at, const mjContact* contact, do
     *z += away * at->axes[3 * k + 2];
   }
   return along >= LOOKING && fabs(x) <= DEPTH && fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
-}
-
-/* Share of an interval of half width reach round `at` that is within -half to half. */
-static double kept(double at, double reach, double half) {
-  return fmin(fmax(fmin(half, at + reach) - fmax(-half, at - reach), 0) / (2 * reach), 1);
 }
 
 /* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
@@ -110,11 +105,11 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       }
       double length = sqrt(along_y * along_y + along_z * along_z);
       if (length > 0) across = (pushed[1] * along_z - pushed[2] * along_y) / (force * length);
-      area *= kept(across, area / (2 * law->face_length), half);
+      area *= heat_kept(across, area / (2 * law->face_length), half);
     } else if (law->shape == SHAPE_SPHERE) {
       double reach = sqrt(area) / 2;
-      area *= kept(pushed[1] / force, reach, half);
-      area *= kept(pushed[2] / force, reach, half);
+      area *= heat_kept(pushed[1] / force, reach, half);
+      area *= heat_kept(pushed[2] / force, reach, half);
     }
     if (area > 0) {
       touch[CONDUCTANCE] += heat_conductance(law, numbers, pressure) * area;

@@ -9,6 +9,8 @@ fields, M: patterns of a contact, K: rates, P: places of an object. */
 #ifndef THERMOGRASP_HEAT_H
 #define THERMOGRASP_HEAT_H
 
+#include <mujoco/mujoco.h>
+#include <complex.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -56,26 +58,29 @@ typedef struct {
   double* all; /* what the others point into */
 } Numbers;
 
-/* An object's network of its places: x' = -rates x + ports q. ports: of each pattern of each place, `states` apart. */
+/* An object's network of its places: x' = -rates x + ports q. ports: of each pattern of each place, `states` apart, the
+last of the four, which stand behind one another. */
 typedef struct {
   int count, n;
-  double *places, *rates, *ports, *fade;
+  double *places, *rates, *fade, *ports;
 } Network;
 
-/* Contacts that share a field, and what their step needs. seen: of each pair, where the states of its target and of its
-fingertip begin and end. weighed: scale times the poles' weights, then the sum of its real parts. */
+/* The contacts that are closed, and what the step of the fields that they join needs. pairs: -1 where it is to be made
+anew. begin: of each field, -1 for one that no contact joins. seen: of each pair, where the states of its target and of its
+fingertip begin and end. weighed: scale times the poles' weights, then the sum of its real parts. x: the states. */
 typedef struct {
-  int pairs, members, n;
-  int *pair, *member, *seen;
-  double *rates, *ports, *scale, *weighed, *gram, *room;
-} Group;
+  int pairs, n;
+  int *pair, *begin, *seen;
+  double complex *gram, *matrix, *heard;
+  double *rates, *ports, *scale, *weighed, *x, *room;
+} System;
 
 typedef struct {
   Network* networks;
-  Group* groups;
-  int count;                     /* groups, -1 where they are to be made anew */
-  double *closed, *current;      /* what they were made of */
-  double *pool;                  /* their numbers, and room for a step of one */
+  System system;
+  bool* closed;                  /* what it was made of */
+  double* current;
+  double* pool;                  /* its numbers */
   size_t pool_size;
   double *room, *fade;
   double *kept, *grown;          /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
@@ -101,13 +106,16 @@ void heat_contact(const Law* law, double force, const double place[3], double* a
 double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
                           double* area, double* share, double* longer);
 
+double heat_kept(double at, double reach, double half);
+
+void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches);
+
 void heat_network(const Numbers* numbers, int object, Network* network, double* room);
+void heat_copy_network(const Numbers* numbers, const Network* from, Network* to);
 size_t heat_network_room(const Numbers* numbers);
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room);
 size_t heat_carry_room(const Numbers* numbers);
 
-void heat_diagonalise(int n, double* matrix, double* turn);
-void heat_diagonalise_all(int n, int count, double* matrix, double* turn, double least);
-void heat_inverse(int n, double* matrix, double* inverse);
+void heat_diagonalise(int n, int count, double* matrix, double* turn, double least);
 
 #endif

@@ -10,21 +10,12 @@
 
 enum { VERSION = 2, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
 
-static int digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
 static bool decode(const char* text, size_t count, double* out) {
-  for (size_t i = 0; i < count; i++) {
-    uint64_t bits = 0;
-    for (int k = 0; k < 16; k++) {
-      int value = digit(text[16 * i + k]);
-      if (value < 0) return false;
-      bits = bits << 4 | (uint64_t)value;
-    }
-    memcpy(out + i, &bits, sizeof bits);
-    if (!isfinite(out[i])) return false;
+  if (strspn(text, "0123456789abcdef") != 16 * count) return false;
+  for (char digits[17] = {0}; count; count--, text += 16, out++) {
+    uint64_t bits = strtoull(memcpy(digits, text, 16), NULL, 16);
+    memcpy(out, &bits, sizeof bits);
+    if (!isfinite(*out)) return false;
   }
   return true;
 }

@@ -154,7 +154,7 @@ static Network* network_of(const Numbers* numbers, Work* work, const State* stat
   network->count = count;
   memcpy(network->places, places, count * SLOT * sizeof(double));
   heat_network(numbers, o, network, work->room);
-  work->count = -1;
+  work->system.pairs = -1;
   return network;
 }
 
@@ -168,10 +168,7 @@ static void add(const Numbers* numbers, Work* work, State* state, int o, const d
     if (!used) oldest = n, idle++;
   }
   Network *network = network_of(numbers, work, state, o), *before = &work->networks[objects];
-  *before = (Network){network->count, network->n, before->places, before->rates, before->ports, before->fade};
-  memcpy(before->places, network->places, sizeof(double) * numbers->places * SLOT);
-  memcpy(before->rates, network->rates, sizeof(double) * numbers->states);
-  memcpy(before->ports, network->ports, sizeof(double) * numbers->states * numbers->places * numbers->patterns);
+  heat_copy_network(numbers, network, before);
   if (idle > IDLE || count == numbers->places) {
     memmove(places + oldest * SLOT, places + (oldest + 1) * SLOT, sizeof(double) * SLOT * (count - oldest - 1));
     count--;

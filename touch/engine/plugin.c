@@ -8,7 +8,7 @@ is kept beside the state follows from the state alone: the networks of the place
 #include <stdlib.h>
 #include <string.h>
 
-#include "contacts.h"
+#include "heat.h"
 
 typedef struct {
   Numbers numbers;
@@ -37,17 +37,13 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
     Network none, *network = block ? &work->networks[o] : &none;
     PART(network->places, (size_t)n->places * SLOT, double);
     PART(network->rates, n->states, double);
-    PART(network->ports, ports * n->states, double);
     PART(network->fade, n->states, double);
+    PART(network->ports, ports * n->states, double);
   }
-  PART(work->groups, n->targets, Group);
-  for (int g = 0; g < n->targets; g++) {
-    Group none, *group = block ? &work->groups[g] : &none;
-    PART(group->pair, 2 * contacts, int);
-    PART(group->member, n->targets, int);
-    PART(group->seen, 4 * contacts, int);
-  }
-  PART(work->closed, contacts, double);
+  PART(work->system.pair, 2 * contacts, int);
+  PART(work->system.begin, n->targets, int);
+  PART(work->system.seen, 4 * contacts, int);
+  PART(work->closed, contacts, bool);
   PART(work->current, (size_t)n->tips * n->objects, double);
   PART(work->fade, (size_t)n->tips * n->tip_states, double);
   PART(work->kept, n->rates, double);
@@ -135,7 +131,7 @@ static int init(const mjModel* m, mjData* d, int instance) {
     destroy(d, instance);
     return failed(wrong);
   }
-  heat->work.count = -1;
+  heat->work.system.pairs = -1;
   for (int o = 0; o < n->objects; o++) heat->work.networks[o].count = -1;
   for (int i = 0; i < n->tips * n->tip_states; i++) heat->work.fade[i] = exp(-n->dt * n->tip_rates[i]);
   for (int k = 0; k < n->rates; k++) {
@@ -159,17 +155,8 @@ static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance
   Heat* to = heat_of(dest, instance);
   if (!from || !to) return;
   const Numbers* n = &from->numbers;
-  to->work.count = -1;
-  for (int o = 0; o < n->objects; o++) {
-    const Network* one = &from->work.networks[o];
-    Network* other = &to->work.networks[o];
-    other->count = one->count;
-    other->n = one->n;
-    memcpy(other->places, one->places, sizeof(double) * n->places * SLOT);
-    memcpy(other->rates, one->rates, sizeof(double) * n->states);
-    memcpy(other->ports, one->ports, sizeof(double) * n->states * n->places * n->patterns);
-    memcpy(other->fade, one->fade, sizeof(double) * n->states);
-  }
+  to->work.system.pairs = -1;
+  for (int o = 0; o < n->objects; o++) heat_copy_network(n, &from->work.networks[o], &to->work.networks[o]);
 }
 
 static void compute(const mjModel* m, mjData* d, int instance, int capability) {
