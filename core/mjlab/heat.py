@@ -8,7 +8,7 @@ B: worlds, F: fingertips, O: objects, G: geoms of the objects, H: substeps, K: s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco
@@ -26,7 +26,7 @@ class WorldsHeat:
 
     fixed: of touch.grasp_touch, in which each material comes once for each way of grasping an object: across which
     sides. A grasp keeps its way. An object that is grasped another way has its mean temperature throughout. like: a
-    tensor (B,) whose dtype and device are taken."""
+    tensor (B,) whose dtype and device are taken. compiled: torch.compile, or None for steps of single operations."""
 
     def __init__(
         self,
@@ -36,8 +36,12 @@ class WorldsHeat:
         *,
         ways: int,
         like: Tensor,
+        compiled: Callable[..., Any] | None = None,
     ) -> None:
         self._fixed, self._ways = fixed, ways
+        self._step = (
+            fixed.advance if compiled is None else compiled(fixed.advance, fullgraph=True, dynamic=False)
+        )
         self.state: FixedTouchState = _each(fixed.start(len(like)), lambda one: one.clone())
         none = 0.0 * self.state.signal.last
         self.reading = FixedTouchReading(
@@ -68,7 +72,7 @@ class WorldsHeat:
             state = state._replace(heat=heat, material=material * self._ways + way)
         else:
             state = state._replace(material=material)
-        state, reading = self._fixed.advance(state, contacts, noise)
+        state, reading = self._step(state, contacts, noise)
         _write(self.state, state)
         for old, new in zip(self.reading[1:], reading[1:], strict=True):
             old.copy_(new)

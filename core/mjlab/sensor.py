@@ -46,7 +46,9 @@ class ThermalTouchCfg(SensorCfg):
     name of a body or geom -> a material, or several of which each world has the first until randomize_material draws
     another. dt: s between samples, whole steps of the simulation. samples: of the voltage that
     the data hold. tolerance: K of temperature drop that the heat models are made for. ambient: °C of the air and of the
-    objects at first. air: W/(m2 K), of the air round the objects. chain: the electronics.
+    objects at first. air: W/(m2 K), of the air round the objects. chain: the electronics. compiled: whether torch.compile
+    makes kernels of the heat's step, which takes a minute or more at the first step and makes the steps after it several
+    times as fast.
     """
 
     fingertips: Mapping[str, str | Fingertip] = field(default_factory=dict)
@@ -57,6 +59,7 @@ class ThermalTouchCfg(SensorCfg):
     ambient: float = 24.0
     air: float = 5.0
     chain: SignalChain | str = ADS1115
+    compiled: bool = False
 
     def build(self) -> ThermalTouchSensor:
         """The sensor. Raises InvalidValueError and UnknownNameError for values that cannot be."""
@@ -162,7 +165,14 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
             samples=cfg.samples,
             like=like,
         )
-        self._heat = WorldsHeat(mj_model, self._fixed, shapes, ways=ways, like=like)
+        self._heat = WorldsHeat(
+            mj_model,
+            self._fixed,
+            shapes,
+            ways=ways,
+            like=like,
+            compiled=torch.compile if cfg.compiled else None,
+        )
         self._mj_data = data
         self._material = torch.zeros((worlds, len(shapes)), dtype=torch.long, device=device)
         count, geoms = len(tips), len(self._fixed.geoms)

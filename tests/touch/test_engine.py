@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import mujoco
@@ -383,3 +384,66 @@ def test_an_older_mujoco_is_named() -> None:
 
 def test_loading_twice_is_loading_once() -> None:
     assert load_plugin() == load_plugin()
+
+
+@NEEDS_SPECS
+def test_a_second_sensor_needs_another_name() -> None:
+    spec = mujoco.MjSpec.from_string(hand.scene())
+    install(spec, fingertips=PADS, objects=OBJECTS)
+    for name in ("heat", "", 3):
+        with pytest.raises(InvalidValueError, match="name"):
+            install(spec, fingertips=PADS, objects=OBJECTS, name=name)  # type: ignore[arg-type]
+    data = mujoco.MjData(both := install(spec, fingertips=PADS, objects=OBJECTS, name="more"))
+    hand.press(data, 10.0)
+    mujoco.mj_step(both, data, 200)
+    assert np.array_equal(data.sensor("heat").data, data.sensor("more").data)
+    assert data.sensor("heat").data.all()
+
+
+@NEEDS_SPECS
+def test_a_spec_compiled_again_and_models_side_by_side_do_as_one_does() -> None:
+    spec, others = mujoco.MjSpec.from_string(hand.scene()), mujoco.MjSpec.from_string(hand.scene())
+    models = [install(spec, fingertips=PADS, objects=OBJECTS), spec.compile()]
+    models.append(install(others, fingertips={"thumb": "thumb_pad"}, objects={"can": "wood"}))
+    alone, together = ([mujoco.MjData(model) for model in models] for _ in range(2))
+    for data in (*alone, *together):
+        hand.press(data, 10.0)
+    for model, data in zip(models, alone, strict=True):
+        mujoco.mj_step(model, data, 200)
+    for _ in range(200):
+        for model, data in zip(models, together, strict=True):
+            mujoco.mj_step(model, data)
+    ends = [data.sensor("heat").data for data in alone]
+    assert all(
+        np.array_equal(one, data.sensor("heat").data) for one, data in zip(ends, together, strict=True)
+    )
+    assert np.array_equal(ends[0], ends[1]) and ends[2].all() and ends[2][0] != ends[0][0]
+
+
+def test_copies_in_threads_do_as_one_does(model: mujoco.MjModel) -> None:
+    first = mujoco.MjData(model)
+    hand.press(first, 10.0)
+    mujoco.mj_step(model, first, 100)
+
+    def run(_: int) -> np.ndarray:
+        data = mujoco.MjData(model)
+        mujoco.mj_copyData(data, model, first)
+        again = copy.copy(data)
+        mujoco.mj_step(model, again, 200)
+        return states(model, again)
+
+    with ThreadPoolExecutor(4) as threads:
+        ends = list(threads.map(run, range(8)))
+    mujoco.mj_step(model, first, 200)
+    assert all(np.array_equal(end, states(model, first)) for end in ends)
+
+
+@NEEDS_SPECS
+def test_a_timestep_that_changes_later_gives_no_wrong_voltages() -> None:
+    model = install(mujoco.MjSpec.from_string(hand.scene()), fingertips=PADS, objects=OBJECTS)
+    data = mujoco.MjData(model)
+    model.opt.timestep /= 2
+    mujoco.mj_step(model, data)
+    assert np.isnan(data.sensor("heat").data).all()
+    with pytest.raises((ValueError, mujoco.FatalError)):
+        mujoco.MjData(model)

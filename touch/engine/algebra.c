@@ -64,3 +64,22 @@ void heat_diagonalise(int n, int count, double* matrix, double* turn, double lea
   }
 #undef AT
 }
+
+/* Of a symmetric positive definite matrix, which is lost. */
+void heat_inverse(int n, double* matrix, double* inverse) {
+  for (int i = 0; i < n * n; i++) inverse[i] = i % (n + 1) == 0;
+  for (int c = 0; c < n; c++) {
+    double pivot = 1 / matrix[c * n + c];
+    for (int k = 0; k < n; k++) {
+      matrix[c * n + k] *= pivot;
+      inverse[c * n + k] *= pivot;
+    }
+    for (int r = 0; r < n; r++) {
+      double factor = r == c ? 0 : matrix[r * n + c];
+      for (int k = 0; k < n; k++) {
+        matrix[r * n + k] -= factor * matrix[c * n + k];
+        inverse[r * n + k] -= factor * inverse[c * n + k];
+      }
+    }
+  }
+}

@@ -192,7 +192,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
   int square = wide * wide;
   size_t whole = (size_t)rates * square;
   double *seen = room, *dual = seen + whole, *turn = dual + whole, *half = turn + whole, *moved = half + whole;
-  double size[rates], normal[rates * rates], guess[rates * rates];
+  double size[rates], normal[rates * rates], ridged[rates * rates], solve[rates * rates], guess[rates * rates];
   for (int k = 0; k < rates; k++) {
     size[k] = 0;
     for (int s = 0; s < MOMENTS; s++) size[k] += columns[s * rates + k] * columns[s * rates + k];
@@ -200,17 +200,17 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     for (int s = 0; s < MOMENTS; s++) columns[s * rates + k] /= size[k];
   }
   mju_mulMatTMat(normal, columns, columns, MOMENTS, rates, rates);
-  memcpy(guess, normal, sizeof normal);
+  memcpy(ridged, normal, sizeof normal);
   for (int k = 0; k < rates; k++) {
     normal[k * rates + k] += PENALTY;
-    guess[k * rates + k] += RIDGE;
+    ridged[k * rates + k] += RIDGE;
   }
-  mju_cholFactor(normal, rates, 0);
-  mju_cholFactor(guess, rates, 0);
+  heat_inverse(rates, normal, solve);
+  heat_inverse(rates, ridged, guess);
 #define AT(what, i, j) (what + ((size_t)(i) * wide + (j)) * rates)
   memset(dual, 0, sizeof(double) * 2 * whole); /* turn too */
   mju_mulMatTMat(seen, wanted, columns, MOMENTS, square, rates);
-  for (int i = 0; i < square; i++) mju_cholSolve(inside + i * rates, guess, seen + i * rates, rates);
+  mju_mulMatMat(inside, seen, guess, square, rates, rates); /* symmetric, as solve is */
   for (int i = 0; i < wide; i++)
     for (int k = 0; k < rates; k++) AT(turn, i, i)[k] = 1;
   for (int step = 0; step < STEPS; step++) {
@@ -218,7 +218,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
       for (int j = 0; j <= i; j++) {
         double *own = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
         for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (own[k] - left[k]);
-        mju_cholSolve(free, normal, pulled, rates);
+        mju_mulMatVec(free, solve, pulled, rates, rates);
         for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * own[k] + left[k];
         memcpy(AT(dual, j, i), left, sizeof free);
       }

@@ -117,5 +117,6 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
 size_t heat_carry_room(const Numbers* numbers);
 
 void heat_diagonalise(int n, int count, double* matrix, double* turn, double least);
+void heat_inverse(int n, double* matrix, double* inverse);
 
 #endif

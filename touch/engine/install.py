@@ -47,6 +47,10 @@ def install(
         )
     if not isinstance(spec, mujoco.MjSpec):
         raise InvalidValueError(f"spec must be a mujoco.MjSpec, got {type(spec).__name__}")
+    if not isinstance(name, str) or not name:
+        raise InvalidValueError(f"name must be a sensor's name, got {name!r}")
+    if any(taken.name == name for taken in (*spec.sensors, *spec.plugins)):
+        raise InvalidValueError(f"the spec has a sensor or plugin {name!r}: give install another name")
     celsius("ambient (°C)", ambient)
     non_negative("air (W/(m2 K))", air)
     positive("tolerance (K)", tolerance)

@@ -113,7 +113,8 @@ static bool join(const Numbers* numbers, Work* work, const State* state, const b
     system->begin[t] = system->n;
     system->n += states_of(numbers, work, t);
   }
-  system->pairs = -1;
+  system->pairs = pairs ? -1 : 0;
+  if (!pairs) return true;
   size_t size = lay_out(system, pairs * numbers->patterns, NULL);
   if (size > work->pool_size) {
     free(work->pool);

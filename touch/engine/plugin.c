@@ -58,6 +58,9 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
   return used;
 }
 
+/* Whether the model's steps are as long as those that the numbers are made for. */
+static bool on_time(const Numbers* n, const mjModel* m) { return fabs(m->opt.timestep - n->timestep) <= 1e-9 * n->timestep; }
+
 /* Finds the geoms by their names. */
 static const char* find(const Numbers* n, Work* work, const mjModel* m, const char* names) {
   if (!names) return "the attribute \"geoms\" is missing: write it with thermograsp.touch.install";
@@ -71,7 +74,7 @@ static const char* find(const Numbers* n, Work* work, const mjModel* m, const ch
     name[length] = 0;
     names += length + (names[length] == ',');
     int geom = mj_name2id(m, mjOBJ_GEOM, name), role = (int)n->roles[i];
-    if (geom < 0) return "the attribute \"geoms\" names a geom that the model does not have";
+    if (geom < 0) return "the attribute \"geoms\" names a geom that the model does not have: install after all other changes";
     if (work->role[geom] >= 0) return "the attribute \"geoms\" names a geom twice";
     int thing = role < n->tips ? n->geoms + role : role - n->tips;
     work->role[geom] = role;
@@ -81,7 +84,7 @@ static const char* find(const Numbers* n, Work* work, const mjModel* m, const ch
   if (*names) return "the attribute \"geoms\" has more names than there are numbers for";
   for (int g = 0; g < n->things; g++)
     if (work->body[g] < 0) return "the attribute \"geoms\" lacks a name";
-  if (fabs(m->opt.timestep - n->timestep) > 1e-9 * n->timestep)
+  if (!on_time(n, m))
     return "the model's timestep has changed since thermograsp.touch.install: install again";
   return NULL;
 }
@@ -166,7 +169,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   for (int s = 0; s < m->nsensor; s++) {
     if (m->sensor_type[s] != mjSENS_PLUGIN || m->sensor_plugin[s] != instance) continue;
     for (int f = 0; f < heat->numbers.tips; f++)
-      d->sensordata[m->sensor_adr[s] + f] = heat_voltage(&heat->numbers, &state, f);
+      d->sensordata[m->sensor_adr[s] + f] = on_time(&heat->numbers, m) ? heat_voltage(&heat->numbers, &state, f) : NAN;
   }
 }
 
