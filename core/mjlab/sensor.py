@@ -46,9 +46,9 @@ class ThermalTouchCfg(SensorCfg):
     name of a body or geom -> a material, or several of which each world has the first until randomize_material draws
     another. dt: s between samples, whole steps of the simulation. samples: of the voltage that
     the data hold. tolerance: K of temperature drop that the heat models are made for. ambient: °C of the air and of the
-    objects at first. air: W/(m2 K), of the air round the objects. chain: the electronics. compiled: whether torch.compile
-    makes kernels of the heat's step, which takes a minute or more at the first step and makes the steps after it several
-    times as fast.
+    objects at first. air: W/(m2 K), of the air round the objects. chain: the electronics. compiled: whether
+    torch.compile makes kernels of the heat's step, which takes a minute or more at the first step and makes the steps
+    after it several times as fast.
     """
 
     fingertips: Mapping[str, str | Fingertip] = field(default_factory=dict)

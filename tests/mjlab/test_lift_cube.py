@@ -179,6 +179,17 @@ def test_it_is_the_heat_of_the_cpu_environments(held: Held) -> None:
         np.testing.assert_allclose(drop, heat.drop, rtol=0, atol=1e-4)
 
 
+def test_compiled_steps_feel_the_same(held: Held) -> None:
+    touch = held.touch
+    model, like = held.env.sim.mj_model, touch.data.force[:, 0]
+    heat = WorldsHeat(model, touch._fixed, touch._shapes(model), ways=1, like=like, compiled=torch.compile)
+    material, tensors = torch.arange(WORLDS)[:, None] % 2, [one.data_ptr() for one in heat.reading]
+    for contacts, drop in zip(held.contacts, held.drop, strict=True):
+        heat.advance(TouchContacts(*(torch.from_numpy(part).float() for part in contacts)), material, 0.0)
+        np.testing.assert_allclose(heat.reading.temperature_drop, drop, rtol=0, atol=1e-4)
+    assert [one.data_ptr() for one in heat.reading] == tensors
+
+
 def test_an_object_that_is_grasped_another_way_keeps_its_mean_temperature() -> None:
     """A brick across one side, then across another: what was warm in it is even by then."""
     model = mujoco.MjModel.from_xml_string(BRICK)
@@ -284,6 +295,11 @@ def test_resets_go_by_ids(held: Held) -> None:
     assert torch.equal(after.temperature_drop[others], before[0][others])
     assert torch.equal(after.voltage[others], before[1][others])
     assert addresses(touch) == held.addresses
+    before = touch.data.temperature_drop.clone(), touch.material.clone()
+    none = torch.zeros(0, dtype=torch.long)
+    touch.reset(none)
+    touch.set_material("cube/cube", none, none)
+    assert torch.equal(touch.data.temperature_drop, before[0]) and torch.equal(touch.material, before[1])
 
 
 def test_a_world_that_breaks_down_fails_alone(held: Held) -> None:
@@ -313,6 +329,8 @@ def test_what_cannot_be_is_refused(held: Held) -> None:
         touch.set_material("can", 0)
     with pytest.raises(InvalidValueError, match="materials 0 to 1"):
         touch.set_material("cube/cube", 2)
+    with pytest.raises(InvalidValueError, match="objects: none given"):
+        ThermalTouchCfg("touch", fingertips=FINGERTIPS).build()
     with pytest.raises(InvalidValueError, match="samples"):
         ThermalTouchCfg("touch", fingertips=FINGERTIPS, objects={"cube/cube": "wood"}, samples=0).build()
     with pytest.raises(UnknownNameError, match="signal chain"):
