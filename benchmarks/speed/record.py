@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from thermograsp.bench.kinds import Progress, Record
+from thermograsp.bench.speed.drawn import compare_drawn
 from thermograsp.bench.speed.endurance import endure
 from thermograsp.bench.speed.measure import ID, LAYERS, PARTS, measure
 from thermograsp.bench.speed.processes import memory, start_up
@@ -15,11 +16,12 @@ _COUNTS, _QUICK_COUNTS = (1, 16, 64, 256, 1024), (1, 4)
 
 
 def measured(quick: bool, seed: int, progress: Progress) -> Record:
-    """Speeds by number of environments, ways to run them, an endless episode, scenes of one's own, memory, start-up."""
+    """Speeds by number of environments, ways to run them, an endless episode, drawn boxes, scenes of one's own, memory,
+    start-up."""
     counts = _QUICK_COUNTS if quick else _COUNTS
     plans = {n: _plan(n, quick) for n in counts}
     speeds = []
-    with progress(sum(blocks for blocks, _ in plans.values()) + 20 + 4) as advance:
+    with progress(sum(blocks for blocks, _ in plans.values()) + 20 + 5) as advance:
         # First: beside the memory that the others leave behind, fresh processes start more slowly.
         start = start_up(1 if quick else 5, lambda what: advance(what, 0))
         advance("", 1)
@@ -27,6 +29,9 @@ def measured(quick: bool, seed: int, progress: Progress) -> Record:
             doing = f"{n} environments"
             speeds.append(measure(n, blocks, steps, seed, lambda what=doing: advance(what, 1)))
         endurance = endure(1_000 if quick else 100_000, seed, lambda: advance("endurance", 1))
+        anywhere = compare_drawn(
+            *((4, 40) if quick else (16, 10_000)), seed, lambda part: advance("drawn", part)
+        )
         modes = compare(*((2, 2, 10) if quick else (16, 10, 50)), seed, lambda what: advance(what, 0))
         advance("", 1)
         felt = scenes(quick, seed, advance)
@@ -37,6 +42,7 @@ def measured(quick: bool, seed: int, progress: Progress) -> Record:
         "layers": LAYERS,
         "parts": PARTS,
         "speeds": [{**asdict(s), "ratio_with_resets": s.ratio_with_resets, "parts": s.parts} for s in speeds],
+        "drawn": asdict(anywhere),
         "modes": [asdict(mode) for mode in modes],
         "scenes": [asdict(each) for each in felt],
         "endurance": {**asdict(endurance), "growth": endurance.growth},

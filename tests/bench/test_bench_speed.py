@@ -75,6 +75,15 @@ def test_scenes_are_those_that_can_be_had_and_their_physics_is_the_same(written:
         assert 0 < low <= each["ratio"] <= high
 
 
+def test_boxes_of_any_size_and_place_go_through_their_episodes(written: tuple[Path, dict]) -> None:
+    drawn = written[1]["speed"]["drawn"]
+    assert drawn["episodes"] == 40 and drawn["num_envs"] == 4
+    low, high = drawn["quartiles"]
+    assert 0 < low <= drawn["ratio"] <= high
+    assert drawn["plain"] > 0 and drawn["drawn"] > 0 and min(drawn["longest"]) > 0
+    assert len(drawn["memory"]) in (0, 10)
+
+
 def test_memory_and_imports_hold_what_is_promised(written: tuple[Path, dict]) -> None:
     document = written[1]["speed"]
     assert 0 < document["memory"]["per_env"] < 100_000

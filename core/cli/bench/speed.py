@@ -50,6 +50,18 @@ def report(record: Record, output: Output) -> None:
         f"one episode of {lasting['steps']:,} steps and {lasting['touches']:,} touches: "
         f"the last quarter costs {lasting['growth']:.3f} of the first"
     )
+    drawn = record["drawn"]
+    output.line(
+        f"{drawn['num_envs']} environments, boxes of any size touched anywhere, all else drawn too, "
+        f"{drawn['episodes']:,} episodes of {drawn['seconds']:g} s: {drawn['ratio']:.3f} of the speed without "
+        + "({:.3f} .. {:.3f}), ".format(*drawn["quartiles"])
+        + "longest step {:.1f} ms (without: {:.1f} ms)".format(*(1e3 * each for each in drawn["longest"]))
+    )
+    if len(drawn["memory"]) > 1:
+        first, *_, last = (each / 1e6 for each in drawn["memory"])
+        output.line(
+            f"memory of both after a tenth of these episodes {first:.0f} MB, at their end {last:.0f} MB"
+        )
     output.line(f"memory per environment {record['memory']['per_env'] / 1e3:.1f} kB")
     start = record["start_up"]
     output.line(
