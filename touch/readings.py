@@ -157,6 +157,11 @@ class Noise:
         rng.standard_normal(out=self.ahead[w])
         self.at[w] = 0
 
+    def refill(self) -> None:
+        """The next blocks of the worlds that have used up theirs."""
+        for w in np.flatnonzero(self.at == NOISE_BLOCK).tolist():
+            self.draw(w)
+
     def take(self, w: int, samples: int) -> np.ndarray:
         """(samples, S) of the next samples."""
         rng = self._now(w)
@@ -257,9 +262,13 @@ class Electronics:
     def sample(self, due: bool) -> None:
         """The converter's next voltages; the contacts' sums of the sample start anew. due: whether it is a reading's
         last."""
-        if _close(self._at, due):
-            for w in np.flatnonzero(self.noise.at == NOISE_BLOCK).tolist():
-                self.noise.draw(w)
+        if close_sample(self._at, int(due)):
+            self.noise.refill()
+
+    @property
+    def address(self) -> int:
+        """Of what `close_sample` takes."""
+        return self._at
 
     def start_anew(self, rows: Sequence[int]) -> None:
         """Those worlds' sums, and what a reading that is made now tells of them."""
@@ -282,9 +291,9 @@ class Electronics:
 
 
 @njit(cache=True, error_model="numpy")
-def _close(own_at, due):
-    """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages. due:
-    makes the reading too. own_at: the address of Electronics' table. Returns whether noise has run out."""
+def close_sample(own_at, due):
+    """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages. due: 1
+    makes the reading too. own_at: the address of Electronics' table. Returns 1 where noise has run out, else 0."""
     own = carray(words(own_at), 22)
     worlds, tips, targets, sensors, objects = own[17], own[18], own[19], own[20], own[21]
     rows = worlds * sensors
@@ -298,7 +307,7 @@ def _close(own_at, due):
     drawn, sampled = carray(floats(own[12]), (rows, 1, 1)), carray(floats(own[13]), (rows, 1, 1))
     voltage = carray(floats(own[14]), (worlds, sensors, SAMPLES))
     means = carray(floats(own[16]), 2)
-    spent = False
+    spent = 0
     for w in range(worlds):
         for f in range(tips):
             off[w, f] += beside[w, f]
@@ -310,7 +319,8 @@ def _close(own_at, due):
         for s in range(sensors):
             drawn[w * sensors + s, 0, 0] = ahead[w, at[w], s]
         at[w] += 1
-        spent = spent or at[w] == NOISE_BLOCK
+        if at[w] == NOISE_BLOCK:
+            spent = 1
     chain = carray(chains(own[7]), rows)
     # voltages under way: none
     measure_rows(chain, filtered, last, carray(floats(own[8]), (rows, 0, 1)), sent, drawn, sampled)
@@ -319,7 +329,7 @@ def _close(own_at, due):
             for k in range(SAMPLES - 1):
                 voltage[w, s, k] = voltage[w, s, k + 1]
             voltage[w, s, SAMPLES - 1] = sampled[w * sensors + s, 0, 0]
-    if due:
+    if due == 1:
         size = sensors * (SAMPLES + 1) + 3 * tips + objects
         _tell(voltage, drop, warmth, pressed, off, means, carray(floats(own[15]), (worlds, size)))
     return spent

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -22,9 +23,10 @@ from ..thermal import material as named_material
 from ..thermal.numerics import Array
 from ..thermal.readout import chain_numbers
 from ..thermal.stack import converter
-from .contacts import ContactReader, sensor_places
+from .contacts import ContactReader, broke_down, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
+from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, hear
 from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
 from .readings import SAMPLES, Electronics, Layout, Noise, TouchReading
 from .scene import (
@@ -137,11 +139,17 @@ class ThermalTouch:
             substeps=self._substeps,
             ambient=ambient,
         )
-        self._time, self._started, self._count = np.zeros(count), False, 0
+        self._time, self._started = np.zeros(count), False
+        self._taken = np.zeros(1, np.int64)  # samples of the next reading
+        self._steps = np.array([self._step, _ON_TIME * self._step])
         self._heard: mujoco.MjData | None = None  # the last update's, which are of this model
         self._fresh = (
             True  # nothing has been updated since the start: whether pads are inside objects is not known
         )
+        # the data whose steps one call hears, and what it takes; None until all of it is known, and after each change
+        self._near: mujoco.MjData | None = None
+        self._hearing: Hearing | None = None
+        self._near_at = 0
         self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
         self._heat.reset(range(count), self._first)
         self._rest(range(count))
@@ -186,18 +194,15 @@ class ThermalTouch:
         Where steps were taken without it, the contacts of the last of them stand for all. Called again at the same
         time it changes nothing. Raises InvalidValueError for data of another model or of an earlier time, and
         SimulationError for forces that are not finite; of many worlds, those `failed` until they are reset."""
-        reader = self._reader
-        if data is self._heard and self._started and not self._fresh:
-            now = data.time
-            if abs(now - self._time.item() - self._step) <= _ON_TIME * self._step:  # nearly every call
-                self._time[0] = now
-                reader.read(data)
-                if reader.substeps == self._sample_steps:
-                    self._sample()
+        if data is self._near:
+            told = hear(self._near_at)
+            if told == NOTHING:
                 return self._reading
+            if told != ELSEWHERE:
+                return self._told(told)
         if self._sensors is not None:
             return self._hear(data)
-        passed = self._passed(data)
+        passed, reader = self._passed(data), self._reader
         while passed > 0:
             room = self._sample_steps - reader.substeps
             taken = min(passed, room)
@@ -205,6 +210,7 @@ class ThermalTouch:
             passed -= taken
             if taken == room:
                 self._sample()
+        self._listen()
         return self._reading
 
     def reset(
@@ -247,14 +253,14 @@ class ThermalTouch:
                 raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
             for w, own in zip(rows, seeds, strict=True):
                 self._electronics.noise.seed(w, own)
-        self._fresh = True
+        self._fresh, self._near = True, None
         self._make(rows, made_of, warm)
         self._heat.reset(rows, first)
         reader = self._reader
         reader.touches[rows], reader.beside[rows], reader.broken[rows] = 0.0, 0.0, False
         if len(rows) == len(self._time):
             reader.clear()
-            self._count = 0
+            self._taken[0] = 0
         self._time[rows] = 0.0 if data is None else float(data.time)
         if not self._many:
             self._started = data is not None
@@ -368,7 +374,7 @@ class ThermalTouch:
             self._first.copy(),
             (electronics.filtered.copy(), electronics.last.copy(), electronics.voltage.copy()),
             (reader.touches.copy(), reader.beside.copy(), reader.broken.copy(), reader.substeps),
-            (electronics.pressed.copy(), electronics.off.copy(), self._count),
+            (electronics.pressed.copy(), electronics.off.copy(), int(self._taken[0])),
             tuple(electronics.noise.state(w) for w in range(len(self._time))),
             self._reading,
         )
@@ -381,13 +387,14 @@ class ThermalTouch:
                 f"the state is of other fingertips, objects or worlds: {state.sums[0].shape[:3]} in place of "
                 f"{self._reader.touches.shape[:3]}"
             )
+        self._near = None
         self._time[:], self._started, self._reading = state.time, state.started, state.reading
         self._heat.set_state(state.heat)
         self._materials, self._first[:] = list(state.heat.materials), state.first
         self._reader.set_materials(range(len(self._time)), self._materials)
         reader.touches[:], reader.beside[:], reader.broken[:], reader.substeps = state.sums
         electronics.filtered[:], electronics.last[:], electronics.voltage[:] = state.signal
-        electronics.pressed[:], electronics.off[:], self._count = state.period
+        electronics.pressed[:], electronics.off[:], self._taken[0] = state.period
         for w, own in enumerate(state.generators):
             electronics.noise.set_state(w, own)
 
@@ -483,16 +490,56 @@ class ThermalTouch:
     def _sample(self) -> None:
         """A whole sample has passed: heat, then the converter."""
         reader, heat = self._reader, self._heat
+        self._near = None  # heat may have made its arrays anew
         heat.advance(reader.touches, reader.substeps)
         reader.substeps = 0
         if heat.backed:
             self._sent[:] = heat.sent
-        self._count += 1
-        due = self._count == self._samples
+        self._taken += 1
+        due = bool(self._taken[0] == self._samples)
         self._electronics.sample(due)
         if due:
-            self._count = 0
+            self._taken[0] = 0
             self._reading = self._read()
+
+    def _listen(self) -> None:
+        """From now on one call hears a step of the last update's data, where MuJoCo's bindings say where they are."""
+        data, reader, electronics = self._heard, self._reader, self._electronics
+        if data is None or self._fresh or data is self._near:
+            return
+        self._near = None
+        memory = reader.memory(data)
+        if memory.clock is None:
+            return
+        self._hearing = Hearing(
+            (self._time, self._steps, reader.counted, self._taken),
+            (
+                *(*memory.clock, memory.address, reader.address),
+                *(*self._heat.hearing(reader.touches), electronics.address),
+            ),
+            (self._sample_steps, self._samples),
+        )
+        self._near, self._near_at = data, self._hearing.address
+
+    def _told(self, told: int) -> TouchReading:
+        """What is left to do where `hear` has told of anything."""
+        if told == BROKEN:
+            assert self._near is not None
+            raise broke_down(self._near.time)
+        if told == FULL:
+            self._sample()
+            self._listen()
+            return self._reading
+        if told & SPENT:
+            self._electronics.noise.refill()
+        if told & DUE:
+            self._reading = self._read()
+        return self._reading
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy, whose arrays are elsewhere."""
+        self.__dict__.update(state)
+        self._near = self._hearing = None
 
     def _read(self) -> TouchReading:
         return self._electronics.reading(self._time, self._reader.broken)

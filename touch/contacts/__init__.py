@@ -4,8 +4,8 @@ from .array_contacts import ArrayContacts, FeltContacts, TouchContacts, array_co
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
 from .laws import pair_laws
-from .pointers import chains, complexes, flags, floats, table, words
-from .reader import ContactReader
+from .pointers import called, called_two, chains, complexes, entry, flags, floats, integers, table, words
+from .reader import ContactReader, broke_down, read_contacts
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
 
@@ -28,13 +28,19 @@ __all__ = [
     "TouchContacts",
     "array_contacts",
     "bends",
+    "broke_down",
+    "called",
+    "called_two",
     "chains",
     "complexes",
     "curves",
+    "entry",
     "flags",
     "floats",
+    "integers",
     "pair_laws",
     "prepare",
+    "read_contacts",
     "sensor_places",
     "table",
     "words",

@@ -22,6 +22,11 @@ mjContact's size in bytes, and where its fields are, in numbers of their own siz
 _WORD = 8
 _FIELDS = (("pos", POS), ("frame", FRAME), ("geom", GEOM), ("dim", DIM), ("efc_address", EFC))
 _MOST = 1 << 16  # words of an mjData
+_POSES = (
+    (0.009, 0.0),
+    (0.1, 0.0),
+    (0.0135, np.pi / 4),
+)  # of a box that touches with a face, not at all, with an edge
 
 
 class ContactMemory:
@@ -40,6 +45,9 @@ class ContactMemory:
         places = _places()
         self.follows = places is not None
         """Whether the table needs no `refresh` at each step."""
+        clock = None if places is None else _clock()
+        self.clock = None if clock is None else (data._address + clock[0], data._address + clock[1])
+        """Addresses of the data's time s, and of the number of contacts, 32 bits; None where they are not known."""
         words = self._said.ctypes.data + _WORD * np.arange(2)
         self.address = self.table.ctypes.data
         """Of the table; it holds as long as this does."""
@@ -61,14 +69,24 @@ def _contacts(data: mujoco.MjData) -> int:
 
 
 @cache
-def _pressed() -> mujoco.MjData:
-    """A simulation with a contact."""
-    model = mujoco.MjModel.from_xml_string(
-        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body pos='0 0 .009'><freejoint/><geom size='.01'/></body>"
-        "</worldbody></mujoco>"
+def _scene() -> mujoco.MjModel:
+    """A box over a plane."""
+    return mujoco.MjModel.from_xml_string(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body><freejoint/><geom type='box' size='.01 .01 .01'/>"
+        "</body></worldbody></mujoco>"
     )
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
+
+
+@cache
+def _pressed() -> mujoco.MjData:
+    """A simulation with contacts."""
+    return _posed(mujoco.MjData(_scene()), 0.009, 0.0)
+
+
+def _posed(data: mujoco.MjData, height: float, turn: float) -> mujoco.MjData:
+    """The box's middle at that height m, turned about a side by that angle."""
+    data.qpos[:] = 0.0, 0.0, height, np.cos(turn / 2), np.sin(turn / 2), 0.0, 0.0
+    mujoco.mj_forward(_scene(), data)
     return data
 
 
@@ -101,3 +119,24 @@ def _places() -> tuple[int, int] | None:
             return None
         found.append(at)
     return found[0], found[1]
+
+
+@cache
+def _clock() -> tuple[int, int] | None:
+    """Bytes of an mjData at which its time and its number of contacts stand; None where that is not found out."""
+    places = _places()
+    if places is None:
+        return None
+    data, seen = mujoco.MjData(_scene()), set()
+    whole = (ctypes.c_uint8 * (_WORD * min(places))).from_address(data._address)
+    times, counts = np.frombuffer(whole, float), np.frombuffer(whole, np.int32)
+    is_time, is_count = np.ones(len(times), bool), np.ones(len(counts), bool)
+    for n, (height, turn) in enumerate(_POSES):
+        data.time = 0.1 + n
+        count = int(_posed(data, height, turn).ncon)
+        seen.add(count)
+        is_time &= times == data.time
+        is_count &= counts == count
+    if len(seen) < len(_POSES) or is_time.sum() != 1 or is_count.sum() != 1:
+        return None
+    return int(is_time.argmax()) * times.itemsize, int(is_count.argmax()) * counts.itemsize

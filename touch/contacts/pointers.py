@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from ...thermal import CONTACT_LAW
@@ -19,6 +20,14 @@ _LAW, _CHAIN = from_dtype(CONTACT_LAW), from_dtype(CHAIN_NUMBERS)
 def table(arrays: Sequence[np.ndarray], numbers: Sequence[int] = ()) -> np.ndarray:
     """The addresses of contiguous arrays, and numbers behind them. It holds as long as the arrays live."""
     return np.array([*(array.ctypes.data for array in arrays), *numbers], np.int64)
+
+
+def entry(kernel: Any, arguments: int) -> int:
+    """The address of a compiled function of two or four integers that returns one, for `called_two` and `called`."""
+    kinds = (types.int64,) * arguments
+    kernel.compile(kinds)
+    own = kernel.overloads[kinds]
+    return own.library.get_pointer_to_function(own.fndesc.mangled_name)
 
 
 def _floats(context, address):
@@ -53,6 +62,24 @@ def _pointer(context, builder, signature, arguments):
     return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
 
 
+def _called_two(context, address, first, second):
+    return types.int64(types.int64, types.int64, types.int64), _call
+
+
+def _called(context, address, first, second, third, fourth):
+    return types.int64(*[types.int64] * 5), _call
+
+
+def _call(context, builder, signature, arguments):
+    kinds = signature.args[1:]
+    kind = context.call_conv.get_function_type(types.int64, kinds)
+    function = builder.inttoptr(arguments[0], kind.as_pointer())
+    status, found = context.call_conv.call_function(builder, function, types.int64, kinds, arguments[1:])
+    with cgutils.if_unlikely(builder, status.is_error):
+        context.call_conv.return_status_propagate(builder, status)
+    return found
+
+
 floats: Any = intrinsic(_floats)
 complexes: Any = intrinsic(_complexes)
 integers: Any = intrinsic(_integers)
@@ -62,3 +89,6 @@ laws: Any = intrinsic(_laws)
 chains: Any = intrinsic(_chains)
 """Of an address, what numba.carray takes: of floating-point and complex numbers, of integers of 32 and 64 bits, of
 booleans, of CONTACT_LAW and of CHAIN_NUMBERS."""
+called_two: Any = intrinsic(_called_two)
+called: Any = intrinsic(_called)
+"""What the function at an address returns of two or four integers. It is not compiled into its caller once more."""

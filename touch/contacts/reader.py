@@ -65,7 +65,8 @@ class ContactReader:
         self.touches = np.zeros((worlds, count, objects + count, COLUMNS))
         self.beside = np.zeros((worlds, count))
         self.broken = np.zeros(worlds, bool)
-        self.substeps = 0
+        self.counted = np.zeros(1, np.int64)
+        """The substeps, which compiled code counts too. It stays where it is."""
         # of each geom: the fingertip, or F plus its number among the objects' geoms, or -1
         self._role = np.full(model.ngeom, -1, np.int64)
         self._pads = np.zeros((count, _PAD))
@@ -120,24 +121,20 @@ class ContactReader:
     def read(self, data: mujoco.MjData, weight: int = 1) -> None:
         """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
         that are not finite."""
-        self.substeps += weight
+        self.counted += weight
         count = data.ncon
         if count == 0:
             return
-        if data is not self._of or self._memory is None:
-            self._of, self._memory = data, ContactMemory(data)
-        memory = self._memory
+        memory = self.memory(data)
         if not memory.follows:
             memory.refresh()
-        if not _read(count, weight, memory.address, self._own_address):
-            raise SimulationError(
-                f"a contact force is not finite at {data.time:g} s: the simulation broke down; reset both"
-            )
+        if not read_contacts(count, weight, memory.address, self._own_address):
+            raise broke_down(data.time)
 
     def sense(self, record: np.ndarray, places: SensorPlaces) -> None:
         """Adds what contact sensors recorded of one substep, (W, sensordata). Worlds with a number that is not finite
         are `broken` from then on, and nothing more is added to them."""
-        self.substeps += 1
+        self.counted += 1
         if record.shape != (len(self.beside), places.size):
             raise InvalidValueError(
                 f"a record must hold the sensordata of {len(self.beside)} worlds, ({len(self.beside)}, {places.size}), "
@@ -165,12 +162,39 @@ class ContactReader:
         self.beside[:] = 0.0
         self.substeps = 0
 
+    @property
+    def substeps(self) -> int:
+        """Since `clear`."""
+        return int(self.counted[0])
+
+    @substeps.setter
+    def substeps(self, count: int) -> None:
+        self.counted[0] = count
+
+    def memory(self, data: mujoco.MjData) -> ContactMemory:
+        """Of these data, which are those of nearly every call."""
+        if data is not self._of or self._memory is None:
+            self._of, self._memory = data, ContactMemory(data)
+        return self._memory
+
+    @property
+    def address(self) -> int:
+        """Of what `read_contacts` takes of it, until a call of set_materials."""
+        return self._own_address
+
+
+def broke_down(time: float) -> SimulationError:
+    """What a force that is not finite at `time` s raises."""
+    return SimulationError(
+        f"a contact force is not finite at {time:g} s: the simulation broke down; reset both"
+    )
+
 
 @njit(cache=True, error_model="numpy")
-def _read(count, substeps, memory_at, own_at):
+def read_contacts(count, substeps, memory_at, own_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table, and own_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
-    Returns whether all forces are finite."""
+    Returns 1, and 0 where a force is not finite."""
     memory, own = carray(words(memory_at), TABLE), carray(words(own_at), 14)
     tips, targets, things, pyramidal = own[10], own[11], own[12], own[13]
     role = carray(words(own[0]), own[9])
@@ -209,7 +233,7 @@ def _read(count, substeps, memory_at, own_at):
             for k in range(1, 2 * (dim[c] - 1)):
                 force += efc[address[c] + k]
         if not math.isfinite(force):
-            return False
+            return 0
         if force <= 0.0:
             continue
         if not any_met:
@@ -235,7 +259,7 @@ def _read(count, substeps, memory_at, own_at):
             beside[first] += weight * force
     if any_met:
         _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law, bend, curve, pushed, touches, weight)
-    return True
+    return 1
 
 
 @njit(cache=True, error_model="numpy")
@@ -243,7 +267,7 @@ def _sense(
     record, pairs, poses, geoms, turns, offsets, bodies, all_geoms,
     pads, met, laws, which, bend, curve, pushed, touches, beside, broken,
 ):  # fmt: skip
-    """_read of recorded sensors, world by world."""
+    """read_contacts of recorded sensors, world by world."""
     tips, things = len(pads), len(met)
     xpos, xmat = np.zeros((bodies, 3)), np.zeros((bodies, 9))
     geom_xpos, geom_xmat = np.zeros((all_geoms, 3)), np.zeros((all_geoms, 9))

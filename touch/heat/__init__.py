@@ -5,6 +5,7 @@ from .fields import AFTERWARDS, resolution, tip_field, untouched
 from .fixed_networks import FixedNetworks
 from .fixed_places import FixedPlaces, network_tables
 from .joined import HeatBalance, HeatState, JoinedHeat
+from .march import sample
 from .narrow import narrow_of
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "narrow_of",
     "network_tables",
     "resolution",
+    "sample",
     "tip_field",
     "untouched",
 ]

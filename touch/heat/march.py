@@ -101,7 +101,7 @@ def settle(
 def sample(own_at, touches_at, substeps, settled):
     """One step of every world; first, unless it is settled, `settle`, and no step where contacts are not where they
     were. own_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so many
-    substeps. Returns what `settle` does."""
+    substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
     own = carray(words(own_at), TABLE)
     worlds, tips, objects = own[32], own[33], own[34]
     targets = tips + objects
@@ -109,7 +109,7 @@ def sample(own_at, touches_at, substeps, settled):
         carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
         carray(floats(own[1]), tips),
     )
-    if not settled:
+    if settled == 0:
         moved, stale = settle(
             touches,
             carray(floats(own[0]), (objects, 18)),
@@ -125,7 +125,7 @@ def sample(own_at, touches_at, substeps, settled):
             carray(flags(own[10]), worlds),
         )
         if moved or stale:
-            return moved, stale
+            return moved + stale
     states, rates = own[42], own[45]
     _march(
         carray(floats(own[31]), 1)[0],
@@ -154,7 +154,7 @@ def sample(own_at, touches_at, substeps, settled):
         carray(flags(own[29]), targets),
         carray(floats(own[30]), (worlds, objects)),
     )
-    return 0, 0
+    return 0
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -243,7 +243,8 @@ def _march(
                         resists += root[k] * root[k] * (1 - mean) / decay[k]
                     conducts = 1 / (1 / conducts + resists)
                 else:
-                    root[:] = 0.0
+                    for k in range(rates):
+                        root[k] = 0.0
                 for k in range(patterns):
                     room.weight[i * patterns + k] = conducts
                 room.drive[i * patterns] = (

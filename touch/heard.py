@@ -1,0 +1,73 @@
+"""What a ThermalTouch does after nearly every step of one MjData, as one call of compiled code with one address: it
+looks whether one step has passed, adds its contacts, and at a sample's end advances heat and electronics."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numba import carray  # pyright: ignore[reportPrivateImportUsage]
+
+from thermograsp.compiled import njit
+
+from .contacts import called, called_two, entry, floats, integers, read_contacts, table, words
+from .heat import sample
+from .readings import close_sample
+
+NOTHING, DUE, SPENT, FULL, BROKEN, ELSEWHERE = 0, 1, 2, 4, 8, 16
+"""What `hear` returns: DUE where a reading is to be made and SPENT where noise is to be drawn, or both; FULL where the
+sample's contacts are there and its heat is still to be advanced; BROKEN where a force is not finite; ELSEWHERE where
+not one step has passed, and nothing has been done."""
+
+_LAST, _STEP, _SUBSTEPS, _TAKEN, _NOW, _CONTACTS, _MEMORY, _READER, _HEAT, _TOUCHES, _ELECTRONICS = range(11)
+_OF_SAMPLE, _OF_READING, _READ, _ADVANCE, _CLOSE, _LENGTH = range(11, 17)
+"""Of Hearing's table: addresses of the time s of the last update, of a step and what it may be off by, of the substeps
+and samples that have been taken; of the data's time and number of contacts; of what the three functions take, HEAT 0
+where Python advances it; substeps of a sample and samples of a reading; and the addresses of the three functions."""
+
+
+class Hearing:
+    """arrays: last (1,) s, step (2,) s, substeps (1,) and taken (1,), which must stay where they are. addresses: of the
+    data's time and number of contacts, of its ContactMemory, of a reader, of heat and touches (0 for none), and of the
+    electronics. sizes: substeps of a sample, samples of a reading. address: for `hear`, as long as this lives."""
+
+    def __init__(
+        self, arrays: tuple[np.ndarray, ...], addresses: tuple[int, ...], sizes: tuple[int, int]
+    ) -> None:
+        self._arrays = arrays
+        self._table = table(arrays, (*addresses, *sizes, *_functions()))
+        self.address = self._table.ctypes.data
+
+
+@cache
+def _functions() -> tuple[int, int, int]:
+    return entry(read_contacts, 4), entry(sample, 4), entry(close_sample, 2)
+
+
+@njit(cache=True, error_model="numpy")
+def hear(at):
+    """To be called after a step. at: a Hearing's address."""
+    own = carray(words(at), _LENGTH)
+    last, step, now = (
+        carray(floats(own[_LAST]), 1),
+        carray(floats(own[_STEP]), 2),
+        carray(floats(own[_NOW]), 1),
+    )
+    if not abs(now[0] - last[0] - step[0]) <= step[1]:
+        return ELSEWHERE
+    last[0] = now[0]
+    substeps, taken = carray(words(own[_SUBSTEPS]), 1), carray(words(own[_TAKEN]), 1)
+    substeps[0] += 1
+    contacts = carray(integers(own[_CONTACTS]), 1)[0]
+    if contacts > 0 and called(own[_READ], contacts, 1, own[_MEMORY], own[_READER]) == 0:
+        return BROKEN
+    if substeps[0] < own[_OF_SAMPLE]:
+        return NOTHING
+    if own[_HEAT] == 0 or called(own[_ADVANCE], own[_HEAT], own[_TOUCHES], substeps[0], 0) != 0:
+        return FULL
+    substeps[0] = 0
+    taken[0] += 1
+    due = 0
+    if taken[0] == own[_OF_READING]:
+        due, taken[0] = 1, 0
+    return DUE * due + SPENT * called_two(own[_CLOSE], own[_ELECTRONICS], due)
