@@ -41,7 +41,10 @@ from .scene import (
 )
 
 SAMPLE_TIME = 0.01  # s between samples of the converter, about: a whole part of dt and whole substeps
+_LONGEST = 3600.0  # s, of a dt
 _WHOLE = 1e-6
+_NOBODY = object()
+"""In place of an MjData. None would do for update(None) too."""
 _ON_TIME = 1e-3  # of a step, by which the data's time may be off for each step since the last update
 
 
@@ -93,8 +96,11 @@ class ThermalTouch:
     ) -> None:
         if not isinstance(model, mujoco.MjModel):
             raise InvalidValueError(f"model must be a mujoco.MjModel, got {type(model).__name__}")
-        if worlds is not None and (not isinstance(worlds, int) or worlds < 1):
+        whole = isinstance(worlds, int | np.integer) and not isinstance(worlds, bool)
+        if worlds is not None and not (whole and worlds >= 1):
             raise InvalidValueError(f"worlds must be a whole number from 1 on, or None, got {worlds!r}")
+        _mapping("fingertips", fingertips, '{"thumb": "thumb_pad"}')
+        _mapping("objects", objects or {}, '{"can": "aluminium"}')
         self._model, self._step = model, float(model.opt.timestep)
         celsius("ambient (°C)", ambient)
         non_negative("air (W/(m2 K))", air)
@@ -105,7 +111,7 @@ class ThermalTouch:
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
         self._glued = glued_elements(model, self._shapes, ambient)
-        self._many, count = worlds is not None, worlds or 1
+        self._many, count = worlds is not None, int(worlds or 1)
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
         self._ambient = ambient
@@ -142,12 +148,12 @@ class ThermalTouch:
         self._time, self._started = np.zeros(count), False
         self._taken = np.zeros(1, np.int64)  # samples of the next reading
         self._steps = np.array([self._step, _ON_TIME * self._step])
-        self._heard: mujoco.MjData | None = None  # the last update's, which are of this model
+        self._heard: object = _NOBODY  # the last update's data, which are of this model
         self._fresh = (
             True  # nothing has been updated since the start: whether pads are inside objects is not known
         )
-        # the data whose steps one call hears, and what it takes; None until all of it is known, and after each change
-        self._near: mujoco.MjData | None = None
+        # the data whose steps one call hears, and what it takes; nobody's until all is known, and after each change
+        self._near: object = _NOBODY
         self._hearing: Hearing | None = None
         self._near_at = 0
         self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
@@ -231,7 +237,11 @@ class ThermalTouch:
         if data is not None:
             if self._many:
                 raise InvalidValueError("many worlds have no MjData: reset(worlds=...)")
+            if not isinstance(data, mujoco.MjData):
+                raise InvalidValueError(f"reset takes the simulation's MjData, got {type(data).__name__}")
             self._check(data)
+        _mapping("temperatures", temperatures or {}, '{"can": 60.0}')
+        _mapping("objects", objects or {}, '{"can": "aluminium"}')
         names = self.objects
         made_of, warm = materials_by_world(objects or {}, self._shapes, len(rows), self._ambient)
         first = self._first[rows]
@@ -248,12 +258,20 @@ class ThermalTouch:
                 celsius(f"temperatures[{name!r}] (°C)", float(one))
             first[:, names.index(name)] = value
         if seed is not None:
-            seeds = [seed + w for w in rows] if isinstance(seed, int | np.integer) else list(seed)
+            try:
+                told = np.array(seed if isinstance(seed, int | np.integer) else list(seed))
+            except TypeError:
+                told = np.array("")
+            if told.dtype.kind not in "iu" or told.ndim > 1 or told.size == 0 or told.min() < 0:
+                raise InvalidValueError(f"seed must be whole numbers from 0 on, got {seed!r}")
+            seeds = [int(told) + w for w in rows] if told.ndim == 0 else told.tolist()
             if len(seeds) != len(rows):
                 raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
             for w, own in zip(rows, seeds, strict=True):
                 self._electronics.noise.seed(w, own)
-        self._fresh, self._near = True, None
+        # a grasp that simply goes on has been heard since before it sank in
+        goes_on = data is not None and data is self._heard and data.time == self._time.item()
+        self._fresh, self._near = self._fresh or not goes_on, _NOBODY
         self._make(rows, made_of, warm)
         self._heat.reset(rows, first)
         reader = self._reader
@@ -387,7 +405,7 @@ class ThermalTouch:
                 f"the state is of other fingertips, objects or worlds: {state.sums[0].shape[:3]} in place of "
                 f"{self._reader.touches.shape[:3]}"
             )
-        self._near = None
+        self._near = _NOBODY
         self._time[:], self._started, self._reading = state.time, state.started, state.reading
         self._heat.set_state(state.heat)
         self._materials, self._first[:] = list(state.heat.materials), state.first
@@ -464,6 +482,8 @@ class ThermalTouch:
             self._check(data)
             self._heard = data
         now = data.time
+        if not np.isfinite(now):
+            raise InvalidValueError(f"the data's time is {now}: the simulation broke down; reset both")
         if self._fresh and data.xmat[-1].any():  # zeros where nothing has been computed yet
             refuse_overlap(self._model, data, self._pads, self._shapes)
             self._fresh = False
@@ -490,7 +510,7 @@ class ThermalTouch:
     def _sample(self) -> None:
         """A whole sample has passed: heat, then the converter."""
         reader, heat = self._reader, self._heat
-        self._near = None  # heat may have made its arrays anew
+        self._near = _NOBODY  # heat may have made its arrays anew
         heat.advance(reader.touches, reader.substeps)
         reader.substeps = 0
         if heat.backed:
@@ -505,9 +525,9 @@ class ThermalTouch:
     def _listen(self) -> None:
         """From now on one call hears a step of the last update's data, where MuJoCo's bindings say where they are."""
         data, reader, electronics = self._heard, self._reader, self._electronics
-        if data is None or self._fresh or data is self._near:
+        if not isinstance(data, mujoco.MjData) or self._fresh or data is self._near:
             return
-        self._near = None
+        self._near = _NOBODY
         memory = reader.memory(data)
         if memory.clock is None:
             return
@@ -524,8 +544,7 @@ class ThermalTouch:
     def _told(self, told: int) -> TouchReading:
         """What is left to do where `hear` has told of anything."""
         if told == BROKEN:
-            assert self._near is not None
-            raise broke_down(self._near.time)
+            raise broke_down(self._time.item())
         if told == FULL:
             self._sample()
             self._listen()
@@ -539,7 +558,7 @@ class ThermalTouch:
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
         self.__dict__.update(state)
-        self._near = self._hearing = None
+        self._near, self._hearing = _NOBODY, None
 
     def _read(self) -> TouchReading:
         return self._electronics.reading(self._time, self._reader.broken)
@@ -547,6 +566,8 @@ class ThermalTouch:
 
 def whole_steps(dt: float, step: float) -> int:
     """Steps of the model, s, in a dt."""
+    if dt > _LONGEST:
+        raise InvalidValueError(f"dt={dt:g} s is too long between readings: give at most {_LONGEST:g}")
     count = round(dt / step)
     if count < 1 or abs(dt / step - count) > _WHOLE * count:
         nearest = max(count, 1) * step
@@ -577,6 +598,12 @@ def _chain(chain: SignalChain | str) -> SignalChain:
     return SIGNAL_CHAINS[chain]
 
 
-def _shape(model: mujoco.MjModel) -> tuple[bytes, tuple[int, ...]]:
+def _mapping(name: str, value: object, example: str) -> None:
+    if not isinstance(value, Mapping):
+        raise InvalidValueError(f"{name} must be a mapping such as {example}, got {type(value).__name__}")
+
+
+def _shape(model: mujoco.MjModel) -> tuple[object, ...]:
     """By which a copy of a model is known from another one; `MjModel.signature` came after MuJoCo 3.3.0."""
-    return model.names, (model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom)
+    counts = model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom
+    return model.names, counts, model.geom_type.tobytes(), model.geom_size.tobytes()

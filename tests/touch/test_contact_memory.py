@@ -67,9 +67,21 @@ def test_a_copy_reads_its_own_contacts() -> None:
     assert (expected.force > 1).all()
 
 
-def test_bindings_that_do_not_say_where_an_mjdata_is_serve_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_clock_is_the_datas_time_and_number_of_contacts() -> None:
+    for steps in (1, 200):
+        _, data, _ = pressed(steps)
+        clock = memory.ContactMemory(data).clock
+        assert clock is not None
+        assert ctypes.c_double.from_address(clock[0]).value == data.time
+        assert ctypes.c_int32.from_address(clock[1]).value == data.ncon
+
+
+@pytest.mark.parametrize("unknown", ["_places", "_clock"])
+def test_bindings_that_do_not_say_where_an_mjdata_is_serve_too(
+    unknown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     _, _, touch = pressed(200)
-    monkeypatch.setattr(memory, "_places", lambda: None)
+    monkeypatch.setattr(memory, unknown, lambda: None)
     _, _, other = pressed(200)
     np.testing.assert_array_equal(other.reading.voltage, touch.reading.voltage)
     np.testing.assert_array_equal(other.reading.force, touch.reading.force)

@@ -348,6 +348,11 @@ WRONG = [
     ({"tolerance": -1.0}, InvalidValueError, "tolerance"),
     ({"chain": "ads"}, UnknownNameError, "ads1115"),
     ({"ambient": -300.0}, InvalidValueError, "ambient"),
+    ({"dt": 1e300}, InvalidValueError, "too long"),
+    ({"fingertips": ["thumb_pad"]}, InvalidValueError, "mapping"),
+    ({"objects": ["can"]}, InvalidValueError, "mapping"),
+    ({"worlds": 0}, InvalidValueError, "worlds"),
+    ({"worlds": True}, InvalidValueError, "worlds"),
 ]
 
 
@@ -363,6 +368,73 @@ def test_data_of_another_model_are_refused() -> None:
     other = mujoco.MjModel.from_xml_string(ONE_PRESS.format(cone="elliptic"))
     with pytest.raises(InvalidValueError, match="another model"):
         make(model).update(mujoco.MjData(other))
+
+
+def test_a_model_of_the_same_names_and_other_sizes_is_another_one() -> None:
+    model, _ = hand.hand()
+    other, data = hand.hand()
+    other.geom_size[other.geom("thumb_pad").id] *= 2.0
+    with pytest.raises(InvalidValueError, match="another model"):
+        make(model).update(data)
+
+
+@pytest.mark.parametrize("what", [None, 3.0, "model"])
+def test_what_is_no_data_is_refused(what: object) -> None:
+    model, data = hand.hand()
+    touch = make(model)
+    given = model if what == "model" else what
+    for _ in range(2):  # before any step and after one
+        with pytest.raises(InvalidValueError, match="takes the simulation's MjData"):
+            touch.update(given)  # pyright: ignore[reportArgumentType]
+        run(model, data, touch, 0.01)
+    data.time = np.nan
+    with pytest.raises(InvalidValueError, match="time is nan"):
+        touch.update(data)
+
+
+WRONG_RESETS = [
+    {"temperatures": {"can": np.nan}},
+    {"temperatures": 5.0},
+    {"objects": ["can"]},
+    {"seed": "a"},
+    {"seed": -1},
+    {"seed": [1, 2]},
+    {"data": 5},
+]
+
+
+@pytest.mark.parametrize("words", WRONG_RESETS)
+def test_a_reset_that_cannot_be_is_refused(words: dict) -> None:
+    model, _ = hand.hand()
+    with pytest.raises(InvalidValueError):
+        make(model).reset(**words)
+
+
+def test_a_grasp_that_has_sunk_in_may_be_reset_and_goes_on() -> None:
+    text = ONE_PRESS.format(cone="elliptic")
+    model = mujoco.MjModel.from_xml_string(text)
+    model.geom_solref[:] = 0.05, 1.0  # so soft that the pad sinks in by more than a contact does
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips={"tip": "tip"}, objects={"block": "glass"})
+    data.ctrl[:] = 20.0
+    run(model, data, touch, 1.0)
+    assert data.contact.dist.min() < -0.005
+    touch.reset(data)
+    run(model, data, touch, 0.1)
+    assert touch.reading.touching == ("block",)
+
+
+def test_a_reset_sees_the_models_friction_cones() -> None:
+    model, data = hand.hand()
+    touch = make(model)
+    hand.press(data, 8.0)
+    run(model, data, touch, 0.4)
+    before = touch.reading.force
+    kinds = mujoco.mjtCone.mjCONE_PYRAMIDAL, mujoco.mjtCone.mjCONE_ELLIPTIC
+    model.opt.cone = kinds[int(model.opt.cone == kinds[0])]
+    touch.reset(data)
+    run(model, data, touch, 0.4)
+    np.testing.assert_allclose(touch.reading.force, before, rtol=0.1)
 
 
 def test_a_force_that_is_not_finite_is_told() -> None:

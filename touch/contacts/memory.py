@@ -128,7 +128,7 @@ def _clock() -> tuple[int, int] | None:
     if places is None:
         return None
     data, seen = mujoco.MjData(_scene()), set()
-    whole = (ctypes.c_uint8 * (_WORD * min(places))).from_address(data._address)
+    whole = memoryview((ctypes.c_uint8 * (_WORD * min(places))).from_address(data._address))
     times, counts = np.frombuffer(whole, float), np.frombuffer(whole, np.int32)
     is_time, is_count = np.ones(len(times), bool), np.ones(len(counts), bool)
     for n, (height, turn) in enumerate(_POSES):

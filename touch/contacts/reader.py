@@ -86,7 +86,6 @@ class ContactReader:
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
         self._bend, self._curve = bends(pads), curves(model, pads, shapes)
-        self._pyramidal = int(model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
         self.set_materials(range(worlds), [tuple(shape.material for shape in shapes)] * worlds)
         self._of: mujoco.MjData | None = None
         self._memory: ContactMemory | None = None
@@ -108,13 +107,14 @@ class ContactReader:
         self._point()
 
     def _point(self) -> None:
-        """Says where the first world's arrays are."""
+        """Says where the first world's arrays are, and whether the model's friction cones are pyramids now."""
         self._own_laws = self._laws[self._which[0]]
         arrays = (
             *(self._role, self._pads, self._met, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._own_laws),
         )
-        sizes = len(self._role), *self.touches.shape[1:3], len(self._met), self._pyramidal
+        pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
+        sizes = len(self._role), *self.touches.shape[1:3], len(self._met), pyramidal
         self._own = table(arrays, sizes)
         self._own_address = self._own.ctypes.data
 
@@ -157,10 +157,11 @@ class ContactReader:
         )
 
     def clear(self) -> None:
-        """Sums start anew."""
+        """Sums start anew, with the model's kind of friction cones as it is now."""
         self.touches[:] = 0.0
         self.beside[:] = 0.0
         self.substeps = 0
+        self._point()
 
     @property
     def substeps(self) -> int:
