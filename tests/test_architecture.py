@@ -96,6 +96,7 @@ ROOMS = {
         "draw",
         "fixed_touch",
         "readings",
+        "heard",
         "thermal_touch",
         "engine",
         "wrappers",
