@@ -44,9 +44,9 @@ def violations(
     """Violations in the named rows (those still running) of one step; first: the episode of row 0. Broken simulations
     always count, the other rules where `check` is set."""
     found: list[tuple[int, str]] = []
-    errors, said = info.get("error"), info.get("_error")
-    if errors is not None and said is not None:
-        found += [(row, str(errors[row])) for row in rows if said[row]]
+    errors, failed = info.get("error"), info.get("_error")
+    if errors is not None and failed is not None:
+        found += [(row, str(errors[row])) for row in rows if failed[row]]
     if check:
         found += _values(env, observation, reward, rows)
         batch = getattr(env.unwrapped, "batch", None)

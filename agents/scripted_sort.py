@@ -91,11 +91,11 @@ class ScriptedSort:
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         """Whether what a row has just felt is to be lifted."""
-        side, felt = self._side[row], self._felt[row]
+        side, volts = self._side[row], self._felt[row]
         if self._expected is not None:
             # An object that was not pressed is taken on trust: it must be the other one.
-            return bool(side == 1 or goal[np.argmin(abs(self._expected - felt[side]))] > 0)
-        return bool(not np.isnan(felt).any() and felt[side] < felt[1 - side])
+            return bool(side == 1 or goal[np.argmin(abs(self._expected - volts[side]))] > 0)
+        return bool(not np.isnan(volts).any() and volts[side] < volts[1 - side])
 
 
 def expected_voltages(layout: Any) -> np.ndarray:

@@ -128,10 +128,10 @@ def _spec(plan: Plan) -> EnvSpec | None:
     """What makes the environment again, by names; None where a material is not the package's, for JSON cannot hold
     it."""
     try:
-        ours = not plan.keywords and all(material(one.name) == one for one in plan.materials)
+        by_name = not plan.keywords and all(material(one.name) == one for one in plan.materials)
     except UnknownNameError:
-        ours = False
-    if not ours:
+        by_name = False
+    if not by_name:
         return None
     spec = copy.deepcopy(gymnasium.spec(plan.env_id))
     spec.kwargs |= {"mode": plan.mode, "material": [one.name for one in plan.materials]}

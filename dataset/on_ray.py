@@ -98,10 +98,10 @@ def _knock(address: str) -> None:
 @contextmanager
 def _environment(settings: dict[str, str]) -> Iterator[None]:
     """Variables that the processes started meanwhile inherit; those the user has set stay."""
-    ours = {name: value for name, value in settings.items() if name not in os.environ}
-    os.environ.update(ours)
+    added = {name: value for name, value in settings.items() if name not in os.environ}
+    os.environ.update(added)
     try:
         yield
     finally:
-        for name in ours:
+        for name in added:
             os.environ.pop(name, None)

@@ -153,8 +153,8 @@ class Plan:
             }
         known = bool(self.sources and other.sources)
         if found.pop("sources", None) and known:
-            ours = f"{self.sources[:8]} ({self.versions.get('thermograsp')})"
-            found["hash of thermograsp's sources"] = f"{ours}, not {other.sources[:8]}"
+            this_hash = f"{self.sources[:8]} ({self.versions.get('thermograsp')})"
+            found["hash of thermograsp's sources"] = f"{this_hash}, not {other.sources[:8]}"
         if found.pop("versions", None):
             for name in sorted({*self.versions, *other.versions} - ({"thermograsp"} if known else set())):
                 one_side, other_side = self.versions.get(name), other.versions.get(name)

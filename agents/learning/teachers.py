@@ -98,8 +98,10 @@ class SortTeacher(ScriptedSort):
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         del goal
-        felt = ~np.isnan(self._felt[row])
-        enough = felt.all() if self._batch.plant.layout.pair.goal == "hotter" else felt[self._side[row]]
+        measured = ~np.isnan(self._felt[row])
+        enough = (
+            measured.all() if self._batch.plant.layout.pair.goal == "hotter" else measured[self._side[row]]
+        )
         return bool(enough) and self._side[row] == self._batch.reading.truth["right"][row]
 
 

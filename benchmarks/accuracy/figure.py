@@ -141,20 +141,20 @@ def _panel(axes: Axes, name: str, points: Sequence[Record], bottom: bool) -> Non
         if not chain:
             continue
         x, y = [p["seconds_per_second"] for p in chain], [p["error_K"] for p in chain]
-        ours = family == "auto"
+        auto = family == "auto"
         axes.plot(
             x,
             y,
             marker=marker,
             color=color,
-            ms=8 if ours else 5,
-            mfc="white" if ours else color,
-            mew=1.8 if ours else 0,
-            lw=1.6 if ours else 0.0 if family == "network" else 0.9,
+            ms=8 if auto else 5,
+            mfc="white" if auto else color,
+            mew=1.8 if auto else 0,
+            lw=1.6 if auto else 0.0 if family == "network" else 0.9,
             alpha=1 if color in (OURS, FORMS) else 0.9,
-            zorder=4 if ours else 3,
+            zorder=4 if auto else 3,
         )
-        if ours:
+        if auto:
             for p in chain:
                 labels.insert(
                     0,

@@ -48,18 +48,18 @@ def endure(steps: int, seed: int, shown: Callable[[], None]) -> Endurance:
     bare.copy(mechanics, mechanics.state())
     touches, relative = 0, []
     for _ in range(_BINS):
-        ours, alone = 0.0, 0.0
+        with_touch, alone = 0.0, 0.0
         for k in range(steps // _BINS):
             action = closed if k % _PERIOD < _PERIOD // 2 else opened
             begun = time.process_time()
             batch.step(action)
-            ours += time.process_time() - begun
+            with_touch += time.process_time() - begun
             inputs = inputs_of(mechanics.model, mechanics.state())
             begun = time.process_time()
             bare.step(inputs)
             alone += time.process_time() - begun
             assert batch.reading is not None
             touches += sum(kind == "touch" for kind, _ in batch.reading.truth["events"][0])
-        relative.append(ours / alone)
+        relative.append(with_touch / alone)
         shown()
     return Endurance(steps, touches, tuple(relative))

@@ -31,8 +31,8 @@ _SUBSTEPS = 20  # of an environment step
 def wrapped(name: str) -> Pair:
     """The environment's own steps, with and without the wrapper."""
     plain = _made()
-    felt = AddThermalObservation(_made(), **_WORDS)
-    for env in (plain, felt):
+    with_touch = AddThermalObservation(_made(), **_WORDS)
+    for env in (plain, with_touch):
         _grasp(env)
 
     def bare(steps: int) -> None:
@@ -41,9 +41,9 @@ def wrapped(name: str) -> Pair:
 
     def touch(steps: int) -> None:
         for _ in range(steps):
-            felt.step(_HOLD)
+            with_touch.step(_HOLD)
 
-    at = [env.unwrapped.data for env in (plain, felt)]
+    at = [env.unwrapped.data for env in (plain, with_touch)]
     return Pair(name, "step of 20 substeps", bare, touch, lambda: np.array_equal(at[0].qpos, at[1].qpos))
 
 
@@ -60,7 +60,7 @@ def inside(name: str) -> Pair:
         for field in ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat", "qacc_warmstart"):
             getattr(data, field)[:] = getattr(held.data, field)
         datas.append(data)
-    (without, with_heat), (alone, ours) = models, datas
+    (without, with_heat), (alone, heated) = models, datas
 
     def bare(steps: int) -> None:
         for _ in range(steps):
@@ -68,9 +68,9 @@ def inside(name: str) -> Pair:
 
     def touch(steps: int) -> None:
         for _ in range(steps):
-            mujoco.mj_step(with_heat, ours, _SUBSTEPS)
+            mujoco.mj_step(with_heat, heated, _SUBSTEPS)
 
-    return Pair(name, "20 substeps", bare, touch, lambda: np.array_equal(alone.qpos, ours.qpos))
+    return Pair(name, "20 substeps", bare, touch, lambda: np.array_equal(alone.qpos, heated.qpos))
 
 
 def _made() -> gymnasium.Env:

@@ -102,10 +102,10 @@ def start_up(repeats: int, shown: Callable[[str], None]) -> StartUp:
     _fresh(first_step)
     imports = [_fresh(_IMPORTS) for _ in range(repeats)]
     steps = [_fresh(first_step) for _ in range(repeats)]
-    gymnasium, ours = np.median([each[:2] for each in imports], axis=0)
+    gymnasium, thermograsp = np.median([each[:2] for each in imports], axis=0)
     make, reset, step = np.median(steps, axis=0)
     return StartUp(
-        float(gymnasium), float(ours), tuple(imports[0][2]), float(make), float(reset), float(step)
+        float(gymnasium), float(thermograsp), tuple(imports[0][2]), float(make), float(reset), float(step)
     )
 
 

@@ -34,7 +34,7 @@ def measured(quick: bool, seed: int, progress: Progress) -> Record:
         )
         modes = compare(*((2, 2, 10) if quick else (16, 10, 50)), seed, lambda what: advance(what, 0))
         advance("", 1)
-        felt = scenes(quick, seed, advance)
+        scene_speeds = scenes(quick, seed, advance)
         used = memory((64, 256) if quick else counts, lambda what: advance(what, 0))
         advance("", 1)
     return {
@@ -44,7 +44,7 @@ def measured(quick: bool, seed: int, progress: Progress) -> Record:
         "speeds": [{**asdict(s), "ratio_with_resets": s.ratio_with_resets, "parts": s.parts} for s in speeds],
         "drawn": asdict(anywhere),
         "modes": [asdict(mode) for mode in modes],
-        "scenes": [asdict(each) for each in felt],
+        "scenes": [asdict(each) for each in scene_speeds],
         "endurance": {**asdict(endurance), "growth": endurance.growth},
         "memory": asdict(used),
         "start_up": {**asdict(start), "to_first_step": start.to_first_step},

@@ -59,14 +59,14 @@ def _loop(name: str) -> Pair:
         for _ in range(steps):
             mujoco.mj_step(model, bare)
 
-    def felt(steps: int) -> None:
+    def with_touch(steps: int) -> None:
         for _ in range(steps):
             mujoco.mj_step(model, data)
             touch.update(data)
 
     alone(_SETTLE)
-    felt(_SETTLE)
-    return Pair(name, "mj_step", alone, felt, lambda: np.array_equal(data.qpos, bare.qpos))
+    with_touch(_SETTLE)
+    return Pair(name, "mj_step", alone, with_touch, lambda: np.array_equal(data.qpos, bare.qpos))
 
 
 def _worlds(name: str) -> Pair:
@@ -74,25 +74,27 @@ def _worlds(name: str) -> Pair:
     import mujoco.batch  # from MuJoCo 4.0 on
 
     model = prepare(_hand(), _PADS, _CAN)
-    ours = mujoco.batch.Batch(model, _WORLDS, 1)
+    recording = mujoco.batch.Batch(model, _WORLDS, 1)
     alone = mujoco.batch.Batch(_hand().compile(), _WORLDS, 1)
     touch = ThermalTouch(model, fingertips=_PADS, objects=_CAN, seed=0, worlds=_WORLDS)
     forces = np.linspace(0.5 * _FORCE, 1.5 * _FORCE, _WORLDS)[:, None]
-    positions = [each.bind("qpos") for each in (ours, alone)]
-    for each in (ours, alone):
+    positions = [each.bind("qpos") for each in (recording, alone)]
+    for each in (recording, alone):
         each.bind("ctrl")[:] = forces
 
     def bare(steps: int) -> None:
         for _ in range(steps):
             alone.step(nstep=_CALL)
 
-    def felt(steps: int) -> None:
+    def with_touch(steps: int) -> None:
         for _ in range(steps):
-            touch.update(ours.rollout(nstep=_CALL, record=("sensordata",))["sensordata"])
+            touch.update(recording.rollout(nstep=_CALL, record=("sensordata",))["sensordata"])
 
     bare(_SETTLE // _CALL)
-    felt(_SETTLE // _CALL)
-    return Pair(name, f"{_CALL} substeps", bare, felt, lambda: np.array_equal(positions[0], positions[1]))
+    with_touch(_SETTLE // _CALL)
+    return Pair(
+        name, f"{_CALL} substeps", bare, with_touch, lambda: np.array_equal(positions[0], positions[1])
+    )
 
 
 def _inside(name: str) -> Pair:
@@ -105,7 +107,7 @@ def _inside(name: str) -> Pair:
         "objects": {"object": "aluminium"},
     }
     models = install(scene_spec((ObjectSpec(),)), **words), scene_spec((ObjectSpec(),)).compile()
-    ours, alone = (mujoco.MjData(model) for model in models)
+    heated, alone = (mujoco.MjData(model) for model in models)
     for model in models:
         model.actuator("grip").forcerange[:] = -_FORCE, _FORCE
     (with_heat, without) = models
@@ -114,13 +116,13 @@ def _inside(name: str) -> Pair:
         for _ in range(steps):
             mujoco.mj_step(without, alone, _CALL)
 
-    def felt(steps: int) -> None:
+    def with_touch(steps: int) -> None:
         for _ in range(steps):
-            mujoco.mj_step(with_heat, ours, _CALL)
+            mujoco.mj_step(with_heat, heated, _CALL)
 
     bare(_SETTLE // _CALL)
-    felt(_SETTLE // _CALL)
-    return Pair(name, f"{_CALL} substeps", bare, felt, lambda: np.array_equal(ours.qpos, alone.qpos))
+    with_touch(_SETTLE // _CALL)
+    return Pair(name, f"{_CALL} substeps", bare, with_touch, lambda: np.array_equal(heated.qpos, alone.qpos))
 
 
 def _hand() -> mujoco.MjSpec:

@@ -104,10 +104,10 @@ def _normal(samples: np.ndarray, examples: np.ndarray, deviation: float) -> np.n
     mean = examples.mean(axis=0)
     centred = (examples - mean) / np.sqrt(max(len(examples) - 1, 1))
     _, scales, directions = np.linalg.svd(centred, full_matrices=False)
-    apart = samples - mean
-    along = apart @ directions.T
+    centred_samples = samples - mean
+    along = centred_samples @ directions.T
     variances = scales**2 + deviation**2
-    rest = (apart**2).sum(axis=1) - (along**2).sum(axis=1)
+    rest = (centred_samples**2).sum(axis=1) - (along**2).sum(axis=1)
     missing = samples.shape[1] - len(scales)
     squares = (along**2 / variances).sum(axis=1) + rest / deviation**2
     return -(squares + np.log(variances).sum() + 2 * missing * np.log(deviation)) / 2

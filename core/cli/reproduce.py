@@ -88,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
 def _lines(claim: Claim) -> list[str]:
     """What the paper says, what comes out, and for a statement on the experiment on how many rigs it does."""
     indent = " " * 9
-    said = textwrap.fill(
+    statement = textwrap.fill(
         f"{claim.statement} (section {claim.section})",
         110,
         initial_indent=f"{_MARKS[claim.finding.verdict]}  ",
@@ -98,11 +98,11 @@ def _lines(claim: Claim) -> list[str]:
         claim.finding.computed, 110, initial_indent=indent + "-> ", subsequent_indent=indent + "   "
     )
     if claim.support is None:
-        return [said, found, ""]
+        return [statement, found, ""]
     on_rigs = textwrap.fill(
         _supported(claim.support), 110, initial_indent=indent + "   ", subsequent_indent=indent + "   "
     )
-    return [said, found, on_rigs, ""]
+    return [statement, found, on_rigs, ""]
 
 
 def _supported(support: Support) -> str:
@@ -112,10 +112,8 @@ def _supported(support: Support) -> str:
     )
     text = f"Of the {sum(counts.values())} rigs drawn the statement {counted}."
     if support.deciding is not None:
-        name, there, elsewhere = support.deciding
-        text += (
-            f" Mostly {name} decides: its median is {there:.2g} where it holds, {elsewhere:.2g} elsewhere."
-        )
+        name, where_it_holds, elsewhere = support.deciding
+        text += f" Mostly {name} decides: its median is {where_it_holds:.2g} where it holds, {elsewhere:.2g} elsewhere."
     return text
 
 

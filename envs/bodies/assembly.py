@@ -87,11 +87,11 @@ def assembly(
     """Of an ObjectSpec's shape and parts. Raises InvalidValueError for parts that do not lie in the object, or lie
     partly in each other, and MeshError for files and surfaces that cannot serve."""
     if mesh is None:
-        own, origin = primitive_surface(shape, size), np.zeros(3)
+        outline, origin = primitive_surface(shape, size), np.zeros(3)
     else:
         whole = load_mesh(mesh, scale, pieces)
-        own, origin = Triangles(*whole.surface), np.array(whole.origin)
-    surfaces = (own, *(_surface(part, shape, scale, origin) for part in parts))
+        outline, origin = Triangles(*whole.surface), np.array(whole.origin)
+    surfaces = (outline, *(_surface(part, shape, scale, origin) for part in parts))
     within = shares_within([surface.vertices[surface.faces] for surface in surfaces])
     for number, part in enumerate(parts, 1):
         if within[number, 0] < NEARLY_ALL:
@@ -135,5 +135,5 @@ def _moments(surface: Triangles, shape: str, size: Size | None) -> tuple[float, 
     import trimesh
 
     mesh = trimesh.Trimesh(*surface, process=False)
-    own = mesh.moment_inertia / mesh.mass if size is None else unit_inertia(shape, size)
-    return float(mesh.volume), np.array(mesh.center_mass), own
+    inertia = mesh.moment_inertia / mesh.mass if size is None else unit_inertia(shape, size)
+    return float(mesh.volume), np.array(mesh.center_mass), inertia

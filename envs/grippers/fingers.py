@@ -45,11 +45,11 @@ def closing(hand: Hand, body: int, other: int) -> np.ndarray:
     """(3,) m, world: which way the body's middle goes when it approaches the other one with all actuators, and how
     far over their ranges. Zero where nothing moves it."""
     mechanism = hand.mechanism
-    here, there = hand.middle(body), hand.middle(other)
+    centre, other_centre = hand.middle(body), hand.middle(other)
 
     def place() -> tuple[np.ndarray, np.ndarray]:
         (p, r), (q, s) = mechanism.place(body), mechanism.place(other)
-        return p + r @ here, q + s @ there
+        return p + r @ centre, q + s @ other_centre
 
     mechanism.pose(mechanism.middle)
     first, target = place()
@@ -106,8 +106,8 @@ def _opposite(
         values = mechanism.middle.copy()
         values[list(facing.moves)] = end[list(facing.moves)]
         mechanism.pose(values)
-        there, turned = mechanism.place(facing.body)
-        spots.append(axes.T @ (there + turned @ facing.face.centre - origin))
+        origin_facing, axes_facing = mechanism.place(facing.body)
+        spots.append(axes.T @ (origin_facing + axes_facing @ facing.face.centre - origin))
     way = axes.T @ way
     start = max(spots, key=lambda spot: float(spot @ way))
     met = []
@@ -138,10 +138,10 @@ def chosen_face(
     if pad is None:
         return largest_face(flat_faces(parts, direction), direction)
     if isinstance(pad, str):
-        own = [(name, shape) for name, shape in parts if name == pad]
-        if not own:
+        named = [(name, shape) for name, shape in parts if name == pad]
+        if not named:
             raise unknown_name(f"geom with faces on {body!r}", pad, [name for name, _ in parts])
-        face = largest_face(flat_faces(own, direction), direction)
+        face = largest_face(flat_faces(named, direction), direction)
         if face is None:
             raise GripperError(f"geom {pad!r} of {body!r} has no flat face towards the closing direction")
         return face
@@ -209,13 +209,13 @@ def _length(hand: Hand, finger: Finger) -> float:
     if root == hand.palm:
         return 0.0
     origin, axes = mechanism.place(body)
-    length, here = 0.0, origin + axes @ finger.face.centre
+    length, point = 0.0, origin + axes @ finger.face.centre
     while True:
-        there = mechanism.data.xpos[body].copy()
-        length += float(np.linalg.norm(here - there))
+        joint = mechanism.data.xpos[body].copy()
+        length += float(np.linalg.norm(point - joint))
         if body in (root, 0):
             return length
-        here, body = there, int(model.body_parentid[body])
+        point, body = joint, int(model.body_parentid[body])
 
 
 def named_pair(hand: Hand, names: Sequence[str], pads: Sequence[Pad | None]) -> tuple[Finger, Finger]:

@@ -167,10 +167,10 @@ def parts_of(model: mujoco.MjModel, bodies: Sequence[int], first: int) -> list[t
     origin, axes = data.xpos[first], data.xmat[first].reshape(3, 3)
     found = []
     for body in bodies:
-        there, turned = data.xpos[body], data.xmat[body].reshape(3, 3)
+        position, rotated = data.xpos[body], data.xmat[body].reshape(3, 3)
         for geom in range(model.body_geomadr[body], model.body_geomadr[body] + model.body_geomnum[body]):
             shape = triangles(model, geom)
             if len(shape):
                 name = model.geom(geom).name or f"#{geom}"
-                found.append((name, (shape @ turned.T + there - origin) @ axes))
+                found.append((name, (shape @ rotated.T + position - origin) @ axes))
     return found

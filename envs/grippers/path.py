@@ -129,8 +129,8 @@ def _along(hand: Hand, fingers: tuple[Finger, Finger], postures: list[np.ndarray
     table = np.array(postures)
     span = mechanism.high - mechanism.low
     for tip in hand.tips:
-        own = [number for number in hand.moves(tip) if number not in taken]
-        if hand.digit(tip) in [finger.digit for finger in fingers] or not own:
+        free = [number for number in hand.moves(tip) if number not in taken]
+        if hand.digit(tip) in [finger.digit for finger in fingers] or not free:
             continue
         here = places[hand.root(tip)]
         leader = min(
@@ -138,7 +138,7 @@ def _along(hand: Hand, fingers: tuple[Finger, Finger], postures: list[np.ndarray
             key=lambda finger, here=here: float(np.linalg.norm(places[hand.root(finger.body)] - here)),
         )
         for follower, leading in zip(
-            _from_the_tip(hand, own), _from_the_tip(hand, leader.moves), strict=False
+            _from_the_tip(hand, free), _from_the_tip(hand, leader.moves), strict=False
         ):
             share = (table[:, leading] - mechanism.low[leading]) / span[leading]
             if _mirrored(mechanism.low[follower], mechanism.high[follower]) != _mirrored(

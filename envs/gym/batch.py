@@ -238,15 +238,15 @@ class GraspBatch:
         self.require_open("set_state")
         if not isinstance(state, BatchState):
             raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
-        own, given = self._judged, state.task
+        current, given = self._judged, state.task
         if (
-            own.dtype != given.dtype
-            or own.shape != given.shape
+            current.dtype != given.dtype
+            or current.shape != given.shape
             or self._observer.history.shape != state.history.shape
         ):
             raise InvalidValueError(
                 f"the state is of {len(given)} environments of another task or of other keywords: give one of "
-                f"{len(own)} made like these"
+                f"{len(current)} made like these"
             )
         state = copy.deepcopy(state)
         plant: Any = self.plant

@@ -390,11 +390,11 @@ class Mechanics:
     def _set_objects(self, env: int, items: tuple[ObjectSpec, ...]) -> None:
         """Write environment `env`'s row of every model field that depends on the objects."""
         self.objects[env] = items
-        own = self._differences(tuple(placeless(item) for item in items))
-        for name in own.keys() - self._expanded.keys():
+        changed = self._differences(tuple(placeless(item) for item in items))
+        for name in changed.keys() - self._expanded.keys():
             self._expanded[name] = self._batch.expand(name)
         for name, rows in self._expanded.items():
-            rows[env] = own[name] if name in own else getattr(self.model, name)[: rows.shape[1]]
+            rows[env] = changed[name] if name in changed else getattr(self.model, name)[: rows.shape[1]]
 
     def _differences(self, key: tuple[ObjectSpec, ...]) -> dict[str, np.ndarray]:
         """Model fields in which a scene of the objects `key` differs from self.model."""
@@ -405,8 +405,8 @@ class Mechanics:
             pairs = ((name, getattr(model, name)) for name in _MODEL_ARRAYS)
             # bvh_aabb goes on with the meshes' boxes, which all environments share
             bodies = int(model.body_bvhnum.sum())
-            own = {name: a for name, a in pairs if a.tobytes() != self._base[name]}
-            self._compiled.add(key, {n: a[:bodies] if n == "bvh_aabb" else a for n, a in own.items()})
+            changed = {name: a for name, a in pairs if a.tobytes() != self._base[name]}
+            self._compiled.add(key, {n: a[:bodies] if n == "bvh_aabb" else a for n, a in changed.items()})
         return self._compiled[key]
 
     def _roll(

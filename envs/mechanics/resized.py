@@ -65,10 +65,10 @@ class Resized:
             self._put(body, item)
         mujoco.mj_setConst(self._model, self._data)
         soften_alike(self._model, self._names)
-        own = {name: array for name, array in fields.items() if array.tobytes() != self._base[name]}
-        if "bvh_aabb" in own:
-            own["bvh_aabb"] = own["bvh_aabb"][: self._boxes]
-        return own
+        changed = {name: array for name, array in fields.items() if array.tobytes() != self._base[name]}
+        if "bvh_aabb" in changed:
+            changed["bvh_aabb"] = changed["bvh_aabb"][: self._boxes]
+        return changed
 
     def _put(self, body: int, item: ObjectSpec) -> None:
         model, fields = self._model, self._fields

@@ -419,8 +419,8 @@ class SimulationConfig:
                 shifts += [cause.low, cause.high]
             elif isinstance(cause, ThermostatError):
                 errors += [cause.low, cause.high]
-        own = self.object_temperature if shape.temperature is None else shape.temperature
-        around = [own + shift for shift in shifts]
+        start = self.object_temperature if shape.temperature is None else shape.temperature
+        around = [start + shift for shift in shifts]
         if self.air > 0:
             fixed = self.ambient_temperature is not None
             around += [self.room + shift for shift in ([0.0] if fixed else shifts)]

@@ -130,6 +130,6 @@ def draw_bands(rigs: Sequence[Rig], mode: Mode, effort: Effort) -> tuple[Sweep, 
     )
 
 
-def _share_above(ours: np.ndarray, theirs: np.ndarray) -> float:
-    """Of all pairs, those in which ours is the larger one: 0.5 by chance."""
-    return float((ours[:, None] > theirs[None]).mean())
+def _share_above(first: np.ndarray, second: np.ndarray) -> float:
+    """Of all pairs, those in which first is the larger one: 0.5 by chance."""
+    return float((first[:, None] > second[None]).mean())

@@ -71,16 +71,16 @@ def equation_1(_: PaperRuns) -> Finding:
     printed = max(
         float(np.max(np.abs(printed_equation_1(_FOURIER, g) - exact_drop("O", _FOURIER, g)))) for g in _GAMMAS
     )
-    ours = max(
+    solution = max(
         float(np.max(np.abs(drop_o_mode(_FOURIER, g) - exact_drop("O", _FOURIER, g)))) for g in _GAMMAS
     )
     start = float(printed_equation_1(np.array([1e-9]), -0.9)[0])
     return Finding(
         f"It is no solution: at the touch it gives 1 - 2 (1 - gamma), for gamma -0.9 {start:.2f}, where the drop "
         f"must be the whole difference, and later it is off by up to {printed:.2f} of it. The solution is T_d = dT "
-        f"(1 - (1 + gamma) sum (-gamma)^n erfc((2n + 1) L/(2 sqrt(alpha t)))), off by {ours:.1e}.",
+        f"(1 - (1 + gamma) sum (-gamma)^n erfc((2n + 1) L/(2 sqrt(alpha t)))), off by {solution:.1e}.",
         graded(printed < 1e-9),
-        {"printed_error": printed, "right_error": ours, "printed_at_touch": start},
+        {"printed_error": printed, "right_error": solution, "printed_at_touch": start},
     )
 
 

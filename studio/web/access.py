@@ -54,8 +54,8 @@ class Access:
         scheme, _, place = origin.lower().partition("://")
         port = _PORTS.get(scheme)
         forwarded = forwarded and forwarded.partition(",")[0].strip()
-        ours = [one.lower().removesuffix(port) for one in (host, forwarded) if one and port]
-        return place in ours
+        hosts = [one.lower().removesuffix(port) for one in (host, forwarded) if one and port]
+        return place in hosts
 
 
 class Allowance:

@@ -83,8 +83,8 @@ class Studio:
         hosts, origins, forwarded = (
             request.headers.get_all(name) for name in ("Host", "Origin", "X-Forwarded-Host")
         )
-        said = [(one or [None])[0] for one in (hosts, origins, forwarded)]
-        if max(map(len, (hosts, origins, forwarded))) > 1 or not self.access.trusts(*said):
+        first_of_each = [(one or [None])[0] for one in (hosts, origins, forwarded)]
+        if max(map(len, (hosts, origins, forwarded))) > 1 or not self.access.trusts(*first_of_each):
             return connection.respond(
                 HTTPStatus.FORBIDDEN, "This address or page may not talk to the studio.\n"
             )

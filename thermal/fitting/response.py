@@ -47,18 +47,18 @@ class Fraction:
 
 def fraction(matrices: np.ndarray, start: np.ndarray, terms: int = _TERMS) -> Fraction:
     """Of symmetric complex matrices (S, C, C) and a unit vector (C,): Lanczos' recursion in the bilinear product."""
-    here = np.broadcast_to(start.astype(complex), matrices.shape[:2])
-    before, root = np.zeros_like(here), np.zeros(len(matrices), complex)
+    vector = np.broadcast_to(start.astype(complex), matrices.shape[:2])
+    before, root = np.zeros_like(vector), np.zeros(len(matrices), complex)
     a, b = [], [np.ones(len(matrices), complex)]
     for _ in range(min(terms, matrices.shape[1])):
-        there = np.einsum("scd,sd->sc", matrices, here) - root[:, None] * before
-        a.append(np.einsum("sc,sc->s", here, there))
-        there = there - a[-1][:, None] * here
-        square = np.einsum("sc,sc->s", there, there)
+        residual = np.einsum("scd,sd->sc", matrices, vector) - root[:, None] * before
+        a.append(np.einsum("sc,sc->s", vector, residual))
+        residual = residual - a[-1][:, None] * vector
+        square = np.einsum("sc,sc->s", residual, residual)
         ended = np.abs(square) <= 1e-20 * np.abs(a[-1]) ** 2  # no pattern is left that u leads to
         square = np.where(ended, 0.0, square)
         root = np.sqrt(square)
-        before, here = here, np.where(ended[:, None], 0.0, there / np.where(ended, 1.0, root)[:, None])
+        before, vector = vector, np.where(ended[:, None], 0.0, residual / np.where(ended, 1.0, root)[:, None])
         b.append(square)
     return Fraction(np.array(a), np.array(b[:-1]))
 

@@ -47,8 +47,8 @@ def slow_deviations(since: np.ndarray, size: float, horizon: float) -> np.ndarra
     """(n, m) K: bumps in the logarithm of the time since (n,) s after the touch, of which random multiples add up to
     deviations of `size` K rms that change over half an e-fold of time. That is how curves of reduced models deviate."""
     centres = np.arange(np.log(_EARLIEST), np.log(horizon) + _WAVE, _WAVE)
-    apart = (np.log(np.maximum(since, 1e-9))[:, None] - centres) / _WAVE
-    bumps = np.exp(-(apart**2)) * (since[:, None] > 0)
+    offset = (np.log(np.maximum(since, 1e-9))[:, None] - centres) / _WAVE
+    bumps = np.exp(-(offset**2)) * (since[:, None] > 0)
     return bumps * (size / np.sqrt(np.sqrt(np.pi / 2)))
 
 
@@ -66,13 +66,13 @@ def gather(
     free = max(len(kelvin) - int(fit[2]), 0)
     variance = (_PRIOR_SAMPLES * noise**2 + left @ left) / (_PRIOR_SAMPLES + free)
     spread = nuisances / np.sqrt(variance)
-    seen, heard = basis / np.sqrt(variance), kelvin / np.sqrt(variance)
+    whitened_basis, whitened_data = basis / np.sqrt(variance), kelvin / np.sqrt(variance)
     # What the nuisances explain is taken out: C^-1 = 1 - N (1 + N^T N)^-1 N^T, by singular values of N.
     directions, size_of, _ = np.linalg.svd(spread, full_matrices=False)
     shrink = size_of**2 / (1 + size_of**2)
-    inside, projected = directions.T @ seen, directions.T @ heard
-    matrix = seen.T @ seen - (inside.T * shrink) @ inside
-    vector = seen.T @ heard - (inside.T * shrink) @ projected
+    inside, projected = directions.T @ whitened_basis, directions.T @ whitened_data
+    matrix = whitened_basis.T @ whitened_basis - (inside.T * shrink) @ inside
+    vector = whitened_basis.T @ whitened_data - (inside.T * shrink) @ projected
     weights, turn = np.linalg.eigh(matrix * np.outer(typical, typical))
     kept = weights > _FAINTEST**2
     root, turn = np.sqrt(weights[kept]), turn[:, kept]

@@ -124,14 +124,14 @@ def curve_library(
     stored = cached_arrays({**key, "of": "objects"}, objects, enabled=cache)
     functions = stored["functions"]
     properties = [(one.conductivity, one.volumetric_heat_capacity) for one in chosen]
-    own = cached_arrays({**key, "of": "materials", "materials": properties}, named, enabled=cache)
+    named_curves = cached_arrays({**key, "of": "materials", "materials": properties}, named, enabled=cache)
     axis = (float(log_resistance[0]), float(log_resistance[1] - log_resistance[0]))
     return CurveLibrary(
         knots,
         functions,
         log_effusivity,
         CurveTable(stored["coefficients"], axis, 2 * _WIDEST / (_CAPACITIES - 1)),
-        CurveTable(own["coefficients"], axis, 1.0),
+        CurveTable(named_curves["coefficients"], axis, 1.0),
     )
 
 

@@ -96,9 +96,9 @@ class Answer:
         settling = -np.expm1(-rates * time) / rates
         if np.isfinite(bandwidth):
             corner = 2 * np.pi * bandwidth
-            apart = corner - rates
-            apart = np.where(np.abs(apart) < 1e-6 * corner, 1e-6 * corner, apart)
-            settling = settling - (np.exp(-rates * time) - np.exp(-corner * time)) / apart
+            gap = corner - rates
+            gap = np.where(np.abs(gap) < 1e-6 * corner, 1e-6 * corner, gap)
+            settling = settling - (np.exp(-rates * time) - np.exp(-corner * time)) / gap
         return settling @ share
 
 

@@ -145,8 +145,8 @@ def _weigher(recordings: Recordings) -> Callable[[np.ndarray, np.ndarray], np.nd
     def weigh(errors: np.ndarray, drawn: np.ndarray) -> np.ndarray:
         rows, means = [], []
         counts = {int(r): int(np.sum(drawn == r)) for r in np.unique(drawn)}
-        own = {int(r): int(np.sum(recordings.run == r)) for r in np.unique(recordings.run)}
-        share = np.array([counts.get(int(r), 0) / own[int(r)] for r in recordings.run])
+        recorded = {int(r): int(np.sum(recordings.run == r)) for r in np.unique(recordings.run)}
+        share = np.array([counts.get(int(r), 0) / recorded[int(r)] for r in recordings.run])
         for label in recordings.labels:
             chosen = recordings.label == label
             weights = share[chosen]
@@ -171,9 +171,9 @@ def _draws(
     base = errors(x)
     slopes = []
     for i in moving:
-        there = x.copy()
-        there[i] += _STEP
-        slopes.append((errors(there) - base) / _STEP)
+        moved = x.copy()
+        moved[i] += _STEP
+        slopes.append((errors(moved) - base) / _STEP)
     runs = np.unique(recordings.run)
     drawn = np.repeat(x[None], _DRAWS, axis=0)
     rows = {int(r): recordings.run[recordings.run == r] for r in runs}

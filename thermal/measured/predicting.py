@@ -126,9 +126,9 @@ def warmest_allowed(recordings: Recordings) -> float:
 def best_temperature(recordings: Recordings, cold: np.ndarray, slope: np.ndarray) -> float:
     """°C at which the mean drop fits best, between COLDEST and warmest_allowed. cold: curves at _TWO[0]; slope: by the
     sample's temperature."""
-    there = drops_of(recordings, slope).mean(axis=0)
+    slope_drops = drops_of(recordings, slope).mean(axis=0)
     missing = (recordings.drops - drops_of(recordings, cold)).mean(axis=0)
-    best = _TWO[0] + float(there @ missing) / float(there @ there)
+    best = _TWO[0] + float(slope_drops @ missing) / float(slope_drops @ slope_drops)
     return float(np.clip(best, COLDEST, warmest_allowed(recordings)))
 
 

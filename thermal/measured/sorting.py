@@ -88,8 +88,8 @@ def sort_touches(
 
 def confusion(recordings: Recordings, labels: Sequence[str], probability: np.ndarray) -> Confusion:
     """The most probable label against the true one."""
-    said = np.asarray(labels)[probability.argmax(axis=1)]
-    table = [[int(np.sum((recordings.label == a) & (said == b))) for b in labels] for a in labels]
+    likeliest = np.asarray(labels)[probability.argmax(axis=1)]
+    table = [[int(np.sum((recordings.label == a) & (likeliest == b))) for b in labels] for a in labels]
     return Confusion(tuple(labels), np.array(table))
 
 
@@ -128,8 +128,8 @@ def _temperatures(what: Touched) -> tuple[np.ndarray, np.ndarray]:
     return grid, weights / weights.sum()
 
 
-def _passive_evidence(moved: np.ndarray, own: np.ndarray, grid: np.ndarray) -> np.ndarray:
-    """(B, G) log density of what the passive sensor moved by (B,) K, from own (B,) °C."""
+def _passive_evidence(moved: np.ndarray, passive: np.ndarray, grid: np.ndarray) -> np.ndarray:
+    """(B, G) log density of the passive sensor's change of `moved` (B,) K, which began at `passive` (B,) °C."""
     shares = np.linspace(*_SHARES, 19)
-    way = shares * (grid - own[:, None])[..., None]
+    way = shares * (grid - passive[:, None])[..., None]
     return np.logaddexp.reduce(-(((moved[:, None, None] - way) / _PASSIVE_NOISE) ** 2) / 2, axis=-1)

@@ -120,7 +120,7 @@ class FilledBody:
         def turned(rows: np.ndarray) -> np.ndarray:
             return np.concatenate((rows[..., :order] @ self.turn[:order], rows[..., order:]), axis=-1)
 
-        def own(row: np.ndarray) -> np.ndarray:
+        def on_object(row: np.ndarray) -> np.ndarray:
             return np.concatenate((row, np.zeros(len(empty.rates) - order)))
 
         return replace(
@@ -133,8 +133,8 @@ class FilledBody:
             object_heat=turned(empty.object_heat),
             sensor_surface=turned(empty.sensor_surface),
             object_surface=turned(empty.object_surface),
-            air_loss=own(self.air_loss),
-            reservoir=own(self.reservoir),
+            air_loss=on_object(self.air_loss),
+            reservoir=on_object(self.reservoir),
         )
 
 

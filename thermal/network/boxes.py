@@ -57,7 +57,7 @@ def box_choice(geometry: Geometry, demand: Demand, air: float) -> Choice | None:
             side = Side(body.rates, body.ports, {**body.outputs, "loss": lost}, box.misfit)
             return joined(geometry, side, sensor, patterns)
 
-        system, apart = trimmed(
+        system, error = trimmed(
             geometry,
             network_of_tip(tips[0].side),
             ThermalNetwork(box.rates, box.ports, np.zeros((box.ports.shape[1],) * 2), held),
@@ -65,7 +65,7 @@ def box_choice(geometry: Geometry, demand: Demand, air: float) -> Choice | None:
             demand.tolerance - share,
             join,
         )
-    return Choice(system, share + apart)
+    return Choice(system, share + error)
 
 
 def lumped_air_error(geometry: Geometry, demand: Demand, air: float) -> float:
@@ -115,14 +115,14 @@ def box_system(geometry: Geometry, level: Resolution, air: float) -> ContactSyst
     not reach under them."""
     (width, depth, thickness), patches = geometry.object_size, _patches(geometry)
     first, second = patches.half[0].tolist()
-    own = Footprint(_covered(geometry), (width / 2, depth / 2), (first, second))
+    footprint = Footprint(_covered(geometry), (width / 2, depth / 2), (first, second))
     spot = Spot(
         geometry.material.conductivity,
         geometry.material.volumetric_heat_capacity,
         (width, depth),
         thickness,
-        own,
-        own if geometry.fingertips == 2 else None,
+        footprint,
+        footprint if geometry.fingertips == 2 else None,
     )
     touching = tip_at(geometry.stack, spot, level)
     tips = (touching,) * geometry.fingertips

@@ -67,11 +67,11 @@ def choose(samples: GeometrySamples, demand: Demand) -> Choice:
         system = assemble(geometry, networks)
         error = 0.0
         for case in order:
-            apart = np.abs(
+            difference = np.abs(
                 _response(system.rates, system.ports, system.drop[0], geometry, demand, *cases[case])
                 - reference[case]
             )
-            error = max(error, float(np.max(apart)))
+            error = max(error, float(np.max(difference)))
             if error + floor > demand.tolerance:
                 # what this candidate fails on, the next one is asked first
                 order.remove(case)

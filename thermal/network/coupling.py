@@ -69,9 +69,9 @@ def step(
     # steps would make a difference of large numbers: states and flows then balance to round-off.
     decay = -system.rates * state
     start = conductance * (difference - state @ ports)
-    heard = np.einsum("nm,qn,bn->bqm", ports, system.scale, decay)
+    at_ports = np.einsum("nm,qn,bn->bqm", ports, system.scale, decay)
     matrix = dt * conductance[:, None, :, None] * system.gram + np.eye(ports.shape[1])
-    drive = start[:, None] - (dt * conductance)[:, None] * heard
+    drive = start[:, None] - (dt * conductance)[:, None] * at_ports
     flows = np.linalg.solve(matrix, drive[..., None])[..., 0]
     solved = system.scale * (decay[:, None] + np.einsum("nm,bqm->bqn", ports, flows))
     change = -2 * dt * np.einsum("q,bqn->bn", WEIGHTS, solved).real

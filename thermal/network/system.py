@@ -150,16 +150,16 @@ def with_sensors(
     touched: (F, K, P) its ports at each fingertip. heat: (K,) J. orders: of its even and odd part (None: one body)."""
     (fingertips, count, modes), k = touched.shape, sensor.order
     total = count + fingertips * k
-    own = [slice(count + f * k, count + (f + 1) * k) for f in range(fingertips)]
+    of_tip = [slice(count + f * k, count + (f + 1) * k) for f in range(fingertips)]
     ports = np.zeros((total, fingertips * modes))
     ports[:count] = np.hstack(list(touched))
     for f in range(fingertips):
-        ports[own[f], f * modes : (f + 1) * modes] = -sensor.ports
+        ports[of_tip[f], f * modes : (f + 1) * modes] = -sensor.ports
 
     def on_sensors(row: np.ndarray) -> np.ndarray:
         placed = np.zeros((fingertips, total))
         for f in range(fingertips):
-            placed[f, own[f]] = row
+            placed[f, of_tip[f]] = row
         return placed
 
     def on_object(rows: np.ndarray) -> np.ndarray:

@@ -51,14 +51,14 @@ def trimmed(
         found = _cheapest(geometry, bodies, demand, exact, within)
         if found is None:
             continue
-        vectors, apart = found
+        vectors, error = found
         parts = [
             body.projected(basis) for body, basis in zip((bodies.sensor, bodies.box), vectors, strict=True)
         ]
         system = join(parts[0], parts[1], count)
         if system.orders.multiply_adds >= best.orders.multiply_adds:
             break
-        best, least = system, apart
+        best, least = system, error
     return best, least
 
 
@@ -70,9 +70,9 @@ def _together(
     for network, basis in zip((sensor, box), vectors, strict=True):
         rates, turn = np.linalg.eigh((basis.T * network.rates) @ basis)
         parts.append((rates, basis @ turn))
-    (own, on_sensor), (shared, on_box) = parts
+    (rates_of_tip, on_sensor), (rates_of_box, on_box) = parts
     ports = on_sensor.T @ sensor.ports
-    first, count = len(shared), len(own)
+    first, count = len(rates_of_box), len(rates_of_tip)
     total = np.zeros((first + fingertips * count, box.ports.shape[1]))
     total[:first] = on_box.T @ box.ports
     for f in range(fingertips):
@@ -80,7 +80,7 @@ def _together(
         total[states, f * ports.shape[1] : (f + 1) * ports.shape[1]] = -ports
     row = np.zeros(len(total))
     row[first : first + count] = sensor.outputs["drop"] @ on_sensor
-    return np.concatenate((shared, np.tile(own, fingertips))), total, row
+    return np.concatenate((rates_of_box, np.tile(rates_of_tip, fingertips))), total, row
 
 
 def _on_first(
@@ -97,8 +97,8 @@ def _on_first(
     even = np.zeros(fingertips * count)
     even[::count] = 1.0
     for h in [each for each in demand.conductances if each > 0] or [_UNTOUCHED]:
-        own = across + np.eye(count) / (h * geometry.area)
-        one = through[:, :count, :count] + own
+        tip_side = across + np.eye(count) / (h * geometry.area)
+        one = through[:, :count, :count] + tip_side
         flow = np.zeros((len(MOMENTS), fingertips * count))
         flow[:, :count] = np.linalg.solve(one, even[:count, None])[..., 0]
         one_tip.append(flow)
@@ -106,7 +106,7 @@ def _on_first(
             both = through.copy()
             for f in range(fingertips):
                 tip = slice(f * count, (f + 1) * count)
-                both[:, tip, tip] += own
+                both[:, tip, tip] += tip_side
             all_tips.append(np.linalg.solve(both, even[:, None])[..., 0])
     flows = np.array(one_tip + all_tips)
     of_sensor = flows[:, :, :count]

@@ -111,7 +111,7 @@ def press_curves(
     )
 
 
-def apart(problem: PressProblem, t: np.ndarray) -> PressCurves:
+def untouched(problem: PressProblem, t: np.ndarray) -> PressCurves:
     """Both bodies as they were: what a conductance of 0 leaves."""
     n = len(sample_times(t))
     return PressCurves(

@@ -15,10 +15,10 @@ from scipy.special import erfc, erfcx
 
 from .closed_form import equivalent_slab
 from .column import (
-    apart,
     constant_conductance,
     no_air,
     sample_times,
+    untouched,
 )
 from .problem import PressCurves, PressProblem
 
@@ -30,14 +30,14 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     at the depths to which heat diffuses in the same time: a layer of thickness d and diffusivity alpha is
     d sqrt(alpha_equivalent/alpha) thick. Neglects: the element's far side (the
     thermostat in T mode, the object in O mode), so it holds while t << R C of the element (R, C its resistance and
-    capacity: 7 s for the seed's); what sets the layers apart; the object's thickness; heat spreading sideways.
+    capacity: 7 s for the seed's); differences between the layers; the object's thickness; heat spreading sideways.
     In O mode the object gains nothing.
     Raises InvalidValueError when the conductance is a function of time or air is not 0.
     """
     conductance = constant_conductance(problem, "half_space")
     no_air(problem, "half_space")
     if conductance == 0:
-        return apart(problem, t)
+        return untouched(problem, t)
     t = sample_times(t)
     slab, stack = equivalent_slab(problem.stack), problem.stack
     element = slab.effusivity * stack.face_area  # W s^0.5 / K

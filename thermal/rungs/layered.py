@@ -11,11 +11,11 @@ import numpy as np
 
 from .column import (
     Column,
-    apart,
     constant_conductance,
     layer_on_insulation,
     no_air,
     press_curves,
+    untouched,
 )
 from .problem import PressCurves, PressProblem
 
@@ -28,7 +28,7 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
     conductance = constant_conductance(problem, "layered")
     no_air(problem, "layered")
     if conductance == 0:
-        return apart(problem, t)
+        return untouched(problem, t)
     material, stack = problem.material, problem.stack
     body = material.layer(problem.object_size[2])
     column = Column(

@@ -17,7 +17,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..numerics import invert_many
 from ..plates import Geometry, lateral_sum, stack_impedance, stack_profile
-from .column import apart, constant_conductance, sample_times
+from .column import constant_conductance, sample_times, untouched
 from .network import geometry_of
 from .problem import PressCurves, PressProblem
 
@@ -36,7 +36,7 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
             "'network' or a grid"
         )
     if conductance == 0:
-        return apart(problem, t)
+        return untouched(problem, t)
     t = sample_times(t)
     geometry = geometry_of(problem)
     values = np.zeros((len(t), 6))
@@ -103,14 +103,14 @@ def _bonded(geometry: Geometry, conductance: float) -> Transform:
     sensed, count = geometry.stack.sensed, len(layers)
 
     def transform(s: np.ndarray) -> np.ndarray:
-        own = on_top(lambda at, kappa2: stack_impedance(layers, "adiabatic", at, kappa2), s)
+        impedance = on_top(lambda at, kappa2: stack_impedance(layers, "adiabatic", at, kappa2), s)
         below = on_bond(lambda at, kappa2: stack_impedance(layers[::-1], "adiabatic", at, kappa2), s)
         below = below + over_object(
             lambda at, kappa2: stack_impedance((geometry.plate,), "adiabatic", at, kappa2), s
         )
         across = across_element(lambda at, kappa2: stack_profile(layers, "adiabatic", at, kappa2)[0][-1], s)
         passed = np.linalg.solve(below, across)  # flux over the bond per flux over the contact
-        impedance = own - np.einsum("sbc,sbd->scd", across, passed)
+        impedance = impedance - np.einsum("sbc,sbd->scd", across, passed)
         flux = _solve(impedance + contact, uniform) / s[:, None]
         flow = area * (flux @ uniform)
         out = np.sqrt(area * bond.area) * np.einsum("b,sbc,sc->s", bond.uniform, passed, flux)

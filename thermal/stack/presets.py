@@ -36,12 +36,12 @@ def heated_stack(name: str | os.PathLike[str] | HeatedStack) -> HeatedStack:
     if isinstance(name, HeatedStack):
         return name
     if isinstance(name, os.PathLike) or name.endswith(".toml"):
-        own = load_heated_stacks(name)
-        if len(own) != 1:
+        stacks = load_heated_stacks(name)
+        if len(stacks) != 1:
             raise InvalidValueError(
-                f"{name} holds {len(own)} sensors with a `touch` table: keep one in the file"
+                f"{name} holds {len(stacks)} sensors with a `touch` table: keep one in the file"
             )
-        return next(iter(own.values()))
+        return next(iter(stacks.values()))
     try:
         return heated_stacks()[name]
     except KeyError:

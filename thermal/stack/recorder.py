@@ -65,20 +65,20 @@ def _matrix(recorder: Recorder, n: int, dt: float) -> np.ndarray:
     from scipy.signal import butter, savgol_filter, sosfilt
 
     t = np.arange(n) * dt
-    own = np.arange(int(np.floor(t[-1] * recorder.rate * (1 + 1e-9))) + 1) / recorder.rate
-    if len(own) < max(recorder.window, 4):
+    sampled = np.arange(int(np.floor(t[-1] * recorder.rate * (1 + 1e-9))) + 1) / recorder.rate
+    if len(sampled) < max(recorder.window, 4):
         raise InvalidValueError(
             f"the record's {n} samples every {dt:g} s are shorter than the recorder's window of {recorder.window} at "
             f"{recorder.rate:g} Hz: give a longer one"
         )
-    curves = CubicSpline(t, np.eye(n))(own)
+    curves = CubicSpline(t, np.eye(n))(sampled)
     if recorder.corner:
         sections = butter(recorder.order, recorder.corner / (recorder.rate / 2), output="sos")
         first = curves[0]
         curves = np.asarray(sosfilt(sections, curves - first, axis=0)) + first
     if recorder.window:
         curves = np.asarray(savgol_filter(curves, recorder.window, recorder.degree, axis=0))
-    return CubicSpline(own, curves)(t)
+    return CubicSpline(sampled, curves)(t)
 
 
 @dataclass(frozen=True, slots=True)

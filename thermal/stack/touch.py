@@ -88,10 +88,10 @@ def touch_curves(
     profile, rate = warmed(chain, warm_up)
     before = touches.warming / rate[chain.readout]
     drive = stack.law.drive(touches.force, np.maximum(before, 0.0))
-    own = chain.capacity.copy()
+    chain_capacity = chain.capacity.copy()
     if drive.held:
-        own[chain.heater] = _HELD
-    capacity = np.array([np.concatenate((own, heat)) for heat, _ in chosen])
+        chain_capacity[chain.heater] = _HELD
+    capacity = np.array([np.concatenate((chain_capacity, heat)) for heat, _ in chosen])
     links = np.array([np.concatenate((chain.links, [0.0], inside)) for _, inside in chosen])
     state = np.repeat(touches.sample[:, None], capacity.shape[1], axis=1)
     state[:, : chain.face + 1] = touches.start[:, None] + before[:, None] * (profile - profile[chain.readout])

@@ -38,8 +38,8 @@ def report(record: Record, output: Output) -> None:
         if t["plate"] in record["peer_first_millimetre"]:
             quoted = record["peer_first_millimetre"][t["plate"]]
             output.line(f"  {t['plate']}: {t['first_millimetre']:.2f}, peer {quoted:.2f}")
-    metal, (exact, ours) = plates[-1]["plate"], plates[-1]["heat"]
+    metal, (exact, computed) = plates[-1]["plate"], plates[-1]["heat"]
     output.line(
-        f"heat lost on {metal} in 5 s, kJ/m2: exact {exact / 1e3:.1f}, ours {ours / 1e3:.1f}, "
+        f"heat lost on {metal} in 5 s, kJ/m2: exact {exact / 1e3:.1f}, ours {computed / 1e3:.1f}, "
         f"peer {record['peer_heat_J_per_m2'][metal] / 1e3:.0f} (quoted)"
     )
