@@ -1,4 +1,4 @@
-"""Policies that somebody else wrote, as "module:callable". They get the observation and nothing else.
+"""Policies of other packages, named as "module:callable". They get the observation and nothing else.
 
 B: environments at once.
 """

@@ -1,4 +1,4 @@
-"""A gripper tried: it grasps and lifts an object of glass and one of aluminium, and feels which is which."""
+"""A test of a gripper: it grasps and lifts an object of glass and one of aluminium, and its sensors tell them apart."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def check_gripper(gripper: Gripper, *, shape: Shape = "box", force: float | None
 
 
 class _Watch:
-    """What the trials are told from: after every control step forces (B, F) N, temperature drops (B, F) K, heights (B,)
+    """What the trials are judged by: after every control step forces (B, F) N, temperature drops (B, F) K, heights (B,)
     m of the arm and positions (B, 3) m of the objects."""
 
     def __init__(self) -> None:

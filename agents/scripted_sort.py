@@ -45,13 +45,13 @@ class ScriptedSort:
         self._expected = expected_voltages(layout) if layout.pair.goal == "material" else None
         self._phase, self._side = np.zeros(rows, int), np.zeros(rows, int)
         self._pressed = np.zeros(rows)  # s without a break
-        self._felt = np.full((rows, 2), np.nan)  # V
+        self._voltages = np.full((rows, 2), np.nan)  # V
         self._before = np.zeros(rows)  # V, at the touch
 
     def restart(self, rows: Sequence[int] | np.ndarray) -> None:
         """The rows begin a new episode."""
         self._phase[rows], self._side[rows], self._pressed[rows] = GOING, 0, 0.0
-        self._felt[rows], self._before[rows] = np.nan, 0.0
+        self._voltages[rows], self._before[rows] = np.nan, 0.0
 
     def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
         """Actions (B, 4) float32 for observations (B, ...)."""
@@ -83,7 +83,7 @@ class ScriptedSort:
     def _decide(self, row: int, volts: float, goal: np.ndarray) -> None:
         """Lifts what it holds, or turns to the other object."""
         side = self._side[row]
-        self._felt[row, side] = volts
+        self._voltages[row, side] = volts
         if self._wanted(row, goal):
             self._phase[row] = _LIFTING
         else:
@@ -91,7 +91,7 @@ class ScriptedSort:
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         """Whether what a row has just felt is to be lifted."""
-        side, volts = self._side[row], self._felt[row]
+        side, volts = self._side[row], self._voltages[row]
         if self._expected is not None:
             # An object that was not pressed is taken on trust: it must be the other one.
             return bool(side == 1 or goal[np.argmin(abs(self._expected - volts[side]))] > 0)

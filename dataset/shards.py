@@ -100,7 +100,7 @@ def read_plan(folder: str | os.PathLike[str]) -> Plan:
 
 def missing(folder: Path, plan: Plan) -> list[Shard]:
     """Shards that the folder lacks. A file that is cut short or of other seeds counts as lacking."""
-    return [shard for shard in plan.shards if not _is_there(folder / shard.file, shard)]
+    return [shard for shard in plan.shards if not _is_complete(folder / shard.file, shard)]
 
 
 def whole(folder: str | os.PathLike[str], incomplete: bool = False) -> tuple[Plan, list[Path]]:
@@ -125,7 +125,7 @@ def whole(folder: str | os.PathLike[str], incomplete: bool = False) -> tuple[Pla
     return plan, [Path(folder) / shard.file for shard in complete]
 
 
-def _is_there(path: Path, shard: Shard) -> bool:
+def _is_complete(path: Path, shard: Shard) -> bool:
     pa = arrow()
     try:
         found = pa.parquet.read_metadata(path)

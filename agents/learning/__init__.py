@@ -1,4 +1,4 @@
-"""Agents that learn the tasks: what is trained, how it perceives, whom it imitates at first, and how it is scored."""
+"""Agents that learn the tasks: training, inputs, the teachers that they imitate at first, and scores."""
 
 from typing import TYPE_CHECKING
 

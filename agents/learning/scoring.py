@@ -84,7 +84,7 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
 
 
 class _Unseeded:
-    """A policy that is not told the episodes' seeds, and, without load cells, no forces."""
+    """A policy that gets no seeds of the episodes and, without load cells, no forces."""
 
     def __init__(self, inner: Policy, load: bool) -> None:
         self._inner, self._load, self._begun = inner, load, 0

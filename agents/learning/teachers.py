@@ -1,5 +1,5 @@
-"""Whom an agent imitates at first: scripts that act on observations, but are told the truth where a script would have
-to judge what it feels. They are used in training alone, and asked every REPEAT control steps.
+"""Teachers that an agent imitates at first: scripts that act on observations, but get the truth where a script would
+have to judge the voltage. Only training uses them, and they act every REPEAT control steps.
 
 B: environments.
 """
@@ -98,7 +98,7 @@ class SortTeacher(ScriptedSort):
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
         del goal
-        measured = ~np.isnan(self._felt[row])
+        measured = ~np.isnan(self._voltages[row])
         enough = (
             measured.all() if self._batch.plant.layout.pair.goal == "hotter" else measured[self._side[row]]
         )

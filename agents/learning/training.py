@@ -129,7 +129,7 @@ class Training:
         self._keep()
         self._report(Progress(doing, steps, success, found.mean_return))
 
-    def tell(self, doing: str, steps: int) -> None:
+    def report_steps(self, doing: str, steps: int) -> None:
         """Reports control steps."""
         self._report(Progress(doing, steps))
 
@@ -150,7 +150,7 @@ class Training:
             def advance(more: int) -> None:
                 nonlocal steps
                 steps += more
-                self.tell("imitation", steps)
+                self.report_steps("imitation", steps)
 
             agent = self._mean_action if done else None
             new = watched(self._practice, teacher, agent, self._per_round, recipe.gamma, advance)
@@ -256,7 +256,7 @@ class _Checkpoints(BaseCallback):
             self._training.evaluate("ppo")
 
     def _on_step(self) -> bool:
-        self._training.tell("ppo", self._training.steps)
+        self._training.report_steps("ppo", self._training.steps)
         return True
 
 

@@ -1,4 +1,4 @@
-"""Accuracy against contact time, intervals, and who is taken for whom."""
+"""Accuracy against contact time, intervals, and which materials are confused."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Touches of known objects under the noise of an ADS1115, for what identifies materials: how often each is right.
+"""Simulated touches of known objects under the noise of an ADS1115, on which methods of identification are scored.
 
-What the identifier has to find is drawn as its setup says: contact conductance log-uniform, temperatures normal, offset
+The unknowns are drawn from the identifier's own priors: contact conductance log-uniform, temperatures normal, offset
 normal; noise and rounding are the converter's. Curves of named materials come from stepping the networks of
 thermal.press in 2 ms and from the signal chain's own filter; the identifier has other networks, evaluated in closed
 form, and interpolates between them. N: touches, n: samples.

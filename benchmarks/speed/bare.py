@@ -1,4 +1,4 @@
-"""Bare MuJoCo beside the gripper: a second batch of the same models that is fed what the gripper's batch was fed."""
+"""Bare MuJoCo beside the gripper: a second batch of the same models that gets the same inputs."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false

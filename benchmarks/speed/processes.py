@@ -1,4 +1,4 @@
-"""What only a fresh process can tell: memory of an environment, time to import and to the first step."""
+"""Measurements that need a fresh process: memory of an environment, time to import and to the first step."""
 
 from __future__ import annotations
 

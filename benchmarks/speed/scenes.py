@@ -1,4 +1,4 @@
-"""Scenes that feel heat by thermograsp.touch, each beside the same scene without: a plain loop of mj_step with a
+"""Scenes with heat by thermograsp.touch, each beside the same scene without: a plain loop of mj_step with a
 ThermalTouch, many worlds that record their contact sensors, heat inside MuJoCo's step, and gymnasium-robotics' Fetch.
 
 `python -m thermograsp.bench.speed.scenes` measures them alone, and only those for which everything is installed."""

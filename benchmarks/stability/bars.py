@@ -171,7 +171,7 @@ def modal_bars() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.concatenate((rates, rates)), ports, rows
 
 
-def ours(fourier: np.ndarray, beta: np.ndarray, closed: np.ndarray, single: bool = False) -> History:
+def package_step(fourier: np.ndarray, beta: np.ndarray, closed: np.ndarray, single: bool = False) -> History:
     """The package's step, thermal.coupling. single: in float32."""
     rates, ports, rows = modal_bars()
     real, complex_ = (np.float32, np.complex64) if single else (np.float64, np.complex128)

@@ -182,14 +182,14 @@ def schemes() -> list[tuple[str, str, str, bars.Scheme, tuple[Line, ...]]]:
             "ours_float32",
             "thermograsp in single precision",
             "float32: as safe, heat kept\nto single precision",
-            partial(bars.ours, single=True),
+            partial(bars.package_step, single=True),
             (),
         ),
         (
             "ours",
             "thermograsp",
             "any step, any stiffness, within\n3e-6 of exact between changes",
-            bars.ours,
+            bars.package_step,
             (),
         ),
     ]

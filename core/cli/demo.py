@@ -7,8 +7,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.shared import Output, load_mujoco
-from thermograsp.errors import InvalidValueError
+from thermograsp.cli.shared import Output, add_seed, load_mujoco
 from thermograsp.files import made_folder, write_text
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
     add("--out", default="out/demo", metavar="DIR", help="where to write")
-    add("--seed", type=int, default=0, help="of the objects' places and the noise")
+    add_seed(parser, "of the objects' places and the noise")
     add("--quick", action="store_true", help=f"grasps of {_QUICK:g} s instead of {_SECONDS:g}")
 
 
@@ -38,8 +37,6 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.figures import presses, touches
     from thermograsp.reports.demo import Settings, demo_page, run_mode, versions
 
-    if args.seed < 0:
-        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     begun = time.perf_counter()
     out = made_folder(args.out)
     seconds = _QUICK if args.quick else _SECONDS

@@ -18,7 +18,7 @@ NAME = "identify"
 HELP = "Identify the material and effusivity of a touched object from a recorded voltage."
 
 _TIME, _VOLTAGES = "time_s", ("voltage_left_V", "voltage_right_V")
-_NOT_TOLD = 1
+_UNDECIDED = 1
 _SIZES = {1: (0.04, 0.04, 0.01), 2: (0.04, 0.04, 0.04)}  # m, by the number of fingertips
 
 
@@ -87,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
 
         plot_identification(picture, t, voltage, setup, candidates, args.touch)
     _print(Output(args.json), args, result)
-    return 0 if result.verdict in (thermal.Verdict.MATERIAL, thermal.Verdict.SEVERAL) else _NOT_TOLD
+    return 0 if result.verdict in (thermal.Verdict.MATERIAL, thermal.Verdict.SEVERAL) else _UNDECIDED
 
 
 def _samples(args: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from contextlib import closing
 
-from thermograsp.cli.shared import Output, load_mujoco
+from thermograsp.cli.shared import Output, add_seed, load_mujoco
 from thermograsp.errors import InvalidValueError, ThermograspError
 
 NAME = "rollout"
@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("env_id", metavar="ENV_ID", help="such as thermograsp/Grasp-v0")
     add("--episodes", type=int, default=20, help="how many")
     add("--num-envs", type=int, default=4, help="how many at once; it changes the speed only")
-    add("--seed", type=int, default=0, help="episode k starts from seed + k")
+    add_seed(parser, "episode k starts from seed + k")
     add("--stakes", action="store_true", help="materials of which each needs its own force (envs.STAKES)")
     add(
         "--policy",
@@ -42,8 +42,6 @@ def run(args: argparse.Namespace) -> int:
         value = getattr(args, name)
         if value is not None and value < 1:
             raise InvalidValueError(f"{name.replace('_', '-')} must be at least 1, got {value}")
-    if args.seed < 0:
-        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     if args.stakes and not args.env_id.endswith("thermograsp/Grasp-v0"):
         raise InvalidValueError(f"--stakes are those of thermograsp/Grasp-v0, not of {args.env_id}")
     output = Output(args.json)

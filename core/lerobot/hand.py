@@ -19,7 +19,7 @@ try:
 except ImportError as error:
     raise MissingDependencyError(f"thermograsp.lerobot needs LeRobot: {install('lerobot')}") from error
 
-_FELT = tuple(
+_COLUMNS = tuple(
     f"{quantity}_{side}_{unit}"
     for side in ("left", "right")
     for quantity, unit in (
@@ -67,7 +67,7 @@ class ThermograspHand(Robot):
 
     @property
     def observation_features(self) -> dict[str, type]:
-        names = (*_FELT, "opening_m") if self.config.gripper else _FELT
+        names = (*_COLUMNS, "opening_m") if self.config.gripper else _COLUMNS
         return dict.fromkeys(names, float)
 
     @property
@@ -113,7 +113,7 @@ class ThermograspHand(Robot):
         if len(samples):
             self._newest = samples[-1:]
         columns = self._newest.columns
-        outputs = {name: float(columns[name][0]) for name in _FELT}
+        outputs = {name: float(columns[name][0]) for name in _COLUMNS}
         if self._gripper is None:
             return outputs
         status = self._gripper.status()

@@ -1,4 +1,4 @@
-"""Surfaces from mesh files: what can be mended is, with a warning that says what; the rest is refused, with why."""
+"""Surfaces from mesh files. Defects that can be repaired are, with a warning that names them; other files are refused."""
 
 from __future__ import annotations
 

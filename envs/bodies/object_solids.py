@@ -1,4 +1,4 @@
-"""What an object's heat flows in: its closed surface, filled with its material and its parts."""
+"""The solids in which an object conducts heat: its closed surface, filled with its material and its parts."""
 
 from __future__ import annotations
 

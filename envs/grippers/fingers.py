@@ -110,13 +110,13 @@ def _opposite(
         spots.append(axes.T @ (origin_facing + axes_facing @ facing.face.centre - origin))
     way = axes.T @ way
     start = max(spots, key=lambda spot: float(spot @ way))
-    met = []
+    candidates = []
     for face in flat_faces(parts, way):
         ahead = start - face.centre
         aside = float(np.linalg.norm(ahead - (ahead @ way) * way))
         if ahead @ way > 0:
-            met.append((face.area / (1 + (aside / _ASIDE) ** 2), face))
-    return max(met, key=lambda one: one[0])[1] if met else None
+            candidates.append((face.area / (1 + (aside / _ASIDE) ** 2), face))
+    return max(candidates, key=lambda one: one[0])[1] if candidates else None
 
 
 def _along(hand: Hand, body: int, face: Face) -> np.ndarray:

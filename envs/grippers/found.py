@@ -1,4 +1,4 @@
-"""What is known of a gripper of somebody's once it has been read: parts, pads, actuators and how it closes."""
+"""A user's gripper as its MJCF file was read: parts, pads, actuators and how it closes."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -29,7 +29,7 @@ class ActuatorMap:
 
 @dataclass(frozen=True, eq=False)
 class FoundGripper:
-    """A gripper of somebody's, with our fingertips on. name: of its file. palm, fingers: names of bodies. pads: of the
+    """A user's gripper with our fingertips on. name: of its file. palm, fingers: names of bodies. pads: of the
     geoms that they are mounted on, areas: m2 of these faces, wedges: degrees between face and fingertip. narrowest,
     widest: m, the opening. strongest: N. flat: m, the openings between which the pads lie flat on parallel faces.
     actuators: what closes it. polynomials: of each driven joint over half the opening, rising powers of m. model and

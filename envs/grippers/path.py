@@ -97,8 +97,8 @@ def close(hand: Hand, start: Opposition) -> Closing:
             f"{1e3 * openings[-1]:.1f} mm: name the closing actuators or other fingertips{_hint(hand, start.fingers)}"
         )
     postures = _along(hand, start.fingers, postures)
-    walked = [walk.tell(values) for values in postures]
-    base = walk.tell(start.values)[0]
+    walked = [walk.middle_and_tilt(values) for values in postures]
+    base = walk.middle_and_tilt(start.values)[0]
     return Closing(
         start.fingers,
         (tips[0], tips[1]),
@@ -183,7 +183,7 @@ class _Walk:
         a, _, b, _ = self.spots()
         return float((b - a) @ self.axes[:, 0])
 
-    def tell(self, values: np.ndarray) -> tuple[np.ndarray, float]:
+    def middle_and_tilt(self, values: np.ndarray) -> tuple[np.ndarray, float]:
         """The middle between the fingertips (3,) m, and the larger tilt in rad."""
         self.mechanism.pose(values)
         a, n, b, m = self.spots()
@@ -192,7 +192,7 @@ class _Walk:
 
     def go(self, start: np.ndarray, first: float, openings: np.ndarray) -> list[np.ndarray]:
         """Postures of these openings, one after the other, as far as they are reached, and the last one short of it."""
-        middle, found, last, at = self.tell(start)[0], [], start, first
+        middle, found, last, at = self.middle_and_tilt(start)[0], [], start, first
         for opening in openings:
             values = self._posture(opening, last, middle)
             reached = self.measure(values)

@@ -1,4 +1,4 @@
-"""All that a control step's substeps tell, for those who look at contacts one by one; environments need less (Motion).
+"""Forces and poses at every substep of a control step, to examine single contacts; environments need less (Motion).
 
 Shapes: B environments, S substeps, T = 2 fingertips (left, right), O objects.
 """

@@ -1,7 +1,7 @@
 """The mechanical scene: a parallel gripper over a table and the objects it may touch.
 
 World frame: z up, the table's top at z = 0, the fingers move along x. The gripper itself is assets/gripper.xml
-or somebody's (gripper.py).
+or a user's (envs/grippers).
 """
 
 # mujoco ships no type stubs for its compiled names

@@ -234,7 +234,7 @@ class SimulationConfig:
         """Shapes that an episode draws from. Raises UnknownNameError; InvalidValueError for an empty list, and where
         their names or numbers of convex pieces differ, which all environments of a batch share."""
         if self.scene is not None:
-            return self._all_there[:1]
+            return self._scene_objects[:1]
         given = ObjectSpec() if self.objects is None else self.objects
         several = [given] if isinstance(given, str | ObjectSpec) else given
         listed = tuple(_from_library(one) if isinstance(one, str) else one for one in several)
@@ -248,10 +248,10 @@ class SimulationConfig:
     @property
     def others(self) -> tuple[ObjectSpec, ...]:
         """Of the scene, beside the first."""
-        return self._all_there[1:]
+        return self._scene_objects[1:]
 
     @property
-    def _all_there(self) -> tuple[ObjectSpec, ...]:
+    def _scene_objects(self) -> tuple[ObjectSpec, ...]:
         if self.scene is None:
             return ()
         return _numbered([_from_library(one) if isinstance(one, str) else one for one in self.scene])

@@ -132,24 +132,24 @@ class PairLayout:
             raise InvalidValueError(f"a pair of objects has no reset options, got {sorted(options)}")
         config, count = self.config, len(self._choices)
         right = int(rng.integers(OBJECTS))
-        asked = int(rng.integers(count))
-        other = asked
+        goal = int(rng.integers(count))
+        other = goal
         if self.pair.goal == "material":
             other = int(rng.integers(count - 1))
-            other += other >= asked
+            other += other >= goal
         shape = any_of(self._shapes, rng)
         places = rng.uniform(-1.0, 1.0, (OBJECTS, 3))
         drawn = draw(self._causes, rng)
         pair: list[GraspBody] = []
         for number in range(OBJECTS):
-            material = self._choices[asked if number == right else other]
+            material = self._choices[goal if number == right else other]
             celsius = self.pair.temperatures[int(number == right)]
             body = replace(config, object_temperature=celsius).body(self._stack, material, shape, drawn)
             pair.append(body)
         specs = self._placed(pair[0].spec, places)
         scene = tuple(replace(t, spec=spec) for t, spec in zip(pair, specs, strict=True))
         middle = tuple(replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=shape.yaw)) for t in scene)
-        return Episode(scene, middle, drawn, (right, asked if self.pair.goal == "material" else 0))
+        return Episode(scene, middle, drawn, (right, goal if self.pair.goal == "material" else 0))
 
     def labels(self, scene: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
         """See Layout; of both objects."""
@@ -159,11 +159,11 @@ class PairLayout:
 
     def extend(self, truth: Truth, task: np.ndarray, lift: np.ndarray, force: np.ndarray) -> None:
         """See Layout."""
-        goals, asked = self.pair.goals, task[:, 1]
+        goals, goal = self.pair.goals, task[:, 1]
         truth["object_temperature"] = truth.get("object_temperatures", truth["object_temperature"])
         truth["lift"], truth["object_force"] = lift, force
-        truth["right"], truth["asked"] = task[:, 0].copy(), np.array(goals, object)[asked]
-        truth["goal"] = np.eye(len(goals))[asked]
+        truth["right"], truth["asked"] = task[:, 0].copy(), np.array(goals, object)[goal]
+        truth["goal"] = np.eye(len(goals))[goal]
 
     def _placed(self, spec: ObjectSpec, places: np.ndarray) -> tuple[ObjectSpec, ...]:
         """Both objects on the table. places: (O, 3) of x, y and angle in -1 .. 1 of what the config allows."""

@@ -1,4 +1,4 @@
-"""What an agent feels with maps: as in every environment, and the pressure over each pad or the temperature over each
+"""Observations with maps: those of every environment, and the pressure over each pad or the temperature over each
 sensor's face."""
 
 from __future__ import annotations

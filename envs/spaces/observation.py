@@ -1,4 +1,4 @@
-"""What an agent feels: the same dictionary from a simulated and from a real gripper."""
+"""Observations: the same dictionary from a simulated and from a real gripper."""
 
 from __future__ import annotations
 

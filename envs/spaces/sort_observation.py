@@ -1,4 +1,4 @@
-"""What an agent that sorts feels and is told: as in every environment, and where its arm is and what is asked."""
+"""Observations for sorting: those of every environment, the arm's place along the table, and the goal."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _FURTHEST = LATERAL_REACH + 0.005  # m
 
 
 class SortObserver(Observer):
-    """Of `num_envs` environments that can be asked for `goals` things. lateral (1,) m, of the arm along y; goal
-    (goals,), 1 for what is asked and 0 for the others."""
+    """Of `num_envs` environments with `goals` possible goals. lateral (1,) m, of the arm along y; goal (goals,), 1 for
+    the episode's goal and 0 for the others."""
 
     def __init__(self, num_envs: int, goals: int) -> None:
         super().__init__(num_envs)

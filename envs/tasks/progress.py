@@ -1,4 +1,4 @@
-"""What a lift pays: the change of progress, a success and a failure.
+"""The reward of a lift: the change of progress, a success and a failure.
 
 Progress p is a number of the present alone, from 0 at the start to its most at a success. A step pays p after it less p
 before it, so that nothing is paid twice: what is lost is taken back. Without a discount an episode's steps add up to

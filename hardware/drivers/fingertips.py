@@ -198,7 +198,7 @@ class Fingertips:
         except BaseException:
             with self._wishing:
                 if self._wish is wish:
-                    self._wish = _Wish(_less(before, (a, b)))
+                    self._wish = _Wish(_after_failure(before, (a, b)))
             raise
         finally:
             with self._wishing:
@@ -400,10 +400,10 @@ class Fingertips:
         self._link.close()
 
 
-def _less(before: Pair | None, asked: Pair) -> Pair | None:
-    """What is left to hold where `asked` has failed: what was before, without the heaters that were to be off."""
-    off = [math.isnan(value) for value in asked]
+def _after_failure(before: Pair | None, requested: Pair) -> Pair | None:
+    """The setpoints to hold where `requested` has failed: those before it, without the heaters to be turned off."""
+    off = [math.isnan(value) for value in requested]
     if before is None:
         return (math.nan, math.nan) if any(off) else None
-    left, right = (math.nan if gone else value for gone, value in zip(off, before, strict=True))
+    left, right = (math.nan if is_off else value for is_off, value in zip(off, before, strict=True))
     return left, right

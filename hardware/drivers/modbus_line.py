@@ -120,7 +120,7 @@ class ModbusLine:
             answer = call(device_id=self._slave)
         except ModbusException as error:
             raise NoAnswerError(
-                f"{self._name}: {self._pipe.heard()}; is it powered, at {self._slave} as its address, and its "
+                f"{self._name}: {self._pipe.summary()}; is it powered, at {self._slave} as its address, and its "
                 "line's baud rate right?"
             ) from error
         except LinkLostError:
@@ -149,7 +149,7 @@ class _Pipe:
         self._sleep = sleep
         self._quiet_until = -math.inf
         self._answer_by = 0.0
-        self._heard = 0
+        self._received = 0
 
     def send(self, request: bytes) -> int:
         """After the line's rest, in which what comes late is thrown away: it answers an earlier request."""
@@ -159,7 +159,7 @@ class _Pipe:
         while transport.read(0.0):
             pass
         transport.write(request)
-        self._heard = 0
+        self._received = 0
         self._answer_by = self._clock() + self._settings.answer_within
         self._quiet_until = self._clock() + self._settings.spacing
         return len(request)
@@ -169,16 +169,18 @@ class _Pipe:
         transport = self._line()
         while (left := self._answer_by - self._clock()) > 0:
             if data := transport.read(left):
-                self._heard += len(data)
+                self._received += len(data)
                 self._quiet_until = max(self._quiet_until, self._clock() + self._settings.rest)
                 return data
         return b""
 
-    def heard(self) -> str:
-        """What came of the last try, for people."""
+    def summary(self) -> str:
+        """What arrived in the last try, for people."""
         tries = f"in {self._settings.tries} tries of {self._settings.answer_within:g} s"
         return (
-            f"{self._heard} bytes and no answer among them {tries}" if self._heard else f"no answer {tries}"
+            f"{self._received} bytes and no answer among them {tries}"
+            if self._received
+            else f"no answer {tries}"
         )
 
     def close(self) -> None:

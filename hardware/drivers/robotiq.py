@@ -127,9 +127,9 @@ class RobotiqGripper:
             self._going, self._wanted = False, None
         now = self.state(first=True)
         if now.activation == Activation.DONE:
-            now = self._tell(COMMAND, Action(activate=True).registers()[:1], None)
+            now = self._write(COMMAND, Action(activate=True).registers()[:1], None)
         elif now.activated or activating:  # what it was told last may not show yet
-            now = self._tell(COMMAND, Action().registers()[:1], None)
+            now = self._write(COMMAND, Action().registers()[:1], None)
         return self._status(now)
 
     def status(self) -> GripperStatus:
@@ -177,16 +177,16 @@ class RobotiqGripper:
         with self._one_move:
             # While it follows positions the action register is left alone: after a loss of power, to write it would
             # begin an activation.
-            now = self._tell(COMMAND + 1, values[1:], stops) if self._going else self.state()
+            now = self._write(COMMAND + 1, values[1:], stops) if self._going else self.state()
             _require_active(now)
             if not (self._going and now.going):
-                now = self._tell(COMMAND, values, stops)
+                now = self._write(COMMAND, values, stops)
                 _require_active(now)
             self._know(stops, going=True, wanted=position)
             return self._status(now)
 
     def _activate_anew(self, stops: int) -> None:
-        self._tell(COMMAND, Action().registers(), stops)
+        self._write(COMMAND, Action().registers(), stops)
         self._await(
             lambda now: now.activation == Activation.RESET and not now.fault,
             _RESET_WITHIN,
@@ -195,7 +195,7 @@ class RobotiqGripper:
         )
         try:
             self._know(stops, activating=True)
-            self._tell(COMMAND, Action(activate=True).registers(), stops)
+            self._write(COMMAND, Action(activate=True).registers(), stops)
             self._await(
                 lambda now: now.activation == Activation.DONE,
                 _ACTIVATION_WITHIN,
@@ -207,7 +207,7 @@ class RobotiqGripper:
             with self._telling:
                 self._activating = False
 
-    def _tell(self, address: int, values: list[int], stops: int | None) -> State:
+    def _write(self, address: int, values: list[int], stops: int | None) -> State:
         """Writes registers and reads the state in the same transaction. It is how the gripper was just before. stops:
         how often it had been stopped when this was asked for; None for a stop itself."""
         going = self._going

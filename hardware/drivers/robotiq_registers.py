@@ -68,7 +68,7 @@ CURES: Mapping[int, str] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """What it is told: counts 0 .. 255 for position (0 open), speed and force. release_opens: which way the automatic
+    """A command to the gripper: counts 0 .. 255 for position (0 open), speed and force. release_opens: which way the automatic
     release goes."""
 
     activate: bool = False
@@ -101,7 +101,7 @@ def action(registers: Sequence[int]) -> Action:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What it says of itself. going: it goes to the requested position. requested, position, current: counts. driver:
+    """The gripper's status. going: it goes to the requested position. requested, position, current: counts. driver:
     the upper half of the fault byte, for Robotiq's other controllers."""
 
     activated: bool

@@ -1,4 +1,4 @@
-"""The slave's end of a Modbus RTU line at the line's own pace: frames told by silence, bytes one after the other.
+"""The slave's end of a Modbus RTU line at the line's own pace: silence separates frames, and bytes come one by one.
 
 Written from the Modbus over Serial Line specification V1.02, apart from the library that the master uses.
 """
@@ -45,7 +45,7 @@ class SlaveLine:
 
     def __init__(self, pacing: LinePacing) -> None:
         self._pacing = pacing
-        self._heard = bytearray()
+        self._received = bytearray()
         self._frame_at = math.inf
         self._sending: deque[tuple[float, bytes]] = deque()
         self._free_at = 0.0
@@ -62,14 +62,14 @@ class SlaveLine:
 
     def receive(self, data: bytes, now: float) -> None:
         """Bytes that the master's adapter puts on the line from now on."""
-        last = max(now, self._frame_at - self._pacing.gap) if self._heard else now
-        self._heard += data
+        last = max(now, self._frame_at - self._pacing.gap) if self._received else now
+        self._received += data
         self._frame_at = last + len(data) * self._pacing.byte + self._pacing.gap
 
     def frame(self) -> bytes:
         """The frame that is at its end."""
-        frame = bytes(self._heard)
-        self._heard.clear()
+        frame = bytes(self._received)
+        self._received.clear()
         self._frame_at = math.inf
         return frame
 

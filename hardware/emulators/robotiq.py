@@ -95,7 +95,7 @@ class EmulatedGripper:
         self._seen = ObjectSeen.MOVING
         self._fault = Fault.NONE
         self._sequence: deque[float] = deque()
-        self._heard_at = self._now
+        self._received_at = self._now
         self._forgotten = False
 
     def plan(self, time: float, action: Callable[[], None]) -> None:
@@ -159,7 +159,7 @@ class EmulatedGripper:
             reply = modbus_slave.answer(frame, self.model.slave, self._read, self._write)
         if reply is None:
             return
-        self._heard_at, self._forgotten = self._now, False
+        self._received_at, self._forgotten = self._now, False
         lost = self.line.drop_answer and self.rng.random() < self.line.drop_answer
         if not lost:
             self._serial.send(self.line.spoil(reply, self.rng), self._now + self.line.answer_delay)
@@ -192,13 +192,13 @@ class EmulatedGripper:
         self._planned = [item for item in self._planned if item[0] > now]
         for happen in ready:
             happen()
-        self._forgotten |= now - self._heard_at > _SILENCE and self._action.activate
+        self._forgotten |= now - self._received_at > _SILENCE and self._action.activate
         self._obey(action(self._written))
         if self.lasting:
             self._fault = self.lasting
-        units, asked = self.model.units, self._action
+        units, command = self.model.units, self._action
         if self._fault == Fault.RELEASE_RUNNING:
-            end = units.stroke if asked.release_opens else 0.0
+            end = units.stroke if command.release_opens else 0.0
             if self._towards(end, units.weakest, self.model.release_speed):
                 self._fault = Fault.RELEASED
         elif self._fault >= FIRST_MAJOR:
@@ -208,24 +208,24 @@ class EmulatedGripper:
                 self._sequence.popleft()
             if not self._sequence:
                 self._activation = Activation.DONE
-        elif self._activation == Activation.DONE and asked.go:
-            goal = float(units.opening(asked.position))
-            done = self._towards(goal, float(units.force(asked.force)), float(units.speed(asked.speed)))
+        elif self._activation == Activation.DONE and command.go:
+            goal = float(units.opening(command.position))
+            done = self._towards(goal, float(units.force(command.force)), float(units.speed(command.speed)))
             self._seen = _SEEN[self.fingers.contact]
             if done and self._seen == ObjectSeen.MOVING:
                 self._seen = ObjectSeen.AT_POSITION
         else:
             self._towards(self.fingers.opening, units.weakest, units.slowest)
 
-    def _obey(self, asked: Action) -> None:
+    def _obey(self, command: Action) -> None:
         """A command takes effect."""
-        before, self._action = self._action, asked
-        if not asked.activate:
+        before, self._action = self._action, command
+        if not command.activate:
             self._activation, self._seen, self._fault = Activation.RESET, ObjectSeen.MOVING, Fault.NONE
         elif not before.activate:
             self._activation = Activation.RUNNING
             self._sequence = deque([0.0, self.model.units.stroke])
-        if asked.release and not before.release and asked.activate and self._fault < FIRST_MAJOR:
+        if command.release and not before.release and command.activate and self._fault < FIRST_MAJOR:
             self._fault = Fault.RELEASE_RUNNING
 
     def _towards(self, goal: float, force: float, speed: float) -> bool:

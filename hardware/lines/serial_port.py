@@ -73,14 +73,14 @@ class SerialPort:
                 data += self._port.read(more)
             return data
         except self._lost as error:
-            raise self._gone(error) from error
+            raise self._lost_error(error) from error
 
     def write(self, data: bytes) -> None:
         """See Transport."""
         try:
             self._port.write(data)
         except self._lost as error:
-            raise self._gone(error) from error
+            raise self._lost_error(error) from error
 
     def close(self) -> None:
         """See Transport."""
@@ -98,7 +98,7 @@ class SerialPort:
         except (NotImplementedError, ValueError) as error:
             _LOG.info("%s: bytes may come late, it has no low latency mode (%s)", self.path, error)
 
-    def _gone(self, error: BaseException) -> LinkLostError:
+    def _lost_error(self, error: BaseException) -> LinkLostError:
         return LinkLostError(
             f"{self.path}: the line is lost ({error}); is the device plugged in and powered?"
         )

@@ -1,4 +1,4 @@
-"""When did a device do something, on the host's clock? A line under the delays of its messages."""
+"""A device's times on the host's clock: the line under the delays of its messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a host makes of the bytes of one line, without any input or output: live, in lockstep, and in a replay alike."""
+"""The host's side of one line without input or output: the same live, in lockstep and in a replay."""
 
 from __future__ import annotations
 

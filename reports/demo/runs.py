@@ -98,12 +98,12 @@ def run_mode(
     watch.put_on(batch.plant.heat, "advance", "heat")  # pyright: ignore[reportAttributeAccessIssue]
     watch.put_on(batch.plant.mechanics, "advance", "mechanics")  # pyright: ignore[reportAttributeAccessIssue]
 
-    def tell(time: float, now: GraspBatch) -> None:
+    def watch_step(time: float, now: GraspBatch) -> None:
         advance(f"{mode} mode: grasping", 10 * now.dt / seconds if time else 0.0)
         if camera is not None:
             camera.watch(time, now)
 
-    recordings = record(batch, seeds, seconds, force, names, tell)
+    recordings = record(batch, seeds, seconds, force, names, watch_step)
     steps = round(seconds / batch.dt) * SUBSTEPS * len(names)
     batch.close()
     if camera is not None:

@@ -1,4 +1,4 @@
-"""Figure 6 with the bands that the experiment's unknowns leave, and how many rigs bear its statements out."""
+"""Figure 6 with the bands that the experiment's unknowns leave, and on how many rigs its statements hold."""
 
 from __future__ import annotations
 

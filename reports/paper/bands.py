@@ -1,4 +1,4 @@
-"""The experiment with what the paper does not say of it drawn: the bands that its unknowns leave to figure 6.
+"""The experiment with conditions that the paper does not state drawn at random: the bands that they leave to figure 6.
 
 Each draw is one rig: how rough the faces are, how hard they are pressed, how warm thermostat and objects were and how
 much heat the air takes from the objects. All ten materials are measured on it, in both modes. A statement that holds on

@@ -93,14 +93,14 @@ def _serve(pipe: Connection, leaving: Connection, stock: Stock, choices: Choices
             ready = wait([pipe, leaving], 0.0 if session.paced else None)
             if leaving in ready:
                 break
-            asked = pipe in ready
-            messages = pipe.recv() if asked else ()
+            requested = pipe in ready
+            messages = pipe.recv() if requested else ()
             for message in messages:
                 session.handle(message)
             now = time.monotonic()
             session.advance(now - last)
             last = now
-            if asked:
+            if requested:
                 pipe.send([json.dumps(message, separators=(",", ":")) for message in session.messages()])
     except (EOFError, OSError):
         pass

@@ -107,7 +107,7 @@ def test_staggered_bodies_diverge_beyond_their_limit_and_only_there(
 
 def test_backward_euler_is_safe_and_of_first_order(maps: dict[str, atlas.Map]) -> None:
     assert maps["backward_euler"].share(atlas.FINE) == 1
-    exact = gaps(bars.ours, 1.0, 0.5, 1)[-1]
+    exact = gaps(bars.package_step, 1.0, 0.5, 1)[-1]
     errors = [abs(gaps(bars.backward_euler, 1.0 / n, 0.5, n)[-1] - exact) for n in (16, 32, 64)]
     assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(1, abs=0.1)
 
@@ -124,7 +124,7 @@ def test_ours_is_stable_in_range_and_keeps_heat_everywhere(maps: dict[str, atlas
 def test_ours_is_exact_at_any_step(fourier: float, beta: float) -> None:
     matrix = bars.conduction(np.array([beta]))[0]
     exact = expm(-3 * fourier * matrix) @ bars.first_temperatures(1)[0]
-    *_, last = bars.ours(np.array([fourier]), np.array([beta]), np.ones((3, 1), bool))
+    *_, last = bars.package_step(np.array([fourier]), np.array([beta]), np.ones((3, 1), bool))
     assert np.abs(last[0] - exact).max() < 2e-5
 
 

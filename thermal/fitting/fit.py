@@ -43,7 +43,7 @@ _CONDUCTANCE = (1e1, 5e3, 1e6)  # W/(m2 K): lowest, first, highest
 _FACTOR = 10.0  # between the start and its bounds
 _MOST_OFFSET = 0.1  # V
 _MOST_LATE = 8.0  # standard deviations
-_FELT = 20.0  # noises of a sample that the voltage must move by
+_LEAST_SIGNAL = 20.0  # noises of a sample that the voltage must move by
 _MISFIT = 0.05  # share of a touch's largest signal
 _WIDE = 0.2  # relative half-width of an interval beyond which a value is not told
 _ALIKE = 0.98  # correlation beyond which two are told only together
@@ -117,7 +117,7 @@ def fit_sensor(
         "noise and resolution of the chain (V)", float(np.hypot(chain.noise, chain.resolution / 12**0.5))
     )
     for touch in touches:
-        if np.ptp(touch.voltage) < _FELT * noise:
+        if np.ptp(touch.voltage) < _LEAST_SIGNAL * noise:
             raise InvalidValueError(
                 f"{touch.name}: the voltage moves by {np.ptp(touch.voltage):.2g} V, at a noise of {noise:.2g} V rms: "
                 "nothing is felt; look at the sensor's wires and the temperatures"
@@ -165,7 +165,7 @@ class _Problem:
             for r, touch in enumerate(self._model.touches)
         ]
         return np.concatenate(
-            (np.concatenate(misses) / self._noise, (late / _or_one(self._errors))[self._uncertain])
+            (np.concatenate(misses) / self._noise, (late / _ones_for_zeros(self._errors))[self._uncertain])
         )
 
     def jacobian(self, x: np.ndarray) -> np.ndarray:
@@ -268,7 +268,7 @@ class _Problem:
     def _inverse(self, jacobian: np.ndarray) -> np.ndarray:
         """Of J'J. Raises InvalidValueError where it has none, with the parameters that are open."""
         scale = np.linalg.norm(jacobian, axis=0)
-        _, singular, turn = np.linalg.svd(jacobian / _or_one(scale), full_matrices=False)
+        _, singular, turn = np.linalg.svd(jacobian / _ones_for_zeros(scale), full_matrices=False)
         if singular[-1] <= _OPEN * singular[0] or not scale.all():
             names = [name for k, name in enumerate(self.free) if abs(turn[-1, k]) > 0.1 or not scale[k]]
             raise InvalidValueError(
@@ -300,5 +300,5 @@ def _untold(estimates: Mapping[str, Estimate], correlation: np.ndarray) -> tuple
     return (*wide, *alike)
 
 
-def _or_one(values: np.ndarray) -> np.ndarray:
+def _ones_for_zeros(values: np.ndarray) -> np.ndarray:
     return np.where(values == 0, 1.0, values)

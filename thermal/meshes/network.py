@@ -178,6 +178,14 @@ def _walls(grid: MeshGrid, basis: np.ndarray, triangles: np.ndarray) -> np.ndarr
     return np.concatenate(((shares @ fields)[None], sizes[kept, None] * vectors[kept]))
 
 
+def conducting_parts(body: Solid) -> list[tuple[np.ndarray, np.ndarray, float, float]]:
+    """What heat conduction depends on, by part: vertices, faces, W/(m K) and J/(m3 K), but no material's name."""
+    return [
+        (p.vertices, p.faces, p.material.conductivity, p.material.volumetric_heat_capacity)
+        for p in body.parts
+    ]
+
+
 def _key(
     body: Solid,
     patches: tuple[SurfacePatch, ...],
@@ -185,12 +193,8 @@ def _key(
     points: np.ndarray,
     gridding: MeshGridding,
 ) -> dict[str, object]:
-    """What heat conduction knows of a body: names of materials play no part."""
     return {
-        "parts": [
-            (p.vertices, p.faces, p.material.conductivity, p.material.volumetric_heat_capacity)
-            for p in body.parts
-        ],
+        "parts": conducting_parts(body),
         "patches": patches,
         "patterns": (patterns.edges, patterns.sums),
         "points": points,

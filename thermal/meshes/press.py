@@ -7,7 +7,7 @@ from thermograsp.errors import InvalidValueError, positive
 from ..matter import SensorStack, Skin
 from ..network import Demand
 from ..readout import Thermostat
-from ..rungs import Conductance, Press, PressProblem, Rung, as_felt, expected, pressed_sensor, sample_times
+from ..rungs import Conductance, Press, PressProblem, Rung, expected, press_of, pressed_sensor, sample_times
 from ..rungs import network as network_press
 from ..stack import HeatedStack
 from .solid import Solid, SurfacePatch
@@ -84,4 +84,4 @@ def press_body(
         f"{', at constant conductances' if callable(conductance) else ''}; its grid taken to be off as on flat faces "
         f"along its axes, elsewhere that part is not measured{_AIR_LUMPED if air else ''}",
     )
-    return as_felt(problem, t, curves, rung)
+    return press_of(problem, t, curves, rung)

@@ -8,14 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, MeshError, positive
+from thermograsp.errors import LONGEST, InvalidValueError, MeshError, positive
 
 from ..matter import Material
 from .check import open_edges, wrongly_enclosed
 from .nesting import hosts, shares_within
 
-LARGEST = 5.0  # m, the longest side of an object that a hand may touch
-SMALLEST = 0.5e-3
+_SMALLEST = 0.5e-3  # m, of an object's longest side
 _TWICE = 1e-3  # of the volume that may be enclosed twice or inside out
 
 
@@ -154,9 +153,9 @@ def checked(body: Solid) -> Solid:
     """The object. Raises MeshError where it is far larger or smaller than what a fingertip touches, or where a part
     encloses volume twice or inside out, with how much."""
     longest = float(np.ptp(body.bounds, axis=0).max())
-    if not SMALLEST <= longest <= LARGEST:
+    if not _SMALLEST <= longest <= LONGEST:
         advice = "lengths are metres: multiply them by 0.001 if yours are millimetres"
-        raise MeshError(f"the object is {longest:.4g} m long, not {SMALLEST:g} .. {LARGEST:g} m; {advice}")
+        raise MeshError(f"the object is {longest:.4g} m long, not {_SMALLEST:g} .. {LONGEST:g} m; {advice}")
     for number, part in enumerate(body.parts):
         twice, inside_out = wrongly_enclosed(part.triangles)
         for volume, how in ((twice, "twice"), (inside_out, "inside out")):

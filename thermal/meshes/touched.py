@@ -34,7 +34,7 @@ from ..network import (
 )
 from ..plates import Geometry
 from .hollow import wetted_faces
-from .network import body_network
+from .network import body_network, conducting_parts
 from .patterns import learned_patterns
 from .place import place_patch
 from .solid import Solid, SurfacePatch
@@ -159,10 +159,7 @@ def touched_body(
     modes = 2 if demand.tolerance >= _COARSE * abs(demand.difference) / 12 else 3
     plate = Geometry(stack, PLATE_MATERIAL, "T", area, "square", PLATE)
     key = {
-        "body": [
-            (p.vertices, p.faces, p.material.conductivity, p.material.volumetric_heat_capacity)
-            for p in body.parts
-        ],
+        "body": conducting_parts(body),
         "patches": patches,
         "stack": stack,
         "demand": demand,

@@ -6,7 +6,7 @@ from .grid import March
 from .grid_axisymmetric import grid
 from .ladder import RUNGS, Rung, RungInfo, expected, press_network, solve_rung
 from .network import geometry_of
-from .press import Press, as_felt, press, pressed_sensor, sample_times
+from .press import Press, press, press_of, pressed_sensor, sample_times
 from .problem import Conductance, PressProblem
 
 __all__ = [
@@ -17,7 +17,7 @@ __all__ = [
     "PressProblem",
     "Rung",
     "RungInfo",
-    "as_felt",
+    "press_of",
     "drop_o_mode",
     "drop_t_mode",
     "equivalent_slab",

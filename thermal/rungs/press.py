@@ -108,7 +108,7 @@ def press(
     positive("tolerance (K)", tolerance)
     t = sample_times(seconds, dt)
     used, curves = solve_rung(str(rung), problem, t, tolerance, cache)
-    return as_felt(problem, t, curves, used)
+    return press_of(problem, t, curves, used)
 
 
 def sample_times(seconds: float, dt: float) -> np.ndarray:
@@ -121,7 +121,7 @@ def sample_times(seconds: float, dt: float) -> np.ndarray:
     return np.arange(count) * dt
 
 
-def as_felt(problem: PressProblem, t: np.ndarray, curves: PressCurves, rung: Rung) -> Press:
+def press_of(problem: PressProblem, t: np.ndarray, curves: PressCurves, rung: Rung) -> Press:
     """A rung's curves with the sensor's voltage."""
     reading, voltage = None, problem.stack.seebeck * curves.temperature_drop
     if problem.heated is not None and curves.reading is not None:

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from thermograsp.cli.shared import Output, plain
+from thermograsp.cli.shared import Output, add_seed, plain
 from thermograsp.errors import InvalidValueError
 from thermograsp.files import made_folder, write_text
 
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("what", nargs="?", choices=(*BENCHMARKS, "all"), default="all", help="which benchmark")
     add("--out", metavar="DIR", default="bench", help="folder for records and figures")
     add("--quick", action="store_true", help="coarser: one material, small maps")
-    add("--seed", type=int, default=0, help="of the order of timings and of bouncing contacts")
+    add_seed(parser, "of the order of timings and of bouncing contacts")
     add(
         "--from",
         dest="source",
@@ -40,8 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measures or reads, prints and draws. That a method fails is a result: the status is 0 all the same."""
-    if args.seed < 0:
-        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     from thermograsp.bench import caption, provenance
 
     begun, output = time.perf_counter(), Output(args.json)

@@ -1,11 +1,14 @@
-"""The port, and how to open it: arguments that the actions share."""
+"""What the actions share: the port and how to open it, and the service of an emulator."""
 
 from __future__ import annotations
 
 import argparse
+import sys
+import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from thermograsp.cli.shared import Output, add_duration, add_seed
 from thermograsp.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -13,6 +16,7 @@ if TYPE_CHECKING:
 
 _BAUD = 500_000
 _RATE = 100
+_FOREVER = 2**31 - 1.0  # s
 
 
 def add_port(parser: argparse.ArgumentParser) -> None:
@@ -29,6 +33,30 @@ def add_sampling(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--setpoint", type=float, help="of both thermostats, degC (default: leave the heaters as they are)"
     )
+
+
+def add_service(parser: argparse.ArgumentParser, seed: str, faults: str = "") -> None:
+    """--link, --seed, --seconds, and --fault where the emulator has faults, of which some examples are given."""
+    add = parser.add_argument
+    add("--link", metavar="PATH", help="a stable name for the port (default: none)")
+    add_seed(parser, seed)
+    add_duration(parser)
+    if faults:
+        about = f"what goes wrong, and when, such as {faults}; may be repeated; an unknown one lists all"
+        add("--fault", action="append", default=[], metavar="NAME[=VALUE][@SECONDS]", help=about)
+
+
+def serve(args: argparse.Namespace, url: str, document: Mapping[str, Any]) -> int:
+    """Prints where the emulator is, and waits for the end of the time or an interrupt. Returns the exit status."""
+    output = Output(args.json)
+    output.line(f"{url}  (Ctrl-C ends it)")
+    output.document(document)
+    sys.stdout.flush()
+    try:
+        time.sleep(_FOREVER if args.seconds is None else args.seconds)
+    except KeyboardInterrupt:
+        pass
+    return 0
 
 
 def connect(args: argparse.Namespace, tap: Tap | None = None) -> Fingertips:

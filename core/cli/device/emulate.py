@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
-import time
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.shared import Output
-from thermograsp.errors import InvalidValueError, positive, unknown_name
+from thermograsp.cli.device.connection import add_service, serve
+from thermograsp.errors import unknown_name
 
 if TYPE_CHECKING:
     from thermograsp.hardware import Source
@@ -32,19 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K)")
     add("--force", type=float, default=10.0, help="while touching, N")
     add("--replay", metavar="FILE", help="feel a recording again instead of a press")
-    add("--link", metavar="PATH", help="a stable name for the port (default: none)")
     add("--chain", default="ads1115", help="amplifier and converter: ads1115 or ideal")
     add("--drift", type=float, default=0.0, help="of the device's clock, ppm")
-    add("--seed", type=int, default=0, help="of noise and faults")
-    add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
-    add(
-        "--fault",
-        action="append",
-        default=[],
-        metavar="NAME[=VALUE][@SECONDS]",
-        help="what goes wrong, and when, such as corrupt=0.01, reboot@5, unplug=2@10; may be repeated; "
-        "an unknown one lists all",
-    )
+    add_service(parser, "of noise and faults", "corrupt=0.01, reboot@5, unplug=2@10")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -57,25 +45,13 @@ def run(args: argparse.Namespace) -> int:
 
     if args.chain not in SIGNAL_CHAINS:
         raise unknown_name("signal chain", args.chain, SIGNAL_CHAINS)
-    if args.seed < 0:
-        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
-    seconds = None if args.seconds is None else positive("seconds", args.seconds)
     model = DeviceModel(chain=SIGNAL_CHAINS[args.chain], drift=1e-6 * args.drift)
     device = EmulatedFingertips(_source(args), model, rng=np.random.default_rng(args.seed))
     with PtyDevice(device, args.link) as served:
         for text in args.fault:
             plan_fault(served, text)
-        output = Output(args.json)
-        output.line(f"{served.path}  (Ctrl-C ends it)")
-        output.document(
-            {"port": served.path, "material": None if args.replay else args.material, "mode": args.mode}
-        )
-        sys.stdout.flush()
-        try:
-            time.sleep(seconds if seconds is not None else np.iinfo(np.int32).max)
-        except KeyboardInterrupt:
-            pass
-    return 0
+        material = None if args.replay else args.material
+        return serve(args, served.path, {"port": served.path, "material": material, "mode": args.mode})
 
 
 def _source(args: argparse.Namespace) -> Source:

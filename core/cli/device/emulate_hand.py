@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import sys
-import time
 
+from thermograsp.cli.device.connection import add_service, serve
 from thermograsp.cli.shared import Output, add_materials_file, chosen_material, load_mujoco
-from thermograsp.errors import InvalidValueError, positive
-
-_FOREVER = 2**31 - 1.0  # s
 
 HELP = "Emulate fingertips and a Robotiq 2F-85 that grasp a simulated object, on two pseudo-terminals, in real time."
 
@@ -29,34 +25,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--skin",
         help="over the fingertips, in T mode: a skin's name, such as filled_silicone (default: bare)",
     )
-    add("--link", metavar="PATH", help="a stable name for the fingertips' port (default: none)")
     add("--gripper-link", metavar="PATH", help="a stable name for the gripper's port (default: none)")
-    add("--seed", type=int, default=0, help="of the objects' places and the noise")
-    add("--seconds", type=float, help="stop then (default: at Ctrl-C)")
+    add_service(parser, "of the objects' places and the noise")
 
 
 def run(args: argparse.Namespace) -> int:
     """Serves until the end of the time or an interrupt."""
-    output = Output(args.json)
-    load_mujoco(output)
+    load_mujoco(Output(args.json))
     from thermograsp.envs.plant import SimulatedPlant, SimulationConfig
     from thermograsp.hardware import PtyDevice
     from thermograsp.twin import SimulatedHand
 
-    if args.seed < 0:
-        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
-    seconds = None if args.seconds is None else positive("seconds", args.seconds)
     material = chosen_material(args.material, args.materials)
     config = SimulationConfig(material=material, mode=args.mode, sensor=args.sensor, skin=args.skin)
     simulation = SimulatedPlant(1, config)
     hand = SimulatedHand(simulation, args.seed)
     with PtyDevice(hand.fingertips, args.link) as tips, PtyDevice(hand.gripper, args.gripper_link) as gripper:
         url = f"serial://{tips.path}?gripper=robotiq://{gripper.path}"
-        output.line(f"{url}  (Ctrl-C ends it)")
-        output.document({"plant": url, "material": material.name, "mode": args.mode})
-        sys.stdout.flush()
-        try:
-            time.sleep(seconds if seconds is not None else _FOREVER)
-        except KeyboardInterrupt:
-            pass
-    return 0
+        return serve(args, url, {"plant": url, "material": material.name, "mode": args.mode})

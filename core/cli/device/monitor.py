@@ -18,8 +18,7 @@ from thermograsp.cli.device.connection import (
     link_line,
 )
 from thermograsp.cli.device.live_plot import LivePlot
-from thermograsp.cli.shared import Output
-from thermograsp.errors import positive
+from thermograsp.cli.shared import Output, add_duration
 from thermograsp.hardware.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -38,14 +37,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add_port(parser)
     add_sampling(parser)
-    parser.add_argument("--seconds", type=float, help="stop then (default: at Ctrl-C)")
+    add_duration(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Shows until the end of the time or an interrupt. 1 where the line was broken at the end."""
     output = Output(args.json)
-    if args.seconds is not None:
-        positive("seconds", args.seconds)
     with connect(args) as tips:
         if args.json:
             broken = _follow(tips, args.seconds, _records(output))

@@ -12,8 +12,8 @@ from thermograsp.cli.device.connection import (
     link_document,
     link_line,
 )
-from thermograsp.cli.shared import Output, target
-from thermograsp.errors import InvalidValueError, positive
+from thermograsp.cli.shared import Output, add_duration, target
+from thermograsp.errors import InvalidValueError
 
 HELP = "Record the raw bytes of the line until the time is over or Ctrl-C, for `thermograsp device replay`."
 
@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_port(parser)
     parser.add_argument("file", metavar="FILE", help="a new file")
     add_sampling(parser)
-    parser.add_argument("--seconds", type=float, help="stop then (default: at Ctrl-C)")
+    add_duration(parser)
     parser.add_argument("--note", default="", help="text to keep in the file")
 
 
@@ -39,8 +39,7 @@ def run(args: argparse.Namespace) -> int:
     file = target(args.file, ())
     if file is None:
         raise InvalidValueError("name the recording's file")
-    seconds = None if args.seconds is None else positive("seconds", args.seconds)
-    output = Output(args.json)
+    output, seconds = Output(args.json), args.seconds
     metadata = {
         "port": args.port,
         "baud": args.baud,

@@ -11,6 +11,7 @@ from thermograsp.cli.shared import (
     Output,
     add_materials_file,
     add_old_name,
+    add_seed,
     chosen_material,
     load_mujoco,
     target,
@@ -46,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of the whole episode; the touch is at about 0.5 s",
     )
     add("--hold", type=float, default=2.0, help="s at 5 cm, up to the end, that count as held")
-    add("--seed", type=int, default=0, help="of the object's place and the noise")
+    add_seed(parser, "of the object's place and the noise")
     add(
         "--force",
         type=float,
@@ -108,8 +109,6 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.envs import GraspBatch, GraspTask
 
     csv, picture = target(args.csv, ()), target(args.render, (".gif", ".webp", ".png"))
-    if args.seed < 0:
-        raise InvalidValueError(f"seed must be 0 or above, got {args.seed}")
     if args.plot is not None and args.plant is None:
         raise InvalidValueError("--plot draws real beside simulated: give --plant, or use --render or --csv")
     spec = _object(args)

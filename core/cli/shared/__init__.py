@@ -5,7 +5,14 @@ from typing import TYPE_CHECKING
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
-    from thermograsp.cli.shared.arguments import add_materials_file, add_old_name, chosen_material, target
+    from thermograsp.cli.shared.arguments import (
+        add_duration,
+        add_materials_file,
+        add_old_name,
+        add_seed,
+        chosen_material,
+        target,
+    )
     from thermograsp.cli.shared.help import Help, described
     from thermograsp.cli.shared.opengl import load_mujoco
     from thermograsp.cli.shared.output import Output, plain
@@ -15,8 +22,10 @@ __all__ = [
     "Help",
     "Output",
     "ShowVersion",
+    "add_duration",
     "add_materials_file",
     "add_old_name",
+    "add_seed",
     "chosen_material",
     "described",
     "load_mujoco",
@@ -28,8 +37,10 @@ __getattr__ = opened(
     __name__,
     {
         "arguments": (
+            "add_duration",
             "add_materials_file",
             "add_old_name",
+            "add_seed",
             "chosen_material",
             "target",
         ),

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.errors import InvalidValueError, unknown_name
+from thermograsp.errors import InvalidValueError, positive, unknown_name
 
 if TYPE_CHECKING:
     from thermograsp.thermal import Material
@@ -53,6 +53,29 @@ def add_materials_file(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="take the material from your own TOML table",
     )
+
+
+def add_seed(parser: argparse.ArgumentParser, about: str) -> None:
+    """--seed, a whole number from 0 on."""
+    parser.add_argument("--seed", type=seed_number, default=0, help=about)
+
+
+def add_duration(parser: argparse.ArgumentParser) -> None:
+    """--seconds, above 0, for what otherwise runs until an interrupt."""
+    parser.add_argument("--seconds", type=duration, help="stop then (default: at Ctrl-C)")
+
+
+def seed_number(text: str) -> int:
+    if (seed := int(text)) < 0:
+        raise argparse.ArgumentTypeError(f"seed must be 0 or above, got {seed}")
+    return seed
+
+
+def duration(text: str) -> float:
+    try:
+        return positive("seconds", float(text))
+    except InvalidValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def chosen_material(name: str, file: str | None) -> Material:
