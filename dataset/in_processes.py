@@ -61,7 +61,7 @@ def produce(
 
 
 class _Process:
-    """A process that takes one shard after another. shard: the one that it works on. attempt: how often that shard was begun."""
+    """A process that takes one shard after another. shard: its present one. attempt: how often that was begun."""
 
     def __init__(self, plan: Plan) -> None:
         # spawn: a fork would copy the locks of our threads, and nothing that was changed here must count there

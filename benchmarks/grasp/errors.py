@@ -1,6 +1,6 @@
 """How well a grasp held, what its contact record is off by, and what that does to the temperature drop.
 
-Shapes as in grasp_course. Nothing here depends on how fast the machine is.
+Shapes as in course.py. Nothing here depends on how fast the machine is.
 """
 
 from __future__ import annotations

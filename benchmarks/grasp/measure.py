@@ -1,6 +1,6 @@
 """Work and precision of a grasp: what MuJoCo's settings cost, how well they hold, and what error heat gets from them.
 
-Every variant goes through the same course (grasp_course) with a box, a cylinder, a sphere and a mesh, each placed a few
+Every variant goes through the same course (course.py) with a box, a cylinder, a sphere and a mesh, each placed a few
 times. The reference is a run with a time step of 0.1 ms and settings that are otherwise shipped; slip needs none: the
 load never passes a sixth of what friction can hold, so nothing should slip.
 """

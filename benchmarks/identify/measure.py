@@ -1,4 +1,4 @@
-"""What `thermograsp bench identify` compares: the identifier, the Bayes limit and learned classifiers, on the same touches."""
+"""`thermograsp bench identify`: the identifier, the Bayes limit and learned classifiers on the same touches."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Classifiers that learn materials from examples: a support vector machine on principal components, and a small recurrent
-net. Both see the voltages of as many fresh touches as they are given, and their labels."""
+"""Classifiers that learn materials from examples: a support vector machine on principal components, and a small
+recurrent net. Both see the voltages of as many fresh touches as they are given, and their labels."""
 
 from __future__ import annotations
 

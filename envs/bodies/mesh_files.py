@@ -1,4 +1,4 @@
-"""Surfaces from mesh files. Defects that can be repaired are, with a warning that names them; other files are refused."""
+"""Surfaces from mesh files. Small defects are repaired, with a warning that names them; other files are refused."""
 
 from __future__ import annotations
 

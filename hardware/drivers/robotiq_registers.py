@@ -68,8 +68,8 @@ CURES: Mapping[int, str] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """A command to the gripper: counts 0 .. 255 for position (0 open), speed and force. release_opens: which way the automatic
-    release goes."""
+    """A command to the gripper: counts 0 .. 255 for position (0 open), speed and force. release_opens: which way the
+    automatic release goes."""
 
     activate: bool = False
     go: bool = False

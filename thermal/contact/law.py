@@ -1,6 +1,6 @@
 """Area and conductance of a fingertip's contact as one compiled function of the normal force, for many rows at once.
 
-The laws are those of area.py and conductance.py, which stay the reference: a row holds one object's numbers, and
+The laws are those of area.py and rough_faces.py, which stay the reference: a row holds one object's numbers, and
 `contact` evaluates them in the order of their formulas, to 1e-9. Rows never mix.
 """
 

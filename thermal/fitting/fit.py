@@ -1,6 +1,6 @@
 """A sensor's properties from recorded touches of known objects: maximum likelihood, with intervals.
 
-The model is sensor_model.py's. Its Seebeck coefficient, offset, delay and sensed layer are shared by all touches; each
+The model is that of model.py. Its Seebeck coefficient, offset, delay and sensed layer are shared by all touches; each
 touch has its conductance and, where its origin of time is uncertain, its lateness, normal about 0. Noise is white.
 Intervals are those of the linearised problem (covariance from the Jacobian: Seber & Wild, Nonlinear Regression, Wiley
 1989, section 5.1), with the variance of the residuals where that is above the noise's.
@@ -61,7 +61,7 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class SensorFit:
-    """stack: the fitted sensor. shared: by the keys of sensor_model.UNITS; one that was held is its own interval.
+    """stack: the fitted sensor. shared: by the keys of UNITS; one that was held is its own interval.
     conductances: (R,) W/(m2 K). misfit: (R,) rms of the residuals as a share of the touch's largest signal. noise: V
     rms of all residuals. correlation: (P, P), 0 with those held. untold: sentences on what the touches cannot tell.
     confidence: of the intervals."""

@@ -1,6 +1,6 @@
 """The thermal network of an object of any shape, seen through the patches where it is touched.
 
-The object is a grid (mesh_grid). Its temperatures under heat flow into each patch, at shifts over the moments from a
+The object is a grid (grid.py). Its temperatures under heat flow into each patch, at shifts over the moments from a
 millisecond to minutes, span the states (rational Krylov: Grimme 1997; Galerkin, so an error of a field enters the
 impedance squared and any span is passive). The object's mean temperature is a state of its own of rate 0 and the only
 one that holds heat.

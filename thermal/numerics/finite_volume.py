@@ -4,7 +4,7 @@ A body is a stack of homogeneous layers over a lateral section, and its grid the
 r) and a grid in depth. The discrete conduction operator is then a sum of Kronecker products: two small eigenproblems
 diagonalise it laterally, and what is left for each lateral mode is tridiagonal in depth (fast diagonalisation: Lynch,
 Rice & Thomas 1964, Numerische Mathematik 6, 185). No large matrix is factored, so the time step may change at will.
-Where two bodies touch only the cells along the contact couple; see grid_press.
+Where two bodies touch only the cells along the contact couple; see grid_contact.py.
 
 Temperatures are arrays (D, I, J): D cells in depth, I and J along the two lateral axes (J = 1 on a disc).
 """
