@@ -31,31 +31,4 @@ __all__ = [
     "rollout",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "gripper_check": (
-            "FELT_AFTER",
-            "check_gripper",
-        ),
-        "policies": (
-            "POLICIES",
-            "Policy",
-            "load_policy",
-            "policy",
-        ),
-        "recording": (
-            "LONGEST",
-            "Recording",
-            "columns_of",
-            "record",
-        ),
-        "episodes": ("rollout",),
-        "scripted": ("ScriptedGrasp",),
-        "stopwatch": ("Stopwatch",),
-        "trained": (
-            "Network",
-            "load_network",
-        ),
-    },
-)
+__getattr__ = opened(__name__)

@@ -13,7 +13,4 @@ if TYPE_CHECKING:
 
 __all__ = ["Progress", "Record", "caption", "provenance"]
 
-__getattr__ = opened(
-    __name__,
-    {"kinds": ("Progress", "Record"), "measured_on": ("caption", "provenance")},
-)
+__getattr__ = opened(__name__)

@@ -17,9 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Fingertip", "ThermalBody", "ThermalTouch", "wrappers"]
 
-__getattr__ = opened(
-    __name__, {"touch": ("Fingertip", "ThermalBody", "ThermalTouch"), "touch.wrappers": ("wrappers",)}
-)
+__getattr__ = opened(__name__)
 
 __version__ = "0.2.0"
 

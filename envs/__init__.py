@@ -134,11 +134,4 @@ __all__ = [
     "water",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "footprint": ("Taxels",),
-        "grippers": ("FingertipReport", "Gripper", "GripperModel", "fit_fingertip", "load_gripper"),
-    },
-    renamed={"Thing": "GraspBody"},  # until 0.3
-)
+__getattr__ = opened(__name__, renamed={"Thing": "GraspBody"})  # until 0.3

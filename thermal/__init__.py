@@ -187,18 +187,4 @@ __all__ = [
     "write_sensor",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "fitting": ("Estimate", "KnownTouch", "SensorFit", "fit_sensor"),
-        "identification": (
-            "EffusivityPosterior",
-            "Identification",
-            "Identifier",
-            "TouchSetup",
-            "Verdict",
-            "identify",
-        ),
-        "meshes": ("Solid", "SolidPart", "SurfacePatch", "body_network", "press_body", "solid"),
-    },
-)
+__getattr__ = opened(__name__)

@@ -52,24 +52,4 @@ __all__ = [
     "triangles",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "contacts": ("TouchContacts", "prepare"),
-        "engine": ("install", "load_plugin"),
-        "fixed_touch": ("FixedTouch", "FixedTouchReading", "FixedTouchState", "grasp_touch"),
-        "heat": ("FixedPlaces", "HeatBalance"),
-        "scene": (
-            "Face",
-            "Fingertip",
-            "SensorElement",
-            "ThermalBody",
-            "flat_faces",
-            "largest_face",
-            "rotation",
-            "triangles",
-        ),
-        "readings": ("SAMPLES", "TouchReading"),
-        "thermal_touch": ("ThermalTouch", "TouchState"),
-    },
-)
+__getattr__ = opened(__name__)

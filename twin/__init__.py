@@ -11,11 +11,4 @@ if TYPE_CHECKING:
 
 __all__ = ["Beside", "SimulatedHand", "TwinPlant", "grasp_beside", "measured_columns"]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "beside": ("Beside", "grasp_beside", "measured_columns"),
-        "plant": ("TwinPlant",),
-        "simulated_hand": ("SimulatedHand",),
-    },
-)
+__getattr__ = opened(__name__)

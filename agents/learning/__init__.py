@@ -24,12 +24,4 @@ __all__ = [
     "training",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "agent": ("Agent", "load_agent"),
-        "recipe": ("Recipe",),
-        "scoring": ("HELD_OUT", "Score", "score"),
-        "tasks": ("TASKS", "LearningTask", "learning_task"),
-    },
-)
+__getattr__ = opened(__name__)

@@ -10,4 +10,4 @@ if TYPE_CHECKING:
 
 __all__ = ["draw", "measured"]
 
-__getattr__ = opened(__name__, {"figure": ("draw",), "record": ("measured",)})
+__getattr__ = opened(__name__)

@@ -13,4 +13,4 @@ if TYPE_CHECKING:
 
 __all__ = ["ThermograspHand", "ThermograspHandConfig"]
 
-__getattr__ = opened(__name__, {"hand": ("ThermograspHand", "ThermograspHandConfig")})
+__getattr__ = opened(__name__)

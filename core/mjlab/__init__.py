@@ -26,10 +26,4 @@ __all__ = [
     "voltage",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "sensor": ("ThermalTouchCfg", "ThermalTouchData", "ThermalTouchSensor"),
-        "terms": ("randomize_material", "temperature_drop", "voltage"),
-    },
-)
+__getattr__ = opened(__name__)

@@ -16,17 +16,4 @@ __all__ = [
     "checked_taxels",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "grasp_body": (
-            "PAD",
-            "GraspBody",
-        ),
-        "taxels": (
-            "MOST_PRESSURE",
-            "Taxels",
-            "checked_taxels",
-        ),
-    },
-)
+__getattr__ = opened(__name__)

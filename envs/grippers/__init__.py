@@ -19,18 +19,4 @@ __all__ = [
     "load_gripper",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "fingertip": (
-            "FingertipReport",
-            "fit_fingertip",
-        ),
-        "load": ("load_gripper",),
-        "mounted": ("Gripper",),
-        "shipped": (
-            "GripperModel",
-            "SHIPPED_GRIPPER",
-        ),
-    },
-)
+__getattr__ = opened(__name__)

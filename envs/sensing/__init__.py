@@ -32,33 +32,4 @@ __all__ = [
     "served_in_the_middle",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "boxes": (
-            "served_anywhere",
-            "served_in_the_middle",
-        ),
-        "cores": ("HeatedCores",),
-        "electronics": (
-            "Electronics",
-            "ElectronicsState",
-        ),
-        "face_temperature": (
-            "FaceTemperature",
-            "FaceTemperatureState",
-        ),
-        "heat": (
-            "GraspHeat",
-            "HeatState",
-            "HeatStep",
-        ),
-        "rows": ("EVENTS",),
-        "scene_heat": (
-            "SceneHeat",
-            "SceneHeatState",
-            "SceneHeatStep",
-        ),
-        "thermostats": ("Thermostats",),
-    },
-)
+__getattr__ = opened(__name__)

@@ -35,28 +35,4 @@ __all__ = [
     "with_maps",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "actions": (
-            "action_of",
-            "action_space",
-            "command_of",
-            "sliding_action_of",
-            "sliding_action_space",
-            "sliding_command_of",
-        ),
-        "map_observation": ("with_maps",),
-        "observation": (
-            "Observation",
-            "Observer",
-            "observation_space",
-        ),
-        "senses": (
-            "SIZE",
-            "Senses",
-            "arm_waits",
-        ),
-        "sort_observation": ("SortObserver",),
-    },
-)
+__getattr__ = opened(__name__)

@@ -17,17 +17,4 @@ __all__ = [
     "versions",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "page": ("demo_page",),
-        "runs": (
-            "ModeRun",
-            "run_mode",
-        ),
-        "tables": (
-            "Settings",
-            "versions",
-        ),
-    },
-)
+__getattr__ = opened(__name__)

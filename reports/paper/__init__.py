@@ -23,13 +23,4 @@ __all__ = [
     "run_paper",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "claim": ("Claim", "Support"),
-        "claims": ("paper_claims",),
-        "figures": ("draw_paper",),
-        "runs": ("Task", "run_paper"),
-        "sweeps": ("FULL", "MATERIALS", "QUICK"),
-    },
-)
+__getattr__ = opened(__name__)

@@ -22,22 +22,4 @@ __all__ = [
     "one_of",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "choices": (
-            "Choices",
-            "Controls",
-            "RANGES",
-            "SPEEDS",
-            "Stock",
-            "one_of",
-        ),
-        "driving": ("Driving",),
-        "feeling": (
-            "Feeling",
-            "SPREAD",
-            "known_touch",
-        ),
-    },
-)
+__getattr__ = opened(__name__)

@@ -13,10 +13,4 @@ __all__ = [
     "record_studio",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "record": ("record_studio",),
-        "session": ("Session",),
-    },
-)
+__getattr__ = opened(__name__)

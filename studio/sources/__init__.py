@@ -15,11 +15,4 @@ __all__ = [
     "grasp_of",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "played": ("PlayedGrasp",),
-        "simulated": ("SimulatedGrasp",),
-        "source": ("grasp_of",),
-    },
-)
+__getattr__ = opened(__name__)

@@ -13,10 +13,4 @@ __all__ = [
     "Studio",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "access": ("Access",),
-        "server": ("Studio",),
-    },
-)
+__getattr__ = opened(__name__)

@@ -54,7 +54,7 @@ def step_arrays(
     """Arrays of a propagator. modes: ports of each contact (None: all belong to one). sensor_states: of each fingertip,
     at the end of the states, seeing only its own contact's ports."""
     states, ports = propagator.ports.shape
-    modes = ports if modes is None else modes
+    each = ports if modes is None else modes
     return StepArrays(
         propagator.dt,
         np.ascontiguousarray(propagator.rates),
@@ -62,10 +62,10 @@ def step_arrays(
         np.ascontiguousarray(np.real(propagator.scale)),
         np.ascontiguousarray(np.imag(propagator.scale)),
         np.ascontiguousarray(propagator.gram),
-        states - sensor_states * (ports // modes),
+        states - sensor_states * (ports // each),
         sensor_states,
-        modes,
-        ports // modes,
+        each,
+        ports // each,
         np.zeros(states) if watched is None else np.ascontiguousarray(watched),
         0.0,
     )

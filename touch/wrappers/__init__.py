@@ -11,11 +11,4 @@ if TYPE_CHECKING:
 
 __all__ = ["AddThermalObservation", "DmControlThermalWrapper", "RobosuiteThermalWrapper"]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "dm_control": ("DmControlThermalWrapper",),
-        "gymnasium": ("AddThermalObservation",),
-        "robosuite": ("RobosuiteThermalWrapper",),
-    },
-)
+__getattr__ = opened(__name__)

@@ -33,20 +33,4 @@ __all__ = [
     "target",
 ]
 
-__getattr__ = opened(
-    __name__,
-    {
-        "arguments": (
-            "add_duration",
-            "add_materials_file",
-            "add_old_name",
-            "add_seed",
-            "chosen_material",
-            "target",
-        ),
-        "help": ("Help", "described"),
-        "opengl": ("load_mujoco",),
-        "output": ("Output", "plain"),
-        "versions": ("ShowVersion",),
-    },
-)
+__getattr__ = opened(__name__)
