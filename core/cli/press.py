@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.pressed_mesh import add_mesh_arguments, press_mesh
+from thermograsp.cli.pressed_mesh import KEYWORDS, PLATES, add_mesh_arguments, press_mesh
 from thermograsp.cli.shared import Output, add_materials_file, chosen_material, target
 
 if TYPE_CHECKING:
@@ -13,25 +13,6 @@ if TYPE_CHECKING:
 
 NAME = "press"
 HELP = "Press the sensor on an object and print what it feels."
-
-_KEYWORDS = (
-    "mode",
-    "sensor",
-    "conductance",
-    "force",
-    "area",
-    "shape",
-    "object_size",
-    "air",
-    "sensor_temperature",
-    "object_temperature",
-    "seconds",
-    "dt",
-    "tolerance",
-    "rung",
-    "opposite",
-    "skin",
-)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -97,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
 
     csv, plot = target(args.csv, ()), target(args.plot, (".svg", ".png", ".pdf"))
     material = chosen_material(args.material, args.materials)
-    keywords = {name: getattr(args, name) for name in _KEYWORDS}
+    keywords = {name: getattr(args, name) for name in (*KEYWORDS, *PLATES, "area")}
     thermostat = None
     if args.thermostat_power is not None:
         first, around = args.sensor_temperature, args.object_temperature

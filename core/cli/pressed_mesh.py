@@ -21,14 +21,16 @@ SIDES = {
 """Name -> outward direction, in the file's frame."""
 
 _AREA = 81e-6  # m2
-_PLATES = {
+PLATES = {
     "mode": "T",
     "shape": "square",
     "rung": "auto",
     "opposite": None,
     "object_size": (0.04, 0.04, 0.01),
 }
-_KEYWORDS = (
+"""Defaults of the keywords that only `press` has."""
+
+KEYWORDS = (
     "sensor",
     "conductance",
     "force",
@@ -40,6 +42,7 @@ _KEYWORDS = (
     "tolerance",
     "skin",
 )
+"""Those that `press` and `press_body` share."""
 
 
 def add_mesh_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +70,7 @@ def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermos
     from thermograsp.envs.bodies import read_surface
     from thermograsp.errors import positive
 
-    for name, default in _PLATES.items():
+    for name, default in PLATES.items():
         if getattr(args, name) != default:
             raise InvalidValueError(f"--{name.replace('_', '-')} is for plates: leave it out with --mesh")
     positive("scale", args.scale)
@@ -81,5 +84,5 @@ def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermos
         thermal.SurfacePatch((x, y, z), SIDES[args.side], _AREA if args.area is None else args.area),
         thermostat=thermostat,
         cache=not args.no_cache,
-        **{name: getattr(args, name) for name in _KEYWORDS},
+        **{name: getattr(args, name) for name in KEYWORDS},
     )
