@@ -22,6 +22,7 @@ from ...thermal.batch import (
     HELD,
     POLE_HEAT,
     RATES,
+    SHARED,
     WHERE,
     FixedTables,
     TipRows,
@@ -77,6 +78,7 @@ class BoxHeat:
         self._prints: dict[int, tuple[_Print, ...]] = {}
         self._rows = np.zeros(rows, BOX_ROW)
         self._strayed = np.zeros((2 * rows, 2), np.int64)
+        self._left = np.exp(-_SOON * SHARED)
         self.tables: FixedTables = no_fixed_tables(dt)
 
     @property
@@ -236,7 +238,7 @@ class BoxHeat:
         """K at a place, _SOON from now, from what has flowed through it alone. A place that is being made has none."""
         tables = self.tables
         most, even = tables.places * tables.patterns, place * tables.patterns
-        field = state[self._field(place)][: tables.rates.shape[1]] * np.exp(-_SOON * tables.rates[0])
+        field = state[self._field(place)][: tables.rates.shape[1]] * self._left
         return abs(float((tables.body[row, even * (most + 1)] * field).sum()))
 
     def _turn(self, row: int, last: Touched, prints: tuple[_Print, ...], state: np.ndarray) -> None:

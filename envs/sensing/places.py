@@ -5,6 +5,7 @@ F: fingertips. Places are in m.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -66,9 +67,10 @@ class Place:
         """Whether a pad at the other place is on this one too."""
         if other.face != self.face:
             return False
-        distance = max(abs(a - b) for a, b in zip(self.middle, other.middle, strict=True))
-        first, second = np.array(self.covered(size, width)), np.array(other.covered(size, width))
-        return distance <= NEAR * width and bool(np.abs(first - second).max() <= EDGE * width)
+        if max(abs(a - b) for a, b in zip(self.middle, other.middle, strict=True)) > NEAR * width:
+            return False
+        edges = zip(self.covered(size, width), other.covered(size, width), strict=True)
+        return all(max(abs(a - c), abs(b - d)) <= EDGE * width for (a, b), (c, d) in edges)
 
 
 def opposite(place: Place, places: Sequence[Place], width: float) -> Place | None:
@@ -132,7 +134,7 @@ def _heir(number: int, places: Sequence[Place], new: Place, width: float) -> tup
     nearest = width, -1
     for other, place in enumerate(rest):
         if place.face == given_up.face:
-            distance = float(np.hypot(*np.subtract(place.middle, given_up.middle)))
+            distance = math.dist(place.middle, given_up.middle)
             nearest = min(nearest, (distance, other))
     return nearest
 

@@ -165,11 +165,12 @@ def fixed_tip_heat(tables: FixedTables, number: int) -> np.ndarray:
 def _rate_table(rates: np.ndarray, dt: float) -> np.ndarray:
     """(14, ...) of rates 1/s: themselves, what of a state is left after a step, how it is seen at the poles, and what
     flows at the poles push it by."""
-    scale = 1 / (POLES.reshape(-1, *(1,) * np.ndim(rates)) + dt * rates)
+    rates = np.asarray(rates, float)
+    scale = 1 / (POLES.reshape(-1, *(1,) * rates.ndim) + dt * rates)
     weighted = -2 * dt * np.moveaxis(WEIGHTS * np.moveaxis(scale, 0, -1), -1, 0)
     left = 1 - rates * weighted.real.sum(axis=0)
-    parts = (rates, left, *scale.real, *scale.imag, *weighted.real, *-weighted.imag)
-    return np.stack([np.asarray(part, float) for part in parts])
+    parts = rates[None], left[None], scale.real, scale.imag, weighted.real, -weighted.imag
+    return np.concatenate(parts)
 
 
 def tip_residues(side: Side) -> np.ndarray:
