@@ -20,6 +20,7 @@ assert _spec and _spec.loader
 hand = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(hand)
 
+_STEP = mujoco.mj_step
 PADS = {name: f"{name}_pad" for name in hand.FINGERS}
 
 
@@ -67,6 +68,29 @@ def test_every_substep_of_an_environment_is_heard(anew: bool) -> None:
     np.testing.assert_array_equal(info["touch"].voltage, touch.reading.voltage)
     assert (info["touch"].temperature_drop > 1.0).all()
     assert mujoco.mj_step is step
+
+
+class ByName(Theirs):
+    """Steps by a function that it has imported by name."""
+
+    def step(self, action: Any) -> Any:
+        hand.press(self.data, float(action[0]))
+        _STEP(self.model, self.data, nstep=10)
+        return self.data.qpos[:2].copy(), 0.0, False, False, {}
+
+
+def test_steps_by_a_function_imported_by_name_are_felt() -> None:
+    pressed = []
+    for theirs in (ByName(), Theirs()):
+        env = thermograsp.wrappers.AddThermalObservation(
+            theirs, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal"
+        )
+        env.reset(seed=0)
+        for _ in range(30):
+            env.step(np.array([10.0]))
+        pressed.append(env.touch.reading.temperature_drop)
+    assert (pressed[0] > 1.0).all()
+    np.testing.assert_allclose(*pressed, rtol=0.05)
 
 
 def test_an_environment_without_mujoco_is_refused() -> None:

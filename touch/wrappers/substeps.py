@@ -36,16 +36,18 @@ class SteppedTouch:
         """While it lasts, the touch hears every step that mujoco.mj_step and mj_step2 take of the environment's data.
 
         Both are replaced in the module for that time, so environments that step in several threads of one process are
-        not served."""
+        not served. Of steps that were taken otherwise, by a function imported by name or in a rollout, the last
+        contacts stand for all."""
         _, data = self._simulation()
         with heard(data, self.touch):
             yield
+        self.touch.update(data)
 
 
 @contextmanager
 def heard(data: mujoco.MjData, touch: ThermalTouch) -> Iterator[None]:
     """While it lasts, the touch hears every step that MuJoCo takes of these data."""
-    step, second = mujoco.mj_step, mujoco.mj_step2
+    step, second, update = mujoco.mj_step, mujoco.mj_step2, touch.update
 
     def heard_step(model: mujoco.MjModel, stepped: mujoco.MjData, nstep: int = 1) -> None:
         if stepped is not data:
@@ -53,12 +55,12 @@ def heard(data: mujoco.MjData, touch: ThermalTouch) -> Iterator[None]:
             return
         for _ in range(nstep):
             step(model, stepped)
-            touch.update(stepped)
+            update(stepped)
 
     def heard_second(model: mujoco.MjModel, stepped: mujoco.MjData) -> None:
         second(model, stepped)
         if stepped is data:
-            touch.update(stepped)
+            update(stepped)
 
     mujoco.mj_step, mujoco.mj_step2 = heard_step, heard_second
     try:
