@@ -35,6 +35,7 @@ from numba.core.sigutils import normalize_signature
 from numba.core.targetconfig import TargetConfig
 from numba.core.types.functions import BaseFunction
 
+from thermograsp.beside import start_beside, turn
 from thermograsp.errors import InvalidValueError
 from thermograsp.notice import notice
 
@@ -79,12 +80,14 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
         if inner:  # numba would take the entry that is not there
             dispatcher._insert = _nothing
             dispatcher._compile_for_args = functools.partial(_refused, function.__name__)
+            dispatcher.called = lambda: dispatcher
         else:
 
             @functools.cache
             def twin() -> Any:
                 return njit(cache=cache, inner=True, **options)(function)
 
+            dispatcher.called = twin
             dispatcher.get_call_template = lambda *arguments: twin().get_call_template(*arguments)
             dispatcher.get_overload = lambda signature: twin().get_overload(signature)
         return dispatcher
@@ -141,15 +144,40 @@ def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
 
     @functools.wraps(compile_)
     def run(signature: Any) -> Any:
-        with global_compiler_lock, _in_less_time(), _into(_InnerLibrary):
+        arguments = tuple(normalize_signature(signature)[0])
+        if (known := dispatcher.overloads.get(arguments)) is not None:
+            return known.entry_point
+        with global_compiler_lock, _turn(dispatcher, signature), _in_less_time(), _into(_InnerLibrary):
             entry = compile_(signature)
-        library = dispatcher.overloads[tuple(normalize_signature(signature)[0])].library
+        library = dispatcher.overloads[arguments].library
         for held in library._final_module.global_variables:
             if held.name.startswith(_ENVIRONMENT) and (found := lookup_environment(held.name)) is not None:
                 library.codegen.set_env(held.name, found)
         return entry
 
     return run
+
+
+@contextmanager
+def _turn(dispatcher: Any, signature: Any) -> Iterator[None]:
+    """While one process compiles a function, the others wait for what it keeps."""
+    cache = dispatcher._cache
+    if not isinstance(cache, _Cache):
+        yield
+        return
+    with turn(cache.cache_path, cache.number(signature, dispatcher.targetctx.codegen())):
+        yield
+
+
+def compile_beside(module: str, *needed: Any) -> None:
+    """Where the code of one of the functions is not kept on disk yet, a second process calls compile_ahead() of the
+    module while this one goes on (see start_beside). This one waits only where it needs what the other is compiling at
+    that moment. The code is the same whoever compiles it."""
+    for function in needed:
+        cache = function.called()._cache
+        if not cache.keeps_any():
+            start_beside(module, cache.cache_path)
+            return
 
 
 @contextmanager
@@ -261,6 +289,18 @@ class _Cache(FunctionCache):
                 RuntimeWarning,
                 stacklevel=2,
             )
+
+    def keeps_any(self) -> bool:
+        """Whether code of the function as it is now is on disk, for whatever arguments."""
+        self._hash()
+        return bool(self._cache_file._load_index())
+
+    def number(self, sig: Any, codegen: Any) -> int:
+        """What processes that compile the function for such arguments call it."""
+        self._hash()
+        name = f"{self._cache_file._index_name}\0{self._cache_file._source_stamp}\0".encode()
+        key = dumps(self._index_key(sig, codegen))
+        return 1 + int.from_bytes(hashlib.sha256(name + key).digest()[:6])
 
     def _hash(self) -> None:
         if not self._hashed:

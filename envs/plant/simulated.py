@@ -19,7 +19,16 @@ from thermograsp.plant import Command, Reading
 from ..footprint import GraspBody
 from ..limits import SAMPLE_PERIOD
 from ..mechanics import Mechanics, MechanicsState, Motion
-from ..sensing import Electronics, ElectronicsState, GraspHeat, HeatedCores, HeatState, HeatStep, Thermostats
+from ..sensing import (
+    Electronics,
+    ElectronicsState,
+    GraspHeat,
+    HeatedCores,
+    HeatState,
+    HeatStep,
+    Thermostats,
+    start_compiling,
+)
 from .config import SimulationConfig, check_fields
 from .layouts import EpisodeLabels, Layout, Scene, SceneLayout
 from .randomization import CAUSES, draw
@@ -51,6 +60,7 @@ class SimulatedPlant:
     scenes; None for the config's objects or scene. scenes: each environment's objects."""
 
     def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
+        start_compiling()
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = num_envs, config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)

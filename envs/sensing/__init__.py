@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
+    from .ahead import start_compiling
     from .boxes import served_anywhere, served_in_the_middle
     from .cores import HeatedCores
     from .electronics import Electronics, ElectronicsState
@@ -30,6 +31,7 @@ __all__ = [
     "Thermostats",
     "served_anywhere",
     "served_in_the_middle",
+    "start_compiling",
 ]
 
 __getattr__ = opened(__name__)
