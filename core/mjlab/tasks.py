@@ -24,7 +24,7 @@ _KEEPING = RslRlOnPolicyRunnerCfg(
     algorithm=RslRlPpoAlgorithmCfg(num_learning_epochs=10, schedule="fixed", learning_rate=3e-3),
     experiment_name="thermograsp_keep_cube",
     num_steps_per_env=4,
-    max_iterations=40,
+    max_iterations=120,
 )
 _LEARNING = yam_lift_cube_ppo_runner_cfg()
 _LEARNING.experiment_name = "thermograsp_sort_cube"
