@@ -30,8 +30,12 @@ from ...thermal import (
 )
 from ...thermal.contact import (
     TABLE_FORCES,
+    bare_footprint,
+    bared,
     cylinder_footprint,
+    even_patch,
     flat_footprint,
+    footprint,
     met,
     skinned,
     sphere_footprint,
@@ -70,8 +74,14 @@ class GraspBody:
 
     @cached_property
     def pad(self) -> Pad:
-        """What presses on it: the pad with its skin. O: the thermostat, bare."""
-        return skinned(PAD, self.skin)
+        """What presses on it: the pad with its skin; for a ball or a cylinder that meets a bare face, with a rigid face
+        in it. O: the thermostat, bare."""
+        return bared(PAD) if self._on_bare_face else skinned(PAD, self.skin)
+
+    @property
+    def _on_bare_face(self) -> bool:
+        """Whether a ball or a cylinder meets the sensor's own face, which does not yield."""
+        return self.skin is None and self.contact_shape in ("cylinder", "sphere")
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:
@@ -107,16 +117,21 @@ class GraspBody:
     def joint(self) -> Joint:
         """The opening contact's faces: the lapped element or its skin on the object (T), or the element on the
         thermostat (O)."""
-        if self.mode == "O":
-            return joint(LAPPED_ALUMINA, THERMOSTAT_FACE)
+        return joint(LAPPED_ALUMINA, THERMOSTAT_FACE) if self.mode == "O" else met(self.skin, self._surface)
+
+    @cached_property
+    def _surface(self) -> Surface:
         surface = Surface.of(self.touched)
-        return met(self.skin, replace(surface, roughness=surface.roughness * self.roughness_factor))
+        return replace(surface, roughness=surface.roughness * self.roughness_factor)
 
     @cached_property
     def geometry(self) -> Geometry:
-        """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE, its middle before the pad's."""
+        """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE, its middle before the pad's. On a
+        bare face it is wider than what touches: see even_patch."""
         nominal = self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, 0.0))
         area = float(nominal.face)
+        if self._on_bare_face:
+            area = even_patch(self.law, self.touched, NOMINAL_FORCE)
         if self.contact_shape == "mesh" and not area > 0:  # it may slip to where the sensor is
             area = float(nominal.pad)
         if not area > 0:
@@ -128,7 +143,15 @@ class GraspBody:
 
     def contact(self, force: np.ndarray) -> ContactArea:
         """Areas and force share at that normal force N on a pad, at the height at which the fingers are to close."""
-        return self._contact(self.pad, force, (0.0, self._up))
+        found = self._contact(self.pad, force, (0.0, self._up))
+        if not self._on_bare_face:
+            return found
+        place, every = np.array([0.0, 0.0, self._up]), np.asarray(force, dtype=float)
+        rows = [
+            footprint(self.law, each, place) if each > 0 else (0.0, 0.0) for each in every.ravel().tolist()
+        ]
+        area, load = np.array(rows).reshape(-1, 2).T.reshape(2, *every.shape)
+        return ContactArea(found.pad - found.face + area, area, load)
 
     def _contact(self, pad: Pad, force: np.ndarray, offset: tuple[float, float]) -> ContactArea:
         """The same of a pad whose middle is so far from the object's, m across and up. A mesh has its own place."""
@@ -184,6 +207,11 @@ class GraspBody:
     @cached_property
     def law(self) -> np.void:
         """Area and conductance by force and place, for compiled code; FOOTPRINT_LAW."""
+        if self._on_bare_face:
+            radius, length = self._round
+            return bare_footprint(
+                PAD, self._surface, radius, length if self.contact_shape == "cylinder" else None
+            )
         if self.contact_shape == "cylinder":
             return cylinder_footprint(self.pad, self.joint, *self._round)
         if self.contact_shape == "sphere":

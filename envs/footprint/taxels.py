@@ -14,7 +14,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from ...thermal import Skin
-from ...thermal.contact import skinned
+from ...thermal.contact import bared, skinned
 from ..bodies import ObjectSpec
 from ..limits import TIPS
 from ..mechanics import Mechanics
@@ -38,17 +38,21 @@ _SHAPES = {"box": BOX, "cylinder": CYLINDER, "sphere": SPHERE}
 
 class Taxels:
     """Pressure maps of `shape` (n, m): n rows from the fingertip's end up to the wrist, m columns across, along the
-    pad's horizontal axis. skin: over the pad and the sensor's face, None for a pad that is as soft all over. Raises
-    InvalidValueError for a shape that is none."""
+    pad's horizontal axis. skin: over the pad and the sensor's face. Without one the face is rigid under balls and
+    cylinders, and to flat bodies and meshes the pad is as soft all over. Raises InvalidValueError for a shape that is
+    none."""
 
     def __init__(self, shape: tuple[int, int], skin: Skin | None = None) -> None:
         self.shape, self._pad = checked_taxels(shape), skinned(PAD, skin)
+        self._under_round = bared(PAD) if skin is None else self._pad
         fine = [side * -(-_FINENESS // side) for side in self.shape]
         self._blocks = (self.shape[0], fine[0] // self.shape[0], self.shape[1], fine[1] // self.shape[1])
         z, y = (_middles(count) for count in fine)
         self._places = np.stack(np.broadcast_arrays(y[None, :], z[:, None]), axis=-1).reshape(-1, 2).copy()
         self._sides = PAD.width / fine[1], PAD.width / fine[0]
-        _, self._springs = face_springs(self._pad, self._places, self._sides)
+        self._springs = {
+            pad: face_springs(pad, self._places, self._sides)[1] for pad in (self._pad, self._under_round)
+        }
         self._height, self._cover, self._fine, self._elements = (
             np.zeros(len(self._places)) for _ in range(4)
         )
@@ -79,7 +83,9 @@ class Taxels:
     def _map(self, spec: ObjectSpec, pad: np.ndarray, force: float, centre: np.ndarray) -> np.ndarray:
         self._surface(spec, pad)
         area = self._sides[0] * self._sides[1]
-        sheet, springs = self._pad, self._cover * self._springs
+        bare = spec.shape in ("cylinder", "sphere") and not (spec.mesh or spec.elements)
+        sheet = self._under_round if bare else self._pad
+        springs = self._cover * self._springs[sheet]
         stiffness = sheet.foundation_modulus / sheet.thickness
         pressure_map(
             *(self._height, springs, self._places, area, stiffness, sheet.thickness),

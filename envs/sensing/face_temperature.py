@@ -26,7 +26,14 @@ from ...thermal.batch import (
     face_state,
     step_face,
 )
-from ...thermal.contact import conductance
+from ...thermal.contact import (
+    CYLINDER,
+    beside_ball,
+    beside_strip,
+    conductance,
+    footprint,
+    solid_conduction,
+)
 from ..footprint import PAD, GraspBody, Taxels, checked_taxels
 from ..limits import TIPS
 from ..mechanics import Mechanics
@@ -154,8 +161,9 @@ def _shares(width: float) -> np.ndarray:
 
 @njit(cache=True, error_model="numpy")
 def _advance(law, pressure, on_face, flux, fields, surface, contact, rows, columns, *numbers):
-    """One step of a face: (n, m) K above the mean over its contact. law: CONTACT_LAW. pressure: Pa at the pad's points.
-    on_face: of _shares. flux: W/m2. numbers: a FaceField's, which cost less to hand over one by one."""
+    """One step of a face: (n, m) K above the mean over its contact; where gas conducts most, or all, above the mean
+    weighted by what conducts. law: FOOTPRINT_LAW. pressure: Pa at the pad's points. on_face: of _shares. flux: W/m2.
+    numbers: a FaceField's, which cost less to hand over one by one."""
     field = FaceField(*numbers)
     cells, half = np.zeros((CELLS, CELLS)), np.zeros((CELLS, PAD_POINTS))
     for i in range(CELLS):
@@ -171,8 +179,49 @@ def _advance(law, pressure, on_face, flux, fields, surface, contact, rows, colum
             highest = max(highest, cells[i, j])
     for i in range(CELLS):
         for j in range(CELLS):
-            # where there is nearly none gas alone would conduct
+            # where there is nearly none gas alone conducts
             touches = cells[i, j] > _LEAST_PRESSURE * highest
             cells[i, j] = conductance(law, cells[i, j]) if touches else 0.0
+    pressed = cells.copy()
+    if law.apart > 0.0:
+        _add_gas(law, pressure, cells)
     step_face(field, cells, flux, fields, surface, contact)
+    if law.apart > 0.0 and cells.max() > 0.0:
+        wide = law.modulus > 0.0 or pressed.max() == 0.0
+        for i in range(CELLS):
+            for j in range(CELLS):
+                contact[i, j] = cells[i, j] if wide else float(pressed[i, j] > 0.0)
     return face_means(field.waves, surface, contact, rows, columns)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _add_gas(law, pressure, cells):
+    """Adds to cells (C, C) W/(m2 K) that are apart the gas beside the contact of a ball or an upright cylinder. On a
+    bare face the contact is smaller than a cell: those that touch conduct what it does, and their gas."""
+    force, y, z = 0.0, 0.0, 0.0
+    pitch, side, half = 2 * law.half_pad / PAD_POINTS, 2 * law.half_face / CELLS, law.half_face
+    for i in range(PAD_POINTS):
+        for j in range(PAD_POINTS):
+            force += pressure[i, j] * pitch * pitch
+            y += pressure[i, j] * pitch * pitch * ((j + 0.5) * pitch - law.half_pad)
+            z += pressure[i, j] * pitch * pitch * ((i + 0.5) * pitch - law.half_pad)
+    if force <= 0.0:
+        return
+    y, z = y / force, z / force
+    line = law.shape == CYLINDER
+    touched, load = footprint(law, force, np.array([0.0, y, 0.0 if line else z]))
+    half_width = touched / (4 * half)
+    square = half_width * half_width if line else touched / np.pi
+    total = cells.sum() * side * side
+    bare = law.modulus > 0.0
+    share = solid_conduction(law, touched, load) / total if bare and total > 0.0 else 1.0
+    for i in range(CELLS):
+        for j in range(CELLS):
+            if cells[i, j] > 0.0 and not bare:
+                continue
+            off_y, off_z = (j + 0.5) * side - half - y, (i + 0.5) * side - half - z
+            if line:
+                gas = beside_strip(square, law.apart, law.radius, side / 2, off_y) / side
+            else:
+                gas = beside_ball(square, law.apart, law.radius, side / 2, off_y, off_z) / (side * side)
+            cells[i, j] = share * cells[i, j] + law.gas * gas

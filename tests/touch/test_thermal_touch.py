@@ -24,6 +24,7 @@ from thermograsp.thermal import (
     material,
     press,
 )
+from thermograsp.thermal.contact import Pad, flat_contact, met, skinned
 from thermograsp.thermal.stack import heated_core, heated_stack
 from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch
 from thermograsp.touch.contacts import COLUMNS, CONDUCTANCE, NORMAL, PLACE
@@ -89,8 +90,9 @@ def test_one_fingertip_on_a_box_feels_what_a_press_does(name: str, cone: str, sk
             times.append(reading.time)
             drops.append(reading.temperature_drop[0])
     assert reading.force[0] == pytest.approx(10.0, rel=1e-3)
-    face = LAPPED_ALUMINA if skin is None else Surface.of(SKINS[skin].made_of)
-    h = float(contact_conductance(joint(face, Surface.of(material(name))), 10.0 / 0.02**2))
+    worn = None if skin is None else SKINS[skin]
+    pressure = float(flat_contact(skinned(Pad(), worn), 10.0).face_pressure)
+    h = float(contact_conductance(met(worn, Surface.of(material(name))), pressure))
     size = (0.04, 0.04, 0.04)
     curves = press(name, skin=skin, conductance=h, object_size=size, seconds=4.0, dt=0.02, tolerance=0.01)
     # the touch began within the first reading, at some force that is still rising

@@ -16,6 +16,7 @@ from .footprint import (
     sphere_footprint,
     table_footprint,
 )
+from .gas_beside import beside_ball, beside_strip
 from .law import (
     CONTACT_LAW,
     CYLINDER,
@@ -44,6 +45,7 @@ from .rough_faces import (
     stack_joints,
     typical_slope,
 )
+from .spread import even_patch
 
 __all__ = [
     "AIR",
@@ -69,6 +71,8 @@ __all__ = [
     "array_laws",
     "bare_footprint",
     "bared",
+    "beside_ball",
+    "beside_strip",
     "conductance",
     "conduction",
     "contact",
@@ -77,6 +81,7 @@ __all__ = [
     "cylinder_contact",
     "cylinder_footprint",
     "cylinder_law",
+    "even_patch",
     "flat_contact",
     "flat_footprint",
     "flat_law",

@@ -28,6 +28,7 @@ class ArrayLaws(NamedTuple):
     share: Array
     size: Array
     select: Array
+    ratio: Array
     stiffness: Array
     half_pad: Array
     half_face: Array
@@ -81,7 +82,8 @@ def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, A
         return sides.clip(0.0, None).prod(-1)
 
     on_pad, on_face = covered(laws.half_pad[..., None]), covered(laws.half_face[..., None])
-    part = on_face / xp.where(on_pad > 0, on_pad, on_pad + 1.0)
+    bearing = on_pad + (laws.ratio - 1.0) * on_face
+    part = laws.ratio * on_face / xp.where(on_pad > 0, bearing, on_pad + 1.0)
     flat_area = xp.where(laws.follows > 0, on_face, laws.area)
     flat_force = xp.where(laws.follows > 0, part, laws.share) * pressed
 

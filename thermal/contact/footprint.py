@@ -37,8 +37,7 @@ _FIRST, _STEP = math.log(0.01), math.log(3.0)
 
 FOOTPRINT_LAW = np.dtype(
     [
-        # stiffness of the springs on the face over that of those around it; length m of a cylinder
-        ("ratio", "f8"),
+        # m of a cylinder
         ("length", "f8"),
         # of curved bodies: radius m, gap m of faces that touch without force, the temperature jump with it
         ("radius", "f8"),
@@ -60,18 +59,18 @@ def flat_footprint(
     pad: Pad, joint: Joint, size: tuple[float, float], across: tuple[int, int] | None = None
 ) -> np.void:
     """The law of a flat object; see flat_law."""
-    return _followed(pad, flat_law(pad, joint, size, across))
+    return _followed(flat_law(pad, joint, size, across))
 
 
 def cylinder_footprint(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
     """The law of a cylinder along z of that radius and length m; see area.cylinder_contact."""
     beside = {"radius": radius, "apart": _apart(joint)}
-    return _followed(pad, cylinder_law(pad, joint, radius, length), length=length, **beside)
+    return _followed(cylinder_law(pad, joint, radius, length), length=length, **beside)
 
 
 def sphere_footprint(pad: Pad, joint: Joint, radius: float) -> np.void:
     """The law of a sphere of that radius m; see area.sphere_contact."""
-    return _followed(pad, sphere_law(pad, joint, radius), radius=radius, apart=_apart(joint))
+    return _followed(sphere_law(pad, joint, radius), radius=radius, apart=_apart(joint))
 
 
 def bare_footprint(
@@ -107,7 +106,7 @@ def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:
     """The law of a body whose contact at TABLE_FORCES is known, (9,) each. Raises InvalidValueError for others."""
     if contact.face.shape != TABLE_FORCES.shape:
         raise InvalidValueError(f"a table needs {len(TABLE_FORCES)} forces, got {contact.face.shape}")
-    law = _followed(pad, flat_law(pad, joint, (pad.width, pad.width)), areas=contact.face)
+    law = _followed(flat_law(pad, joint, (pad.width, pad.width)), areas=contact.face)
     law["shape"], law["shares"] = TABLE, contact.face_force / TABLE_FORCES
     return law
 
@@ -119,11 +118,11 @@ def _apart(joint: Joint) -> float:
     return float(joint.gas_conductivity) / float(gas_conductance(replace(joint, flatness=0.0), 0.0))
 
 
-def _followed(pad: Pad, law: np.void, **numbers: float | np.ndarray) -> np.void:
+def _followed(law: np.void, **numbers: float | np.ndarray) -> np.void:
     record = np.zeros(1, FOOTPRINT_LAW)
     for name in law.dtype.names or ():
         record[name] = law[name]
-    for name, value in {"ratio": pad.face_ratio, **numbers}.items():
+    for name, value in numbers.items():
         record[name] = value
     return record[0]
 

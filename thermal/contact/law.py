@@ -34,6 +34,8 @@ CONTACT_LAW = np.dtype(
         ("share", "f8"),
         ("size", "f8", (2,)),
         ("across", "i8", (2,)),
+        # stiffness of the springs on the face over that of those around it
+        ("ratio", "f8"),
         # curved: Pa/m2 of a pad under a body of that radius, half widths m and, of a cylinder, lengths m in contact
         ("stiffness", "f8"),
         ("half_pad", "f8"),
@@ -96,6 +98,7 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
     law = np.zeros(1, CONTACT_LAW)
     scale, higher = solid_conductance(replace(joint, solid_most=np.inf), np.array([1.0, np.e]))
     numbers |= {
+        "ratio": pad.face_ratio,
         "half_pad": pad.width / 2,
         "half_face": pad.face / 2,
         "spot_scale": float(np.log(scale)),
@@ -125,7 +128,8 @@ def _overlap(law, place):
         offset, half = abs(place[axis]), law.size[side] / 2
         on_pad *= max(min(law.half_pad, half - offset) + min(law.half_pad, half + offset), 0.0)
         on_face *= max(min(law.half_face, half - offset) + min(law.half_face, half + offset), 0.0)
-    return on_face, on_face / on_pad if on_pad > 0 else 0.0
+    bearing = on_pad + (law.ratio - 1.0) * on_face
+    return on_face, law.ratio * on_face / bearing if on_pad > 0 else 0.0
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)

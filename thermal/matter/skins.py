@@ -77,7 +77,14 @@ class Skin:
 
     def over(self, stack: _Stack) -> _Stack:
         """A SensorStack or a HeatedStack with this skin on its face: one more layer, which is read and heated where it
-        was."""
+        was. Raises InvalidValueError for a skin that is thicker than the sensor: through it hardly anything is felt,
+        and networks that keep a tolerance would tell no more than that."""
+        most = sum(layer.thickness for layer in stack.layers)  # pyright: ignore
+        if self.thickness > most:
+            raise InvalidValueError(
+                f"a skin of {1e3 * self.thickness:g} mm is thicker than its sensor of {1e3 * most:g} mm: hardly "
+                f"anything is felt through it; take one of {1e3 * most:g} mm at most"
+            )
         return replace(stack, layers=(*stack.layers, self.layer))  # pyright: ignore
 
 

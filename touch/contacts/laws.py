@@ -21,6 +21,7 @@ from ...thermal import (
     joint,
     sphere_law,
 )
+from ...thermal.contact import FLAT, skinned
 from ..scene import BodyShape, PadPlace
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
@@ -34,16 +35,28 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
     for f, pad in enumerate(pads):
         width = float(math.sqrt(pad.size.prod()))
-        sheet = Pad(width=width, face=min(pad.stack.width, width))
+        sheet = skinned(Pad(width=width, face=min(pad.stack.width, width)), pad.skin)
         for g, (shape, geom) in enumerate(geoms):
             faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
             for axis in range(3):
-                laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
+                laws[f, g, axis] = _on_face(_law(model, geom, axis, sheet, faces), sheet)
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = min(other.stack.width, float(math.sqrt(other.size.prod())))
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
     return laws
+
+
+def _on_face(law: np.void, pad: Pad) -> np.void:
+    """The law of a curved body on springs that are stiffer on the sensor's face: the contact is narrow, and these take
+    all of a ball's force and, of a cylinder's, what the softer ones along it leave. The pad around counts as if it
+    ended with the face across the contact."""
+    if law["shape"] == FLAT or pad.face_stiffness is None:
+        return law
+    law["stiffness"] *= pad.face_ratio
+    law["half_pad"] = law["half_face"]
+    law["pad_length"] = law["face_length"] + (law["pad_length"] - law["face_length"]) / pad.face_ratio
+    return law
 
 
 def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) -> np.void:

@@ -38,8 +38,11 @@ def bends(pads: Sequence[PadPlace]) -> np.ndarray:
     rows = np.zeros((len(pads), BEND))
     for row, pad in zip(rows, pads, strict=True):
         sheet = Pad(width=math.sqrt(pad.size.prod()), face=min(pad.stack.width, math.sqrt(pad.size.prod())))
-        stiffness = sheet.foundation_modulus / sheet.thickness
-        row[:] = (*pad.curvature, stiffness, *(pad.size / 2), *np.minimum(pad.stack.width, pad.size) / 2)
+        face = np.minimum(pad.stack.width, pad.size) / 2
+        stiffness, half = sheet.foundation_modulus / sheet.thickness, pad.size / 2
+        if pad.skin is not None:  # the sensor's face is under it and takes nearly all
+            stiffness, half = pad.skin.stiffness, face
+        row[:] = (*pad.curvature, stiffness, *half, *face)
     return rows
 
 

@@ -28,7 +28,7 @@ enum { SHAPE_FLAT, SHAPE_CYLINDER, SHAPE_SPHERE };
 enum { BEND = 7, CURVES = 4 };
 
 typedef struct {
-  double area, share, size[2], across[2], stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
+  double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
       spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
 } Law;
 

@@ -48,7 +48,7 @@ void heat_contact(const Law* law, double force, const double place[3], double* a
       on_face *= overlap(law->half_face, offset, half);
     }
     *area = on_face;
-    *share = on_pad > 0 ? force * (on_face / on_pad) : 0;
+    *share = on_pad > 0 ? force * (law->ratio * on_face / (on_pad + (law->ratio - 1) * on_face)) : 0;
     return;
   }
   double half = law->half_pad, half_face = law->half_face, stiffness = law->stiffness;

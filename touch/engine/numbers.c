@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 2, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
+enum { VERSION = 3, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;

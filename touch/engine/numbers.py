@@ -21,7 +21,7 @@ from ..contacts import bends, curves, pair_laws
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
-_VERSION = 2
+_VERSION = 3
 
 
 def packed(

@@ -34,8 +34,8 @@ class Fingertip:
     SensorStack, or a HeatedStack, whose heater follows its own law; None for a bare thermostat, which touches elements
     that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated sensor before anything is
     touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there. skin:
-    over the sensor's face, a name of thermal.SKINS or a Skin, None for bare alumina. Heat passes it and the contact's
-    conductance is its own; round bodies sink in as into a pad of silicone, with or without it.
+    over the sensor's face, a name of thermal.SKINS or a Skin, None for bare alumina. Heat passes it, the
+    contact's conductance is its own, and bodies press its springs; bare, round bodies sink into a pad of silicone.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
     objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it, and as

@@ -7,6 +7,7 @@ import pytest
 
 from thermograsp.thermal import (
     LAPPED_ALUMINA,
+    SKINS,
     Pad,
     Surface,
     cylinder_law,
@@ -21,13 +22,15 @@ from thermograsp.thermal.contact import (
     array_laws,
     conductance,
     contact,
+    skinned,
 )
 
 FORCES = np.logspace(-6, 3.5, 60)
-PAD = Pad()
+PAD, SKINNED = Pad(), skinned(Pad(), SKINS["filled_silicone"])
 SHAPES = {
     "flat": lambda j: flat_law(PAD, j, (0.04, 0.012)),
     "flat that follows": lambda j: flat_law(PAD, j, (0.04, 0.03), (2, 1)),
+    "flat on a skin": lambda j: flat_law(SKINNED, j, (0.04, 0.03), (2, 1)),
     "cylinder": lambda j: cylinder_law(PAD, j, 0.02, 0.05),
     "short cylinder": lambda j: cylinder_law(PAD, j, 0.3, 0.006),
     "ball": lambda j: sphere_law(PAD, j, 0.005),

@@ -170,3 +170,10 @@ def test_refuses_what_is_none() -> None:
             Skin("silicone", nothing)
     with pytest.raises(UnknownNameError, match="filled_silicone"):
         TouchSetup(skin="filled_silicon")
+
+
+def test_one_that_is_thicker_than_its_sensor_is_refused_with_both() -> None:
+    stack = sensor("seed")
+    assert Skin("silicone", 0.003).over(stack).thickness == pytest.approx(0.006)
+    with pytest.raises(InvalidValueError, match="4 mm is thicker than its sensor of 3 mm"):
+        press("glass", skin=Skin("silicone", 0.004))

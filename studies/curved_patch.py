@@ -1,0 +1,181 @@
+"""The drop of a bare sensor on a ball whose contact conducts place by place, beside the even patch that stands for it.
+
+Finite volumes about an axis: sensor and plate as discs of equal areas, the plate of the ball's thickness and volume as
+in the environments. Where the ball touches, rough faces conduct at Hertz's mean pressure; beside it gas, in Hertz's own
+gap. Heat is constricted by itself: the cells are a sixth of the contact's radius in the middle. The other run is of the
+same grid with one conductance over a disc of `even_patch`'s area, whose product is `conduction`'s.
+
+    python studies/curved_patch.py                  steel, copper, glass, plastic and wood
+    python studies/curved_patch.py glass --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix, diags
+from scipy.sparse.linalg import splu
+
+from thermograsp.thermal import Layer, Pad, Surface, material, sensor
+from thermograsp.thermal.contact import bare_footprint, conductance, conduction, even_patch, footprint
+
+TIMES = np.array([0.5, 1.0, 2.0, 4.0])
+CASES = ((0.02, 10.0), (0.02, 1.0), (0.005, 10.0), (0.05, 10.0))
+"""(radius m, force N)"""
+DIFFERENCE = 12.0  # K
+_GAMMA = 1 - 1 / np.sqrt(2)
+_STEPS = ((1e-4, 10), (1e-3, 9), (1e-2, 9), (0.05, 18), (0.1, 31))  # s, how many
+_MIDDLE = np.zeros(3)
+
+
+def edges(points: Sequence[float], finest: Sequence[float], growth: float, longest: float) -> np.ndarray:
+    """Cell boundaries m, as fine at the points as told, longer between them."""
+    every = [points[0]]
+    for start, end, fine, last in zip(points[:-1], points[1:], finest[:-1], finest[1:], strict=True):
+        left, right = [start], [end]
+        while right[-1] - left[-1] > fine + last:
+            if fine <= last:
+                left.append(left[-1] + fine)
+                fine = min(fine * growth, longest)
+            else:
+                right.append(right[-1] - last)
+                last = min(last * growth, longest)
+        every += [*left[1:], *right[::-1]]
+    return np.unique(np.round(every, 12))
+
+
+class Disc:
+    """Layers, the touched one first, on a grid. matrix: W/K between cells; capacity: J/K; face: m2 of the rings;
+    half: m2 K/W from the face to the first cells' middles."""
+
+    def __init__(
+        self, rings: np.ndarray, layers: Sequence[Layer], finest: Sequence[float], longest: float
+    ) -> None:
+        bounds = np.cumsum([0.0, *(layer.thickness for layer in layers)])
+        self.depths = edges(list(bounds), finest, 1.25, longest)
+        self.thick = np.diff(self.depths)
+        self.layer = np.searchsorted(bounds, self.depths[:-1] + self.thick / 2) - 1
+        self.conducts = np.array([layers[n].conductivity for n in self.layer])
+        holds = np.array([layers[n].volumetric_heat_capacity for n in self.layer])
+        self.face = np.pi * np.diff(rings**2)
+        self.capacity = np.outer(holds * self.thick, self.face).ravel()
+        self.half = self.thick[0] / (2 * self.conducts[0])
+        middles = (rings[1:] + rings[:-1]) / 2
+        number = np.arange(self.capacity.size).reshape(len(self.thick), -1)
+        sideways = np.outer(self.conducts * self.thick, 2 * np.pi * rings[1:-1] / np.diff(middles))
+        resistance = self.thick / (2 * self.conducts)
+        along = self.face[None] / (resistance[1:] + resistance[:-1])[:, None]
+        first = np.concatenate((number[:, :-1].ravel(), number[:-1].ravel()))
+        second = np.concatenate((number[:, 1:].ravel(), number[1:].ravel()))
+        self.matrix = joined(first, second, np.concatenate((sideways.ravel(), along.ravel())), number.size)
+
+
+def joined(first: np.ndarray, second: np.ndarray, watts: np.ndarray, count: int) -> csr_matrix:
+    """W/K of conductances between cells."""
+    rows, columns = np.concatenate((first, second)), np.concatenate((second, first))
+    between = coo_matrix((np.concatenate((watts, watts)), (rows, columns)), shape=(count, count)).tocsr()
+    return csr_matrix(diags(np.asarray(between.sum(axis=1)).ravel()) - between)
+
+
+def drops(tip: Disc, body: Disc, sensed: int, conductances: np.ndarray) -> np.ndarray:
+    """K at TIMES. conductances: W/(m2 K) of the tip's rings."""
+    count, own = tip.capacity.size + body.capacity.size, tip.capacity.size
+    capacity = np.concatenate((tip.capacity, body.capacity))
+    rings = len(tip.face)
+    watts = tip.face / (1 / np.maximum(conductances, 1e-12) + tip.half + body.half)
+    behind = np.zeros(count)
+    behind[own - rings : own] = tip.face * 2 * tip.conducts[-1] / tip.thick[-1]
+    matrix = joined(np.arange(rings), own + np.arange(rings), watts, count) + diags(behind)
+    inside = coo_matrix(tip.matrix), coo_matrix(body.matrix)
+    for part, shift in zip(inside, (0, own), strict=True):
+        matrix = matrix + coo_matrix((part.data, (part.row + shift, part.col + shift)), shape=(count, count))
+    state = np.concatenate((np.full(own, DIFFERENCE), np.zeros(count - own)))
+    every, told, drive = [0.0], [0.0], behind * DIFFERENCE
+    for step, times in _STEPS:
+        solve = splu((diags(capacity) + _GAMMA * step * matrix).tocsc()).solve
+        for _ in range(times):
+            first = solve(drive - matrix @ state)
+            second = solve(drive - matrix @ (state + (1 - _GAMMA) * step * first))
+            state = state + step * ((1 - _GAMMA) * first + _GAMMA * second)
+            every.append(every[-1] + step)
+            told.append(_drop(tip, sensed, state[:own]))
+    return np.interp(TIMES, every, told)
+
+
+def _drop(tip: Disc, sensed: int, state: np.ndarray) -> float:
+    mean = state.reshape(-1, len(tip.face)) @ tip.face / tip.face.sum()
+    own = np.flatnonzero(tip.layer == sensed)
+    between = tip.conducts / tip.thick
+
+    def at(cell: int) -> float:
+        """K at the upper side of a cell."""
+        a, b = between[cell], between[cell + 1]
+        return float((a * mean[cell] + b * mean[cell + 1]) / (a + b))
+
+    return at(int(own[-1])) - at(int(own[0]) - 1)
+
+
+def compared(name: str, radius: float, force: float) -> dict[str, object]:
+    """Of a ball: W/K and drops K at TIMES, place by place and of an even patch, whose area is in m2."""
+    made, stack = material(name), sensor("seed")
+    surface = Surface.of(made)
+    law = bare_footprint(Pad(), surface, radius)
+    area, load = footprint(law, force, _MIDDLE)
+    patch, total = even_patch(law, made, force), conduction(law, force, _MIDDLE)[1]
+    touched, reach = np.sqrt(area / np.pi), stack.width / np.sqrt(np.pi)
+    rings = edges([0.0, touched, reach], [touched / 6, touched / 6, 1e-4], 1.15, 3e-4)
+    wide = max(np.sqrt(4 / 3 * np.pi * radius**3 / (2 * radius) / np.pi), 1.0001 * reach)
+    beyond = edges([reach, wide], [1e-4, 1e-3], 1.2, 2e-3)
+    layers = stack.layers[::-1]
+    tip = Disc(rings, layers, [touched / 6, *[3e-5] * len(layers)], 2e-4)
+    body = Disc(
+        np.unique(np.concatenate((rings, beyond))), [made.layer(2 * radius)], [touched / 6, 1e-3], 1e-3
+    )
+    at = (rings[1:] + rings[:-1]) / 2
+    x = np.maximum(at / touched, 1.0)
+    gap = touched**2 / np.pi / radius * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
+    beside = np.where(at < radius, float(law["gas"]) / (float(law["apart"]) + gap), 0.0)
+    placed = np.where(at < touched, conductance(law, load / area), beside)
+    covered = np.clip((patch / np.pi - rings[:-1] ** 2) / np.diff(rings**2), 0.0, 1.0)
+    sensed = len(layers) - 1 - stack.sensed
+    return {
+        "material": name,
+        "radius": radius,
+        "force": force,
+        "conductance": total,
+        "patch": patch,
+        "placed": drops(tip, body, sensed, placed).tolist(),
+        "even": drops(tip, body, sensed, covered * total / patch).tolist(),
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        description="A bare sensor on balls, place by place and by an even patch."
+    )
+    parser.add_argument("materials", nargs="*", default=["steel", "copper", "glass", "plastic", "wood"])
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    asked = parser.parse_args(arguments)
+    rows = [compared(name, radius, force) for name in asked.materials for radius, force in CASES]
+    if asked.json:
+        json.dump(rows, sys.stdout, indent=1)
+        return 0
+    print(
+        f"material  radius, mm   N     mm2    W/K   drops at {', '.join(f'{t:g}' for t in TIMES)} s (even patch)"
+    )
+    for row in rows:
+        pairs = "  ".join(f"{a:.3f} ({b:.3f})" for a, b in zip(row["placed"], row["even"], strict=True))  # pyright: ignore
+        print(
+            f"{row['material']:10}{1e3 * row['radius']:7g} {row['force']:6g} {1e6 * row['patch']:7.1f} "  # pyright: ignore
+            f"{row['conductance']:7.4f}  {pairs}",
+            flush=True,
+        )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,67 @@
+"""The even patch that stands for a curved body on a bare face: limits, order, and drops beside finite volumes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermograsp.thermal import AIR, LAPPED_ALUMINA, Pad, Surface, material
+from thermograsp.thermal.contact import bare_footprint, conduction, even_patch
+
+PAD, FACE = Pad(), Pad().face ** 2
+
+
+def patches(name: str, radius: float = 0.02, force: float = 10.0, length: float | None = None) -> float:
+    body = material(name)
+    return even_patch(bare_footprint(PAD, Surface.of(body), radius, length), body, force)
+
+
+@pytest.mark.parametrize("name", ["copper", "steel", "glass", "plastic", "wood", "rubber"])
+@pytest.mark.parametrize("radius", [0.003, 0.02, 0.3])
+@pytest.mark.parametrize("length", [None, 0.05])
+def test_it_is_as_wide_as_what_touches_and_no_wider_than_the_face(
+    name: str, radius: float, length: float | None
+) -> None:
+    body = material(name)
+    law = bare_footprint(PAD, Surface.of(body), radius, length)
+    for force in (0.1, 10.0, 40.0):
+        assert conduction(law, force, np.zeros(3))[0] <= even_patch(law, body, force) <= FACE * (1 + 1e-9)
+
+
+def test_better_conductors_and_smaller_balls_are_met_on_less() -> None:
+    areas = [patches(name) for name in ("copper", "steel", "glass", "plastic")]
+    assert (np.diff(areas) > 0).all()
+    areas = [patches("steel", radius) for radius in (0.003, 0.01, 0.05, 0.3)]
+    assert (np.diff(areas) > 0).all()
+    assert patches("steel") < patches("steel", length=0.05)
+
+
+def test_gas_that_conducts_the_same_all_over_the_face_is_a_patch_as_large_as_the_face() -> None:
+    """A ball of 100 m is flat over 9 mm, and far from touching it."""
+    body = replace(material("steel"), roughness=1e-3)
+    law = bare_footprint(PAD, Surface.of(body), 100.0)
+    assert even_patch(law, body, 1e-6) == pytest.approx(FACE, rel=0.01)
+
+
+def test_without_gas_it_is_what_touches() -> None:
+    body = material("steel")
+    law = bare_footprint(PAD, Surface.of(body), 0.02, gas=None)
+    assert even_patch(law, body, 10.0) == conduction(law, 10.0, np.zeros(3))[0]
+
+
+def test_it_loses_to_the_bodies_what_the_gas_loses_place_by_place() -> None:
+    """By a quadrature over the wedge of a ball that hardly touches: what of both bodies is in series."""
+    body, radius, reach = material("glass"), 0.02, np.sqrt(FACE / np.pi)
+    law = bare_footprint(PAD, Surface.of(body), radius)
+    area = even_patch(law, body, 1e-6)
+    total = conduction(law, 1e-6, np.zeros(3))[1]
+    depth = np.sqrt(body.diffusivity)
+    assert depth < 0.8e-3
+    behind = depth * (1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity)
+    at = (np.arange(200_000) + 0.5) / 200_000 * reach
+    alone = (float(law["apart"]) + at**2 / (2 * radius)) / AIR.conductivity
+    placed = (2 * np.pi * at / (alone + behind)).mean() * reach
+    assert area < FACE
+    assert area / (area / total + behind) == pytest.approx(placed, rel=0.01)
