@@ -81,7 +81,7 @@ class GraspBody:
     @property
     def _on_bare_face(self) -> bool:
         """Whether a ball or a cylinder meets the sensor's own face, which does not yield."""
-        return self.skin is None and self.contact_shape in ("cylinder", "sphere")
+        return self.skin is None and self.mode == "T" and self.spec.shape in ("cylinder", "sphere")
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:

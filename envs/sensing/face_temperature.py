@@ -187,10 +187,10 @@ def _advance(law, pressure, on_face, flux, fields, surface, contact, rows, colum
         _add_gas(law, pressure, cells)
     step_face(field, cells, flux, fields, surface, contact)
     if law.apart > 0.0 and cells.max() > 0.0:
-        wide = law.modulus > 0.0 or pressed.max() == 0.0
-        for i in range(CELLS):
-            for j in range(CELLS):
-                contact[i, j] = cells[i, j] if wide else float(pressed[i, j] > 0.0)
+        if law.modulus > 0.0 or pressed.max() == 0.0:
+            contact[:] = cells
+        else:
+            contact[:] = np.where(pressed > 0.0, 1.0, 0.0)
     return face_means(field.waves, surface, contact, rows, columns)
 
 
