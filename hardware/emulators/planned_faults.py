@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 
 from thermograsp.errors import InvalidValueError, non_negative, unknown_name
@@ -20,11 +20,7 @@ def plan_fault(served: PtyDevice, text: str) -> None:
     """Has a fault happen. Names: the chances of LineFaults, such as corrupt=0.01; stall and unplug with their s;
     open_thermistor, break_heater, break_converter, saturate, overheat with left or right; reboot. SECONDS: of the
     device's time, now where not given. Raises UnknownNameError and InvalidValueError."""
-    what, _, when = text.partition("@")
-    name, _, value = what.partition("=")
-    if name not in _NAMES:
-        raise unknown_name("fault", name, _NAMES)
-    time = _number(text, when) if when else 0.0
+    name, value, time = parsed_fault(text, _NAMES)
     with served.paused():
         served.device.plan(time, _action(served, text, name, value))
 
@@ -34,7 +30,7 @@ def _action(served: PtyDevice, text: str, name: str, value: str) -> Callable[[],
     if name == "reboot":
         return device.reboot
     if name in _LINE:
-        line = {name: _number(text, value)}
+        line = {name: fault_number(text, value)}
         LineFaults(**line)  # tells now what is wrong with it
 
         def spoil() -> None:
@@ -42,7 +38,7 @@ def _action(served: PtyDevice, text: str, name: str, value: str) -> Callable[[],
 
         return spoil
     if name in _LASTING:
-        seconds = _number(text, value) if value else _LASTING[name]
+        seconds = fault_number(text, value) if value else _LASTING[name]
         return _stall(served, seconds) if name == "stall" else _unplug(served, seconds)
     if value not in _SIDES:
         raise InvalidValueError(f"fault {text!r}: give {name}=left or {name}=right")
@@ -73,7 +69,18 @@ def _unplug(served: PtyDevice, seconds: float) -> Callable[[], None]:
     return unplug
 
 
-def _number(text: str, number: str) -> float:
+def parsed_fault(text: str, names: Sequence[str]) -> tuple[str, str, float]:
+    """Name, value ("" for none) and time s of NAME[=VALUE][@SECONDS]. Raises UnknownNameError for a name that is not
+    one of those, and InvalidValueError."""
+    fault, _, when = text.partition("@")
+    name, _, value = fault.partition("=")
+    if name not in names:
+        raise unknown_name("fault", name, names)
+    return name, value, fault_number(text, when) if when else 0.0
+
+
+def fault_number(text: str, number: str) -> float:
+    """A number of 0 or above in a fault's text. Raises InvalidValueError."""
     try:
         return non_negative(f"fault {text!r}", float(number))
     except ValueError:

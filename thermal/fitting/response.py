@@ -45,12 +45,12 @@ class Fraction:
         return below
 
 
-def fraction(matrices: np.ndarray, start: np.ndarray, terms: int = _TERMS) -> Fraction:
+def fraction(matrices: np.ndarray, start: np.ndarray) -> Fraction:
     """Of symmetric complex matrices (S, C, C) and a unit vector (C,): Lanczos' recursion in the bilinear product."""
     vector = np.broadcast_to(start.astype(complex), matrices.shape[:2])
     before, root = np.zeros_like(vector), np.zeros(len(matrices), complex)
     a, b = [], [np.ones(len(matrices), complex)]
-    for _ in range(min(terms, matrices.shape[1])):
+    for _ in range(min(_TERMS, matrices.shape[1])):
         residual = np.einsum("scd,sd->sc", matrices, vector) - root[:, None] * before
         a.append(np.einsum("sc,sc->s", vector, residual))
         residual = residual - a[-1][:, None] * vector

@@ -51,12 +51,11 @@ def sort_touches(
     known: np.ndarray,
     *,
     passive: bool,
-    until: float = 7.0,
 ) -> np.ndarray:
     """(B, L) probabilities of the labels, all equal beforehand. known: (B,) mask of touches whose residuals give the
-    covariance, from labels without a free temperature. until: s, of the last feature. Raises InvalidValueError where
+    covariance, from labels without a free temperature. Raises InvalidValueError where
     too few are known."""
-    times = [time for time in _TIMES if time <= min(until, recordings.t[-1]) + 1e-9]
+    times = [time for time in _TIMES if time <= recordings.t[-1] + 1e-9]
     columns = np.array([int(np.argmin(np.abs(recordings.t[recordings.start :] - time))) for time in times])
     measured = recordings.drops[:, columns]
     hypotheses = {

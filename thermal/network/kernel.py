@@ -49,7 +49,6 @@ def step_arrays(
     *,
     modes: int | None = None,
     sensor_states: int = 0,
-    watched: np.ndarray | None = None,
 ) -> StepArrays:
     """Arrays of a propagator. modes: ports of each contact (None: all belong to one). sensor_states: of each fingertip,
     at the end of the states, seeing only its own contact's ports."""
@@ -66,7 +65,7 @@ def step_arrays(
         sensor_states,
         each,
         ports // each,
-        np.zeros(states) if watched is None else np.ascontiguousarray(watched),
+        np.zeros(states),
         0.0,
     )
 
