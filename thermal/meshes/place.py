@@ -90,12 +90,16 @@ def within_cube(local, half):
     first, second = np.zeros((CORNERS, 3)), np.zeros((CORNERS, 3))
     end = 0
     for f in range(len(local)):
-        first[:3] = local[f]
+        for i in range(3):  # written out: a slice takes a second more to compile
+            for c in range(3):
+                first[i, c] = local[f, i, c]
         count = 3
         for axis in range(3):
             count = clip(first, count, axis, -half, True, second)
             count = clip(second, count, axis, half, False, first)
         counts[f] = count
-        corners[end : end + count] = first[:count]
+        for i in range(count):
+            for c in range(3):
+                corners[end + i, c] = first[i, c]
         end += count
     return corners[:end], counts

@@ -114,7 +114,9 @@ def _iterate(diagonal, inverse, neighbours, links, right, x, tolerance, most):
     columns = x.shape[1]
     residual, product = np.empty_like(x), np.empty_like(x)
     _multiply(diagonal, neighbours, links, x, product)
-    residual[:] = right - product
+    for i in range(x.shape[0]):  # written out: it takes a second less to compile
+        for p in range(columns):
+            residual[i, p] = right[i, p] - product[i, p]
     whole, rest, old, new, curve = (
         np.zeros(columns),
         np.zeros(columns),
