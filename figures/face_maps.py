@@ -16,7 +16,7 @@ from thermograsp.figures.look import readable
 from thermograsp.figures.pressure_maps import FORCE
 
 PARTS = (18, 18)
-RANGE = (24.0, 30.0)  # °C, of the colours, from the object's at first
+RANGE = (24.0, 36.0)  # °C, of the colours, from the object's at first to the thermostat's
 MATERIAL = "aluminium"
 _SECONDS = 2.4  # of closing and holding
 _OBJECTS = {
