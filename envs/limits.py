@@ -19,6 +19,3 @@ MOST_FORCE = 200.0  # N, range of a fingertip's load cell
 MOST_RATE = 1.0  # m/s
 MOST_VOLTAGE = 0.256  # V, the widest range of the converters we know
 THERMOSTAT = (-20.0, 100.0)  # °C
-LEAST_TOLERANCE = 0.12
-"""K of temperature drop, from which on boxes that are touched anywhere are served by heat kernels: a touch at rest is
-up to 0.08 K off, and a fingertip that slides at 10 mm/s 0.14 K in glass (docs/objects.md)."""

@@ -24,7 +24,6 @@ from scipy import sparse
 from skfem.element import DiscreteField
 
 from thermograsp.envs import GraspBody, ObjectSpec
-from thermograsp.envs.limits import LEAST_TOLERANCE
 from thermograsp.envs.sensing import GraspHeat
 from thermograsp.thermal.contact import conductance, contact
 from thermograsp.thermal.matter import material, sensor
@@ -182,9 +181,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "drop_K": expected[[4, 24, 49, -1]].round(3).tolist(),
         }
         for key, found in {
-            "heat kernels": by_networks(name, LEAST_TOLERANCE),
-            "tolerance 0.1": by_networks(name, 0.1),
-            "tolerance 0.05": by_networks(name, 0.05),
+            "heat kernels": by_networks(name, 0.05),
+            "mesh, tolerance 0.03": by_networks(name, 0.03),
             "mean temperature only": by_networks(name, 0.05, anywhere=False),
         }.items():
             record[key] = round(float(np.abs(found - expected)[late].max()), 4)

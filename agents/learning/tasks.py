@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
 import gymnasium
 
 import thermograsp  # noqa: F401  registers the environments
-from thermograsp.envs import STAKES
+from thermograsp.envs import EVERYTHING, STAKES
 from thermograsp.errors import unknown_name
 
 
@@ -30,6 +30,10 @@ class LearningTask:
         return gymnasium.make_vec(
             self.env_id, num_envs=num_envs, vectorization_mode="vector_entry_point", **keywords
         )
+
+    def drawn(self) -> LearningTask:
+        """The same, with all drawn that can differ between episodes (envs.EVERYTHING)."""
+        return replace(self, keywords={**self.keywords, "randomize": EVERYTHING})
 
 
 TASKS: Mapping[str, LearningTask] = MappingProxyType(

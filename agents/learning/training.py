@@ -75,7 +75,14 @@ class Training:
             raise InvalidValueError(f"seed must be 0 .. {MOST_SEED}, got {seed}")
         self.task, self.out, self.seed, self.recipe = task, Path(out), seed, recipe or Recipe()
         self._report = report
-        whole = {"task": task.name, "seed": seed, "heat": heat, "load": load, "recipe": asdict(self.recipe)}
+        whole = {
+            "task": task.name,
+            "randomize": "randomize" in task.keywords,
+            "seed": seed,
+            "heat": heat,
+            "load": load,
+            "recipe": asdict(self.recipe),
+        }
         self.about: dict[str, Any] = json.loads(json.dumps(whole))
         self._state: dict[str, Any] = {**self.about, "rounds_done": 0, "evaluations": []}
         self._take_up(resume)

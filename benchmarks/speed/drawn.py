@@ -14,7 +14,6 @@ import numpy as np
 
 from thermograsp.bench.speed.measure import ID
 from thermograsp.envs import EVERYTHING
-from thermograsp.envs.limits import LEAST_TOLERANCE
 
 _SECONDS = 1.0  # of an episode
 _STEPS = 50  # control steps of a block, as long as an episode
@@ -85,7 +84,6 @@ def _environment(num_envs: int, **more: Any) -> Any:
         num_envs=num_envs,
         vectorization_mode="vector_entry_point",
         seconds=_SECONDS,
-        tolerance=LEAST_TOLERANCE,
         **more,
     )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from typing import Any
 
 from thermograsp.cli.shared import Output, load_mujoco
 from thermograsp.errors import InvalidValueError
@@ -47,7 +46,11 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValueError(
             f"--twin: a gripper on a serial line has no lift axis, which {task.name} needs"
         )
-    task = replace(task, keywords={**task.keywords, **_changes(args)})
+    changes = {"gripper": args.gripper} if args.gripper else {}
+    if args.twin:
+        changes["plant"] = "twin"
+    task = task.drawn() if args.randomize else task
+    task = replace(task, keywords={**task.keywords, **changes})
     with output.progress(args.episodes) as advance:
         found = score(task, args.policy, args.episodes, not args.no_load, advance)
     output.line(f"{task.name} ({task.env_id}), policy {args.policy}, {found.episodes} held-out episodes")
@@ -76,11 +79,3 @@ def run(args: argparse.Namespace) -> int:
         }
     )
     return 0
-
-
-def _changes(args: argparse.Namespace) -> dict[str, Any]:
-    """Keywords by which the episodes differ from those of the task."""
-    from thermograsp.envs import EVERYTHING
-
-    asked = {"gripper": args.gripper, "randomize": EVERYTHING if args.randomize else None}
-    return {name: value for name, value in asked.items() if value} | ({"plant": "twin"} if args.twin else {})

@@ -26,6 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--resume", action="store_true", help="go on from the folder's last checkpoint")
     add("--no-heat", action="store_true", help="voltages and thermostats read 0")
     add("--no-load", action="store_true", help="load cells read 0")
+    add(
+        "--randomize", action="store_true", help="draw all that can differ between episodes (envs.EVERYTHING)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -37,6 +40,8 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.agents.learning import Recipe, learning_task
 
     task = learning_task(args.task)
+    if args.randomize:
+        task = task.drawn()
     from thermograsp.agents.learning import training
 
     recipe = Recipe() if args.steps is None else replace(Recipe(), steps=args.steps)

@@ -403,7 +403,9 @@ class SimulationConfig:
         from ..sensing import served_anywhere, served_in_the_middle
 
         if self.anywhere:
-            return all(served_anywhere(shape, self.tolerance) for shape in self.shapes)
+            return all(
+                served_anywhere(shape, self.tolerance, self._most_difference(shape)) for shape in self.shapes
+            )
         return all(
             served_in_the_middle(
                 scaled(shape, min(drawn.extremes)), self.stack, self.tolerance, self._most_difference(shape)

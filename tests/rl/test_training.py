@@ -167,3 +167,11 @@ def test_the_teachers_succeed(name: str) -> None:
         if ended.all():
             break
     assert won.all()
+
+
+def test_a_randomized_training_is_told_from_another(tmp_path: Path) -> None:
+    drawn = Training(brief("identify").drawn(), tmp_path, recipe=replace(TINY, taught=1.0, rounds=1))
+    drawn.run()
+    assert load_agent(tmp_path / POLICY).about["randomize"]
+    with pytest.raises(InvalidValueError, match="another randomize"):
+        Training(brief("identify"), tmp_path, recipe=replace(TINY, taught=1.0, rounds=1), resume=True)

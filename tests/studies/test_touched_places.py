@@ -51,7 +51,7 @@ def test_a_touch_beside_a_warm_place_keeps_the_tolerance(benchmarks: dict[str, M
     second = benchmarks["second_touch"]
     expected, _ = second.by_elements("glass", 0.8)
     late = slice(2, None)
-    for tolerance in (0.1, 0.05):
+    for tolerance in (0.05, 0.03):  # heat kernels, and a mesh
         assert np.abs(second.by_networks("glass", tolerance) - expected)[late].max() < tolerance
     forgetful = second.by_networks("glass", 0.05, anywhere=False)
     assert np.abs(forgetful - expected)[late].max() > 0.1  # so much is at stake

@@ -21,7 +21,6 @@ from thermograsp.envs import (
     water,
 )
 from thermograsp.envs.bodies.object_solids import object_solid
-from thermograsp.envs.limits import LEAST_TOLERANCE
 from thermograsp.envs.sensing.heat import GraspHeat
 from thermograsp.envs.sensing.touches import first_touches
 from thermograsp.thermal.batch import FIXED_LEVEL
@@ -34,7 +33,7 @@ ENDLESS = GraspTask(hold_seconds=1e3, seconds=1e3)
 STACK = thermal.sensor("seed")
 STEP = 0.02  # s
 SETTINGS = {
-    "tolerance": LEAST_TOLERANCE,
+    "tolerance": 0.05,
     "air": 0.0,
     "dt": STEP / 2,
     "samples": 2,
@@ -297,7 +296,7 @@ def test_anywhere_is_off_by_default_and_boxes_and_cylinders_take_it_where_asked(
     box = GraspBatch(1, material="glass", task=ENDLESS)
     plain = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one)
     asked = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one, anywhere=True, tolerance=0.1)
-    cube = GraspBatch(1, material="glass", task=ENDLESS, anywhere=True, tolerance=LEAST_TOLERANCE)
+    cube = GraspBatch(1, material="glass", task=ENDLESS, anywhere=True, tolerance=0.05)
     for batch, rung in ((box, "network:"), (cube, "kernels:"), (plain, "network:"), (asked, "body:")):
         batch.reset([0], [np.random.default_rng(0)])
         step = batch.step(action_of(0.085, 10.0, 0.0)[None])
