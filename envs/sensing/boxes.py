@@ -310,8 +310,9 @@ class BoxHeat:
 
 
 def served_anywhere(spec: ObjectSpec, tolerance: float, difference: float) -> bool:
-    """Whether heat kernels keep the tolerance K of that object wherever a sensor touches it that is `difference` K warmer
-    or cooler at most."""
+    """Whether heat kernels keep the tolerance K of that object, wherever it is touched.
+
+    difference: K between a sensor and the object or the air, at most."""
     return _plain(spec) and _ANYWHERE_SHARE * difference <= tolerance
 
 
