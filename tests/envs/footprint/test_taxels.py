@@ -231,7 +231,9 @@ def test_shapes_show() -> None:
 
     flat, line, spot = (left(ObjectSpec(shape=shape)) for shape in ("box", "cylinder", "sphere"))
     assert (flat > 0).all()
-    assert (line[:, 8:12] > 0).all() and not line[:, :7].any() and not line[:, 13:].any()
+    # bare alumina gives way by micrometres to a rod, and the silicone around it is pressed no deeper
+    assert (line[:, 9:11] > 0).all() and not np.delete(line, np.s_[9:11], axis=1).any()
+    assert line[6:14, 9:11].min() > 1e4 * line[[*range(5), *range(15, 20)]].max()
     assert spot[9:11, 9:11].min() > 5 * flat.max() and not spot[:5].any()
     narrow = left(ObjectSpec(size=(0.04, 0.010, 0.04)))
     assert (narrow[:, 5:15] > 1.0).all() and np.delete(narrow, np.s_[5:15], axis=1).max() < 1e-6

@@ -27,7 +27,14 @@ def test_every_cache_of_functions_has_a_limit_or_few_arguments() -> None:
         and one.cache_info().maxsize is None
         and inspect.signature(one).parameters
     }
-    named = ("sources.", "dataset.", "thermal.matter.", "thermal.stack.presets.", "envs.bodies.library.")
+    named = (
+        "doors.",
+        "sources.",
+        "dataset.",
+        "thermal.matter.",
+        "thermal.stack.presets.",
+        "envs.bodies.library.",
+    )
     of_shape = {
         "thermal.numerics.laplace_window._hyperbola",
         "thermal.plates.section._bessel_zeros",
