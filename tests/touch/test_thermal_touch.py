@@ -415,12 +415,15 @@ def test_a_reset_that_cannot_be_is_refused(words: dict) -> None:
 def test_a_grasp_that_has_sunk_in_may_be_reset_and_goes_on() -> None:
     text = ONE_PRESS.format(cone="elliptic")
     model = mujoco.MjModel.from_xml_string(text)
-    model.geom_solref[:] = 0.05, 1.0  # so soft that the pad sinks in by more than a contact does
     data = mujoco.MjData(model)
     touch = ThermalTouch(model, fingertips={"tip": "tip"}, objects={"block": "glass"})
     data.ctrl[:] = 20.0
-    run(model, data, touch, 1.0)
-    assert data.contact.dist.min() < -0.005
+    softness = 0.03  # s; boxes sink twice as far into each other in MuJoCo 3 as in 4
+    while data.qpos[0] < 0.0045:  # m, so that the pad sinks in by more than a contact does
+        softness += 0.003
+        model.geom_solref[:] = softness, 1.0
+        run(model, data, touch, 0.4)
+    assert touch.reading.touching == ("block",)
     touch.reset(data)
     run(model, data, touch, 0.1)
     assert touch.reading.touching == ("block",)
