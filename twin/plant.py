@@ -70,7 +70,9 @@ class TwinPlant:
 
 def twin_plant(url: str, num_envs: int, **config: Any) -> TwinPlant:
     """The plant behind plant="twin". Keywords as in SimulationConfig. Raises UnknownKeywordError for others, and
-    InvalidValueError for what no serial line has."""
+    InvalidValueError for what no serial line has and for a URL with a port: devices are emulated."""
+    if url != "twin":
+        raise InvalidValueError(f"plant {url!r}: a twin has no port; give 'twin'")
     if num_envs != 1:
         raise InvalidValueError(f"a twin is one gripper, so num_envs must be 1, got {num_envs}")
     return TwinPlant(simulated_plant(url, 1, **without_maps(config)))

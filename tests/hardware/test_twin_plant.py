@@ -67,6 +67,8 @@ def test_what_no_line_has_is_refused(twin: gymnasium.Env, capsys: Any) -> None:
     for keywords, message in refused:
         with pytest.raises(InvalidValueError, match=message):
             gymnasium.make("thermograsp/Grasp-v0", plant="twin", **keywords)
+    with pytest.raises(InvalidValueError, match="has no port"):
+        gymnasium.make("thermograsp/Grasp-v0", plant="twin:///dev/ttyACM0")
     with pytest.raises(UnknownKeywordError, match="material"):
         gymnasium.make("thermograsp/Grasp-v0", plant="twin", materials="glass")
     with pytest.raises(InvalidValueError, match="num_envs must be 1"):
