@@ -239,7 +239,7 @@ class Training:
         differing = [name for name, value in self.about.items() if state.get(name) != value]
         if differing:
             raise InvalidValueError(
-                f"{self.out} holds a training with another {' and '.join(differing)}: resume it with the same options"
+                f"{self.out} holds another training ({', '.join(differing)} differ): resume it with the same options"
             )
         self._state = state
 

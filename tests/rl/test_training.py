@@ -129,10 +129,11 @@ def test_imitation_goes_on_after_its_last_round(tmp_path: Path) -> None:
 
 def test_a_folder_is_not_overwritten_and_not_resumed_as_another(tmp_path: Path) -> None:
     task = brief("identify")
-    (tmp_path / STATE).write_text(json.dumps({"task": "sort"}))
+    other = {**Training(task, tmp_path / "other", recipe=TINY).about, "task": "sort", "seed": 3}
+    (tmp_path / STATE).write_text(json.dumps(other))
     with pytest.raises(InvalidValueError, match="--resume"):
         Training(task, tmp_path, recipe=TINY)
-    with pytest.raises(InvalidValueError, match="another task and seed"):
+    with pytest.raises(InvalidValueError, match=r"another training \(task, seed differ\)"):
         Training(task, tmp_path, recipe=TINY, resume=True)
     with pytest.raises(InvalidValueError, match="seed must be"):
         Training(task, tmp_path / "new", seed=1000, recipe=TINY)
