@@ -5,6 +5,9 @@ PY      := $(VENV)/bin/python
 INSTALL ?= $(PY) -m pip install --disable-pip-version-check -q
 # faster: make test INSTALL="uv pip install -p .venv"
 
+# Where the environment forbids to keep compiled Python, every process of a run would compile all sources again.
+export PYTHONDONTWRITEBYTECODE :=
+
 DEMO_FLAGS  ?=
 TEST_FLAGS  ?=
 WORKERS     ?= 2

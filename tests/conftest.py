@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -45,13 +46,20 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    here = Path(__file__).parent
     for item in items:
-        for place, (variable, reason) in TIERS.items():
-            if not os.environ.get(variable) and item.path.is_relative_to(here / place):
-                item.add_marker(pytest.mark.skip(reason=reason))
+        if reason := _not_asked_for(item.path):
+            item.add_marker(pytest.mark.skip(reason=reason))
         if item.get_closest_marker("slow") and not os.environ.get(SLOW):
             item.add_marker(pytest.mark.skip(reason="takes long: make test-slow"))
+
+
+@cache
+def _not_asked_for(path: Path) -> str:
+    """Why the tests of a file do not run; "" where they do."""
+    for place, (variable, reason) in TIERS.items():
+        if not os.environ.get(variable) and path.is_relative_to(Path(__file__).parent / place):
+            return reason
+    return ""
 
 
 @pytest.fixture(scope="session")
