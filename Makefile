@@ -124,9 +124,10 @@ test-view-long: build/.view
 test-hardware-long: build/.test
 	THERMOGRASP_LONG=1 $(PY) -m pytest $(TEST_FLAGS) tests/hardware
 
-# The firmware in a simulator, a part of `make test`; says which tools are missing where they are (docs/firmware.md).
+# The firmware in a simulator, with what `make test` leaves out of it; says which tools are missing where they are
+# (docs/firmware.md).
 test-firmware: build/.test
-	$(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
+	THERMOGRASP_SLOW=1 $(PY) -m pytest -rs $(TEST_FLAGS) tests/hardware/test_firmware*.py
 
 # Every benchmark, coarsely, and what they must show; the physics beside elements in 3-D; the demo and the paper's figures.
 test-bench: build/.test

@@ -81,6 +81,7 @@ def test_a_missing_file_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert "cannot read nowhere.csv" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_grasp_is_identified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Both fingertips, a force that grows, two touches at different times, a model of tolerance 0.05 K."""
     pytest.importorskip("mujoco")

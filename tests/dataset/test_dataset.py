@@ -250,6 +250,7 @@ def test_a_manifest_of_before_is_read(folder: Path, tmp_path: Path) -> None:
     assert old.differences(later) == [f"version of thermograsp is {PLAN.versions['thermograsp']}, not 99.0"]
 
 
+@pytest.mark.slow
 def test_processes_of_this_machine_make_the_same_files(folder: Path, tmp_path: Path) -> None:
     done = []
 

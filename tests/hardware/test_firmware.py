@@ -32,6 +32,7 @@ CONSTANTS = Calibration(
 )
 
 
+@pytest.mark.slow
 def test_it_holds_36_degrees_and_streams_without_a_gap_for_a_minute(board: Board) -> None:
     """From 24 °C; after 20 s a contact draws 0.3 W from one plate, after 40 s no longer."""
     board.signals.voltage[:] = (1.234e-3, -5.678e-3)

@@ -105,7 +105,7 @@ def setpoints(board: Board) -> tuple[float, float]:
     return report.setpoint
 
 
-@pytest.mark.parametrize("what", ["loose", "cold"])
+@pytest.mark.parametrize("what", [pytest.param("loose", marks=pytest.mark.slow), "cold"])
 def test_power_that_warms_nothing_ends(board: Board, what: str) -> None:
     """A thermistor that has come off its plate, and a heater whose wire is broken: off long before 70 °C."""
     tips, line = driven(board, setpoint=36.0)
@@ -127,7 +127,7 @@ def test_power_that_warms_nothing_ends(board: Board, what: str) -> None:
     assert abs(board.signals.plate[1] - 36.0) < 0.5
 
 
-@pytest.mark.parametrize("drawn", [0.0, 3.0])
+@pytest.mark.parametrize("drawn", [0.0, pytest.param(3.0, marks=pytest.mark.slow)])
 def test_power_that_warms_slowly_goes_on(board: Board, drawn: float) -> None:
     board.signals.supply = 4.6
     board.signals.heat[0] = drawn

@@ -100,6 +100,7 @@ def test_ten_recordings_tell_the_sensor_to_2_percent_and_the_simulation_loads_it
     env.close()
 
 
+@pytest.mark.slow
 def test_the_recipe_two_touches_tell_the_sensor_and_a_third_colder_one_agrees(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -40,7 +40,7 @@ def looks(materials: Sequence[str], mode: Mode, named: tuple[str, ...]) -> dict[
     return found
 
 
-@pytest.mark.parametrize("mode", ["T", pytest.param("O", marks=LONG)])
+@pytest.mark.parametrize("mode", [pytest.param("T", marks=pytest.mark.slow), pytest.param("O", marks=LONG)])
 def test_what_is_of_the_ten_is_never_none_of_them(mode: Mode) -> None:
     for name, told in looks(SEED_MATERIALS, mode, ()).items():
         assert len(told) >= HELD / 0.25, name

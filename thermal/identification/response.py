@@ -92,14 +92,14 @@ class Answer:
         rates, turn = np.linalg.eigh(np.diag(self.rates) + weight * self.ports @ self.ports.T)
         share = (self.row @ turn) * (turn.T @ (weight * self.ports[:, 0] + self.without))
         rates = np.maximum(rates, 1e-12)
-        time = np.maximum(t, 0.0)[:, None]
-        settling = -np.expm1(-rates * time) / rates
-        if np.isfinite(bandwidth):
-            corner = 2 * np.pi * bandwidth
-            gap = corner - rates
-            gap = np.where(np.abs(gap) < 1e-6 * corner, 1e-6 * corner, gap)
-            settling = settling - (np.exp(-rates * time) - np.exp(-corner * time)) / gap
-        return settling @ share
+        time = np.maximum(t, 0.0)
+        decayed = np.expm1(-rates * time[:, None])  # what takes long; each mode's exponential less 1
+        if not np.isfinite(bandwidth):
+            return decayed @ (-share / rates)
+        corner = 2 * np.pi * bandwidth
+        gap = corner - rates
+        late = share / np.where(np.abs(gap) < 1e-6 * corner, 1e-6 * corner, gap)
+        return decayed @ (-share / rates - late) + np.expm1(-corner * time) * late.sum()
 
 
 def answer(system: ContactSystem, core: HeatedCore | None = None) -> Answer:

@@ -64,6 +64,7 @@ def files(tmp_path_factory) -> dict[str, str]:
     return paths
 
 
+@pytest.mark.slow
 def test_a_sleeve_is_felt_between_its_material_and_the_core_s():
     """Once heat has passed the rubber's .5 mm; before that it is felt as rubber."""
     common = {"air": 0.0, "anywhere": True}
@@ -265,6 +266,7 @@ def test_parts_that_cannot_be_are_refused(files):
     assert hash(replace(COATED, parts=[core])) == hash(COATED)
 
 
+@pytest.mark.slow
 def test_pairs_to_sort_have_parts_too():
     """Around which the two are of the materials that are to be told apart."""
     env = SortEnv(objects=COATED, material=["rubber", "cork"], tolerance=0.5)
@@ -276,6 +278,7 @@ def test_pairs_to_sort_have_parts_too():
     env.close()
 
 
+@pytest.mark.slow
 def test_a_state_goes_on_bit_for_bit_in_an_environment_of_others_sizes():
     batch = GraspBatch(2, objects="screwdriver", randomize=EVERYTHING, tolerance=0.5)
     batch.reset([0, 1], [np.random.default_rng(row) for row in range(2)])

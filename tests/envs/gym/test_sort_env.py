@@ -124,6 +124,7 @@ def test_only_touch_tells_the_objects_apart():
     assert all(same(a, b) for a, b in zip(*seen, strict=True))
 
 
+@pytest.mark.slow
 def test_feeling_pays_and_nothing_else_does():
     env = SortVectorEnv(20, material=TWO)
     won, total, reasons = episodes(env, ScriptedSort(env.batch).action)
@@ -169,7 +170,10 @@ def test_crushing_ends_it():
     assert np.array_equal(reasons["crushed"], eggs) and np.all(total[eggs] <= -0.99)
 
 
-@pytest.mark.parametrize("keywords", [{"material": TWO}, {"goal": "hotter", "randomize": [Roughness()]}])
+@pytest.mark.parametrize(
+    "keywords",
+    [{"material": TWO}, pytest.param({"goal": "hotter", "randomize": [Roughness()]}, marks=pytest.mark.slow)],
+)
 def test_environment_i_is_the_single_one_seeded_s_plus_i_through_touches_and_autoreset(keywords):
     keywords = {**keywords, "seconds": 6.0, "hold_seconds": 0.2, "thermostat": thermal.Thermostat()}
     vector, rows = SortVectorEnv(3, **keywords), 3

@@ -272,7 +272,7 @@ def test_a_box_that_lies_across_is_held_by_its_other_sides():
     assert felt[0][1] == pytest.approx(felt[1][1], rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["Grasp", "Sort"])
+@pytest.mark.parametrize("name", ["Grasp", pytest.param("Sort", marks=pytest.mark.slow)])
 def test_networks_stay_few_however_many_are_drawn(monkeypatch, name):
     """Forgetting those that nothing uses changes no bit, of an episode that goes on beside either. The objects are so
     narrow that their networks are searched."""

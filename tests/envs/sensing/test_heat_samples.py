@@ -63,7 +63,7 @@ def test_a_second_touch_in_the_second_half_changes_no_first_sample(anywhere, pla
     assert np.array_equal(*first)
 
 
-@pytest.mark.parametrize("anywhere", [False, True])
+@pytest.mark.parametrize("anywhere", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_two_samples_in_one_step_are_those_of_two_steps(anywhere):
     """Bit for bit, with contacts that come and go, for one environment and for several."""
     rng = np.random.default_rng(3)

@@ -95,6 +95,7 @@ def test_a_cube_s_mesh_is_felt_as_the_box_is(name, meshes):
     assert heat.rung(0).startswith("body:")
 
 
+@pytest.mark.slow
 def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
     """The wall of 2.5 mm warms through within seconds and gives way; what is full goes on taking heat."""
     felt = {}
@@ -113,7 +114,7 @@ def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
     assert np.all(felt["full"][1] - felt["cup"][1] > 0.2e-3)
 
 
-@pytest.mark.parametrize("moves", [False, True])
+@pytest.mark.parametrize("moves", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
     """Through a wall of .6 mm, so that a finger draws more than the wall alone has; the books hold, also when the
     finger goes on to another place and while ice melts."""
@@ -139,7 +140,7 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
     assert flows[60.0, True] < 1.1 * flows[60.0, False] < 0 < flows[0.0, True]
 
 
-@pytest.mark.parametrize("name", ["glass", "aluminium"])
+@pytest.mark.parametrize("name", ["glass", pytest.param("aluminium", marks=pytest.mark.slow)])
 def test_heat_taken_is_the_rise_times_the_heat_capacity(name, meshes):
     """Also after a touch elsewhere; the capacity is that of the mesh's own volume, as its grid has it."""
     spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8)
@@ -251,6 +252,7 @@ def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
             assert a.info[0].tobytes() == b.info[0].tobytes()
 
 
+@pytest.mark.slow
 def test_vector_and_single_environments_agree_on_meshes_bit_for_bit(meshes):
     spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8, temperature=50.0)
     config = {"objects": spec, "material": ["ceramic", "glass"], "task": ENDLESS, "ambient_temperature": 22.0}

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
+import pytest
 from numba.core.dispatcher import Dispatcher
 
 import thermograsp.envs
@@ -68,6 +69,7 @@ def test_what_may_reassociate_sums_is_inlined_where_it_is_called() -> None:
                 assert inlined, f"{name} calls {called}"
 
 
+@pytest.mark.slow
 def test_a_process_that_compiles_and_one_that_finds_it_compiled_agree_to_the_last_bit(tmp_path: Path) -> None:
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
     first, second = (

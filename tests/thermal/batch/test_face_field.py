@@ -100,7 +100,14 @@ def by_grid(name: str, seconds: float, difference: float = 12.0):
     return np.array(flux), np.array(faces)
 
 
-@pytest.mark.parametrize("name", ["aluminium", "glass", "cotton"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("aluminium", marks=pytest.mark.slow),
+        "glass",
+        pytest.param("cotton", marks=pytest.mark.slow),
+    ],
+)
 def test_a_half_covered_face_is_that_of_a_grid(name: str) -> None:
     """The same bodies by other means."""
     field, state, conductance = field_of(name), face_state(), half_covered()

@@ -48,6 +48,7 @@ def test_a_press_is_that_of_the_semi_analytic_solution_of_the_same_layers(name: 
     assert np.abs(found.temperature_drop - exact.temperature_drop).max() < 0.02
 
 
+@pytest.mark.slow
 def test_on_a_body_of_any_shape_it_is_the_same_layer() -> None:
     cube = (0.04, 0.04, 0.04)
     mesh = trimesh.creation.box(cube)

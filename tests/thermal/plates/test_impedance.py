@@ -84,7 +84,7 @@ def test_slab_is_the_sum_over_eigenfunctions(section, patch, slab) -> None:
     [
         (Rectangle(0.25, 0.005), SquarePatch(0.0045, square=False), 0.01),
         (Rectangle(0.01, 0.01), SquarePatch(0.0045), 0.3),
-        (Disc(0.3), RoundPatch(0.0045), 0.001),
+        pytest.param(Disc(0.3), RoundPatch(0.0045), 0.001, marks=pytest.mark.slow),
     ],
 )
 def test_slow_bodies_are_followed_to_their_end(section, patch, thickness) -> None:

@@ -55,7 +55,7 @@ def test_one_dimensional_where_patch_and_plate_are_the_face(mode: Mode, shape: S
         np.testing.assert_allclose(getattr(three, name), getattr(one, name), atol=2e-6, err_msg=name)
 
 
-@pytest.mark.parametrize("mode", ["T", "O"])
+@pytest.mark.parametrize("mode", ["T", pytest.param("O", marks=pytest.mark.slow)])
 def test_heat_that_passes_is_stored(mode: Mode) -> None:
     """Into the object and, in O mode, the element; the thermostat feeds a T-mode element from behind."""
     t = np.linspace(0, 20, 4001)[1:]
