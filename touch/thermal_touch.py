@@ -459,14 +459,23 @@ class ThermalTouch:
         assert self._sensors is not None
         if isinstance(record, mujoco.MjData):
             raise InvalidValueError("a ThermalTouch of many worlds reads recorded sensordata, not MjData")
-        found = np.asarray(record, float)
+        found = np.ascontiguousarray(record, float)
         if found.ndim not in (2, 3):
             raise InvalidValueError(
                 f"a record must have the shape (worlds, substeps, sensordata), got {found.shape}"
             )
-        for n in range(found.shape[1] if found.ndim == 3 else 1):
-            self._reader.sense(found[:, n] if found.ndim == 3 else found, self._sensors)
-            self._time += self._step
+        worlds, size = len(self._time), self._sensors.size
+        if (found.shape[0], found.shape[-1]) != (worlds, size):
+            raise InvalidValueError(
+                f"a record must hold the sensordata of {worlds} worlds, ({worlds}, {size}) of each substep, got shape "
+                f"{found.shape}"
+            )
+        found, done = found.reshape(worlds, -1, size), 0
+        while done < found.shape[1]:
+            first, done = done, min(done + self._sample_steps - self._reader.substeps, found.shape[1])
+            self._reader.sense(found, first, done, self._sensors)
+            for _ in range(first, done):
+                self._time += self._step
             if self._reader.substeps == self._sample_steps:
                 self._sample()
         return self._reading

@@ -91,7 +91,7 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
         felt = contacts.felt(poses, np.array([[0], [1]]), np.ones((1, 1)))
         for world, reader in enumerate(readers):
             reader.clear()
-            reader.sense(data.sensordata[None], places)
+            reader.sense(data.sensordata[None, None], 0, 1, places)
             read = reader.touches[0, :, 0]
             for own, column in ((felt.force, FORCE), (felt.conductance, CONDUCTANCE), (felt.area, AREA)):
                 np.testing.assert_allclose(own[world, :, 0], read[:, column], rtol=1e-6)

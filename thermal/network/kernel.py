@@ -74,12 +74,12 @@ class Workspace(NamedTuple):
     """Memory of `advance` and of what calls it, for systems of at most its sizes; what it holds between calls does not
     matter."""
 
-    rate: np.ndarray
     change: np.ndarray
-    real: np.ndarray
-    imag: np.ndarray
-    lagged: np.ndarray
-    gathered: np.ndarray
+    lag: np.ndarray
+    scaled: np.ndarray
+    root: np.ndarray
+    start: np.ndarray
+    heard: np.ndarray
     matrix: np.ndarray
     weight: np.ndarray
     drive: np.ndarray
@@ -90,19 +90,19 @@ class Workspace(NamedTuple):
 def workspace(states: int, ports: int) -> Workspace:
     """Room for systems of up to that many states and ports."""
     # Few blocks: getting one takes as long as a loop over it.
-    long, short = np.zeros((4, states)), np.zeros((4, ports))
-    matrix = np.zeros((1 + ports, ports), np.complex128)
+    long, short = np.zeros((2 + 2 * _PAIRS, states)), np.zeros((5, ports))
+    matrix = np.zeros((_PAIRS + ports, ports), np.complex128)
     return Workspace(
         long[0],
         long[1],
-        long[2],
-        long[3],
+        long[2:],
         short[0],
-        matrix[ports],
-        matrix[:ports],
         short[1],
+        matrix[ports:],
+        matrix[:ports],
         short[2],
         short[3],
+        short[4],
     )
 
 
@@ -120,38 +120,49 @@ def advance(
     conductance: (M,) W/K, >= 0. difference: (M,) K. room: workspace of at least this size. Returns the mean during the
     step of the watched row on the state.
     """
-    # Written for the compiler: a helper inlined twice, a slice and a loop more each cost tenths of a second, once.
+    # Written for the compiler: a helper inlined twice, a slice and a loop more each cost tenths of a second, once. The
+    # sums over states take all pairs of poles at once, which are written out, and zeros too: short loops take longer.
     n = system.object_states + system.contacts * system.sensor_states
     m = system.contacts * system.modes
-    rates, ports, dt, watched, around = system.rates, system.ports, system.dt, system.watched, system.around
+    rates, ports, dt, watched = system.rates, system.ports, system.dt, system.watched
     scale_real, scale_imag, gram = system.scale_real, system.scale_imag, system.gram
-    rate, change, real, imag = room.rate, room.change, room.real, room.imag
-    lagged, gathered, matrix = room.lagged, room.gathered, room.matrix
-    conducting = 0  # ports to solve for: none where nothing conducts
-    for j in range(m):
-        seen = 0.0
-        for i in range(n):
-            seen += ports[j, i] * state[i]
-        flow[j] = conductance[j] * (difference[j] - seen)
-        lagged[j] = 0.0
-        if conductance[j] > 0:
-            conducting = m
+    change, lag, scaled, heard = room.change, room.lag, room.scaled, room.heard
+    root, start, matrix = room.root, room.start, room.matrix
     watched_now, watched_lag = 0.0, 0.0
     for i in range(n):
-        rate[i] = around * watched[i] - rates[i] * state[i]
-        change[i] = 0.0
+        rate = system.around * watched[i] - rates[i] * state[i]
+        now, mean = 0.0, 0.0
+        for q in range(_PAIRS):
+            real, imag = scale_real[q, i] * rate, scale_imag[q, i] * rate
+            scaled[2 * q, i], scaled[2 * q + 1, i] = real, imag
+            now += WEIGHTS[q].real * real - WEIGHTS[q].imag * imag
+            mean += _LAGS[q].real * real - _LAGS[q].imag * imag
+        change[i], lag[i] = now, mean
         watched_now += watched[i] * state[i]
+    conducting = 0  # ports to solve for: none where nothing conducts
+    for j in range(m):
+        seen = real_0 = imag_0 = real_1 = imag_1 = real_2 = imag_2 = 0.0
+        for i in range(n):
+            port = ports[j, i]
+            seen += port * state[i]
+            real_0 += port * scaled[0, i]
+            imag_0 += port * scaled[1, i]
+            real_1 += port * scaled[2, i]
+            imag_1 += port * scaled[3, i]
+            real_2 += port * scaled[4, i]
+            imag_2 += port * scaled[5, i]
+        heard[0, j], heard[1, j] = complex(real_0, imag_0), complex(real_1, imag_1)
+        heard[2, j] = complex(real_2, imag_2)
+        root[j], start[j] = np.sqrt(dt * conductance[j]), (difference[j] - seen) / dt
+        flow[j] = 0.0
+        if conductance[j] > 0:
+            conducting = m
+    # The flows are I + dt H G: taken over the root of dt H they have a symmetric matrix, with zeros for open contacts.
     for q in range(_PAIRS):
         for j in range(conducting):
-            heard_real, heard_imag = 0.0, 0.0
-            for i in range(n):
-                heard = ports[j, i] * rate[i]
-                heard_real += heard * scale_real[q, i]
-                heard_imag += heard * scale_imag[q, i]
-            weight = dt * conductance[j]
-            gathered[j] = complex(flow[j] - weight * heard_real, -weight * heard_imag)
-            for k in range(m):
-                matrix[j, k] = weight * gram[q, j, k]
+            heard[q, j] = root[j] * (start[j] - heard[q, j])
+            for k in range(j, m):
+                matrix[j, k] = root[j] * root[k] * gram[q, j, k]
             matrix[j, j] += 1.0
         # Elimination without pivots: they are at least sin 102 degrees (see batch/step.py).
         for c in range(conducting):
@@ -159,30 +170,37 @@ def advance(
             size = 1 / (pivot.real * pivot.real + pivot.imag * pivot.imag)
             inverse = matrix[c, c] = complex(pivot.real * size, -pivot.imag * size)
             for r in range(c + 1, m):
-                factor = matrix[r, c] * inverse
-                for k in range(c + 1, m):
+                factor = matrix[c, r] * inverse
+                for k in range(r, m):
                     matrix[r, k] -= factor * matrix[c, k]
-                gathered[r] -= factor * gathered[c]
-        for i in range(n):
-            real[i] = rate[i]
-            imag[i] = 0.0
+                heard[q, r] -= factor * heard[q, c]
         for j in range(conducting - 1, -1, -1):
-            total = gathered[j]
+            total = heard[q, j]
             for k in range(j + 1, m):
-                total -= matrix[j, k] * gathered[k]
-            total *= matrix[j, j]
-            gathered[j] = total
-            lagged[j] += _LAGS[q].real * total.real - _LAGS[q].imag * total.imag
-            for i in range(n):
-                real[i] += ports[j, i] * total.real
-                imag[i] += ports[j, i] * total.imag
+                total -= matrix[j, k] * heard[q, k]
+            heard[q, j] = total * matrix[j, j]
+        for j in range(conducting):
+            total = heard[q, j] = root[j] * heard[q, j]
+            flow[j] -= 2 * (_LAGS[q].real * total.real - _LAGS[q].imag * total.imag)
+    for j in range(conducting):
+        zero, one, two = heard[0, j], heard[1, j], heard[2, j]
+        now_0, now_1, now_2 = WEIGHTS[0] * zero, WEIGHTS[1] * one, WEIGHTS[2] * two
+        mean_0, mean_1, mean_2 = _LAGS[0] * zero, _LAGS[1] * one, _LAGS[2] * two
         for i in range(n):
-            solved_real = scale_real[q, i] * real[i] - scale_imag[q, i] * imag[i]
-            solved_imag = scale_real[q, i] * imag[i] + scale_imag[q, i] * real[i]
-            change[i] += WEIGHTS[q].real * solved_real - WEIGHTS[q].imag * solved_imag
-            watched_lag += watched[i] * (_LAGS[q].real * solved_real - _LAGS[q].imag * solved_imag)
-    for j in range(m):
-        flow[j] = -2 * lagged[j]
+            port = ports[j, i]
+            real_0, real_1, real_2 = scale_real[0, i], scale_real[1, i], scale_real[2, i]
+            imag_0, imag_1, imag_2 = scale_imag[0, i], scale_imag[1, i], scale_imag[2, i]
+            change[i] += port * (
+                (now_0.real * real_0 - now_0.imag * imag_0)
+                + (now_1.real * real_1 - now_1.imag * imag_1)
+                + (now_2.real * real_2 - now_2.imag * imag_2)
+            )
+            lag[i] += port * (
+                (mean_0.real * real_0 - mean_0.imag * imag_0)
+                + (mean_1.real * real_1 - mean_1.imag * imag_1)
+                + (mean_2.real * real_2 - mean_2.imag * imag_2)
+            )
     for i in range(n):
+        watched_lag += watched[i] * lag[i]
         state[i] -= 2 * dt * change[i]
     return watched_now - 2 * dt * watched_lag

@@ -42,7 +42,7 @@ from .memory import (
     ContactMemory,
 )
 from .memory import LENGTH as TABLE
-from .pointers import floats, integers, laws, table, words
+from .pointers import flags, floats, integers, laws, table, words
 from .round_pads import BEND, CURVES, bends, curves, round_contact
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
 
@@ -85,6 +85,9 @@ class ContactReader:
         self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
+        self._poses = tuple(np.zeros((many, size)) for many in (model.nbody, model.ngeom) for size in (3, 9))
+        self._places: SensorPlaces | None = None
+        self._sensed = np.zeros(0, np.int64)
         self._bend, self._curve = bends(pads), curves(model, pads, shapes)
         self.set_materials(range(worlds), [tuple(shape.material for shape in shapes)] * worlds)
         self._of: mujoco.MjData | None = None
@@ -113,6 +116,7 @@ class ContactReader:
             *(self._role, self._pads, self._met, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._own_laws),
         )
+        self._places = None
         pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
         sizes = len(self._role), *self.touches.shape[1:3], len(self._met), pyramidal
         self._own = table(arrays, sizes)
@@ -131,30 +135,22 @@ class ContactReader:
         if not read_contacts(count, weight, memory.address, self._own_address):
             raise broke_down(data.time)
 
-    def sense(self, record: np.ndarray, places: SensorPlaces) -> None:
-        """Adds what contact sensors recorded of one substep, (W, sensordata). Worlds with a number that is not finite
-        are `broken` from then on, and nothing more is added to them."""
-        self.counted += 1
-        if record.shape != (len(self.beside), places.size):
-            raise InvalidValueError(
-                f"a record must hold the sensordata of {len(self.beside)} worlds, ({len(self.beside)}, {places.size}), "
-                f"got shape {record.shape}"
-            )
-        _sense(
-            np.ascontiguousarray(record, float),
-            *places[:6],
-            self._role.shape[0],
-            self._pads,
-            self._met,
-            self._laws,
-            self._which,
-            self._bend,
-            self._curve,
-            self._pushed,
-            self.touches,
-            self.beside,
-            self.broken,
-        )
+    def sense(self, record: np.ndarray, first: int, last: int, places: SensorPlaces) -> None:
+        """Adds what contact sensors recorded of the substeps first to last - 1, (W, substeps, sensordata). Worlds with
+        a number that is not finite are `broken` from then on, and nothing more is added to them."""
+        self.counted += last - first
+        if places is not self._places:
+            self._places, self._sensed = places, self._sensing(places)
+        sense_contacts(record.ctypes.data, record.shape[1], first, last, self._sensed.ctypes.data)
+
+    def _sensing(self, places: SensorPlaces) -> np.ndarray:
+        """What `sense_contacts` takes of it: all addresses and sizes, until a call of set_materials."""
+        own = places.pairs, places.poses, places.geoms, places.turns, places.offsets
+        arrays = *own, self._pads, self._met, self._laws, self._which, self._bend, self._curve
+        room = self._pushed, *self._poses
+        sums = self.touches, self.beside, self.broken
+        sizes = len(self.beside), places.size, *map(len, own[:3]), *self._pushed.shape[:2]
+        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2]))
 
     def clear(self) -> None:
         """Sums start anew, with the model's kind of friction cones as it is now."""
@@ -264,70 +260,89 @@ def read_contacts(count, substeps, memory_at, own_at):
 
 
 @njit(cache=True, error_model="numpy")
-def _sense(
-    record, pairs, poses, geoms, turns, offsets, bodies, all_geoms,
-    pads, met, laws, which, bend, curve, pushed, touches, beside, broken,
-):  # fmt: skip
-    """read_contacts of recorded sensors, world by world."""
-    tips, things = len(pads), len(met)
-    xpos, xmat = np.zeros((bodies, 3)), np.zeros((bodies, 9))
-    geom_xpos, geom_xmat = np.zeros((all_geoms, 3)), np.zeros((all_geoms, 9))
-    for w in range(len(record)):
-        data, total = record[w], 0.0
-        for p in range(len(pairs)):
-            for k in range(PLACE_AT + 3):
-                total += abs(data[pairs[p, 2] + k])
-        for p in range(len(poses)):
-            for k in range(3):
-                total += abs(data[poses[p, 1] + k])
-            for k in range(4):
-                total += abs(data[poses[p, 2] + k])
-        if not math.isfinite(total):
-            broken[w] = True
-        if broken[w]:
-            continue
-        for p in range(len(poses)):
-            body, at, quat = poses[p, 0], poses[p, 1], poses[p, 2]
-            a, b, c, d = data[quat], data[quat + 1], data[quat + 2], data[quat + 3]
-            for k in range(3):
-                xpos[body, k] = data[at + k]
-            turn = xmat[body]
-            turn[0], turn[4], turn[8] = (
-                a * a + b * b - c * c - d * d,
-                a * a - b * b + c * c - d * d,
-                a * a - b * b - c * c + d * d,
-            )
-            turn[1], turn[3] = 2 * (b * c - a * d), 2 * (b * c + a * d)
-            turn[2], turn[6] = 2 * (b * d + a * c), 2 * (b * d - a * c)
-            turn[5], turn[7] = 2 * (c * d - a * b), 2 * (c * d + a * b)
-        for g in range(len(geoms)):
-            geom, body = geoms[g, 0], geoms[g, 1]
-            for i in range(3):
-                geom_xpos[geom, i] = xpos[body, i]
-                for k in range(3):
-                    geom_xpos[geom, i] += xmat[body, 3 * i + k] * offsets[g, k]
-                    geom_xmat[geom, 3 * i + k] = 0.0
-                    for j in range(3):
-                        geom_xmat[geom, 3 * i + k] += xmat[body, 3 * i + j] * turns[g, 3 * j + k]
-        any_met, frames = False, pads  # frames: made once something has met
-        for p in range(len(pairs)):
-            f, thing, at = pairs[p, 0], pairs[p, 1], pairs[p, 2]
-            if data[at] <= 0:
-                continue
+def sense_contacts(record_at, substeps, first, last, own_at):
+    """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
+    sensordata), of which the substeps first to last - 1 are read; own_at: that of ContactReader's `_sensing`."""
+    own = carray(words(own_at), 27)
+    worlds, size, pairs, poses, geoms = own[19], own[20], own[21], own[22], own[23]
+    tips, things, targets = own[24], own[25], own[26]
+    record = carray(floats(record_at), (worlds, substeps, size))
+    pair, pose, placed = (
+        carray(words(own[0]), (pairs, 3)),
+        carray(words(own[1]), (poses, 3)),
+        carray(words(own[2]), (geoms, 2)),
+    )
+    turns, offsets = carray(floats(own[3]), (geoms, 9)), carray(floats(own[4]), (geoms, 3))
+    pads, met = carray(floats(own[5]), (tips, _PAD)), carray(words(own[6]), (things, 3))
+    which = carray(words(own[8]), worlds)
+    law = carray(laws(own[7]), (which.max() + 1, tips, things, 3))
+    bend = carray(floats(own[9]), (tips, BEND))
+    curve = carray(floats(own[10]), (things, 3, CURVES))
+    pushed = carray(floats(own[11]), (tips, things, 3))  # room for forces and moments
+    # room for the poses of the bodies and geoms, as many as the model has
+    xpos, xmat = carray(floats(own[12]), (1, 3)), carray(floats(own[13]), (1, 9))
+    geom_xpos, geom_xmat = carray(floats(own[14]), (1, 3)), carray(floats(own[15]), (1, 9))
+    touches = carray(floats(own[16]), (worlds, tips, targets, COLUMNS))
+    beside, broken = carray(floats(own[17]), (worlds, tips)), carray(flags(own[18]), worlds)
+    for w in range(worlds):
+        for n in range(first, last):
+            if broken[w]:
+                break
+            data, total, any_met = record[w, n], 0.0, False
+            for p in range(pairs):
+                at = pair[p, 2]
+                total += (
+                    (abs(data[at + PLACE_AT]) + abs(data[at + PLACE_AT + 1]))
+                    + (abs(data[at + PLACE_AT + 2]) + abs(data[at + FORCE_AT]))
+                    + (abs(data[at + FORCE_AT + 1]) + abs(data[at + FORCE_AT + 2]))
+                    + abs(data[at])
+                )
+                any_met = any_met or data[at] > 0
+            for p in range(poses):
+                at, quat = pose[p, 1], pose[p, 2]
+                total += abs(data[at]) + abs(data[at + 1]) + abs(data[at + 2])
+                total += (abs(data[quat]) + abs(data[quat + 1])) + (abs(data[quat + 2]) + abs(data[quat + 3]))
+            if not math.isfinite(total):
+                broken[w] = True
+                break
             if not any_met:
-                for i in range(tips):
-                    for g in range(things):
-                        pushed[i, g, 0] = 0.0
-                        pushed[i, g, 1] = 0.0
-                        pushed[i, g, 2] = 0.0
-                frames = _frames(pads, met, xpos, xmat)
-                any_met = True
-            _press(data, at, pads, frames, f, thing, things, pushed, beside[w])
-        if any_met:
-            own = laws[which[w]]
+                continue
+            for p in range(poses):
+                body, at, quat = pose[p, 0], pose[p, 1], pose[p, 2]
+                a, b, c, d = data[quat], data[quat + 1], data[quat + 2], data[quat + 3]
+                for k in range(3):
+                    xpos[body, k] = data[at + k]
+                turn = xmat[body]
+                turn[0], turn[4], turn[8] = (
+                    a * a + b * b - c * c - d * d,
+                    a * a - b * b + c * c - d * d,
+                    a * a - b * b - c * c + d * d,
+                )
+                turn[1], turn[3] = 2 * (b * c - a * d), 2 * (b * c + a * d)
+                turn[2], turn[6] = 2 * (b * d + a * c), 2 * (b * d - a * c)
+                turn[5], turn[7] = 2 * (c * d - a * b), 2 * (c * d + a * b)
+            for g in range(geoms):
+                geom, body = placed[g, 0], placed[g, 1]
+                for i in range(3):
+                    geom_xpos[geom, i] = xpos[body, i]
+                    for k in range(3):
+                        geom_xpos[geom, i] += xmat[body, 3 * i + k] * offsets[g, k]
+                        geom_xmat[geom, 3 * i + k] = 0.0
+                        for j in range(3):
+                            geom_xmat[geom, 3 * i + k] += xmat[body, 3 * i + j] * turns[g, 3 * j + k]
+            for i in range(tips):
+                for g in range(things):
+                    pushed[i, g, 0] = 0.0
+                    pushed[i, g, 1] = 0.0
+                    pushed[i, g, 2] = 0.0
+            frames = _frames(pads, met, xpos, xmat)
+            for p in range(pairs):
+                if data[pair[p, 2]] > 0:
+                    _press(data, pair[p, 2], pads, frames, pair[p, 0], pair[p, 1], things, pushed, beside[w])
             _feel(
-                xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, own, bend, curve, pushed, touches[w], 1.0
-            )
+                xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law[which[w]], bend, curve, pushed,
+                touches[w], 1.0,
+            )  # fmt: skip
 
 
 @njit(cache=True, inner=True, error_model="numpy")
