@@ -19,7 +19,7 @@ import numpy as np
 from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
-from thermograsp.errors import InvalidValueError, SimulationError
+from thermograsp.errors import SimulationError
 
 from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import CYLINDER, FLAT, conductance, contact
