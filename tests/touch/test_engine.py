@@ -31,6 +31,7 @@ TIER = pytest.mark.skipif(
 SPECS_TAKE_PLUGINS = hasattr(mujoco.MjSpec, "activate_plugin")
 NEEDS_SPECS = pytest.mark.skipif(not SPECS_TAKE_PLUGINS, reason="specs take plugins from MuJoCo 3.3.2 on")
 ROUND_OFF = 1e-9  # K; the two sum in another order
+SLID = 1e-6  # K; the same on rubber after slides, where networks of many near places make round-off larger
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
@@ -75,7 +76,7 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
 
 @NEEDS_SPECS
 @pytest.mark.parametrize(
-    "words",
+    "told",
     [
         {},
         {
@@ -86,8 +87,8 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     ],
     ids=["bare", "soft", "finer"],
 )
-def test_its_voltages_are_those_of_thermal_touch(words: dict) -> None:
-    words = {"fingertips": PADS, "objects": OBJECTS, **words}
+def test_its_voltages_are_those_of_thermal_touch(told: dict) -> None:
+    words = {"fingertips": PADS, "objects": OBJECTS, **told}
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
     seebeck = np.array([pad.stack.seebeck for pad in touch._pads])
@@ -97,9 +98,16 @@ def test_its_voltages_are_those_of_thermal_touch(words: dict) -> None:
         for n in range(150):
             mujoco.mj_step(model, data)
             reading = touch.update(data)
+            if (
+                n % 10 == 8
+            ):  # a sample's sums, before they start anew: nothing is between these and the contacts
+                touches = touch._reader.touches[0]
+                own = data.plugin_state[1 : 1 + touches.size].reshape(touches.shape)
+                np.testing.assert_allclose(own, touches, rtol=1e-12, atol=1e-15)
             if n % 10 == 9:
                 drop = voltages(model, data) / seebeck
-                assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
+                bound = SLID if "objects" in told and number > 2 else ROUND_OFF
+                assert np.abs(drop - reading.temperature_drop).max() < bound
                 felt.add(reading.touching)
         places = max(places, *(len(field.places) for field in touch._heat._fields[0]))
     assert len(felt) > 2 and places == len(PADS) + 2  # places have gone again
@@ -222,9 +230,9 @@ def broken() -> Iterator[dict[str, str]]:
     yield {**good, "numbers": numbers[:-16]}
     yield {**good, "numbers": numbers + numbers[:16]}
     yield {**good, "numbers": numbers.replace("0", "O", 1)}
-    for at in range(14):  # what says how much there is, and the first roles
+    for at in range(15):  # what says how much there is, and the first roles
         for value in (huge, "0" * 16, "7ff8" + "0" * 12, "bff0" + "0" * 12, "3fe0" + "0" * 12):
-            if (at, value) == (12, "0" * 16):
+            if (at, value) == (13, "0" * 16):
                 continue  # the first fingertip is number 0
             if at not in (8, 9, 10) or value[:2] in ("7f", "bf"):
                 yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}

@@ -7,9 +7,18 @@ import mujoco
 import numpy as np
 import pytest
 
-from thermograsp.thermal import SKINS, Pad, cylinder_contact, flat_contact, sphere_contact
-from thermograsp.thermal.contact import contact, skinned
-from thermograsp.touch import Fingertip
+from thermograsp.thermal import SKINS, Pad, Surface, flat_contact, material
+from thermograsp.thermal.contact import (
+    bare_footprint,
+    conduction,
+    contact,
+    curved_contact,
+    cylinder_footprint,
+    met,
+    skinned,
+    sphere_footprint,
+)
+from thermograsp.touch import Fingertip, ThermalTouch
 from thermograsp.touch.contacts import pair_laws
 from thermograsp.touch.scene import bodies, pads
 
@@ -31,27 +40,73 @@ def scene(skin: str | None):
     return model, pads(model, {"tip": Fingertip("flat", skin=skin)}, shapes), shapes
 
 
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
 @pytest.mark.parametrize("force", [0.1, 1.0, 10.0, 40.0])
-def test_contacts_in_the_middle_are_those_of_the_foundation(force: float) -> None:
-    model, found, shapes = scene("filled_silicone")
-    sheet = skinned(Pad(), SKIN)
-    laws = pair_laws(model, found, shapes)[0]
-    place = np.zeros(3)
-    expected = (
-        (laws[0, 0], sphere_contact(sheet, force, 0.02)),
-        (laws[1, 0], cylinder_contact(sheet, force, 0.02, 0.06)),
-        (laws[2, 0], flat_contact(sheet, force, (0.04, 0.04))),
-    )
-    for law, known in expected:
-        area, load = contact(law, force, place)
-        assert area == pytest.approx(float(known.face), rel=1e-6)
-        assert load == pytest.approx(float(known.face_force), rel=1e-6)
+def test_contacts_in_the_middle_are_those_of_the_environments_laws(force: float, skin: str | None) -> None:
+    model, found, shapes = scene(skin)
+    own = SKINS[skin] if skin else None
+    laws, curved, tables = pair_laws(model, found, shapes)
+    steel, sheet, middle = Surface.of(material("steel")), skinned(Pad(), own), np.zeros(3)
+    if own is None:
+        ball, can = (bare_footprint(Pad(), steel, 0.02, length) for length in (None, 0.06))
+    else:
+        pair = met(own, steel)
+        ball, can = sphere_footprint(sheet, pair, 0.02), cylinder_footprint(sheet, pair, 0.02, 0.06)
+    for thing, law in ((0, ball), (1, can)):
+        conducts = curved_contact(tables[curved[0, thing, 0]], force, 0.0, 0.0)[0]
+        assert conducts == pytest.approx(conduction(law, force, middle)[1], rel=0.02)
+    area, load = contact(laws[0, 2, 0], force, middle)
+    known = flat_contact(sheet, force, (0.04, 0.04))
+    assert area == pytest.approx(float(known.face), rel=1e-6)
+    assert load == pytest.approx(float(known.face_force), rel=1e-6)
 
 
-def test_a_skin_is_touched_on_less_than_a_pad_and_bears_more_of_a_flat_face_s_force() -> None:
-    bare, worn = (pair_laws(*scene(skin))[0] for skin in (None, "filled_silicone"))
-    place = np.zeros(3)
+def test_a_bare_face_conducts_less_and_bears_less_of_a_flat_face_s_force_than_a_skin() -> None:
+    bare, worn = (pair_laws(*scene(skin)) for skin in (None, "filled_silicone"))
     for thing in (0, 1):
-        assert 2 * contact(worn[thing, 0], 10.0, place)[0] < contact(bare[thing, 0], 10.0, place)[0]
-    assert contact(bare[2, 0], 10.0, place)[1] == pytest.approx(10.0 * (9 / 20) ** 2)
-    assert contact(worn[2, 0], 10.0, place)[1] > 8.0
+        through = [
+            curved_contact(each.tables[each.curved[0, thing, 0]], 10.0, 0.0, 0.0)[0] for each in (bare, worn)
+        ]
+        assert 10 * through[0] < through[1]
+    assert contact(bare.laws[0, 2, 0], 10.0, np.zeros(3))[1] == pytest.approx(10.0 * (9 / 20) ** 2)
+    assert contact(worn.laws[0, 2, 0], 10.0, np.zeros(3))[1] > 8.0
+
+
+def test_what_is_alike_shares_a_table_and_flat_things_have_none() -> None:
+    _, curved, tables = pair_laws(*scene(None))
+    assert (curved[0, 2:] == -1).all()
+    assert len(tables) == 2
+    assert set(curved[0, 0]) == {0}
+    assert curved[0, 1].tolist() == [1, 1, -1]  # a can's end is flat
+
+
+def pressed(skin: str | None, shape: str, seconds: float = 2.0) -> float:
+    """K of drop under 10 N of a steel body after that time."""
+    model = mujoco.MjModel.from_xml_string(f"""
+      <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+        <body name="thing"><joint type="slide" axis="0 0 1" damping="50"/>{shape}</body>
+        <body name="tip" pos="0 0 -.0302"><geom name="flat" type="box" size=".01 .01 .01" mass="1"/></body>
+      </worldbody></mujoco>""")
+    touch = ThermalTouch(
+        model,
+        fingertips={"tip": Fingertip("flat", skin=skin)},
+        objects={"thing": "steel"},
+        air=0.0,
+        chain="ideal",
+    )
+    data = mujoco.MjData(model)
+    data.qfrc_applied[0] = -10.0
+    for _ in range(round(seconds / 0.002)):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    return float(touch.reading.temperature_drop[0])
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_ball_is_felt_less_than_a_rod_and_a_rod_less_than_a_box(skin: str | None) -> None:
+    ball = pressed(skin, '<geom type="sphere" size=".02" mass="1"/>')
+    rod = pressed(skin, '<geom type="cylinder" size=".02 .03" euler="90 0 0" mass="1"/>')
+    box = pressed(skin, '<geom type="box" size=".02 .03 .02" mass="1"/>')
+    assert 0.2 < ball < rod < box
+    if skin is None:
+        assert ball < 0.2 * box  # a rigid face touches 0.03 mm2 of it

@@ -2,6 +2,17 @@
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
 from .array_law import ArrayLaws, array_conductance, array_contact, array_laws
+from .curved_table import (
+    CURVED_TABLE,
+    FIRST_FORCE,
+    FORCE_STEP,
+    FORCES,
+    LEAST_CURVED,
+    PLACES,
+    array_curved_contact,
+    curved_contact,
+    curved_table,
+)
 from .fingertip import met, skinned, touching
 from .footprint import (
     FOOTPRINT_LAW,
@@ -50,13 +61,19 @@ from .spread import even_patch
 __all__ = [
     "AIR",
     "CONTACT_LAW",
+    "CURVED_TABLE",
     "ArrayLaws",
     "CYLINDER",
     "FLAT",
+    "FIRST_FORCE",
     "FOOTPRINT_LAW",
+    "FORCES",
+    "FORCE_STEP",
     "LAPPED_ALUMINA",
+    "LEAST_CURVED",
     "LOG_LEAST",
     "LOG_MOST",
+    "PLACES",
     "SEPARATION",
     "TABLE_FORCES",
     "THERMOSTAT_FACE",
@@ -68,6 +85,7 @@ __all__ = [
     "Surface",
     "array_conductance",
     "array_contact",
+    "array_curved_contact",
     "array_laws",
     "bare_footprint",
     "bared",
@@ -76,6 +94,8 @@ __all__ = [
     "conductance",
     "conduction",
     "contact",
+    "curved_contact",
+    "curved_table",
     "contact_conductance",
     "covered_share",
     "cylinder_contact",

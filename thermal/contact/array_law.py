@@ -12,28 +12,23 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import HIGH, LOW, Array, as_like, namespace_of
-from .law import CYLINDER, FLAT, LOG_LEAST, LOG_MOST, SEPARATION, SPHERE
+from .law import CYLINDER, LOG_LEAST, LOG_MOST, SEPARATION
 
-_NEWTON_STEPS = 8
 _COEFFICIENTS = tuple(SEPARATION[::-1].tolist())  # highest power first, as numbers that compilers can see
 _LEAST_FORCE = 1e-9  # N, of a contact that is apart: any at which the law has a value
 
 
 class ArrayLaws(NamedTuple):
     """CONTACT_LAW records as arrays, (...) each but for sizes (..., 2) m. select: (..., 2, 3), 1 at the axes that
-    `across` names. flat, cylinder, sphere: 1 for laws of that shape, else 0; follows: 1 for a flat law that follows its
-    pad."""
+    `across` names. cylinder: 1 for laws of cylinders, else 0; follows: 1 for a flat law that follows its pad."""
 
     area: Array
     share: Array
     size: Array
     select: Array
     ratio: Array
-    stiffness: Array
     half_pad: Array
     half_face: Array
-    pad_length: Array
-    face_length: Array
     spot_scale: Array
     spot_power: Array
     spot_most: Array
@@ -44,9 +39,7 @@ class ArrayLaws(NamedTuple):
     log_hardness: Array
     log_elastic_hardness: Array
     elastic_share: Array
-    flat: Array
     cylinder: Array
-    sphere: Array
     follows: Array
 
     def at(self, index: Array) -> ArrayLaws:
@@ -57,21 +50,16 @@ class ArrayLaws(NamedTuple):
 def array_laws(records: np.ndarray, like: Array) -> ArrayLaws:
     """CONTACT_LAW records in the kind, dtype and device of the array `like`, which holds floating-point numbers."""
     own = {name: records[name] for name in ArrayLaws._fields if name in (records.dtype.names or ())}
-    # Laws of one shape lack the others' numbers; with these, what is not chosen is finite.
-    curved = records["shape"] != FLAT
-    own["stiffness"] = np.where(curved, records["stiffness"], 1.0)
-    for name in ("pad_length", "face_length"):
-        own[name] = np.where(records["shape"] == CYLINDER, records[name], 1.0)
     own["select"] = np.eye(3)[records["across"]]
-    for name, shape in (("flat", FLAT), ("cylinder", CYLINDER), ("sphere", SPHERE)):
-        own[name] = (records["shape"] == shape).astype(float)
+    own["cylinder"] = (records["shape"] == CYLINDER).astype(float)
     own["follows"] = (records["size"][..., 0] > 0).astype(float)
     return ArrayLaws(*(as_like(own[name], like) for name in ArrayLaws._fields))
 
 
 def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, Array]:
-    """(area m2 on the face, its force N) at normal forces N on the pads, of the laws' shape; those not above 0 count as
-    none. place: (..., 3) m, the pad's middle from the object's in the object's frame."""
+    """(area m2 on the face, its force N) of flat objects at normal forces N on the pads, of the laws' shape; those not
+    above 0 count as none. place: (..., 3) m, the pad's middle from the object's in the object's frame. What it gives of
+    curved ones means nothing: array_curved_contact is theirs."""
     xp = namespace_of(force)
     pressed = force.clip(_LEAST_FORCE, None)
     offset = abs((laws.select * place[..., None, :]).sum(-1))
@@ -84,25 +72,9 @@ def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, A
     on_pad, on_face = covered(laws.half_pad[..., None]), covered(laws.half_face[..., None])
     bearing = on_pad + (laws.ratio - 1.0) * on_face
     part = laws.ratio * on_face / xp.where(on_pad > 0, bearing, on_pad + 1.0)
-    flat_area = xp.where(laws.follows > 0, on_face, laws.area)
-    flat_force = xp.where(laws.follows > 0, part, laws.share) * pressed
-
-    side = laws.half_face
-    load = pressed / (laws.stiffness * laws.pad_length)
-    narrow = (0.75 * load) ** (1 / 3)
-    wide = (load / laws.half_pad + 2 / 3 * laws.half_pad**2) / 2
-    square = xp.where(narrow <= laws.half_pad, narrow * narrow, wide)
-    across = xp.minimum(square**0.5, side)
-    cylinder_area = laws.face_length * 2 * across
-    cylinder_force = laws.stiffness * cylinder_area * (square - across * across / 3)
-
-    u = _square_inverse(xp, pressed / (laws.stiffness * laws.half_pad**4)) * (laws.half_pad / side) ** 2
-    sphere_area = side * side * _square_area(xp, u)
-    sphere_force = laws.stiffness * side**4 * _square_load(xp, u)
-
+    area = xp.where(laws.follows > 0, on_face, laws.area)
+    carried = xp.where(laws.follows > 0, part, laws.share) * pressed
     touching = force > 0
-    area = xp.where(laws.flat > 0, flat_area, xp.where(laws.cylinder > 0, cylinder_area, sphere_area))
-    carried = xp.where(laws.flat > 0, flat_force, xp.where(laws.cylinder > 0, cylinder_force, sphere_force))
     return area * touching, carried * touching
 
 
@@ -127,25 +99,3 @@ def _separation(xp, log_share):
     for coefficient in _COEFFICIENTS:
         total = total * z + coefficient
     return total
-
-
-def _square_area(xp, u):
-    """As law.py's: pi u up to 1, 4 from 2 on."""
-    v = u.clip(1.0, 2.0)
-    between = math.pi * v - 4 * (v * xp.acos(v**-0.5) - (v - 1) ** 0.5)
-    return xp.where(u <= 1.0, math.pi * u, xp.where(u >= 2.0, 4.0 + 0.0 * u, between))
-
-
-def _square_load(xp, u):
-    v = u.clip(1.0, 2.0)
-    root, turned = (v - 1) ** 0.5, xp.acos(v**-0.5)
-    between = math.pi / 2 * v * v - 2 * v * v * turned + 2 * root * v + 4 / 3 * root**3
-    return xp.where(u <= 1.0, math.pi / 2 * u * u, xp.where(u >= 2.0, 4 * u - 8 / 3, between))
-
-
-def _square_inverse(xp, load):
-    narrow = (2 * load / math.pi) ** 0.5
-    u = xp.maximum(narrow, (load + 8 / 3) / 4)
-    for _ in range(_NEWTON_STEPS):
-        u = u - (_square_load(xp, u) - load) / _square_area(xp, u)
-    return xp.where(load <= math.pi / 2, narrow, u)

@@ -36,7 +36,8 @@ CONTACT_LAW = np.dtype(
         ("across", "i8", (2,)),
         # stiffness of the springs on the face over that of those around it
         ("ratio", "f8"),
-        # curved: Pa/m2 of a pad under a body of that radius, half widths m and, of a cylinder, lengths m in contact
+        # curved, for footprints: Pa/m2 of a pad under a body of that radius, half widths m and, of a cylinder, lengths
+        # m in contact
         ("stiffness", "f8"),
         ("half_pad", "f8"),
         ("half_face", "f8"),
@@ -63,7 +64,6 @@ CONTACT_LAW = np.dtype(
 # series' first terms, good to 1e-11.
 LOG_LEAST, LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
 SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
-_NEWTON_STEPS = 8
 _ENDLESS = 80.0  # logarithm of W/(m2 K) or of Pa that nothing reaches, finite in 32 bits too
 
 
@@ -134,22 +134,13 @@ def _overlap(law, place):
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def contact(law, force, place):
-    """(area m2 on the face, its force N) at a normal force N > 0 on the pad. place: (3,) m, the pad's middle from the
-    object's in the object's frame, which laws of a fixed place leave aside."""
-    if law.shape == FLAT:
-        area, share = _overlap(law, place)
-        return area, force * share
-    half, half_face, stiffness = law.half_pad, law.half_face, law.stiffness
-    if law.shape == CYLINDER:
-        load = force / (stiffness * law.pad_length)
-        narrow = (0.75 * load) ** (1 / 3)
-        square = narrow * narrow if narrow <= half else (load / half + 2 / 3 * half * half) / 2
-        across = min(math.sqrt(square), half_face)
-        reach = law.face_length * 2 * across
-        return reach, stiffness * reach * (square - across * across / 3)
-    square = _square_inverse(force / (stiffness * half**4)) * half * half
-    u = square / (half_face * half_face)
-    return half_face * half_face * _square_area(u), stiffness * half_face**4 * _square_load(u)
+    """(area m2 on the face, its force N) of a flat object at a normal force N > 0 on the pad; not numbers of others,
+    which footprints and tables know. place: (3,) m, the pad's middle from the object's in the object's frame, which
+    laws of a fixed place leave aside."""
+    if law.shape != FLAT:
+        return math.nan, math.nan
+    area, share = _overlap(law, place)
+    return area, force * share
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -192,37 +183,3 @@ def _separation(log_share):
     for i in range(len(SEPARATION) - 1, -1, -1):
         total = total * z + SEPARATION[i]
     return total
-
-
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _square_area(u):
-    if u <= 1.0:
-        return math.pi * u
-    if u >= 2.0:
-        return 4.0
-    return math.pi * u - 4 * (u * math.acos(1 / math.sqrt(u)) - math.sqrt(u - 1))
-
-
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _square_load(u):
-    if u <= 1.0:
-        return math.pi / 2 * u * u
-    if u >= 2.0:
-        return 4 * u - 8 / 3
-    root = math.sqrt(u - 1)
-    turned = math.acos(1 / math.sqrt(u))
-    return math.pi / 2 * u * u - 2 * u * u * turned + 2 * root * u + 4 / 3 * root**3
-
-
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _square_inverse(load):
-    narrow = math.sqrt(2 * load / math.pi)
-    if load <= math.pi / 2:
-        return narrow
-    u = max(narrow, (load + 8 / 3) / 4)
-    for _ in range(_NEWTON_STEPS):
-        change = (_square_load(u) - load) / _square_area(u)
-        u -= change
-        if abs(change) < 1e-15 * u:
-            break
-    return u

@@ -17,6 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermograsp.compiled import njit
+
 from ..matter import Material
 from .footprint import conduction, gas_conduction
 from .rough_faces import LAPPED_ALUMINA, Surface
@@ -27,15 +29,27 @@ _MIDDLE = np.zeros(3)
 
 def even_patch(law: np.void, body: Material, force: float, face: Surface = LAPPED_ALUMINA) -> float:
     """m2, of a bare_footprint of the body at a force N > 0 on the pad, over the face's middle."""
-    area, total = conduction(law, force, _MIDDLE)
-    gas = gas_conduction(law, force, _MIDDLE)
-    if gas == 0.0:
-        return float(area)
+    return float(even_contact(law, *beneath(law, body, face), force, _MIDDLE)[1])
+
+
+def beneath(law: np.void, body: Material, face: Surface) -> tuple[np.void, float]:
+    """The law with the bodies' resistance in its gas, and that resistance, m2 K/W: what even_contact takes."""
     depth = min(float(np.sqrt(body.diffusivity * _SECONDS)), _DEEPEST)
     resistance = depth * (1 / face.conductivity + 1 / body.conductivity)
     slower = law.copy()
     slower["apart"] += float(law["gas"]) * resistance
-    less = gas_conduction(slower, force, _MIDDLE)
-    spread = gas * less * resistance / (gas - less)
-    room = max(4 * float(law["half_face"]) ** 2 - area, 0.0)
-    return float(area + min(spread, room) * gas / total)
+    return slower, resistance
+
+
+@njit(cache=True, error_model="numpy")
+def even_contact(law, slower, resistance, force, place):
+    """(W/K, m2 of the even patch) at a force N > 0 on the pad; see footprint's conduction."""
+    area, total = conduction(law, force, place)
+    gas = gas_conduction(law, force, place)
+    if gas <= 0.0:
+        return total, area
+    less = gas_conduction(slower, force, place)
+    spread = max(4 * law.half_face * law.half_face - area, 0.0)
+    if gas > less:
+        spread = min(gas * less * resistance / (gas - less), spread)
+    return total, area + spread * gas / total

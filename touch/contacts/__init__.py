@@ -3,7 +3,7 @@
 from .array_contacts import ArrayContacts, FeltContacts, TouchContacts, array_contacts
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
-from .laws import pair_laws
+from .laws import pair_laws, stacked
 from .pointers import called, called_two, chains, complexes, entry, flags, floats, integers, table, words
 from .reader import ContactReader, broke_down, read_contacts
 from .round_pads import bends, curves
@@ -42,6 +42,7 @@ __all__ = [
     "prepare",
     "read_contacts",
     "sensor_places",
+    "stacked",
     "table",
     "words",
 ]

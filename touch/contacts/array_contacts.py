@@ -20,11 +20,11 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ...thermal.contact import ArrayLaws, array_conductance, array_contact, array_laws
+from ...thermal.contact import ArrayLaws, array_conductance, array_contact, array_curved_contact, array_laws
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .array_round import array_round_contact
-from .laws import pair_laws
+from .laws import pair_laws, stacked
 from .reader import DEPTH, RIM
 from .round_pads import bends, curves
 
@@ -60,7 +60,8 @@ class FeltContacts(NamedTuple):
 class ArrayContacts:
     """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
     half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
-    and axis of the geom's frame.  numbers: (F, G) integers, the laws' of the first material.
+    and axis of the geom's frame. tables: those of curved contacts behind one another, and curved (V F G 3) the numbers
+    of the laws', -1 for flat ones.  numbers: (F, G) integers, the laws' of the first material.
     bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) 1 for pads that are round. Flat ones
     have the bend of a round one, whose contact is not used. units (3, 3) and across (3, 2, 3): an axis and the two
     others."""
@@ -70,11 +71,14 @@ class ArrayContacts:
     half: Array
     width: Array
     laws: ArrayLaws
+    tables: Array
+    curved: Array
     numbers: Array
     bend: Array
     curve: Array
     bulging: Array
     any_bulging: bool
+    any_curved: bool
     units: Array
     across: Array
 
@@ -140,11 +144,10 @@ class ArrayContacts:
         looking = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # (B, F, G, 3) in the geom's frame
         axis = abs(looking).argmax(-1)
         from_geom = _seen(geom_turn[:, None], middle[:, :, None] - geom_position[:, None])
-        law = self.laws.at(as_integers((material[:, None] * (tips * geoms) + self.numbers) * 3 + axis))
-        law = ArrayLaws(*(table[:, :, :, None] for table in law))
+        which = as_integers((material[:, None] * (tips * geoms) + self.numbers) * 3 + axis)
+        law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
-        kept = self._kept(law, area, off, axes, geom_turn)
-        longer = 1.0 + 0.0 * area
+        kept = longer = 1.0 + 0.0 * area
         if self.any_bulging:
             area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
         width = self.width[:, None, None]
@@ -153,11 +156,19 @@ class ArrayContacts:
         closed = (area > 0) & (pressure > 0)
         safe = xp.where(closed, area, area * 0 + width**2)
         h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
-        bulging = self.bulging[:, None, None] > 0
-        long = xp.where((law.cylinder > 0) & ~bulging, law.face_length + 0.0 * safe, (safe * longer) ** 0.5)
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
         none = 0.0 * pressed
-        return xp.where(closed, h * safe, none), xp.where(closed, area, none), xp.where(closed, long, none)
+        flat = tuple(xp.where(closed, each, none) for each in (h * safe, area, (safe * longer) ** 0.5))
+        if not self.any_curved:
+            return flat
+        table = self.curved[which][..., None]
+        aside, along = self._crown(law, off, from_geom, axes, geom_turn)
+        number = as_integers(table.clip(0.0, None))
+        found = array_curved_contact(self.tables, number, pressed, aside + none, along + none)
+        conducts, area, long = (
+            xp.where(table >= 0, bent, even) for bent, even in zip(found, flat, strict=True)
+        )
+        return conducts, area, long
 
     def _of_round(
         self,
@@ -197,27 +208,23 @@ class ArrayContacts:
         )
         return area, share, kept, xp.where(bulging, found[3] + zero, 1.0 + zero)
 
-    def _kept(self, law: ArrayLaws, area: Array, off: Array, axes: Array, geom_turn: Array) -> Array:
-        """Share of a round object's contact that is on the sensor's face; 1 of a flat one's. off: (B, F, G, 2) m."""
-        xp = namespace_of(area)
-        half = self.width[:, None, None] / 2
+    def _crown(
+        self, law: ArrayLaws, off: Array, from_geom: Array, axes: Array, geom_turn: Array
+    ) -> tuple[Array, Array]:
+        """m, (B, F, G, 1) each, from a pad's middle to where a curved body touches it: of a ball along y and z, of a
+        cylinder across it, and to its own middle along it. off: (B, F, G, 2) m."""
+        xp = namespace_of(off)
         line = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])[
             ..., 1:
         ]  # a cylinder's axis along y and z
         length = (line * line).sum(-1) ** 0.5
-        across = (off[..., 0] * line[..., 1] - off[..., 1] * line[..., 0]) / xp.where(
-            length > 0, length, length + 1
+        turned = off[..., 0] * line[..., 1] - off[..., 1] * line[..., 0]
+        across = (turned / xp.where(length > 0, length, length + 1))[..., None]
+        lies = law.cylinder > 0
+        return (
+            xp.where(lies, across, off[..., 0][..., None]),
+            xp.where(lies, from_geom[..., 2][..., None], off[..., 1][..., None]),
         )
-
-        def share(at: Array, reach: Array) -> Array:
-            reach = xp.where(reach > 0, reach, reach + half)
-            both = xp.minimum(half, at + reach) - xp.maximum(-half, at - reach)
-            return (both.clip(0.0, None) / (2 * reach)).clip(None, 1.0)
-
-        of_line = share(across[..., None], area / (2 * law.face_length))
-        reach = area**0.5 / 2
-        of_spot = share(off[..., None, 0], reach) * share(off[..., None, 1], reach)
-        return xp.where(law.flat > 0, 1.0 + 0.0 * area, xp.where(law.cylinder > 0, of_line, of_spot))
 
 
 def array_contacts(
@@ -225,7 +232,15 @@ def array_contacts(
 ) -> ArrayContacts:
     """Of a model's pads and objects, in the kind, dtype and device of the array `like`. kinds: the objects once for
     each number that a world's `material` may be, alike but for their materials."""
-    laws = np.stack([pair_laws(model, pads, shapes)[:, : _geoms(shapes)] for shapes in kinds])
+    found = [pair_laws(model, pads, shapes) for shapes in kinds]
+    laws = np.stack([each.laws[:, : _geoms(shapes)] for each, shapes in zip(found, kinds, strict=True)])
+    before = np.cumsum([0, *(len(each.tables) for each in found)])
+    curved = np.stack(
+        [
+            np.where(each.curved < 0, -1, each.curved + first)[:, : _geoms(shapes)]
+            for each, first, shapes in zip(found, before, kinds, strict=False)
+        ]
+    )
     owner = [o for o, shape in enumerate(kinds[0]) for _ in shape.geoms]
     numbers = np.arange(len(pads) * len(owner)).reshape(len(pads), len(owner))
     bulging = tuple(sum(pad.curvature) > 0 for pad in pads)
@@ -237,11 +252,14 @@ def array_contacts(
         half=as_like(np.array([pad.size / 2 for pad in pads]), like),
         width=as_like(np.array([pad.stack.width for pad in pads]), like),
         laws=array_laws(laws.reshape(-1), like),
+        tables=as_like(stacked([table for each in found for table in each.tables]).ravel(), like),
+        curved=as_like(curved.ravel().astype(float), like),
         numbers=as_integers(as_like(numbers.astype(float), like)),
         bend=as_like(bend, like),
         curve=as_like(curves(model, pads, kinds[0])[: len(owner)], like),
         bulging=as_like(np.array(bulging, float), like),
         any_bulging=any(bulging),
+        any_curved=bool((curved >= 0).any()),
         units=as_like(np.eye(3), like),
         across=as_like(np.array(_ACROSS, float), like),
     )

@@ -1,4 +1,5 @@
-"""What conducts where a pad meets a geom: the contact law of every pair, and the resistance of a small contact."""
+"""What conducts where a pad meets a geom: the contact law or the table of every pair, and the resistance of a small
+contact."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -7,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -21,59 +23,84 @@ from ...thermal import (
     joint,
     sphere_law,
 )
-from ...thermal.contact import FLAT, skinned
+from ...thermal.contact import CURVED_TABLE, curved_table, skinned
 from ..scene import BodyShape, PadPlace
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
 _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 
-def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> np.ndarray:
-    """(F, G + F, 3) CONTACT_LAW records: of each pad on each geom of the objects, in their order, by the axis of the
-    geom's frame that the pad looks along; and on each other pad, whose sides are taken as parallel to its own."""
+class PairLaws(NamedTuple):
+    """laws: (F, G + F, 3) CONTACT_LAW records. curved: (F, G + F, 3) numbers of the tables of what is curved, -1 for
+    what is flat. tables: K, (CURVED_TABLE,) each."""
+
+    laws: np.ndarray
+    curved: np.ndarray
+    tables: tuple[np.ndarray, ...]
+
+
+def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> PairLaws:
+    """Of each pad on each geom of the objects, in their order, by the axis of the geom's frame that the pad looks
+    along; and on each other pad, whose sides are taken as parallel to its own."""
     geoms = [(shape, geom) for shape in shapes for geom in shape.geoms]
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
+    curved = np.full(laws.shape, -1, np.int64)
+    tables: list[np.ndarray] = []
     for f, pad in enumerate(pads):
         width = float(math.sqrt(pad.size.prod()))
-        sheet = skinned(Pad(width=width, face=min(pad.stack.width, width)), pad.skin)
+        silicone = Pad(width=width, face=min(pad.stack.width, width))
+        sheet = skinned(silicone, pad.skin)
         for g, (shape, geom) in enumerate(geoms):
             faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
             for axis in range(3):
-                laws[f, g, axis] = _on_face(_law(model, geom, axis, sheet, faces), sheet)
+                laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
+                size = _curved(model, geom, axis)
+                if size is None or sum(pad.curvature) > 0:
+                    continue
+                table = curved_table(silicone, pad.skin, shape.material, *size)
+                known = [n for n, each in enumerate(tables) if each is table]
+                curved[f, g, axis] = known[0] if known else len(tables)
+                if not known:
+                    tables.append(table)
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = min(other.stack.width, float(math.sqrt(other.size.prod())))
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
-    return laws
+    return PairLaws(laws, curved, tuple(tables))
 
 
-def _on_face(law: np.void, pad: Pad) -> np.void:
-    """The law of a curved body on springs that are stiffer on the sensor's face: the contact is narrow, and these take
-    all of a ball's force and, of a cylinder's, what the softer ones along it leave. The pad around counts as if it
-    ended with the face across the contact."""
-    if law["shape"] == FLAT or pad.face_stiffness is None:
-        return law
-    law["stiffness"] *= pad.face_ratio
-    law["half_pad"] = law["half_face"]
-    law["pad_length"] = law["face_length"] + (law["pad_length"] - law["face_length"]) / pad.face_ratio
-    return law
+def stacked(tables: Sequence[np.ndarray]) -> np.ndarray:
+    """(K, CURVED_TABLE), one of zeros where there are none."""
+    return np.array(tables) if tables else np.zeros((1, CURVED_TABLE))
 
 
-def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) -> np.void:
+def _curved(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float | None] | None:
+    """Radius and length m of the cylinder that a pad meets along that axis, no length of a ball, None where it is
+    flat."""
     kind, (a, b, c) = mujoco.mjtGeom(int(model.geom_type[geom])), (float(s) for s in model.geom_size[geom])
     shapes = mujoco.mjtGeom
-    if kind == shapes.mjGEOM_SPHERE:
-        return sphere_law(pad, faces, a)
     if kind == shapes.mjGEOM_ELLIPSOID:
         # the radii of curvature where an axis leaves it, their geometric mean
         along, first, second = np.roll((a, b, c), -axis)
-        return sphere_law(pad, faces, first * second / along)
+        return float(first * second / along), None
     if kind in (shapes.mjGEOM_CYLINDER, shapes.mjGEOM_CAPSULE) and axis < 2:
-        return cylinder_law(pad, faces, a, 2 * b)
-    if kind == shapes.mjGEOM_CAPSULE:
-        return sphere_law(pad, faces, a)
+        return a, 2 * b
+    if kind in (shapes.mjGEOM_SPHERE, shapes.mjGEOM_CAPSULE):
+        return a, None
+    return None
+
+
+def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) -> np.void:
+    kind, shapes, size = (
+        mujoco.mjtGeom(int(model.geom_type[geom])),
+        mujoco.mjtGeom,
+        _curved(model, geom, axis),
+    )
+    if size is not None:
+        radius, length = size
+        return sphere_law(pad, faces, radius) if length is None else cylinder_law(pad, faces, radius, length)
     if kind == shapes.mjGEOM_CYLINDER:
-        side = math.sqrt(math.pi) * a
+        side = math.sqrt(math.pi) * float(model.geom_size[geom][0])
         return flat_law(pad, faces, (side, side), (0, 1))
     if kind == shapes.mjGEOM_BOX:
         first, second = (i for i in range(3) if i != axis)

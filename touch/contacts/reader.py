@@ -22,10 +22,10 @@ from thermograsp.compiled import njit
 from thermograsp.errors import SimulationError
 
 from ...thermal import CONTACT_LAW, Material
-from ...thermal.contact import CYLINDER, FLAT, conductance, contact
+from ...thermal.contact import CURVED_TABLE, CYLINDER, conductance, contact, curved_contact
 from ..scene import BodyShape, PadPlace
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
-from .laws import pair_laws
+from .laws import pair_laws, stacked
 from .memory import (
     CONTACTS,
     DIM,
@@ -83,6 +83,8 @@ class ContactReader:
         # of each combination of the objects' materials that there is, and which of them each world has
         self._known: dict[tuple[Material, ...], int] = {}
         self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
+        self._curved = np.zeros((0, 0, 0, 3), np.int64)
+        self._every: list[np.ndarray] = []
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
         self._poses = tuple(np.zeros((many, size)) for many in (model.nbody, model.ngeom) for size in (3, 9))
@@ -99,10 +101,25 @@ class ContactReader:
             if own not in self._known:
                 self._known[own] = len(self._known)
                 shapes = [replace(s, material=m) for s, m in zip(self._shapes, own, strict=True)]
-                laws = pair_laws(self._model, self._of_pads, shapes)[None]
-                self._laws = laws if len(self._known) == 1 else np.concatenate((self._laws, laws))
+                laws, curved, tables = pair_laws(self._model, self._of_pads, shapes)
+                numbers = np.array(
+                    [self._number(table) for table in tables] + [-1]
+                )  # the last of flat things
+                first = len(self._known) == 1
+                self._laws = laws[None] if first else np.concatenate((self._laws, laws[None]))
+                curved = numbers[curved][None]
+                self._curved = curved if first else np.concatenate((self._curved, curved))
             self._which[w] = self._known[own]
+        self._tables = stacked(self._every)
         self._point()
+
+    def _number(self, table: np.ndarray) -> int:
+        """Of a table of curved contacts among those of all materials."""
+        for n, known in enumerate(self._every):
+            if known is table:
+                return n
+        self._every.append(table)
+        return len(self._every) - 1
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
@@ -111,14 +128,15 @@ class ContactReader:
 
     def _point(self) -> None:
         """Says where the first world's arrays are, and whether the model's friction cones are pyramids now."""
-        self._own_laws = self._laws[self._which[0]]
+        first = self._which[0]
+        self._own_laws, self._own_curved = self._laws[first], self._curved[first]
         arrays = (
             *(self._role, self._pads, self._met, self._bend, self._curve),
-            *(self._pushed, self.touches, self.beside, self._own_laws),
+            *(self._pushed, self.touches, self.beside, self._own_laws, self._own_curved, self._tables),
         )
         self._places = None
         pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
-        sizes = len(self._role), *self.touches.shape[1:3], len(self._met), pyramidal
+        sizes = len(self._role), *self.touches.shape[1:3], len(self._met), pyramidal, len(self._tables)
         self._own = table(arrays, sizes)
         self._own_address = self._own.ctypes.data
 
@@ -148,9 +166,9 @@ class ContactReader:
         own = places.pairs, places.poses, places.geoms, places.turns, places.offsets
         arrays = *own, self._pads, self._met, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
-        sums = self.touches, self.beside, self.broken
+        sums = self.touches, self.beside, self.broken, self._curved, self._tables
         sizes = len(self.beside), places.size, *map(len, own[:3]), *self._pushed.shape[:2]
-        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2]))
+        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables)))
 
     def clear(self) -> None:
         """Sums start anew, with the model's kind of friction cones as it is now."""
@@ -192,9 +210,9 @@ def read_contacts(count, substeps, memory_at, own_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table, and own_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite."""
-    memory, own = carray(words(memory_at), TABLE), carray(words(own_at), 14)
-    tips, targets, things, pyramidal = own[10], own[11], own[12], own[13]
-    role = carray(words(own[0]), own[9])
+    memory, own = carray(words(memory_at), TABLE), carray(words(own_at), 17)
+    tips, targets, things, pyramidal = own[12], own[13], own[14], own[15]
+    role = carray(words(own[0]), own[11])
     pads = carray(floats(own[1]), (tips, _PAD))
     met = carray(words(own[2]), (things, 3))
     bend = carray(floats(own[3]), (tips, BEND))
@@ -203,6 +221,8 @@ def read_contacts(count, substeps, memory_at, own_at):
     touches = carray(floats(own[6]), (tips, targets, COLUMNS))
     beside = carray(floats(own[7]), tips)
     law = carray(laws(own[8]), (tips, things, 3))
+    curved = carray(words(own[9]), (tips, things, 3))
+    tables = carray(floats(own[10]), (own[16], CURVED_TABLE))
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -255,7 +275,10 @@ def read_contacts(count, substeps, memory_at, own_at):
         else:
             beside[first] += weight * force
     if any_met:
-        _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law, bend, curve, pushed, touches, weight)
+        _feel(
+            xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law, curved, tables, bend, curve, pushed, touches,
+            weight,
+        )  # fmt: skip
     return 1
 
 
@@ -263,9 +286,9 @@ def read_contacts(count, substeps, memory_at, own_at):
 def sense_contacts(record_at, substeps, first, last, own_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; own_at: that of ContactReader's `_sensing`."""
-    own = carray(words(own_at), 27)
-    worlds, size, pairs, poses, geoms = own[19], own[20], own[21], own[22], own[23]
-    tips, things, targets = own[24], own[25], own[26]
+    own = carray(words(own_at), 30)
+    worlds, size, pairs, poses, geoms = own[21], own[22], own[23], own[24], own[25]
+    tips, things, targets = own[26], own[27], own[28]
     record = carray(floats(record_at), (worlds, substeps, size))
     pair, pose, placed = (
         carray(words(own[0]), (pairs, 3)),
@@ -275,7 +298,10 @@ def sense_contacts(record_at, substeps, first, last, own_at):
     turns, offsets = carray(floats(own[3]), (geoms, 9)), carray(floats(own[4]), (geoms, 3))
     pads, met = carray(floats(own[5]), (tips, _PAD)), carray(words(own[6]), (things, 3))
     which = carray(words(own[8]), worlds)
-    law = carray(laws(own[7]), (which.max() + 1, tips, things, 3))
+    kinds = which.max() + 1
+    law = carray(laws(own[7]), (kinds, tips, things, 3))
+    curved = carray(words(own[19]), (kinds, tips, things, 3))
+    tables = carray(floats(own[20]), (own[29], CURVED_TABLE))
     bend = carray(floats(own[9]), (tips, BEND))
     curve = carray(floats(own[10]), (things, 3, CURVES))
     pushed = carray(floats(own[11]), (tips, things, 3))  # room for forces and moments
@@ -340,8 +366,8 @@ def sense_contacts(record_at, substeps, first, last, own_at):
                 if data[pair[p, 2]] > 0:
                     _press(data, pair[p, 2], pads, frames, pair[p, 0], pair[p, 1], things, pushed, beside[w])
             _feel(
-                xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law[which[w]], bend, curve, pushed,
-                touches[w], 1.0,
+                xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law[which[w]], curved[which[w]], tables, bend,
+                curve, pushed, touches[w], 1.0,
             )  # fmt: skip
 
 
@@ -418,7 +444,9 @@ def _within(pad, x, y, z):
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, bend, curve, pushed, touches, weight):
+def _feel(
+    xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, curved, tables, bend, curve, pushed, touches, weight,
+):  # fmt: skip
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)
     place, sides = np.empty(3), np.empty(4)
@@ -430,7 +458,7 @@ def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, bend, curve
             if force <= 0:
                 continue
             target, geom, body = met[g, 0], met[g, 1], met[g, 2]
-            half, axis = pads[f, _WIDTH] / 2, 0
+            axis = 0
             if geom >= 0:
                 most = 0.0
                 for i in range(3):
@@ -454,57 +482,44 @@ def _feel(xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, bend, curve
             bulging = bend[f, 0] + bend[f, 1] > 0
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
-            if bulging:
-                _sides(geom_xmat, frames, f, geom, g - (things - tips), axis, sides)
-                area, share, kept, longer = round_contact(
-                    bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
-                )
-            else:
-                area, share = contact(law, force, place)
-                kept, longer = 1.0, 1.0
-            touch = touches[f, target]
-            if area > 0 and share > 0:
-                pressure = share / area
-                if bulging:
-                    area *= kept
-                elif law.shape == CYLINDER:
+            conducts, area, share, kept, longer, long = 0.0, 0.0, 0.0, 1.0, 1.0, 0.0
+            if not bulging and curved[f, g, axis] >= 0:
+                # A round body presses where MuJoCo says, which need not be on the sensor's face.
+                first, second = pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                if law.shape == CYLINDER:
                     # MuJoCo may name any point of the line of contact: only what is across it is heard.
                     along_y, along_z = 0.0, 0.0
                     for k in range(3):
                         along_y += side_y[k] * geom_xmat[geom, 3 * k + 2]
                         along_z += side_z[k] * geom_xmat[geom, 3 * k + 2]
                     length = math.sqrt(along_y * along_y + along_z * along_z)
-                    across = 0.0
-                    if length > 0:
-                        across = (pushed[f, g, 1] * along_z - pushed[f, g, 2] * along_y) / (force * length)
-                    area *= _kept(across, area / (2 * law.face_length), half)
-                elif law.shape != FLAT:
-                    # A round body presses where MuJoCo says, which need not be on the sensor's face.
-                    reach = math.sqrt(area) / 2
-                    area *= _kept(pushed[f, g, 1] / force, reach, half)
-                    area *= _kept(pushed[f, g, 2] / force, reach, half)
-                if area > 0:
-                    long = (
-                        law.face_length if law.shape == CYLINDER and not bulging else math.sqrt(area * longer)
-                    )
-                    touch[CONDUCTANCE] += weight * conductance(law, pressure) * area
-                    touch[AREA] += weight * area
-                    touch[LENGTH] += weight * area * long
-                    if target != last:
-                        touch[CLOSED] += weight
-                        last = target
+                    across = first * along_z - second * along_y
+                    first, second = across / length if length > 0 else 0.0, place[2]
+                conducts, area, long = curved_contact(tables[curved[f, g, axis]], force, first, second)
+            elif bulging:
+                _sides(geom_xmat, frames, f, geom, g - (things - tips), axis, sides)
+                area, share, kept, longer = round_contact(
+                    bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                )
+            else:
+                area, share = contact(law, force, place)
+            if share > 0 and area > 0:
+                conducts, area = conductance(law, share / area) * area * kept, area * kept
+                long = math.sqrt(area * longer)
+            touch = touches[f, target]
+            if conducts > 0:
+                touch[CONDUCTANCE] += weight * conducts
+                touch[AREA] += weight * area
+                touch[LENGTH] += weight * area * long
+                if target != last:
+                    touch[CLOSED] += weight
+                    last = target
             touch[FORCE] += weight * force
             for i in range(3):
                 touch[PLACE + i], touch[NORMAL + i] = 0.0, 0.0
                 for k in range(3):
                     touch[PLACE + i] += xmat[body, 3 * k + i] * (middle[k] - xpos[body, k])
                     touch[NORMAL + i] += xmat[body, 3 * k + i] * normal[k]
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _kept(at, reach, half):
-    """Share of an interval of half width reach round `at` that is within -half to half."""
-    return min(max(min(half, at + reach) - max(-half, at - reach), 0.0) / (2 * reach), 1.0)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

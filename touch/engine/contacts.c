@@ -53,7 +53,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
                  Pose* poses, bool again, double* touch) {
   const Pose* at = pose(numbers, work, d, f, poses);
   int geom = work->geom[g], body = work->body[g], axis = 0;
-  double force = pushed[0], half = numbers->pads[f * PAD + WIDTH] / 2, place[3] = {0}, most = 0, area, share;
+  double force = pushed[0], place[3] = {0}, most = 0, area = 0, share = 0, length = 0, conducts = 0;
   const double* turn = geom >= 0 ? d->geom_xmat + 9 * geom : NULL;
   if (turn) {
     for (int i = 0; i < 3; i++) {
@@ -76,7 +76,21 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
   bool bulging = bend[0] + bend[1] > 0 || (!turn && curve[0] + curve[1] > 0);
   double on_face = 1, longer = 1;
-  if (bulging) {
+  int table = (int)numbers->curved[(f * numbers->things + g) * 3 + axis];
+  if (table >= 0 && !bulging) {
+    double first = pushed[1] / force, second = pushed[2] / force;
+    if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
+      double along_y = 0, along_z = 0;
+      for (int k = 0; k < 3; k++) {
+        along_y += at->axes[3 * k + 1] * turn[3 * k + 2];
+        along_z += at->axes[3 * k + 2] * turn[3 * k + 2];
+      }
+      double line = sqrt(along_y * along_y + along_z * along_z), across = first * along_z - second * along_y;
+      first = line > 0 ? across / line : 0;
+      second = place[2];
+    }
+    conducts = heat_curved(numbers->bent + table * CURVED, numbers->grid, force, first, second, &area, &length);
+  } else if (bulging) {
     double sides[4] = {0};
     const Pose* other = turn ? at : pose(numbers, work, d, g - numbers->geoms, poses);
     for (int i = 0, n = 0; i < 3; i++) {
@@ -94,30 +108,16 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     heat_contact(law, force, place, &area, &share);
   }
   if (area > 0 && share > 0) {
-    double pressure = share / area;
-    if (bulging) {
-      area *= on_face;
-    } else if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
-      double along_y = 0, along_z = 0, across = 0;
-      for (int k = 0; k < 3; k++) {
-        along_y += at->axes[3 * k + 1] * turn[3 * k + 2];
-        along_z += at->axes[3 * k + 2] * turn[3 * k + 2];
-      }
-      double length = sqrt(along_y * along_y + along_z * along_z);
-      if (length > 0) across = (pushed[1] * along_z - pushed[2] * along_y) / (force * length);
-      area *= heat_kept(across, area / (2 * law->face_length), half);
-    } else if (law->shape == SHAPE_SPHERE) {
-      double reach = sqrt(area) / 2;
-      area *= heat_kept(pushed[1] / force, reach, half);
-      area *= heat_kept(pushed[2] / force, reach, half);
-    }
-    if (area > 0) {
-      touch[CONDUCTANCE] += heat_conductance(law, numbers, pressure) * area;
-      touch[AREA] += area;
-      touch[LENGTH] += area * (!bulging && law->shape == SHAPE_CYLINDER ? law->face_length : sqrt(area * longer));
-      if (!again) touch[CLOSED] += 1;
-      again = true;
-    }
+    conducts = heat_conductance(law, numbers, share / area) * area * on_face;
+    area *= on_face;
+    length = sqrt(area * longer);
+  }
+  if (conducts > 0) {
+    touch[CONDUCTANCE] += conducts;
+    touch[AREA] += area;
+    touch[LENGTH] += area * length;
+    if (!again) touch[CLOSED] += 1;
+    again = true;
   }
   touch[FORCE] += force;
   const double *rotation = d->xmat + 9 * body, *origin = d->xpos + 3 * body;

@@ -23,7 +23,9 @@ enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
 enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, FIRST, EARLY, BOX };
 /* a place: face of the box, middle m along its two axes, fingertip */
 enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
-enum { SHAPE_FLAT, SHAPE_CYLINDER, SHAPE_SPHERE };
+enum { SHAPE_CYLINDER = 1 };
+/* a table of a curved contact: places along two axes, forces, and of each W/K, m2 and m */
+enum { PLACES = 16, FORCES = 14, VALUES = 3, CURVED = 2 * PLACES + VALUES * FORCES * PLACES * PLACES };
 /* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
 enum { BEND = 7, CURVES = 4 };
 
@@ -47,12 +49,14 @@ enum {
 typedef struct {
   int rates, places, states;     /* K, P, and most states of an object */
   int tips, objects, geoms, targets, things, patterns, tip_states, sample_steps;
+  int tables;                    /* of curved contacts */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
   const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double *seebeck, *warm;  /* V/K; K above the air */
   const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
-  const double* laws;            /* Law of each pad on each thing, by the axis of its frame */
+  const double *laws, *curved;   /* Law of each pad on each thing, by the axis of its frame, and its table's number or -1 */
+  const double *bent, *grid;     /* CURVED each; logarithms of their first force and of the next one's ratio, least W/K */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
   const double *separation, *separation_range;
   double* all; /* what the others point into */
@@ -106,7 +110,8 @@ void heat_contact(const Law* law, double force, const double place[3], double* a
 double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
                           double* area, double* share, double* longer);
 
-double heat_kept(double at, double reach, double half);
+double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
+                   double* length);
 
 void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches);
 

@@ -1,69 +1,60 @@
-/* Area and conductance of a pad's contact by its force, as thermal/contact/law.py. */
+/* Area and conductance of a pad's contact by its force, as thermal/contact/law.py for what is flat. */
 
 #include <math.h>
 
 #include "heat.h"
-
-#define NEWTON_STEPS 8
-static const double pi = 3.14159265358979323846;
-
-static double square_area(double u) {
-  if (u <= 1) return pi * u;
-  if (u >= 2) return 4;
-  return pi * u - 4 * (u * acos(1 / sqrt(u)) - sqrt(u - 1));
-}
-
-static double square_load(double u) {
-  if (u <= 1) return pi / 2 * u * u;
-  if (u >= 2) return 4 * u - 8.0 / 3;
-  double root = sqrt(u - 1), turned = acos(1 / sqrt(u));
-  return pi / 2 * u * u - 2 * u * u * turned + 2 * root * u + 4.0 / 3 * root * root * root;
-}
-
-static double square_inverse(double load) {
-  double narrow = sqrt(2 * load / pi);
-  if (load <= pi / 2) return narrow;
-  double u = fmax(narrow, (load + 8.0 / 3) / 4);
-  for (int i = 0; i < NEWTON_STEPS; i++) {
-    double change = (square_load(u) - load) / square_area(u);
-    u -= change;
-    if (fabs(change) < 1e-15 * u) break;
-  }
-  return u;
-}
 
 static double overlap(double reach, double offset, double half) {
   return fmax(fmin(reach, half - offset) + fmin(reach, half + offset), 0);
 }
 
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share) {
-  if (law->shape == SHAPE_FLAT) {
-    *area = law->area;
-    *share = force * law->share;
-    if (law->size[0] == 0) return;
-    double on_pad = 1, on_face = 1;
-    for (int side = 0; side < 2; side++) {
-      double offset = fabs(place[(int)law->across[side]]), half = law->size[side] / 2;
-      on_pad *= overlap(law->half_pad, offset, half);
-      on_face *= overlap(law->half_face, offset, half);
-    }
-    *area = on_face;
-    *share = on_pad > 0 ? force * (law->ratio * on_face / (on_pad + (law->ratio - 1) * on_face)) : 0;
-    return;
+  *area = law->area;
+  *share = force * law->share;
+  if (law->size[0] == 0) return;
+  double on_pad = 1, on_face = 1;
+  for (int side = 0; side < 2; side++) {
+    double offset = fabs(place[(int)law->across[side]]), half = law->size[side] / 2;
+    on_pad *= overlap(law->half_pad, offset, half);
+    on_face *= overlap(law->half_face, offset, half);
   }
-  double half = law->half_pad, half_face = law->half_face, stiffness = law->stiffness;
-  if (law->shape == SHAPE_CYLINDER) {
-    double load = force / (stiffness * law->pad_length), narrow = pow(0.75 * load, 1.0 / 3), square = narrow * narrow;
-    if (narrow > half) square = (load / half + 2.0 / 3 * half * half) / 2;
-    double across = fmin(sqrt(square), half_face);
-    *area = law->face_length * 2 * across;
-    *share = stiffness * *area * (square - across * across / 3);
-    return;
-  }
-  double square = square_inverse(force / (stiffness * half * half * half * half)) * half * half;
-  double u = square / (half_face * half_face);
-  *area = half_face * half_face * square_area(u);
-  *share = stiffness * half_face * half_face * half_face * half_face * square_load(u);
+  *area = on_face;
+  *share = on_pad > 0 ? force * (law->ratio * on_face / (on_pad + (law->ratio - 1) * on_face)) : 0;
+}
+
+/* The place of a table before `at` m, and the share of the way to the next. */
+static int between(const double* places, double at, double* share) {
+  int k = 0;
+  while (k < PLACES - 2 && at >= places[k + 1]) k++;
+  *share = fmin((at - places[k]) / (places[k + 1] - places[k]), 1);
+  return k;
+}
+
+static double even(const double* value, double u, double v) {
+  const double* next = value + VALUES * PLACES;
+  double one = value[0] + v * (value[VALUES] - value[0]), other = next[0] + v * (next[VALUES] - next[0]);
+  return one + u * (other - one);
+}
+
+/* W/K, and the patch's area m2 and length m, by a table, as thermal/contact/curved_table.py. */
+double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
+                   double* length) {
+  double u, v;
+  int i = between(table, fabs(aside), &u), j = between(table + PLACES, fabs(along), &v);
+  double at = (log(force) - grid[0]) / grid[1];
+  int k = (int)fmin(fmax(at, 0), FORCES - 2);
+  double w = fmin(at - k, 1);
+  const double* low = table + 2 * PLACES + VALUES * ((k * PLACES + i) * PLACES + j);
+  const double* high = low + VALUES * PLACES * PLACES;
+  double conducts = fmax(even(low, u, v), grid[2]);
+  conducts *= exp(w * log(fmax(even(high, u, v), grid[2]) / conducts));
+  if (conducts <= 2 * grid[2]) return 0;
+  w = fmax(w, 0);
+  *area = even(low + 1, u, v);
+  *area += w * (even(high + 1, u, v) - *area);
+  *length = even(low + 2, u, v);
+  *length += w * (even(high + 2, u, v) - *length);
+  return conducts;
 }
 
 static double separation(const Numbers* numbers, double log_share) {

@@ -8,7 +8,8 @@
 
 #include "heat.h"
 
-enum { VERSION = 3, HEADER = 12, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32 };
+enum { VERSION = 4, HEADER = 13, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+       MOST_TABLES = 4096 };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;
@@ -27,10 +28,17 @@ static bool within(const double* values, size_t count, size_t stride, double mos
   return true;
 }
 
+/* Whether all are -1 or numbers of tables. */
+static bool numbered(const double* values, size_t count, int tables) {
+  for (; count; count--, values++)
+    if (*values != -1 && !within(values, 1, 1, tables - 1)) return false;
+  return true;
+}
+
 /* Fills the numbers, whose `all` is to be freed. Returns what is wrong with the text, or NULL. */
 const char* heat_parse(Numbers* n, const char* text) {
   static const double most[HEADER] = {VERSION,    MOST_TIPS, MOST_OBJECTS, MOST_GEOMS, PATTERNS, MOST_RATES,
-                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS};
+                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES};
   memset(n, 0, sizeof *n);
   size_t length = text ? strlen(text) : 0;
   double* at = n->all = malloc(length / 2 + sizeof(double));
@@ -48,6 +56,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   n->dt = at[9];
   n->least = at[10];
   n->named = (int)at[11];
+  n->tables = (int)at[12];
   n->targets = tips + objects;
   n->places = tips + 2;
   n->states = 1 + n->rates * patterns * n->places;
@@ -60,6 +69,8 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->pads, (size_t)tips * PAD},
       {&n->boxes, (size_t)objects * BOX},
       {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
+      {&n->curved, (size_t)tips * things * 3},
+      {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
       {&n->bends, (size_t)tips * BEND},
       {&n->curves, (size_t)things * 3 * CURVES},
@@ -82,6 +93,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->poles, 2 * POLES},
       {&n->weights, 2 * POLES},
       {&n->afterwards, AFTERWARDS},
+      {&n->grid, 3},
       {&n->separation, SERIES},
       {&n->separation_range, 4},
   };
@@ -97,7 +109,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
   if (!within(n->roles, n->named, 1, things - 1) || !within(n->owner, geoms, 1, objects - 1) ||
       !within(across, laws, law, 2) || !within(across + 1, laws, law, 2) ||
-      !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
+      !numbered(n->curved, laws, n->tables) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

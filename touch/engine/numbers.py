@@ -13,15 +13,15 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from ...thermal.contact import LOG_LEAST, LOG_MOST, SEPARATION
+from ...thermal.contact import FIRST_FORCE, FORCE_STEP, LEAST_CURVED, LOG_LEAST, LOG_MOST, SEPARATION
 from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES, TO_MOMENTS, before
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
-from ..contacts import bends, curves, pair_laws
+from ..contacts import bends, curves, pair_laws, stacked
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
-_VERSION = 3
+_VERSION = 4
 
 
 def packed(
@@ -43,11 +43,12 @@ def packed(
     roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
     roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
     timestep = float(model.opt.timestep)
+    laws, curved, found = pair_laws(model, pads, shapes)
+    tables = stacked(found)
     header = (
         *(_VERSION, len(pads), len(shapes), len(owner), level.patterns, level.rates, most, steps),
-        *(timestep, timestep * steps, level.least, len(roles)),
+        *(timestep, timestep * steps, level.least, len(roles), len(tables)),
     )
-    laws = pair_laws(model, pads, shapes)
     every = (
         header,
         roles,
@@ -55,6 +56,8 @@ def packed(
         *((*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width) for pad in pads),
         *(_box(shape, film, ambient) for shape in shapes),
         np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
+        curved,
+        tables,
         *(narrow_of(pad, other, level) for pad in pads for other in (*(s.material for s in shapes), *pads)),
         bends(pads),
         curves(model, pads, shapes),
@@ -69,6 +72,7 @@ def packed(
         level.decay,
         *(TIMES, TO_MOMENTS[OF_GRASP], GRASP, NODES, JUMPS, ALONG, GRAM),
         *(_pairs(POLES), _pairs(WEIGHTS), AFTERWARDS),
+        (FIRST_FORCE, FORCE_STEP, LEAST_CURVED),
         *(SEPARATION, (LOW, HIGH, LOG_LEAST, LOG_MOST)),
     )
     return np.concatenate([np.ravel(part) for part in every]).astype(">f8").tobytes().hex()

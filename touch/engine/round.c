@@ -38,7 +38,7 @@ static double depth_of(double load, double most, double least, double reach, dou
 }
 
 /* Share of an interval of half width reach round `at` that is within -half to half, of the most that can be. */
-double heat_kept(double at, double reach, double half) {
+static double kept(double at, double reach, double half) {
   return fmin(fmax(fmin(half, at + reach) - fmax(-half, at - reach), 0) / (2 * fmin(reach, half)), 1);
 }
 
@@ -62,5 +62,5 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   *share = 4 * bend[2] * depth * a * b * load;
   *longer = fmin(b, face_width) / fmin(a, face_reach);
   *longer = fmax(*longer, 1 / *longer);
-  return heat_kept(along * y + aside * z, a, face_reach) * heat_kept(along * z - aside * y, b, face_width);
+  return kept(along * y + aside * z, a, face_reach) * kept(along * z - aside * y, b, face_width);
 }

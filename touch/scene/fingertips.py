@@ -35,7 +35,7 @@ class Fingertip:
     that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated sensor before anything is
     touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there. skin:
     over the sensor's face, a name of thermal.SKINS or a Skin, None for bare alumina. Heat passes it, the
-    contact's conductance is its own, and bodies press its springs; bare, round bodies sink into a pad of silicone.
+    contact's conductance is its own, and bodies press its springs; bare, balls and cylinders touch a rigid face.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
     objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it, and as

@@ -10,11 +10,9 @@ from thermograsp.thermal import (
     SKINS,
     Pad,
     Surface,
-    cylinder_law,
     flat_law,
     joint,
     material,
-    sphere_law,
 )
 from thermograsp.thermal.contact import (
     array_conductance,
@@ -31,10 +29,6 @@ SHAPES = {
     "flat": lambda j: flat_law(PAD, j, (0.04, 0.012)),
     "flat that follows": lambda j: flat_law(PAD, j, (0.04, 0.03), (2, 1)),
     "flat on a skin": lambda j: flat_law(SKINNED, j, (0.04, 0.03), (2, 1)),
-    "cylinder": lambda j: cylinder_law(PAD, j, 0.02, 0.05),
-    "short cylinder": lambda j: cylinder_law(PAD, j, 0.3, 0.006),
-    "ball": lambda j: sphere_law(PAD, j, 0.005),
-    "nearly flat": lambda j: sphere_law(PAD, j, 2.0),
 }
 PLACES = np.array([[0.0, 0.0, 0.0], [0.0, 0.012, -0.018], [0.01, 0.05, 0.0]])
 

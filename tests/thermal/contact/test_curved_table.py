@@ -1,0 +1,151 @@
+"""Tables of curved contacts beside the laws that they are of: values, order, no jumps, and the same in arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.thermal import LAPPED_ALUMINA, SKINS, Pad, Surface, material
+from thermograsp.thermal.contact import (
+    array_curved_contact,
+    bare_footprint,
+    conduction,
+    curved_contact,
+    curved_table,
+    cylinder_footprint,
+    even_patch,
+    flat_footprint,
+    met,
+    rigid_cylinder,
+    rigid_sphere,
+    skinned,
+    sphere_footprint,
+)
+
+PAD, SKIN = Pad(), SKINS["filled_silicone"]
+BODIES = {"ball": (0.02, None), "small ball": (0.005, None), "rod": (0.02, 0.06), "short rod": (0.02, 0.012)}
+FORCES = (0.05, 0.5, 5.0, 50.0)
+KINDS = [(skin, name) for skin in (None, SKIN) for name in ("steel", "wood")]
+
+
+def law(skin, name: str, radius: float, length: float | None) -> np.void:
+    surface = Surface.of(material(name))
+    if skin is None:
+        return bare_footprint(PAD, surface, radius, length)
+    pad, pair = skinned(PAD, skin), met(skin, surface)
+    return (
+        sphere_footprint(pad, pair, radius)
+        if length is None
+        else cylinder_footprint(pad, pair, radius, length)
+    )
+
+
+@pytest.mark.parametrize(("skin", "name"), KINDS)
+@pytest.mark.parametrize("body", BODIES)
+def test_it_is_the_law_in_the_middle_and_on_the_whole_off_it(skin, name: str, body: str) -> None:
+    """Nearer where the places of the table are; worst within a tenth of a millimetre of the face's edge, and at the
+    force at which a skin's spots come to full contact."""
+    table, own = curved_table(PAD, skin, material(name), *BODIES[body]), law(skin, name, *BODIES[body])
+    rng, off = np.random.default_rng(0), []
+    for _ in range(1000):
+        force, place = (
+            float(np.exp(rng.uniform(np.log(0.05), np.log(50)))),
+            np.append(0, rng.uniform(0, 0.01, 2)),
+        )
+        middle = conduction(own, force, np.zeros(3))[1]
+        assert curved_contact(table, force, 0.0, 0.0)[0] == pytest.approx(
+            middle, rel=0.02 if skin is None else 0.1
+        )
+        off.append(
+            (curved_contact(table, force, place[1], place[2])[0] - conduction(own, force, place)[1]) / middle
+        )
+    assert np.sqrt(np.mean(np.square(off))) < 0.03
+    assert np.quantile(np.abs(off), 0.9) < 0.05
+
+
+def test_a_bare_ball_and_a_bare_rod_are_quadratures_over_hertzs_gap() -> None:
+    steel = Surface.of(material("steel"))
+    for force in (1.0, 10.0, 30.0):
+        ball = curved_contact(curved_table(PAD, None, material("steel"), 0.02), force, 0.0, 0.0)[0]
+        rod = curved_contact(curved_table(PAD, None, material("steel"), 0.02, 0.009), force, 0.0, 0.0)[0]
+        assert ball == pytest.approx(
+            rigid_sphere(LAPPED_ALUMINA, steel, force, 0.02, PAD.face).conductance, rel=0.05
+        )
+        other = rigid_cylinder(LAPPED_ALUMINA, steel, force, 0.02, 0.009, PAD.face).conductance
+        assert rod == pytest.approx(other, rel=0.07)
+
+
+def test_the_patch_is_the_even_one() -> None:
+    body = material("steel")
+    table, own = curved_table(PAD, None, body, 0.02), law(None, "steel", 0.02, None)
+    for force in FORCES:
+        _, area, long = curved_contact(table, force, 0.0, 0.0)
+        assert area == pytest.approx(even_patch(own, body, force), rel=0.05)
+        assert long**2 == pytest.approx(area, rel=0.05)
+    _, area, long = curved_contact(curved_table(PAD, None, body, 0.02, 0.006), 5.0, 0.0, 0.0)
+    assert long == pytest.approx(0.006)
+    assert area < 0.006 * PAD.face
+
+
+@pytest.mark.parametrize(("skin", "name"), KINDS)
+def test_a_ball_less_than_a_rod_less_than_a_flat_face_and_more_force_more_heat(skin, name: str) -> None:
+    pad = skinned(PAD, skin)
+    flat = flat_footprint(pad, met(skin, Surface.of(material(name))), (0.04, 0.04))
+    before = (0.0, 0.0)
+    for force in np.geomspace(0.01, 100.0, 60):
+        ball, rod = (
+            curved_contact(curved_table(PAD, skin, material(name), *BODIES[body]), force, 0.001, 0.0)[0]
+            for body in ("ball", "rod")
+        )
+        assert before[0] < ball < rod < conduction(flat, force, np.zeros(3))[1]
+        assert before[1] < rod
+        before = ball, rod
+
+
+@pytest.mark.parametrize(("skin", "name"), KINDS)
+@pytest.mark.parametrize("body", BODIES)
+def test_nothing_jumps_where_a_body_slides_over_the_face_and_off_it(skin, name: str, body: str) -> None:
+    """Steps that are four times as fine make far smaller changes."""
+    table = curved_table(PAD, skin, material(name), *BODIES[body])
+    for force in FORCES:
+        middle = curved_contact(table, force, 0.0, 0.0)[0]
+        for way in ((1.0, 0.0), (0.0, 1.0), (0.7, 0.7)):
+            changes = []
+            for steps in (2000, 4000, 8000):
+                slide = [
+                    curved_contact(table, force, way[0] * at, way[1] * at)[0]
+                    for at in np.linspace(-0.012, 0.012, steps)
+                ]
+                changes.append(np.abs(np.diff(slide)).max() / middle)
+            assert changes[2] < 0.02
+            assert changes[2] <= 0.6 * changes[0]
+
+
+def test_arrays_hold_what_the_compiled_function_finds() -> None:
+    every = [
+        curved_table(PAD, skin, material(name), *body) for skin, name in KINDS for body in BODIES.values()
+    ]
+    rng = np.random.default_rng(1)
+    number = rng.integers(0, len(every), 2000)
+    force = np.exp(rng.uniform(np.log(1e-4), np.log(1e4), 2000)) * rng.choice([0.0, 1.0], 2000, p=[0.1, 0.9])
+    aside, along = rng.uniform(-0.015, 0.015, (2, 2000))
+    found = array_curved_contact(np.concatenate(every), number, force, aside, along)
+    pressed = force > 0
+    expected = np.array(
+        [
+            curved_contact(every[n], f, a, b)
+            for n, f, a, b in zip(
+                number[pressed], force[pressed], aside[pressed], along[pressed], strict=True
+            )
+        ]
+    )
+    for own, other in zip(found, expected.T, strict=True):
+        np.testing.assert_allclose(own[pressed], other, rtol=1e-12, atol=0)
+        assert not own[~pressed].any()
+
+
+@pytest.mark.parametrize("size", [(0.0, None), (-1.0, None), (np.nan, None), (0.02, 0.0), (0.02, np.nan)])
+def test_sizes_that_are_none_are_refused(size) -> None:
+    with pytest.raises(InvalidValueError, match="radius|length"):
+        curved_table(PAD, None, material("steel"), *size)

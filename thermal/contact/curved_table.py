@@ -1,0 +1,184 @@
+"""A curved body's contact as a table over force and place, for code that has not its law: arrays, and C.
+
+What a footprint conducts, gas beside it with it, and the patch that stands for it (footprint.py, spread.py), at FORCES
+and at places of the body's crown, or of its middle along a cylinder, from the pad's middle. In between it is taken
+evenly by the places, and the conductance as a power of the force. A table is a row of numbers: PLACES distances m along
+the pad's two axes each, then W/K, m2 and m (the patch's length) by force and both places.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..matter import Material, Skin
+from ..numerics import Array, as_integers, namespace_of
+from .area import Pad
+from .fingertip import met, skinned, touching
+from .footprint import bare_footprint, cylinder_footprint, sphere_footprint
+from .law import CYLINDER
+from .rough_faces import Surface
+from .spread import beneath, even_contact
+
+FORCES, PLACES = 14, 16
+FIRST_FORCE, FORCE_STEP = math.log(0.02), math.log(2.2)
+"""Logarithms of the first force N and of the ratio of two that follow one another."""
+LEAST_CURVED = 1e-9
+"""W/K: less is none."""
+CURVED_TABLE = 2 * PLACES + 3 * FORCES * PLACES * PLACES
+_RIM = 0.001  # m beyond a pad's sides, where a contact may be named
+_INSIDE = np.array([0.0, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98, 1.0])  # of the face's half width
+_SHIFT = 1e-9  # of it: no place is twice in a table
+
+
+@lru_cache(maxsize=256)
+def curved_table(
+    pad: Pad, skin: Skin | None, body: Material, radius: float, length: float | None = None
+) -> np.ndarray:
+    """(CURVED_TABLE,) of a fingertip on a ball of that radius m, or on a cylinder of that length m. pad: its silicone;
+    skin: over it, None for a bare face, which is rigid. Raises InvalidValueError for sizes that are none."""
+    surface, face = Surface.of(body), touching(skin)
+    if skin is None:
+        law = bare_footprint(pad, surface, radius, length)
+    elif length is None:
+        law = sphere_footprint(skinned(pad, skin), met(skin, surface), radius)
+    else:
+        law = cylinder_footprint(skinned(pad, skin), met(skin, surface), radius, length)
+    aside = _aside(pad)
+    along = aside if length is None else _along(pad, length)
+    table = np.empty(CURVED_TABLE)
+    table[:PLACES], table[PLACES : 2 * PLACES] = aside, along
+    values = table[2 * PLACES :].reshape(FORCES, PLACES, PLACES, 3)
+    _fill(
+        law,
+        *beneath(law, body, face),
+        np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
+        aside,
+        along,
+        values,
+    )
+    table.flags.writeable = False
+    return table
+
+
+def _aside(pad: Pad) -> np.ndarray:
+    """(PLACES,) m: close together at the face's edge."""
+    half = pad.face / 2
+    beyond = max(pad.width / 2 + _RIM - half, 0.1 * half)
+    return np.concatenate(
+        (_INSIDE * half, half + beyond * (np.arange(1, PLACES - len(_INSIDE) + 1) / 8) ** 2)
+    )
+
+
+def _along(pad: Pad, length: float) -> np.ndarray:
+    """(PLACES,) m: where an end of the cylinder comes to an edge of the face or the pad, and between."""
+    end = pad.width / 2 + _RIM
+    edges = [abs(half + way * length / 2) for half in (pad.width / 2, pad.face / 2) for way in (1, -1)]
+    places = [0.0, end]
+    for edge in edges:
+        if all(abs(edge - place) > _SHIFT for place in places) and edge < end:
+            places.append(edge)
+    while len(places) < PLACES:
+        places.sort()
+        widest = int(np.argmax(np.diff(places)))
+        places.append((places[widest] + places[widest + 1]) / 2)
+    return np.sort(places)
+
+
+@njit(cache=True, error_model="numpy")
+def _fill(law, slower, resistance, forces, aside, along, values):
+    place = np.zeros(3)
+    for i in range(len(aside)):
+        for j in range(len(along)):
+            place[1], place[2] = aside[i], along[j]
+            for k in range(len(forces)):
+                conducts, area = even_contact(law, slower, resistance, forces[k], place)
+                long = math.sqrt(area)
+                if law.shape == CYLINDER:
+                    half, other = law.half_face, law.length / 2
+                    long = max(min(half, other - along[j]) + min(half, other + along[j]), 0.0)
+                values[k, i, j, 0], values[k, i, j, 1], values[k, i, j, 2] = conducts, area, long
+
+
+@njit(cache=True, error_model="numpy")
+def curved_contact(table, force, aside, along):
+    """(W/K, patch m2, its length m) at a force N > 0 on the pad, the crown that far m from the pad's middle, either
+    sign; 0 where nothing conducts. table: of curved_table."""
+    i, u = _between(table[:PLACES], abs(aside))
+    j, v = _between(table[PLACES : 2 * PLACES], abs(along))
+    at = (math.log(force) - FIRST_FORCE) / FORCE_STEP
+    k = min(max(int(at), 0), FORCES - 2)
+    w = min(at - k, 1.0)
+    first = 2 * PLACES + 3 * ((k * PLACES + i) * PLACES + j)
+    low, high = first, first + 3 * PLACES * PLACES
+    conducts = max(_even(table, low, u, v), LEAST_CURVED)
+    conducts *= math.exp(w * math.log(max(_even(table, high, u, v), LEAST_CURVED) / conducts))
+    if conducts <= 2 * LEAST_CURVED:
+        return 0.0, 0.0, 0.0
+    w = max(w, 0.0)
+    area, more = _even(table, low + 1, u, v), _even(table, high + 1, u, v)
+    long, longer = _even(table, low + 2, u, v), _even(table, high + 2, u, v)
+    return conducts, area + w * (more - area), long + w * (longer - long)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _between(places, at):
+    """(number of the place before, share of the way to the next)."""
+    k = 0
+    while k < PLACES - 2 and at >= places[k + 1]:
+        k += 1
+    return k, min((at - places[k]) / (places[k + 1] - places[k]), 1.0)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _even(table, at, u, v):
+    """Between four places."""
+    one = table[at] + v * (table[at + 3] - table[at])
+    at += 3 * PLACES
+    other = table[at] + v * (table[at + 3] - table[at])
+    return one + u * (other - one)
+
+
+def array_curved_contact(
+    tables: Array, number: Array, force: Array, aside: Array, along: Array
+) -> tuple[Array, Array, Array]:
+    """curved_contact as a pure function of arrays: NumPy, PyTorch, JAX. tables: (K CURVED_TABLE,), number: integers
+    below K, of the others' shape. Forces that are not above 0 count as none."""
+    xp = namespace_of(force)
+    start = number * CURVED_TABLE
+    i, u = _array_between(xp, tables, start, abs(aside))
+    j, v = _array_between(xp, tables, start + PLACES, abs(along))
+    pressed = force.clip(1e-9, None)
+    at = (xp.log(pressed) - FIRST_FORCE) / FORCE_STEP
+    before = at.clip(0.0, FORCES - 2.0)
+    k = as_integers(before)
+    w = (at - k).clip(None, 1.0)
+    low = start + 2 * PLACES + 3 * ((k * PLACES + i) * PLACES + j)
+    high = low + 3 * PLACES * PLACES
+
+    def even(first: Array) -> Array:
+        one = tables[first] + v * (tables[first + 3] - tables[first])
+        second = first + 3 * PLACES
+        other = tables[second] + v * (tables[second + 3] - tables[second])
+        return one + u * (other - one)
+
+    conducts = even(low).clip(LEAST_CURVED, None)
+    conducts = conducts * xp.exp(w * xp.log(even(high).clip(LEAST_CURVED, None) / conducts))
+    w = w.clip(0.0, None)
+    area, long = even(low + 1), even(low + 2)
+    area, long = area + w * (even(high + 1) - area), long + w * (even(high + 2) - long)
+    closed = (force > 0) & (conducts > 2 * LEAST_CURVED)
+    none = 0.0 * force
+    return xp.where(closed, conducts, none), xp.where(closed, area, none), xp.where(closed, long, none)
+
+
+def _array_between(xp, tables, start, at):
+    k = 0 * start
+    for place in range(1, PLACES - 1):
+        k = k + as_integers(xp.where(at >= tables[start + place], 1.0 + 0.0 * at, 0.0 * at))
+    before, after = tables[start + k], tables[start + k + 1]
+    return k, ((at - before) / (after - before)).clip(None, 1.0)
