@@ -4,8 +4,7 @@ A box's kernel is the product of three of them (Carslaw & Jaeger, Conduction of 
 3.3 and 14.2). Each is told between what patches are along that axis: functions over their width where it is tangential
 (order 1: strips), one point where it is the axis that they face (order 0). A function f meets phi as
 sum_k jumps_k PHI(nodes_k), PHI the antiderivative of phi of that order. Small times sum images, each with its film's
-closed form; large times sum eigenfunctions. At the switch the two agree to 1e-9 where the ends are adiabatic. With a
-film, paths that meet both ends before it count the film once: .1 % of what one end feels of the other.
+closed form; large times sum eigenfunctions. At the switch the two agree to 1e-13, as no path has met both ends before.
 
 E: nodes, F: functions, M: eigenfunctions.
 """
@@ -19,8 +18,8 @@ from scipy.special import erfc, erfcx
 
 from thermograsp.compiled import njit
 
-MODES = 12
-SWITCH = 0.03  # diffusion length squared over length squared from which eigenfunctions serve
+MODES = 24
+SWITCH = 0.0075  # diffusion length squared over length squared from which eigenfunctions serve
 _ROOT_PI = math.sqrt(math.pi)
 _REACH = 6.0  # diffusion lengths (2 sqrt tau) beyond which an image is below round-off
 _FINE = 1024.0  # nodes a unit of the table below: cubic Hermite interpolation leaves 1e-14
@@ -108,14 +107,10 @@ def images(one, order, other, other_order, same, length, film, tau, out):
     reach = _REACH * scale
     low_end = one[0] + other[0] <= reach
     high_end = 2 * length - one[-1] - other[-1] <= reach
-    both_ends = 2 * length - max(one[-1] - other[0], other[-1] - one[0]) <= reach
     for i in range(len(one)):
         for j in range(i + 1 if same else len(other)):
             near, far = one[i] - other[j], one[i] + other[j]
             value = flip * _free(near, scale, total)
-            if both_ends:
-                value += flip * _beyond(near - 2 * length, -1.0, scale, total)
-                value += flip * _beyond(near + 2 * length, 1.0, scale, total)
             if low_end:
                 value += _beyond(far, 1.0, scale, total)
                 if film > 0.0:

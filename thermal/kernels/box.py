@@ -103,38 +103,26 @@ def box_kernel(
     eigenfunction's part; rate, port and held as in BoxSamples; kernel (T, N P) of the heat in the box, likewise without
     it, None where no film takes any. jumps, terms: along_axes's."""
     diffusivity = conductivity / heat_capacity
-    kernel, rate, port, whole, held = _kernel(
+    kernel, slowest, port, held, whole = _kernel(
         np.asarray(size, float),
         film / conductivity,
+        heat_capacity,
         diffusivity * times,
         np.asarray(patches.face),
         patches.centre,
         patches.half,
         NODES,
         jumps,
-        np.ascontiguousarray(terms),
+        terms,
         asked,
     )
-    scale = 1 / np.repeat(patches.areas, len(terms))
-    own = slice(0, asked * len(terms))
-    kernel *= np.outer(scale[own], scale) / heat_capacity
-    port *= scale / np.sqrt(heat_capacity)
-    held = float(held * np.sqrt(heat_capacity))
-    rate = float(rate * diffusivity) if film > 0 else 0.0
-    fading = np.exp(-rate * times)
-    kernel -= np.outer(port[own], port) * fading[:, None, None]
-    if film == 0:
-        return kernel, rate, port, held, None
-    whole *= scale
-    whole -= fading[:, None] * port * held
-    return kernel, rate, port, held, whole
+    return kernel, float(slowest * diffusivity), port, float(held), whole if film > 0 else None
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms, asked):
-    """Kernel (T, asked P, N P) 1/m3 integrated over both patches' patterns, the first of them one of the first `asked`
-    patches'; the slowest eigenfunction's squared wave number 1/m2 and its integrals over the patterns; the kernel
-    (T, N P) integrated over the box and a pattern; the slowest eigenfunction's integral over the box. jumps:
+def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, terms, asked):
+    """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, N P) of the
+    heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. jumps:
     (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one
     function along either axis, -1 for none."""
     count, functions, patterns = len(face), jumps.shape[2], len(terms)
@@ -161,23 +149,28 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms, asked):
         held *= inside[0, 0]
         order = orders[axis]
         for n in range(count):
+            alike[n] = n
             facing = face[n] // 2
             if facing == axis:
                 order[n] = 0
                 places[n, 0] = length * (face[n] % 2)
                 overlaps(places[n, :1], point, 0, length, waves, room, told[axis, n])
-            else:
-                w = axis if axis < facing else axis - 1
-                which[axis, n] = w
-                for k in range(len(nodes)):
-                    places[n, k] = centre[n, w] + half[n, w] * nodes[k]
-                overlaps(places[n], jumps[n, w], 1, length, waves, room, told[axis, n])
-            alike[n] = n
+                continue
+            w = axis if axis < facing else axis - 1
+            which[axis, n] = w
+            for k in range(len(nodes)):
+                places[n, k] = centre[n, w] + half[n, w] * nodes[k]
             for m in range(n):
-                if order[m] == order[n] == 1 and alike[n] == n:
-                    same = jumps[n, which[axis, n]] == jumps[m, which[axis, m]]
+                if order[m] == 1 and alike[n] == n:
+                    same = jumps[n, w] == jumps[m, which[axis, m]]
                     if same.all() and (places[n] == places[m]).all():
                         alike[n] = m
+            if alike[n] == n:
+                overlaps(places[n], jumps[n, w], 1, length, waves, room, told[axis, n])
+                continue
+            for f in range(functions):
+                for m in range(MODES):
+                    told[axis, n, f, m] = told[axis, alike[n], f, m]
         for t in range(len(taus)):
             tau = taus[t]
             late = tau > SWITCH * length * length
@@ -271,11 +264,23 @@ def _kernel(size, film, taus, face, centre, half, nodes, jumps, terms, asked):
                                 kernel[t, m * patterns + j, at] += (
                                     now[0, n, f0, m, g0] * now[1, n, f1, m, g1] * now[2, n, f2, m, g2]
                                 )
+    # from integrals over patterns to means, and without the slowest eigenfunction, which is even where no film is
+    slowest = slowest if film > 0.0 else 0.0
+    held *= np.sqrt(heat_capacity)
+    for i in range(total):
+        each = i // patterns
+        port[i] /= 4 * half[each, 0] * half[each, 1] * np.sqrt(heat_capacity)
     for t in range(len(taus)):
-        for i in range(own):
-            for j in range(i):
-                kernel[t, i, j] = kernel[t, j, i]
-    return kernel, slowest, port, whole, held
+        fading = np.exp(-slowest * taus[t])
+        for j in range(total):
+            mine = 4 * half[j // patterns, 0] * half[j // patterns, 1]
+            whole[t, j] = whole[t, j] / mine - fading * port[j] * held
+            for i in range(min(j + 1, own)):
+                area = 4 * half[i // patterns, 0] * half[i // patterns, 1] * mine
+                kernel[t, i, j] = kernel[t, i, j] / (area * heat_capacity) - fading * port[i] * port[j]
+                if j < own:
+                    kernel[t, j, i] = kernel[t, i, j]
+    return kernel, slowest, port, held, whole
 
 
 @njit(cache=True, inner=True, error_model="numpy")

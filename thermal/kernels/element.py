@@ -20,7 +20,7 @@ from thermograsp.compiled import njit
 
 from ..matter import SensorStack
 from ..plates import Sampled, from_nodes, log_nodes, stack_impedance, stack_profile
-from .axis import SWITCH, images
+from .axis import MODES, SWITCH, images
 from .patterns import ALONG, GRAM, JUMPS, NODES
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
@@ -203,7 +203,7 @@ def _lateral(width, taus, centre, half, nodes, jumps, along, count):
         for axis in range(2):
             if tau > SWITCH * width * width:
                 between[axis] = 0.0
-                for w in range(min(count, 12)):
+                for w in range(min(count, MODES)):
                     decay = np.exp(-((w * np.pi / width) ** 2) * tau)
                     for f in range(functions):
                         for g in range(functions):

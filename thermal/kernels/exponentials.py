@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numerics import free_residues, passive_residues
+from ..numerics import passive_residues, port_residues
 from .samples import GRASP
 
 
@@ -21,13 +21,11 @@ def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np
     return passive_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
 
 
-def past_residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """(..., K, M, N) of the temperatures of M ports by what flowed once through N others, where nothing flows any more:
-    no power has to balance, and no sign is asked for. impedance: (..., S, M, N) K/W at GRASP. weight: (..., S)
-    of its errors, W/K."""
-    wanted = (weight[..., None, None] * impedance).reshape(*impedance.shape[:-2], -1)
-    found = free_residues(weight[..., None] / (GRASP[:, None] + rates), wanted)
-    return found.reshape(*found.shape[:-1], *impedance.shape[-2:])
+def touched_residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(A, N, K) of the temperatures of A ports: by what flows through these, the first of N, positive semidefinite; and
+    by what flowed once through the others, where nothing flows any more: no power has to balance, and no sign is asked
+    for. impedance: (S, A, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
+    return port_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
 
 
 def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:

@@ -1,13 +1,11 @@
-"""Boxes under fingertips as residues at rates that all share, many boxes at once.
+"""Boxes under fingertips as residues at rates that all share, as they are touched.
 
 Fixed-rate steps ask how warm a box is under the fingertips that are on it. Those patches are fitted together, their
 residues positive semidefinite. What flowed through another place once is the past: how warm it leaves them is a sum of
 fades that needs no constraint, and between two such places nothing is asked. So a box that remembers many places costs
 hardly more than one that is touched for the first time. The film of air covers what lies under no fingertip.
 
-Nothing of a box's numbers depends on which others are made with it.
-
-B: boxes, N: patches, A: those under fingertips, M: patterns of each, S: moments, K: rates.
+N: patches, A: those under fingertips, M: patterns of each, T: times, S: moments, K: rates.
 """
 
 from __future__ import annotations
@@ -19,10 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thermograsp.compiled import njit
+
 from ..matter import Material
 from .box import Patches, box_kernel
 from .contact import Resolution, Tip
-from .exponentials import past_residues, residues
+from .exponentials import touched_residues
 from .patterns import along_axes
 from .samples import GRASP
 
@@ -63,62 +63,53 @@ class BodyResidues(NamedTuple):
     still: np.ndarray
 
 
-def touched_boxes(boxes: Sequence[TouchedBox], level: Resolution) -> list[BodyResidues]:
-    """Each box's residues at the level's rates."""
-    alike: dict[tuple[int, int, bool], list[int]] = {}
-    for number, box in enumerate(boxes):
-        alike.setdefault((len(box.tips), box.touched, box.film > 0), []).append(number)
-    found: dict[int, BodyResidues] = {}
-    for numbers in alike.values():
-        found.update(zip(numbers, _of_one_kind([boxes[number] for number in numbers], level), strict=True))
-    return [found[number] for number in range(len(boxes))]
-
-
-class _Kernels(NamedTuple):
-    """impedance (B, S, A M, N M) K/W and heat (B, S, N M) J/W, None without a film, both less the slowest
-    eigenfunction's part; that one's rate (B,), port (B, N M) and held (B,). capacity (B,) J/K of the boxes. weight
-    (B, A, S) W/K of the tips. area, even (B, N M): of each port's patch, and the net heat of its pattern."""
+class _Samples(NamedTuple):
+    """impedance (S, A M, N M) K/W and heat (S, N M) J/W, zeros without a film, both less the slowest eigenfunction's
+    part; that one's rate, port (N M,) and held."""
 
     impedance: np.ndarray
-    heat: np.ndarray | None
-    rate: np.ndarray
+    heat: np.ndarray
+    rate: float
     port: np.ndarray
-    held: np.ndarray
-    capacity: np.ndarray
-    weight: np.ndarray
-    area: np.ndarray
-    even: np.ndarray
+    held: float
 
 
-def _of_one_kind(boxes: Sequence[TouchedBox], level: Resolution) -> list[BodyResidues]:
-    known, own = _kernels(boxes), boxes[0].touched * level.patterns
-    port, rate, rest = known.port, known.rate, known.impedance
-    slow = 1 / (GRASP + rate[:, None])
-    each = np.diagonal(rest[..., :own], axis1=-2, axis2=-1) + slow[..., None] * port[:, None, :own] ** 2
-    alone = each[..., :: level.patterns].swapaxes(-1, -2)
-    weight = np.min(1 / (1 / known.weight + alone), axis=1)
-    heat, warmed, still = known.heat, None, None
-    if heat is not None:
-        rate, rest, heat = _shielded(boxes, known, own)
-        warmed = _heat_rows(heat, known.even - known.held[:, None] * port, level)
-    found = np.zeros((len(boxes), own, port.shape[1], level.rates))
-    for one, square, felt in zip(found, rest[..., :own], weight, strict=True):
-        one[:, :own] = np.moveaxis(residues(square, level.decay, felt), 0, -1)
-    if own < port.shape[1]:
-        found[:, :, own:] = np.moveaxis(past_residues(rest[..., own:], level.decay, weight), 1, -1)
-    if warmed is not None:
-        still = _still(found, warmed, known.capacity - known.held**2)
-    nothing = np.zeros((port.shape[1], level.rates)), np.zeros(level.rates)
-    return [
-        BodyResidues(
-            float(rate[b]),
-            port[b],
-            float(known.held[b]),
-            found[b],
-            *(nothing if warmed is None or still is None else (warmed[b], still[b])),
-        )
-        for b in range(len(boxes))
-    ]
+def touched_boxes(boxes: Sequence[TouchedBox], level: Resolution) -> list[BodyResidues]:
+    """Each box's residues at the level's rates."""
+    return [_residues(box, level) for box in boxes]
+
+
+def _residues(box: TouchedBox, level: Resolution) -> BodyResidues:
+    rest, heat, rate, port, held = _samples(box)
+    under = box.tips[: box.touched]
+    back = np.array([box.film * one.area for one in under])
+    weight, rate = _shielded(
+        GRASP, rest, heat, rate, port, held, back, np.array([one.weight for one in under])
+    )
+    found = touched_residues(rest, level.decay, weight)
+    if box.film == 0:
+        warmed, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
+    else:
+        total = np.concatenate([one.even for one in box.tips]) - held * port
+        capacity = box.material.volumetric_heat_capacity * math.prod(box.size)
+        warmed, still = _warmed(found, heat, total, capacity - held**2, *_heat_fit(level))
+    return BodyResidues(rate, port, held, found, warmed, still)
+
+
+def _samples(box: TouchedBox) -> _Samples:
+    """Of a box with its film on the patches too."""
+    material, size, film, patches, tips, touched = box
+    capacity = material.volumetric_heat_capacity
+    jumps, terms = along_axes([one.basis for one in tips])
+    diffusivity = material.conductivity / capacity
+    times, to_grasp, early = _transform(diffusivity)
+    kernel, rate, port, held, heat = box_kernel(
+        size, material.conductivity, capacity, film, patches, jumps, terms, touched, times
+    )
+    # before the first time a patch by itself is on a half-space
+    alone = 1 / (capacity * patches.areas[:touched] * math.sqrt(math.pi * diffusivity * times[0]))
+    heat = np.zeros((len(times), len(port))) if heat is None else heat
+    return _Samples(*_at_moments(kernel, heat, port, alone, to_grasp, early), rate, port, held)
 
 
 @lru_cache(maxsize=256)
@@ -135,83 +126,84 @@ def _transform(diffusivity: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return times[_BEFORE:], to_grasp, (sooner * np.sqrt(first / times[:_BEFORE])).sum(axis=1) - flat
 
 
-def _at_first(
-    kernel: np.ndarray, port: np.ndarray, patches: Patches, touched: int, reached: float, capacity: float
-) -> np.ndarray:
-    """(A M, N M) K/J of the first kernel (A M, N M) that falls as 1 / sqrt(t) before: of a patch by itself, that of a
-    half-space; what one has of another that it overlaps, all of it. reached: m2, diffusivity times that time."""
-    own, patterns = len(kernel), len(kernel) // touched
-    falling = kernel + port[:own, None] * port
-    for n, area in enumerate(patches.areas[:touched]):
-        part = slice(n * patterns, (n + 1) * patterns)
-        falling[part, part] = np.eye(patterns) / (capacity * area * math.sqrt(math.pi * reached))
-    return falling
+@njit(cache=True, error_model="numpy")
+def _at_moments(kernel, heat, port, alone, to_grasp, early):
+    """Impedance (S, A M, N M) K/W of a kernel (T, A M, N M) K/J that falls as 1 / sqrt(t) before the first time: of a
+    patch by itself as alone (A,) K/J says, of one that it overlaps all of it; and (S, N M) J/W of heat (T, N M) J/J.
+    port (N M,): of the slowest eigenfunction, left out of the kernel. to_grasp, early: _transform's."""
+    count, own, ports = kernel.shape
+    patterns = own // len(alone)
+    found, warmed = np.zeros((len(early), own, ports)), np.zeros((len(early), ports))
+    for s in range(len(early)):
+        for t in range(count):
+            for i in range(own):
+                for j in range(ports):
+                    found[s, i, j] += to_grasp[s, t] * kernel[t, i, j]
+            for j in range(ports):
+                warmed[s, j] += to_grasp[s, t] * heat[t, j]
+        for i in range(own):
+            for j in range(ports):
+                falling = kernel[0, i, j] + port[i] * port[j]
+                if i // patterns == j // patterns:
+                    falling = alone[i // patterns] if i == j else 0.0
+                found[s, i, j] += early[s] * falling
+    return found, warmed
 
 
-def _kernels(boxes: Sequence[TouchedBox]) -> _Kernels:
-    impedance, heats, rates, ports, helds = [], [], [], [], []
-    for material, size, film, patches, tips, touched in boxes:
-        capacity = material.volumetric_heat_capacity
-        jumps, terms = along_axes([one.basis for one in tips])
-        diffusivity = material.conductivity / capacity
-        times, to_grasp, early = _transform(diffusivity)
-        kernel, rate, port, held, heat = box_kernel(
-            size, material.conductivity, capacity, film, patches, jumps, terms, touched, times
-        )
-        at_moments = (to_grasp @ kernel.reshape(len(kernel), -1)).reshape(-1, *kernel.shape[1:])
-        at_moments += early[:, None, None] * _at_first(
-            kernel[0], port, patches, touched, diffusivity * times[0], capacity
-        )
-        impedance.append(at_moments)
-        heats.append(None if heat is None else to_grasp @ heat)
-        rates.append(rate)
-        ports.append(port)
-        helds.append(held)
-    count = boxes[0].touched
-    kept = boxes[0].tips[0].basis.shape[1]
-    return _Kernels(
-        np.array(impedance),
-        None if heats[0] is None else np.array(heats),
-        np.array(rates),
-        np.array(ports),
-        np.array(helds),
-        np.array([box.material.volumetric_heat_capacity * math.prod(box.size) for box in boxes]),
-        np.array([[one.weight for one in box.tips[:count]] for box in boxes]),
-        np.repeat([[one.area for one in box.tips] for box in boxes], kept, axis=1),
-        np.array([np.concatenate([one.even for one in box.tips]) for box in boxes]),
-    )
-
-
-def _shielded(
-    boxes: Sequence[TouchedBox], known: _Kernels, own: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The slowest rate, the samples without it, and the heat's, with no film on what is touched: a film's flow is put
-    back there in proportion to the temperature."""
-    assert known.heat is not None
-    port = known.port
-    slow = 1 / (GRASP + known.rate[:, None])
-    back = np.array([box.film for box in boxes])[:, None] * known.area[:, :own]
-    whole = known.impedance + slow[..., None, None] * (port[:, None, :own, None] * port[:, None, None, :])
-    heat = known.heat + slow[..., None] * (known.held[:, None] * port)[:, None]
-    rate = np.maximum(known.rate - np.sum(back * port[:, :own] ** 2, axis=1), 0.0)
-    # T = Z (q + back T)
-    opened = np.linalg.inv(np.eye(own) - whole[..., :own] * back[:, None, None])
-    whole = opened @ whole
-    heat = heat + ((heat[..., :own] * back[:, None])[..., None, :] @ whole)[..., 0, :]
-    square = whole[..., :own]
-    whole[..., :own] = (square + square.swapaxes(-1, -2)) / 2
-    slow = 1 / (GRASP + rate[:, None])
-    rest = whole - slow[..., None, None] * (port[:, None, :own, None] * port[:, None, None, :])
-    return rate, rest, heat - slow[..., None] * (known.held[:, None] * port)[:, None]
-
-
-def _heat_rows(heat: np.ndarray, total: np.ndarray, level: Resolution) -> np.ndarray:
-    """(B, N M, K) of the heat (B, S, N M) that follows each port's flow, whose sums are the total (B, N M): all heat
-    that goes in is in."""
-    seen, share = _heat_fit(level)
-    rows = heat.swapaxes(-1, -2) @ seen + total[..., None] * share
-    # what rounding has left of the total
-    return rows + (total - rows.sum(axis=-1))[..., None] * share
+@njit(cache=True, error_model="numpy")
+def _shielded(moments, rest, heat, rate, port, held, back, weight):
+    """Puts back into the samples rest (S, A M, N M) and heat (S, N M), in proportion to the temperature, what a film
+    takes from under the fingertips, back (A,) W/K. Returns what an error of impedance counts (S,) W/K, beside weight
+    (A, S) of the tips and the box as it was; and the slowest rate, as it is."""
+    own, ports = rest.shape[1:]
+    patterns = own // len(back)
+    counts, whole = np.empty(len(moments)), np.empty((own, ports))
+    square, lasting = np.empty((own, own)), rate
+    for i in range(own):
+        lasting -= back[i // patterns] * port[i] * port[i]
+    lasting = max(lasting, 0.0)
+    for s in range(len(moments)):
+        slow = 1 / (moments[s] + rate)
+        counts[s] = np.inf
+        for n in range(len(back)):
+            at = n * patterns
+            alone = rest[s, at, at] + slow * port[at] * port[at]
+            counts[s] = min(counts[s], 1 / (1 / weight[n, s] + alone))
+        if back[0] == 0.0:
+            continue
+        for i in range(own):
+            for j in range(ports):
+                whole[i, j] = rest[s, i, j] + slow * port[i] * port[j]
+            for j in range(own):
+                square[i, j] = (1.0 if i == j else 0.0) - whole[i, j] * back[j // patterns]
+        # T = Z (q + back T): no pivot is small, as the film would be one of a passive body
+        for p in range(own):
+            for i in range(p + 1, own):
+                factor = square[i, p] / square[p, p]
+                for j in range(p, own):
+                    square[i, j] -= factor * square[p, j]
+                for j in range(ports):
+                    whole[i, j] -= factor * whole[p, j]
+        for p in range(own - 1, -1, -1):
+            for i in range(p + 1, own):
+                for j in range(ports):
+                    whole[p, j] -= square[p, i] * whole[i, j]
+            for j in range(ports):
+                whole[p, j] /= square[p, p]
+        for j in range(ports):
+            heat[s, j] += slow * held * port[j]
+        for i in range(own):
+            square[0, i] = heat[s, i] * back[i // patterns]
+        now = 1 / (moments[s] + lasting)
+        for j in range(ports):
+            for i in range(own):
+                heat[s, j] += square[0, i] * whole[i, j]
+            heat[s, j] -= now * held * port[j]
+        for i in range(own):
+            for j in range(ports):
+                both = whole[i, j] if j >= own else (whole[i, j] + whole[j, i]) / 2
+                rest[s, i, j] = both - now * port[i] * port[j]
+    return counts, lasting
 
 
 @lru_cache(maxsize=8)
@@ -227,14 +219,35 @@ def _heat_fit(level: Resolution) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray((inverse[:-1, :-1] @ (columns * GRASP[:, None]).T).T), inverse[:-1, -1].copy()
 
 
-def _still(found: np.ndarray, warmed: np.ndarray, total: np.ndarray) -> np.ndarray:
-    """(B, K) J/K of what follows the air, and not the box's slowest state; its sum is the total (B,) where the air
-    takes any. A rate's share is what the touched ports tell: its heat row squared over its resistance, as in a state.
-    """
-    seen = np.diagonal(found[:, :, : found.shape[1]], axis1=1, axis2=2).swapaxes(-1, -2)
-    least = _SEEN_LEAST * seen.max(axis=(-2, -1), keepdims=True)
-    share = (warmed[:, : found.shape[1]] ** 2 / (seen + least)).sum(axis=1)
-    whole = share.sum(axis=1)
-    return (
-        share * np.divide(np.maximum(total, 0.0), whole, out=np.zeros_like(whole), where=whole > 0)[:, None]
-    )
+@njit(cache=True, error_model="numpy")
+def _warmed(found, heat, total, stored, seen, share):
+    """Rows (N M, K) of the heat (S, N M) that follows each port's flow, whose sums are the total (N M,): all heat that
+    goes in is in. And (K,) J/K of what follows the air, and not the box's slowest state, whose sum is what is stored
+    (J/K): a rate's share is what the touched ports tell, its heat row squared over its resistance, as in a state.
+    found: (A M, N M, K). seen, share: _heat_fit's."""
+    rates, own = len(share), len(found)
+    rows, still = np.zeros((len(total), rates)), np.zeros(rates)
+    for j in range(len(total)):
+        for s in range(len(heat)):
+            for k in range(rates):
+                rows[j, k] += heat[s, j] * seen[s, k]
+        for _ in range(2):  # the second time it is what rounding has left of the total
+            left = total[j]
+            if _ == 1:
+                for k in range(rates):
+                    left -= rows[j, k]
+            for k in range(rates):
+                rows[j, k] += left * share[k]
+    least, whole = 0.0, 0.0
+    for i in range(own):
+        for k in range(rates):
+            least = max(least, _SEEN_LEAST * found[i, i, k])
+    for i in range(own):
+        for k in range(rates):
+            still[k] += rows[i, k] * rows[i, k] / (found[i, i, k] + least)
+    for k in range(rates):
+        whole += still[k]
+    scale = max(stored, 0.0) / whole if whole > 0.0 else 0.0
+    for k in range(rates):
+        still[k] *= scale
+    return rows, still

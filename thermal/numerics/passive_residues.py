@@ -24,29 +24,82 @@ _TINY = 1e-300  # beside a zero
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """(K, N, N) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N)."""
-    size = np.sqrt(np.sum(columns**2, axis=0))
-    columns = columns / size
-    normal = columns.T @ columns
-    eye = np.eye(columns.shape[1])
-    solve = np.linalg.inv(normal + _PENALTY * eye)
-    first = np.linalg.inv(normal + _RIDGE * eye)
-    seen = np.tensordot(wanted, columns, axes=(0, 0))  # rates last
-    inside = seen @ first
-    _in_cone(solve, seen, inside)
-    return np.ascontiguousarray((inside / size).transpose(2, 0, 1))
-
-
-def free_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """(..., K, M) of any sign, whose sum with the columns (..., S, K) is nearest to what is wanted (..., S, M), but for
-    a ridge that keeps them small; a fit of its own for each leading index."""
-    size = np.sqrt(np.sum(columns**2, axis=-2))
-    columns = columns / size[..., None, :]
-    turned = columns.swapaxes(-1, -2)
-    solve = np.linalg.inv(turned @ columns + _FREE_RIDGE * np.eye(columns.shape[-1]))
-    return solve @ (turned @ wanted) / size[..., None]
+    return np.ascontiguousarray(port_residues(columns, wanted).transpose(2, 0, 1))
 
 
 @njit(cache=True, error_model="numpy")
+def port_residues(columns, wanted):
+    """(A, N, K), whose sum with the columns (S, K) is nearest to what is wanted (S, A, N) of A ports: by flow through
+    these themselves, which come first among the N, positive semidefinite; by flow through others, once, of any sign,
+    but for a ridge that keeps them small."""
+    samples, rates = columns.shape
+    own, ports = wanted.shape[1:]
+    scaled, size = np.empty((samples, rates)), np.zeros(rates)
+    for s in range(samples):
+        for k in range(rates):
+            size[k] += columns[s, k] * columns[s, k]
+    for s in range(samples):
+        for k in range(rates):
+            scaled[s, k] = columns[s, k] / np.sqrt(size[k])
+    normal, solve, first = np.zeros((rates, rates)), np.empty((rates, rates)), np.empty((rates, rates))
+    for s in range(samples):
+        for k in range(rates):
+            for m in range(rates):
+                normal[k, m] += scaled[s, k] * scaled[s, m]
+    seen, found = np.zeros((own, ports, rates)), np.zeros((own, ports, rates))
+    for s in range(samples):
+        for i in range(own):
+            for j in range(ports):
+                for k in range(rates):
+                    seen[i, j, k] += wanted[s, i, j] * scaled[s, k]
+    square, inside = np.empty((own, own, rates)), np.zeros((own, own, rates))
+    _inverse(normal, _RIDGE, first)
+    for i in range(own):
+        for j in range(own):
+            for k in range(rates):
+                square[i, j, k] = seen[i, j, k]
+            for m in range(rates):
+                for k in range(rates):
+                    inside[i, j, k] += seen[i, j, m] * first[m, k]
+    _inverse(normal, _PENALTY, solve)
+    _in_cone(solve, square, inside)
+    if own < ports:
+        _inverse(normal, _FREE_RIDGE, first)
+    for i in range(own):
+        for j in range(ports):
+            for k in range(rates):
+                found[i, j, k] = inside[i, j, k] if j < own else 0.0
+            if j >= own:
+                for m in range(rates):
+                    for k in range(rates):
+                        found[i, j, k] += seen[i, j, m] * first[m, k]
+            for k in range(rates):
+                found[i, j, k] /= np.sqrt(size[k])
+    return found
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _inverse(matrix, ridge, out):
+    """Fills out with the inverse of a matrix that is symmetric and nowhere negative, plus a ridge on its diagonal."""
+    count = len(matrix)
+    for i in range(count):
+        for j in range(count):
+            out[i, j] = matrix[i, j]
+        out[i, i] += ridge
+    for p in range(count):
+        pivot = 1 / out[p, p]
+        out[p, p] = 1.0
+        for j in range(count):
+            out[p, j] *= pivot
+        for i in range(count):
+            if i != p:
+                factor = out[i, p]
+                out[i, p] = 0.0
+                for j in range(count):
+                    out[i, j] -= factor * out[p, j]
+
+
+@njit(cache=True, inner=True, error_model="numpy")
 def _in_cone(solve, seen, inside):
     """Turns the first guess inside (N, N, K) into the answer. solve: (K, K) symmetric. seen: (N, N, K)."""
     ports, rates = seen.shape[1], seen.shape[2]

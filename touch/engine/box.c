@@ -7,8 +7,8 @@ exponentials.py. */
 
 #include "heat.h"
 
-enum { MODES = 12, STEPS = 20 };
-#define SWITCH 0.03   /* diffusion length squared over length squared from which eigenfunctions serve */
+enum { MODES = 24, STEPS = 20 };
+#define SWITCH 0.0075 /* diffusion length squared over length squared from which eigenfunctions serve */
 #define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
 #define RIDGE 1e-4    /* of the first guess, without constraint */
@@ -60,8 +60,7 @@ static double unbounded(double d, double scale, int order) {
 
 static double images(double one, double other, int other_order, int order, double length, double scale) {
   double near = one - other, far = one + other;
-  double value = unbounded(near, scale, order) + beyond(near - 2 * length, -1, scale, order) +
-                 beyond(near + 2 * length, 1, scale, order);
+  double value = unbounded(near, scale, order);
   return (other_order ? -value : value) + beyond(far, 1, scale, order) + beyond(far - 2 * length, -1, scale, order);
 }
 

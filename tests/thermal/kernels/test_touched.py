@@ -1,4 +1,4 @@
-"""Residues of boxes that are made many at once."""
+"""Residues of boxes as they are touched."""
 
 from __future__ import annotations
 
@@ -71,20 +71,19 @@ def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
     """Of patches by themselves and of those that they overlap, which feel each other at once, beside many times from
     very early on."""
     box = touched(name, 15.0)
-    few = touched_module._kernels([box])
+    few = touched_module._samples(box)
     touched_module._transform.cache_clear()
     monkeypatch.setattr(touched_module, "_SPACING", 0.6)
     monkeypatch.setattr(touched_module, "_UNFELT", 1e-14)
     monkeypatch.setattr(touched_module, "_FIRST", 1e-9)
-    many = touched_module._kernels([box])
+    many = touched_module._samples(box)
     touched_module._transform.cache_clear()
-    exact = many.impedance[0]
-    whole = np.abs(exact[:, 0, 0] + many.port[0, 0] ** 2 / (GRASP + many.rate[0]) + TIP.impedance)
-    apart = np.abs(few.impedance[0] - exact) / whole[:, None, None]
+    exact = many.impedance
+    whole = np.abs(exact[:, 0, 0] + many.port[0] ** 2 / (GRASP + many.rate) + TIP.impedance)
+    apart = np.abs(few.impedance - exact) / whole[:, None, None]
     assert apart[..., :6].max() < 5e-4
     assert apart.max() < 1e-2  # of what flowed elsewhere once, at the fastest moments
-    assert many.heat is not None and few.heat is not None
-    assert (np.abs(few.heat - many.heat)[0] * GRASP[:, None]).max() < 1e-3
+    assert (np.abs(few.heat - many.heat) * GRASP[:, None]).max() < 1e-3
 
 
 @pytest.mark.parametrize("film", [5.0, 300.0])
