@@ -263,13 +263,12 @@ class BoxHeat:
     def _make(self, touched: Mapping[int, Touched]) -> None:
         """The tables of the rows' boxes and elements are those of these places."""
         tables, asked = self.tables, {}
-        with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-            for row, now in touched.items():
-                if now != self._touched[row]:
-                    self._prints[row] = self._pressed(row, now)
-                    asked[row] = self._asked(row, now)
-            for row, found in zip(asked, _networks(list(asked.values())), strict=True):
-                set_body(tables, row, found, touched[row].numbers())
+        for row, now in touched.items():
+            if now != self._touched[row]:
+                self._prints[row] = self._pressed(row, now)
+                asked[row] = self._asked(row, now)
+        for row, found in zip(asked, _networks(list(asked.values())), strict=True):
+            set_body(tables, row, found, touched[row].numbers())
         for row, now in touched.items():
             self._set_contacts(row, now)
             set_gram(tables, row)
@@ -349,9 +348,9 @@ def _print(
     shared: bool,
 ) -> _Print:
     """shared: its patterns are those of the whole face anywhere."""
-    foot, level = _footprint(place, size, stack.width), FIXED_LEVEL
+    foot = _footprint(place, size, stack.width)
     if shared:
-        return _Print(place, behind, foot, tip(stack, _whole(stack), level))
+        return _Print(place, behind, foot, tip(stack, _whole(stack), FIXED_LEVEL))
     spot = Spot(
         material.conductivity,
         material.volumetric_heat_capacity,
@@ -361,7 +360,13 @@ def _print(
         None if behind is None else _footprint(behind, size, stack.width),
     )
     # few are made anew: a later touch nearly as far from the ends shares its element with this one
-    return _Print(place, behind, foot, tip_at(stack, spot.alike(stack.width), level))
+    return _Print(place, behind, foot, _tip(stack, spot.alike(stack.width)))
+
+
+@lru_cache(maxsize=1024)
+def _tip(stack: SensorStack, spot: Spot) -> Tip:
+    with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+        return tip_at(stack, spot, FIXED_LEVEL)
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:
@@ -387,6 +392,12 @@ class _Asked(NamedTuple):
     prints: tuple[_Print, ...]
     touched: int
 
+    def key(self) -> tuple:
+        """Of what its network depends on."""
+        made = self.material.conductivity, self.material.volumetric_heat_capacity
+        prints = tuple((each.place.face, each.foot, each.tip) for each in self.prints)
+        return made, self.size, self.film, self.touched, prints
+
     def box(self) -> TouchedBox:
         feet = [each.foot for each in self.prints]
         patches = Patches(
@@ -398,19 +409,20 @@ class _Asked(NamedTuple):
         return TouchedBox(self.material, self.size, self.film, patches, tips, self.touched)
 
 
-_made: dict[_Asked, BodyResidues] = {}
+_made: dict[tuple, BodyResidues] = {}
 _making = Lock()
 
 
 def _networks(asked: Sequence[_Asked]) -> list[BodyResidues]:
     """Of each; the _KEPT that were made last are known."""
-    found = {each: _made.get(each) for each in asked}
-    new = [each for each, known in found.items() if known is None]
-    made = touched_boxes([each.box() for each in new], FIXED_LEVEL)
-    found.update(zip(new, made, strict=True))
-    with _making:
-        for each, network in zip(new, made, strict=True):
-            _made[each] = network
-        while len(_made) > _KEPT:
-            del _made[next(iter(_made))]
-    return [network for each in asked if (network := found[each]) is not None]
+    keys = [each.key() for each in asked]
+    found = {key: _made.get(key) for key in keys}
+    new = {key: each.box() for key, each in zip(keys, asked, strict=True) if found[key] is None}
+    if new:
+        made = dict(zip(new, touched_boxes(list(new.values()), FIXED_LEVEL), strict=True))
+        found.update(made)
+        with _making:
+            _made.update(made)
+            while len(_made) > _KEPT:
+                del _made[next(iter(_made))]
+    return [network for key in keys if (network := found[key]) is not None]

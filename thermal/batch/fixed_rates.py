@@ -33,6 +33,7 @@ slower ones still, the others would be too far from each other for metals under 
 SHARED = FIXED_LEVEL.decay
 """1/s: the rates of all networks."""
 _PAIRS = len(POLES)
+_POLES, _WEIGHTS = POLES[:, None], WEIGHTS[:, None]
 _FADING, _SEEN, _PUSHED = 1, 2, 2 + 2 * _PAIRS
 _RATE_ROWS = (
     2 + 4 * _PAIRS
@@ -163,14 +164,12 @@ def fixed_tip_heat(tables: FixedTables, number: int) -> np.ndarray:
 
 
 def _rate_table(rates: np.ndarray, dt: float) -> np.ndarray:
-    """(14, ...) of rates 1/s: themselves, what of a state is left after a step, how it is seen at the poles, and what
-    flows at the poles push it by."""
-    rates = np.asarray(rates, float)
-    scale = 1 / (POLES.reshape(-1, *(1,) * rates.ndim) + dt * rates)
-    weighted = -2 * dt * np.moveaxis(WEIGHTS * np.moveaxis(scale, 0, -1), -1, 0)
+    """(14, n) of rates (n,) 1/s: themselves, what of a state is left after a step, how it is seen at the poles, and
+    what flows at the poles push it by."""
+    scale = 1 / (_POLES + dt * rates)
+    weighted = -2 * dt * (_WEIGHTS * scale)
     left = 1 - rates * weighted.real.sum(axis=0)
-    parts = rates[None], left[None], scale.real, scale.imag, weighted.real, -weighted.imag
-    return np.concatenate(parts)
+    return np.concatenate((rates[None], left[None], scale.real, scale.imag, weighted.real, -weighted.imag))
 
 
 def tip_residues(side: Side) -> np.ndarray:
@@ -190,7 +189,7 @@ def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[
     ports = (np.array(places)[:, None] * patterns + np.arange(patterns)).ravel()
     touched = ports[: len(box.residues)]
     slow[:] = body[:] = 0.0
-    slow[:_RATE_ROWS] = _rate_table(np.asarray(box.rate), tables.dt)
+    slow[:_RATE_ROWS] = _rate_table(np.array([box.rate]), tables.dt)[:, 0]
     slow[HELD], slow[HELD + 1 + ports] = box.held, box.ports
     square = body[: most * most].reshape(most, most, -1)
     square[touched[:, None], ports] = box.residues

@@ -11,6 +11,7 @@ E: nodes, F: functions along an axis, P: patterns.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -64,13 +65,21 @@ def along_axes(bases: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Combinations (P, M) of the patterns of each of N patches, the even pattern first, as sums of functions along one
     axis each: jumps (N, 2, M, E) of these, the even one first, and terms (M, 2, 2), the functions along the two axes
     whose products add up to a combination; -1 for none."""
-    shares = np.array(bases).transpose(0, 2, 1)
-    count = len(FUNCTIONS)
-    jumps = np.empty((len(shares), 2, shares.shape[1], JUMPS.shape[1]))
-    jumps[:, 0] = shares[..., :count] @ JUMPS
-    jumps[:, 1] = shares[..., count:] @ JUMPS[1:]
-    jumps[:, :, 0] = JUMPS[0]
-    terms = np.zeros((shares.shape[1], 2, 2), int)
-    terms[:, 0, 0] = terms[:, 1, 1] = np.arange(len(terms))
+    return np.array([basis_jumps(basis) for basis in bases]), basis_terms(bases[0].shape[1])
+
+
+def basis_jumps(basis: np.ndarray) -> np.ndarray:
+    """(2, M, E) of one patch's combinations."""
+    shares, count = basis.T, len(FUNCTIONS)
+    jumps = np.array((shares[:, :count] @ JUMPS, shares[:, count:] @ JUMPS[1:]))
+    jumps[:, 0] = JUMPS[0]
+    return jumps
+
+
+@lru_cache(maxsize=16)
+def basis_terms(kept: int) -> np.ndarray:
+    """(M, 2, 2) of so many combinations."""
+    terms = np.zeros((kept, 2, 2), int)
+    terms[:, 0, 0] = terms[:, 1, 1] = np.arange(kept)
     terms[0, 1] = -1
-    return jumps, terms
+    return terms

@@ -23,7 +23,7 @@ from ..matter import Material
 from .box import Patches, box_kernel
 from .contact import Resolution, Tip
 from .exponentials import touched_residues
-from .patterns import along_axes
+from .patterns import basis_jumps, basis_terms
 from .samples import GRASP
 
 _SPACING = 1.0  # of times in ln t: the transforms at GRASP are known to exp(-pi^2 / spacing), 5e-5
@@ -100,7 +100,7 @@ def _samples(box: TouchedBox) -> _Samples:
     """Of a box with its film on the patches too."""
     material, size, film, patches, tips, touched = box
     capacity = material.volumetric_heat_capacity
-    jumps, terms = along_axes([one.basis for one in tips])
+    jumps, terms = np.array([_jumps(one) for one in tips]), basis_terms(tips[0].basis.shape[1])
     diffusivity = material.conductivity / capacity
     times, to_grasp, early = _transform(diffusivity)
     kernel, rate, port, held, heat = box_kernel(
@@ -110,6 +110,11 @@ def _samples(box: TouchedBox) -> _Samples:
     alone = 1 / (capacity * patches.areas[:touched] * math.sqrt(math.pi * diffusivity * times[0]))
     heat = np.zeros((len(times), len(port))) if heat is None else heat
     return _Samples(*_at_moments(kernel, heat, port, alone, to_grasp, early), rate, port, held)
+
+
+@lru_cache(maxsize=1024)
+def _jumps(one: Tip) -> np.ndarray:
+    return basis_jumps(one.basis)
 
 
 @lru_cache(maxsize=256)

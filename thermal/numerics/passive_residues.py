@@ -24,7 +24,7 @@ _TINY = 1e-300  # beside a zero
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """(K, N, N) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N)."""
-    return np.ascontiguousarray(port_residues(columns, wanted).transpose(2, 0, 1))
+    return np.ascontiguousarray(port_residues(columns, np.ascontiguousarray(wanted)).transpose(2, 0, 1))
 
 
 @njit(cache=True, error_model="numpy")
