@@ -109,7 +109,8 @@ def _samples(box: TouchedBox) -> _Samples:
     # before the first time a patch by itself is on a half-space
     alone = 1 / (capacity * patches.areas[:touched] * math.sqrt(math.pi * diffusivity * times[0]))
     heat = np.zeros((len(times), len(port))) if heat is None else heat
-    return _Samples(*_at_moments(kernel, heat, port, alone, to_grasp, early), rate, port, held)
+    impedance, heat = _at_moments(kernel, heat, port, alone, to_grasp, early)
+    return _Samples(impedance, heat, rate, port, held)
 
 
 @lru_cache(maxsize=1024)

@@ -7,6 +7,7 @@ temperature drop after a touch, at the conductances and times that matter; both 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -126,6 +127,13 @@ def _cases(fingertips: int, demand: Demand) -> list[tuple[float, float]]:
     return [case for pair in zip(alone, both, strict=True) for case in pair]
 
 
+@lru_cache(maxsize=64)
+def _times(horizon: float) -> np.ndarray:
+    times = np.geomspace(FIRST, max(horizon, 2 * FIRST), 40)
+    times.setflags(write=False)
+    return times
+
+
 def _response(
     rates: np.ndarray,
     ports: np.ndarray,
@@ -135,7 +143,7 @@ def _response(
     first: float,
     second: float,
 ) -> np.ndarray:
-    times = np.geomspace(FIRST, max(demand.horizon, 2 * FIRST), 40)
+    times = _times(demand.horizon)
     modes = ports.shape[1] // geometry.fingertips
     weights = np.zeros(ports.shape[1])
     drive = np.zeros_like(weights)

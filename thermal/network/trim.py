@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -43,8 +44,8 @@ def trimmed(
 ) -> tuple[ContactSystem, float]:
     """The cheapest system found that is within K of the whole one, and how far it is off."""
     patterns = sensor.ports.shape[1]
-    whole = np.eye(sensor.order), np.eye(box.order)
-    exact = drops(*_together(sensor, box, whole, geometry.fingertips), geometry, demand)
+    whole = _together(_part(sensor, np.eye(sensor.order)), _part(box, np.eye(box.order)), geometry.fingertips)
+    exact = drops(*whole, geometry, demand)
     best, least = join(sensor, box, patterns), 0.0
     for count in range(1, patterns + 1):
         bodies = _on_first(geometry, sensor, box, count, demand)
@@ -62,25 +63,33 @@ def trimmed(
     return best, least
 
 
-def _together(
-    sensor: ThermalNetwork, box: ThermalNetwork, vectors: tuple[np.ndarray, np.ndarray], fingertips: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rates, ports and the first fingertip's drop of the whole, each body on those orthonormal states."""
-    parts = []
-    for network, basis in zip((sensor, box), vectors, strict=True):
-        rates, turn = np.linalg.eigh((basis.T * network.rates) @ basis)
-        parts.append((rates, basis @ turn))
-    (rates_of_tip, on_sensor), (rates_of_box, on_box) = parts
-    ports = on_sensor.T @ sensor.ports
-    first, count = len(rates_of_box), len(rates_of_tip)
+class _Part(NamedTuple):
+    """A body on its own eigenstates: rates (K,) 1/s, ports (K, M), and the drop's row (K,), zeros of an object."""
+
+    rates: np.ndarray
+    ports: np.ndarray
+    drop: np.ndarray
+
+
+def _part(network: ThermalNetwork, basis: np.ndarray) -> _Part:
+    """The body on those orthonormal states (n, K)."""
+    rates, turn = np.linalg.eigh((basis.T * network.rates) @ basis)
+    on = basis @ turn
+    drop = network.outputs["drop"] @ on if "drop" in network.outputs else np.zeros(len(rates))
+    return _Part(rates, on.T @ network.ports, drop)
+
+
+def _together(sensor: _Part, box: _Part, fingertips: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rates, ports and the first fingertip's drop of the whole."""
+    first, count = len(box.rates), len(sensor.rates)
     total = np.zeros((first + fingertips * count, box.ports.shape[1]))
-    total[:first] = on_box.T @ box.ports
+    total[:first] = box.ports
+    each = sensor.ports.shape[1]
     for f in range(fingertips):
-        states = slice(first + f * count, first + (f + 1) * count)
-        total[states, f * ports.shape[1] : (f + 1) * ports.shape[1]] = -ports
+        total[first + f * count : first + (f + 1) * count, f * each : (f + 1) * each] = -sensor.ports
     row = np.zeros(len(total))
-    row[first : first + count] = sensor.outputs["drop"] @ on_sensor
-    return np.concatenate((rates_of_box, np.tile(rates_of_tip, fingertips))), total, row
+    row[first : first + count] = sensor.drop
+    return np.concatenate((box.rates, np.tile(sensor.rates, fingertips))), total, row
 
 
 def _on_first(
@@ -134,6 +143,7 @@ def _cheapest(
     most = tuple(basis.vectors.shape[1] for basis in bodies.bases)
     fewest = tuple(basis.still + 1 for basis in bodies.bases)
     tried: dict[tuple[int, int], float] = {}
+    parts: dict[tuple[int, int], _Part] = {}
 
     def kept(orders: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
         sensor, box = (basis.vectors[:, :n] for basis, n in zip(bodies.bases, orders, strict=True))
@@ -141,7 +151,11 @@ def _cheapest(
 
     def at(orders: tuple[int, int]) -> float:
         if orders not in tried:
-            system = _together(bodies.sensor, bodies.box, kept(orders), geometry.fingertips)
+            both = zip((bodies.sensor, bodies.box), kept(orders), strict=True)
+            for body, (network, basis) in enumerate(both):
+                if (body, orders[body]) not in parts:
+                    parts[body, orders[body]] = _part(network, basis)
+            system = _together(parts[0, orders[0]], parts[1, orders[1]], geometry.fingertips)
             tried[orders] = float(np.abs(drops(*system, geometry, demand) - exact).max())
         return tried[orders]
 
