@@ -164,14 +164,14 @@ class SimulatedPlant:
             step = self.heat.advance(motions[0].normal, motions[0].place)
         else:
             scene = self.heat.advance(
-                np.stack([motion.normal for motion in motions], axis=1),
-                np.stack([motion.place for motion in motions], axis=1),
+                _by_object([motion.normal for motion in motions]),
+                _by_object([motion.place for motion in motions]),
             )
             step, owner = scene.fingertips, scene.owner
-        force = np.stack([motion.force for motion in motions], axis=1)
+        force = _by_object([motion.force for motion in motions])
         if not self._thermostats.ideal:
             self._regulate(step, np.linalg.norm(_summed(force), axis=2))
-        heights = np.stack([motion.object_height for motion in motions], axis=1)
+        heights = _by_object([motion.object_height for motion in motions])
         truth, error = self._truth(heights, force, step, scene)
         return Reading(
             opening=motions[0].opening,
@@ -330,6 +330,11 @@ class SimulatedPlant:
             truth["touched"] = scene.owner.copy()
         self.layout.extend(truth, self._task, lift, force)
         return truth, error
+
+
+def _by_object(each: list[np.ndarray]) -> np.ndarray:
+    """(B, O, ...) from each object's (B, ...)."""
+    return each[0][:, None] if len(each) == 1 else np.stack(each, axis=1)
 
 
 def _summed(force: np.ndarray) -> np.ndarray:

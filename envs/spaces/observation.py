@@ -46,9 +46,8 @@ class Observer:
     def __init__(self, num_envs: int) -> None:
         self.space = observation_space()
         self.history = np.full((num_envs, 2, HISTORY), np.nan)  # nan: nothing observed yet
-        self.last: tuple[np.ndarray, ...] = tuple(
-            np.zeros((num_envs, *shape), np.float32) for shape in _SHAPES.values()
-        )
+        self.last: tuple[np.ndarray, ...] = (np.zeros((num_envs, len(_LOW)), np.float32),)
+        """What was observed last: all numbers of an environment in a row; more arrays follow in a subclass."""
 
     def restart(self, rows: np.ndarray) -> None:
         """Forgets the rows' history: the next reading's first voltage stands for it."""
@@ -61,21 +60,20 @@ class Observer:
         begins = np.isnan(self.history[:, 0, 0]) & seen
         if begins.any():
             self.history[begins] = samples[begins, :, :1]
-        longer = np.concatenate((self.history, samples), axis=2)
-        np.copyto(self.history, longer[:, :, -HISTORY:], where=seen[:, None, None])
-        gripper = np.empty((len(seen), 4))
-        gripper[:, 0], gripper[:, 1] = reading.opening, reading.opening_rate
-        gripper[:, 2], gripper[:, 3] = reading.height, force_limit
-        values = (gripper, reading.force, self.history, reading.thermostat)
-        observation = {}
-        # More keys follow in a subclass.
-        for (name, (low, high)), last, value in zip(_BOUNDS.items(), self.last, values, strict=False):
-            rows = seen.reshape(-1, *(1,) * (value.ndim - 1))
-            # np.clip takes five times as long for few numbers. Rounding to float32 keeps the bounds: those of the space
-            # are rounded alike.
-            np.copyto(last, np.minimum(np.maximum(value, low), high), where=rows, casting="same_kind")
-            observation[name] = last.copy()
-        return observation
+        history = np.concatenate((self.history[:, :, samples.shape[2] :], samples), axis=2)
+        values = np.empty(self.last[0].shape)
+        values[:, 0], values[:, 1] = reading.opening, reading.opening_rate
+        values[:, 2], values[:, 3] = reading.height, force_limit
+        rows = len(values)
+        for (_, part, _), value in zip(_PARTS[1:], (reading.force, history, reading.thermostat), strict=True):
+            values[:, part] = value.reshape(rows, -1)
+        # Rounding to float32 keeps the bounds: those of the space are rounded alike.
+        told = np.minimum(np.maximum(values, _LOW), _HIGH).astype(np.float32)
+        if not seen.all():
+            kept = ~seen
+            history[kept], told[kept] = self.history[kept], self.last[0][kept]
+        self.history, self.last = history, (told.copy(), *self.last[1:])
+        return {name: told[:, part].reshape(rows, *shape) for name, part, shape in _PARTS}
 
 
 _SHAPES = {"gripper": (4,), "force": (2, 3), "voltage": (2, HISTORY), "thermostat": (2,)}
@@ -88,3 +86,20 @@ _BOUNDS: dict[str, tuple[Any, Any]] = {
     "voltage": (-MOST_VOLTAGE, MOST_VOLTAGE),
     "thermostat": THERMOSTAT,
 }
+
+
+def _parts() -> tuple[tuple[str, slice, tuple[int, ...]], ...]:
+    """Of each key its name, where it is in a row, and its shape."""
+    ends = np.cumsum([np.prod(shape) for shape in _SHAPES.values()]).tolist()
+    places = [slice(begin, end) for begin, end in zip((0, *ends), ends, strict=False)]
+    return tuple((name, place, shape) for (name, shape), place in zip(_SHAPES.items(), places, strict=True))
+
+
+def _row(end: int) -> np.ndarray:
+    """The lower (0) or upper (1) bounds of a row's numbers."""
+    return np.concatenate(
+        [np.broadcast_to(_BOUNDS[name][end], shape).ravel() for name, shape in _SHAPES.items()]
+    )
+
+
+_PARTS, _LOW, _HIGH = _parts(), _row(0), _row(1)

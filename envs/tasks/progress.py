@@ -30,4 +30,4 @@ def step_reward(
     before: np.ndarray, after: np.ndarray, success: np.ndarray, failed: np.ndarray, spent: np.ndarray
 ) -> np.ndarray:
     """(B,), what a step pays that took progress from `before` to `after`. spent: share of the time limit gone by."""
-    return ~failed * after - before + success * SUCCESS * (1 - LATE * spent) + failed * FAILURE
+    return np.where(failed, FAILURE, after) - before + success * (SUCCESS * (1 - LATE * spent))

@@ -13,9 +13,11 @@ C: patterns of the contact patch, S: samples.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ..matter import Layer, Material, Mode, SensorStack, Shape
 from .impedance import (
@@ -137,11 +139,20 @@ def sample_bodies(
 
 
 def _sensor(geometry: Geometry, s: np.ndarray) -> BodySamples:
-    layers = geometry.stack.layers[::-1]
-    section, patch = geometry.element_section, geometry.patch
-    impedance = layered_impedance(layers, "isothermal", section, patch, s)
+    return _sensor_alone(geometry.stack, geometry.element_section, geometry.patch, tuple(s.tolist()))
+
+
+@lru_cache(maxsize=64)
+def _sensor_alone(
+    stack: SensorStack, section: Section, patch: Patch, shifts: tuple[float, ...]
+) -> BodySamples:
+    """It does not depend on the object, and takes most of the time of a network: all objects share it. Not to be
+    written to."""
+    layers, s = stack.layers[::-1], np.array(shifts)
+    with threadpool_limits(1, "blas"):  # who asks first decides no bits of those who ask later
+        impedance = layered_impedance(layers, "isothermal", section, patch, s)
     temperatures, flows = stack_profile(layers, "isothermal", s[:, None], np.zeros(1))
-    sensed = len(layers) - 1 - geometry.stack.sensed
+    sensed = len(layers) - 1 - stack.sensed
     drop = (temperatures[sensed + 1] - temperatures[sensed])[:, 0] / section.area
     stored = ((flows[0] - flows[-1])[:, 0]) / s
     outputs = {"drop": np.outer(drop, patch.uniform), "element": np.outer(stored, patch.uniform)}
