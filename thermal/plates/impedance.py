@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -25,6 +26,7 @@ from .section import Rectangle, Section
 Far = Literal["adiabatic", "isothermal"]
 
 _LOG_STEP = 0.3  # trapezoidal rule in ln(tau): relative error exp(-pi^2 / step)
+_NODES = 16  # of the rule, in whole numbers of which a section's kernel is computed
 _NEGLIGIBLE_DEPTH = 20.0  # wave numbers times depth beyond which the far side is not seen, exp(-2 * 20)
 _MOST_MODES = 5e4  # of a rectangle, summed one by one; more are interpolated
 _DECAYED = 45.0  # exponent of a kernel that is below round-off
@@ -75,9 +77,10 @@ def _transform(layer: Layer, section: Section, patch: Patch, s: np.ndarray, far:
     widths = np.diff(patch.edges)
     first = (1e-4 * widths.min()) ** 2
     longest = _DECAYED / (p.min() + _slowest(layer.thickness, section, far))
-    u = np.arange(np.log(first), np.log(longest), _LOG_STEP)
-    tau = np.exp(u)
-    kernel = section.kernel(patch, tau) * _depth_kernel(layer.thickness, far, tau)[:, None, None]
+    begin = float(np.log(first))
+    tau = np.exp(np.arange(begin, np.log(longest), _LOG_STEP))
+    lateral = _lateral_kernel(section, patch, begin, -len(tau) // _NODES * -_NODES)
+    kernel = lateral[: len(tau)] * _depth_kernel(layer.thickness, far, tau)[:, None, None]
     if far == "adiabatic":
         uniform = patch.uniform
         kernel -= np.outer(uniform, uniform) * patch.area / (section.area * layer.thickness)
@@ -95,6 +98,14 @@ def _transform(layer: Layer, section: Section, patch: Patch, s: np.ndarray, far:
             patch.area / (section.area * layer.thickness) * _LOG_STEP * first / np.expm1(_LOG_STEP)
         )
     return Sampled(value / layer.conductivity, slope / layer.conductivity / layer.diffusivity)
+
+
+@lru_cache(maxsize=8)
+def _lateral_kernel(section: Section, patch: Patch, begin: float, count: int) -> np.ndarray:
+    """(count, C, C): the section's kernel at the first nodes of the rule, which materials of all kinds share. Not to be
+    written to."""
+    end = begin + (count - 0.5) * _LOG_STEP
+    return section.kernel(patch, np.exp(np.arange(begin, end, _LOG_STEP)))
 
 
 def _slowest(thickness: float, section: Section, far: Far | None) -> float:
