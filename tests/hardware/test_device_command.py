@@ -47,6 +47,7 @@ def told(capsys: pytest.CaptureFixture[str], *argv: str, status: int = 0) -> dic
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_the_page_s_code_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -31,6 +31,7 @@ from .test_fingertips import attended, lockstep, ramp
 OFF = pytest.approx((np.nan, np.nan), nan_ok=True)
 
 
+@pytest.mark.slow
 def test_over_temperature_stays_until_it_is_cleared() -> None:
     """No setpoint ends it, nor a driver or a device that starts anew; nor can it be ended while it is hot."""
     device = EmulatedFingertips()

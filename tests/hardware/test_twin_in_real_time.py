@@ -123,6 +123,7 @@ def test_a_hand_is_one_gripper() -> None:
         SimulatedHand(simulated_plant("simulated", 2, material="wood"))
 
 
+@pytest.mark.slow
 def test_the_page_s_grasp_beside_a_simulation(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The two commands of docs/hardware.md, with shorter times."""
     page = (Path(__file__).parents[2] / "docs" / "hardware.md").read_text(encoding="utf-8")

@@ -100,7 +100,7 @@ def _transform(layer: Layer, section: Section, patch: Patch, s: np.ndarray, far:
     return Sampled(value / layer.conductivity, slope / layer.conductivity / layer.diffusivity)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=3)  # of up to 20 MB
 def _lateral_kernel(section: Section, patch: Patch, begin: float, count: int) -> np.ndarray:
     """(count, C, C): the section's kernel at the first nodes of the rule, which materials of all kinds share. Not to be
     written to."""

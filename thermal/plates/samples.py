@@ -142,7 +142,7 @@ def _sensor(geometry: Geometry, s: np.ndarray) -> BodySamples:
     return _sensor_alone(geometry.stack, geometry.element_section, geometry.patch, tuple(s.tolist()))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=8)  # of up to 7 MB
 def _sensor_alone(
     stack: SensorStack, section: Section, patch: Patch, shifts: tuple[float, ...]
 ) -> BodySamples:

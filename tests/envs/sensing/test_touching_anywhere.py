@@ -114,7 +114,8 @@ def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
     assert np.all(felt["full"][1] - felt["cup"][1] > 0.2e-3)
 
 
-@pytest.mark.parametrize("moves", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("moves", [False, True])
 def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
     """Through a wall of .6 mm, so that a finger draws more than the wall alone has; the books hold, also when the
     finger goes on to another place and while ice melts."""

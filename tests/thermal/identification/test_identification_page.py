@@ -12,6 +12,7 @@ DOCS = Path(__file__).parents[3] / "docs"
 PAGE = (DOCS / "identification.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
     blocks = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     assert blocks

@@ -49,7 +49,12 @@ def volts(material: str, difference: float, rng: np.random.Generator, conductanc
 
 
 @pytest.mark.parametrize(
-    ("mode", "name", "conductance"), [("T", "wood", 2e4), ("T", "stainless_steel", 1e4), ("O", "glass", 3e3)]
+    ("mode", "name", "conductance"),
+    [
+        ("T", "wood", 2e4),
+        ("T", "stainless_steel", 1e4),
+        pytest.param("O", "glass", 3e3, marks=pytest.mark.slow),
+    ],
 )
 def test_curves_are_those_of_the_semi_analytic_solution(mode: Mode, name: str, conductance: float) -> None:
     t = np.array([0.1, 0.5, 2.0])
@@ -115,6 +120,7 @@ def test_materials_are_those_of_brute_force(
     assert np.quantile(apart, 0.9) < 0.06
 
 
+@pytest.mark.slow
 def test_intervals_hold_nine_of_ten_fresh_objects(identifier: thermal.Identifier) -> None:
     drawn = draw_objects(np.random.default_rng(3), SETUP, 200)
     held = []

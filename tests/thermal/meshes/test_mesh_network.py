@@ -141,6 +141,7 @@ def test_a_face_inclined_to_its_patch_warms_as_a_half_space_does(name, degree, e
     assert found == pytest.approx(half_space_rise(material, 81e-6 / np.cos(turn), t), rel=early)
 
 
+@pytest.mark.slow
 def test_a_face_that_is_slanted_to_the_grid_warms_as_a_half_space_does():
     """The next but one of a hexagon's: coarser, since it is not the last."""
     glass = thermal.material("glass")
@@ -221,6 +222,7 @@ def test_a_sleeve_on_a_round_core_is_the_same_nested_or_beside():
     assert nested.impedance(late) - rubber.impedance(late) < -0.05 * rubber.impedance(late)
 
 
+@pytest.mark.slow
 def test_thickness_and_cavities_matter():
     """A touch feels what is within about sqrt(diffusivity time): later it is warmer where there is less behind it."""
     side = SurfacePatch((0.02, 0, 0), (1, 0, 0), 36e-6)
