@@ -158,7 +158,8 @@ class BoxHeat:
             self._turn(row, *last[row], state[row])
             before, tips = heat[row]
             for f, now in enumerate(self._tip_heat(row)):
-                self._keep_heat(state[row, self.fingertip(f)], tips[f], now)
+                if not np.array_equal(tips[f], now):
+                    self._keep_heat(state[row, self.fingertip(f)], tips[f], now)
             state[row, 0] += (before - fixed_heat(tables, row, state[row])) / tables.slow[row, HELD]
 
     def _moved(self, row: int, fingertips: Sequence[int], middles: np.ndarray, state: np.ndarray) -> Touched:

@@ -15,6 +15,7 @@ slow poles, Q: pole pairs, T: elements under different contacts.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -186,7 +187,7 @@ def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[
     """Makes a box the row's, whose patches, those under fingertips first, are the places of these numbers."""
     patterns, most = tables.patterns, tables.places * tables.patterns
     slow, body = tables.slow[row], tables.body[row]
-    ports = (np.array(places)[:, None] * patterns + np.arange(patterns)).ravel()
+    ports = _ports(tuple(places), patterns)
     touched = ports[: len(box.residues)]
     slow[:] = body[:] = 0.0
     slow[:_RATE_ROWS] = _rate_table(np.array([box.rate]), tables.dt)[:, 0]
@@ -198,6 +199,11 @@ def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[
     body[most * most + ports], body[-1] = box.heat, box.still
     tables.links[row, USED] = len(places)
     tables.links[row, AIRED] = box.still.any()
+
+
+@lru_cache(maxsize=256)
+def _ports(places: tuple[int, ...], patterns: int) -> np.ndarray:
+    return (np.array(places)[:, None] * patterns + np.arange(patterns)).ravel()
 
 
 def _slow(element: Side) -> int:
