@@ -66,7 +66,7 @@ class DmControlThermalWrapper(dm_env.Environment):
 
     def step(self, action: np.ndarray) -> Any:
         """As the environment's, with every substep heard."""
-        with self._stepped.hearing():
+        with self._stepped:
             step = self._env.step(action)
         if step.first():  # its own reset, after an episode's end
             self._stepped.restart()

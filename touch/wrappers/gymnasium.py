@@ -50,6 +50,7 @@ class AddThermalObservation(gymnasium.Wrapper):
         shape = (len(self.touch.fingertips), SAMPLES)
         volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
         space = env.observation_space
+        self._is_dict = isinstance(space, gymnasium.spaces.Dict)
         if isinstance(space, gymnasium.spaces.Dict):
             if VOLTAGE in space.spaces:
                 raise InvalidValueError(f"the environment's observation has an entry {VOLTAGE!r} already")
@@ -72,14 +73,14 @@ class AddThermalObservation(gymnasium.Wrapper):
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """As the environment's, with every substep heard."""
-        with self._stepped.hearing():
+        with self._stepped:
             observation, reward, terminated, truncated, info = self.env.step(action)
         info = {**info, "touch": self.touch.reading}
         return self._with_voltage(observation), reward, terminated, truncated, info
 
     def _with_voltage(self, observation: Any) -> dict[str, Any]:
         volts = self.touch.reading.voltage.astype(np.float32)
-        if isinstance(self.env.observation_space, gymnasium.spaces.Dict):
+        if self._is_dict:
             return {**observation, VOLTAGE: volts}
         return {OBSERVATION: observation, VOLTAGE: volts}
 

@@ -56,7 +56,7 @@ class RobosuiteThermalWrapper(Wrapper):
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Any], float, bool, dict[str, Any]]:
         """As the environment's, with every substep heard."""
-        with self._stepped.hearing():
+        with self._stepped:
             observation, reward, done, info = self.env.step(action)
         return self._with_voltage(observation), reward, done, {**info, "touch": self.touch.reading}
 

@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import mujoco
@@ -17,7 +16,8 @@ Simulation = Callable[[], tuple[mujoco.MjModel, mujoco.MjData]]
 
 
 class SteppedTouch:
-    """simulation: gives the environment's present model and data. words: those of ThermalTouch."""
+    """To be entered while the environment steps. simulation: gives the environment's present model and data. words:
+    those of ThermalTouch."""
 
     def __init__(self, simulation: Simulation, words: dict[str, Any]) -> None:
         self._simulation, self._words = simulation, words
@@ -31,39 +31,33 @@ class SteppedTouch:
             self.touch = ThermalTouch(model, **self._words)
         self.touch.reset(data, seed=seed)
 
-    @contextmanager
-    def hearing(self) -> Iterator[None]:
-        """While it lasts, the touch hears every step that mujoco.mj_step and mj_step2 take of the environment's data.
+    def __enter__(self) -> None:
+        """From here on the touch hears every step that mujoco.mj_step and mj_step2 take of the environment's data.
 
         Both are replaced in the module for that time, so environments that step in several threads of one process are
         not served. Of steps that were taken otherwise, by a function imported by name or in a rollout, the last
         contacts stand for all."""
         _, data = self._simulation()
-        with heard(data, self.touch):
-            yield
-        self.touch.update(data)
+        step, second, update = self._own = mujoco.mj_step, mujoco.mj_step2, self.touch.update
+        self._data, self._heard = data, None
 
+        def heard_step(model: mujoco.MjModel, stepped: mujoco.MjData, nstep: int = 1) -> None:
+            if stepped is not data:
+                step(model, stepped, nstep)
+                return
+            for _ in range(nstep):
+                step(model, stepped)
+                update(stepped)
+            self._heard = stepped.time
 
-@contextmanager
-def heard(data: mujoco.MjData, touch: ThermalTouch) -> Iterator[None]:
-    """While it lasts, the touch hears every step that MuJoCo takes of these data."""
-    step, second, update = mujoco.mj_step, mujoco.mj_step2, touch.update
+        def heard_second(model: mujoco.MjModel, stepped: mujoco.MjData) -> None:
+            second(model, stepped)
+            if stepped is data:
+                update(stepped)
 
-    def heard_step(model: mujoco.MjModel, stepped: mujoco.MjData, nstep: int = 1) -> None:
-        if stepped is not data:
-            step(model, stepped, nstep)
-            return
-        for _ in range(nstep):
-            step(model, stepped)
-            update(stepped)
+        mujoco.mj_step, mujoco.mj_step2 = heard_step, heard_second
 
-    def heard_second(model: mujoco.MjModel, stepped: mujoco.MjData) -> None:
-        second(model, stepped)
-        if stepped is data:
-            update(stepped)
-
-    mujoco.mj_step, mujoco.mj_step2 = heard_step, heard_second
-    try:
-        yield
-    finally:
-        mujoco.mj_step, mujoco.mj_step2 = step, second
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        mujoco.mj_step, mujoco.mj_step2, update = self._own
+        if kind is None and self._data.time != self._heard:  # else a call that would find nothing
+            update(self._data)
