@@ -11,7 +11,13 @@ import numpy as np
 import pytest
 
 from thermograsp import thermal
-from thermograsp.thermal.contact import array_conductance, array_contact, array_laws
+from thermograsp.thermal.contact import (
+    array_conductance,
+    array_contact,
+    array_curved_contact,
+    array_laws,
+    curved_table,
+)
 
 from ..thermal.heat_cases import Batch, Case, difference_between
 from .conftest import Kind
@@ -71,6 +77,22 @@ def test_the_contact_law_is_one_graph(torch_kind: Kind) -> None:
     found = torch.compile(conducts, fullgraph=True, backend="aot_eager")(force)
     torch.testing.assert_close(found, conducts(force), rtol=1e-12, atol=0)
     assert found[0] == 0 < found[1] < found[2]
+
+
+def test_a_table_of_curved_contacts_is_one_graph(torch_kind: Kind) -> None:
+    own = curved_table(thermal.Pad(), None, thermal.material("steel"), 0.02)
+    table, force = torch.tensor(own), torch.tensor([0.0, 2.0, 20.0], dtype=torch.float64)
+    at, number = torch.full((3,), 0.004, dtype=torch.float64), torch.zeros(3, dtype=torch.int64)
+
+    def conducts(force: Any) -> Any:
+        return array_curved_contact(table, number, force, at, at)
+
+    for found, same in zip(
+        torch.compile(conducts, fullgraph=True, backend="aot_eager")(force), conducts(force), strict=True
+    ):
+        torch.testing.assert_close(found, same, rtol=1e-12, atol=0)
+    told = array_curved_contact(own, number.numpy(), force.numpy(), at.numpy(), at.numpy())
+    np.testing.assert_allclose(conducts(force)[0].numpy(), told[0], rtol=1e-12)
 
 
 def test_vmap_over_rows(torch_kind: Kind) -> None:

@@ -32,7 +32,7 @@ LEAST_CURVED = 1e-9
 CURVED_TABLE = 2 * PLACES + 3 * FORCES * PLACES * PLACES
 _RIM = 0.001  # m beyond a pad's sides, where a contact may be named
 _INSIDE = np.array([0.0, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98, 1.0])  # of the face's half width
-_SHIFT = 1e-9  # of it: no place is twice in a table
+_NEAR = 1e-6  # m: places of a table are further apart, in single precision too
 
 
 @lru_cache(maxsize=256)
@@ -80,7 +80,7 @@ def _along(pad: Pad, length: float) -> np.ndarray:
     edges = [abs(half + way * length / 2) for half in (pad.width / 2, pad.face / 2) for way in (1, -1)]
     places = [0.0, end]
     for edge in edges:
-        if all(abs(edge - place) > _SHIFT for place in places) and edge < end:
+        if all(abs(edge - place) > _NEAR for place in places) and edge < end:
             places.append(edge)
     while len(places) < PLACES:
         places.sort()

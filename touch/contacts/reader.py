@@ -102,9 +102,7 @@ class ContactReader:
                 self._known[own] = len(self._known)
                 shapes = [replace(s, material=m) for s, m in zip(self._shapes, own, strict=True)]
                 laws, curved, tables = pair_laws(self._model, self._of_pads, shapes)
-                numbers = np.array(
-                    [self._number(table) for table in tables] + [-1]
-                )  # the last of flat things
+                numbers = np.array([*map(self._number, tables), -1])  # the last of flat things
                 first = len(self._known) == 1
                 self._laws = laws[None] if first else np.concatenate((self._laws, laws[None]))
                 curved = numbers[curved][None]

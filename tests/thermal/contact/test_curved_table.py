@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal import LAPPED_ALUMINA, SKINS, Pad, Surface, material
+from thermograsp.thermal import AIR, LAPPED_ALUMINA, SKINS, Pad, Surface, contact_conductance, joint, material
 from thermograsp.thermal.contact import (
     array_curved_contact,
     bare_footprint,
@@ -149,3 +151,49 @@ def test_arrays_hold_what_the_compiled_function_finds() -> None:
 def test_sizes_that_are_none_are_refused(size) -> None:
     with pytest.raises(InvalidValueError, match="radius|length"):
         curved_table(PAD, None, material("steel"), *size)
+
+
+def off_the_middle(name: str, radius: float, force: float, place: tuple[float, float]) -> float:
+    """W/K of a bare ball whose crown is there on the face, m: Hertz's spot, and a sum over its gap by angle and by
+    distance. It shares the conductance of rough faces with the laws, and nothing of their geometry."""
+    body, half, gas = Surface.of(material(name)), PAD.face / 2, AIR.conductivity
+    pair = joint(LAPPED_ALUMINA, body, full_contact=True)
+    stiff = 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in (LAPPED_ALUMINA, body))
+    spot = (3 * force * radius / (4 * stiff)) ** (1 / 3)
+    spots = float(contact_conductance(pair, force / (np.pi * spot**2))) * np.pi * spot**2
+    both = 1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity
+    solid = 1 / (1 / spots + both / 4 * (1 / spot - np.sqrt(np.pi) / PAD.face))
+    apart = gas / (
+        float(contact_conductance(pair, 1e-9))
+        - float(contact_conductance(replace(pair, gas_conductivity=0.0), 1e-9))
+    )
+    angle = (np.arange(1000) + 0.5) / 1000 * 2 * np.pi
+    ends = [
+        np.where(turned > 0, half - at, half + at) / np.maximum(np.abs(turned), 1e-12)
+        for turned, at in zip((np.cos(angle), np.sin(angle)), place, strict=True)
+    ]
+    end, scale = np.minimum(np.minimum(*ends), radius), np.sqrt(2 * radius * apart)
+    low, high = np.arcsinh(spot / scale), np.arcsinh(end / scale)
+    at = low + (high - low)[:, None] * (np.arange(500) + 0.5) / 500
+    x = np.maximum(scale * np.sinh(at) / spot, 1.0)
+    gap = spot**2 / (np.pi * radius) * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
+    around = (gas / (apart + gap) * scale**2 * np.sinh(at) * np.cosh(at)).mean(axis=1) * (high - low)
+    return solid + float(around.mean()) * 2 * np.pi
+
+
+@pytest.mark.parametrize("name", ["steel", "copper", "glass"])
+@pytest.mark.parametrize("radius", [0.005, 0.02, 0.05])
+def test_a_bare_ball_off_the_middle_is_a_sum_over_hertzs_gap(name: str, radius: float) -> None:
+    table, own = curved_table(PAD, None, material(name), radius), law(None, name, radius, None)
+    for force in (1.0, 10.0):
+        for place in (
+            (0.0, 0.0),
+            (0.0015, 0.0),
+            (0.003, 0.0),
+            (0.003, 0.003),
+            (0.004, 0.002),
+            (0.0042, 0.0042),
+        ):
+            expected = off_the_middle(name, radius, force, place)
+            assert conduction(own, force, np.array([0.0, *place]))[1] == pytest.approx(expected, rel=0.03)
+            assert curved_contact(table, force, *place)[0] == pytest.approx(expected, rel=0.03)
