@@ -65,8 +65,9 @@ class Observer:
         values[:, 0], values[:, 1] = reading.opening, reading.opening_rate
         values[:, 2], values[:, 3] = reading.height, force_limit
         rows = len(values)
-        for (_, part, _), value in zip(_PARTS[1:], (reading.force, history, reading.thermostat), strict=True):
-            values[:, part] = value.reshape(rows, -1)
+        arrays = reading.force, history, reading.thermostat
+        for (_, part, shape), value in zip(_PARTS[1:], arrays, strict=True):
+            values[:, part].reshape(rows, *shape)[:] = value
         # Rounding to float32 keeps the bounds: those of the space are rounded alike.
         told = np.minimum(np.maximum(values, _LOW), _HIGH).astype(np.float32)
         if not seen.all():
