@@ -41,7 +41,7 @@ def port_residues(columns, wanted):
     for s in range(samples):
         for k in range(rates):
             scaled[s, k] = columns[s, k] / np.sqrt(size[k])
-    normal, solve, first = np.zeros((rates, rates)), np.empty((rates, rates)), np.empty((rates, rates))
+    normal, inverse = np.zeros((rates, rates)), np.empty((3, rates, rates))
     for s in range(samples):
         for k in range(rates):
             for m in range(rates):
@@ -53,18 +53,16 @@ def port_residues(columns, wanted):
                 for k in range(rates):
                     seen[i, j, k] += wanted[s, i, j] * scaled[s, k]
     square, inside = np.empty((own, own, rates)), np.zeros((own, own, rates))
-    _inverse(normal, _RIDGE, first)
+    for which in range(3):  # one call of it compiles sooner than three
+        _inverse(normal, (_RIDGE, _PENALTY, _FREE_RIDGE)[which], inverse[which])
     for i in range(own):
         for j in range(own):
             for k in range(rates):
                 square[i, j, k] = seen[i, j, k]
             for m in range(rates):
                 for k in range(rates):
-                    inside[i, j, k] += seen[i, j, m] * first[m, k]
-    _inverse(normal, _PENALTY, solve)
-    _in_cone(solve, square, inside)
-    if own < ports:
-        _inverse(normal, _FREE_RIDGE, first)
+                    inside[i, j, k] += seen[i, j, m] * inverse[0, m, k]
+    _in_cone(inverse[1], square, inside)
     for i in range(own):
         for j in range(ports):
             for k in range(rates):
@@ -72,7 +70,7 @@ def port_residues(columns, wanted):
             if j >= own:
                 for m in range(rates):
                     for k in range(rates):
-                        found[i, j, k] += seen[i, j, m] * first[m, k]
+                        found[i, j, k] += seen[i, j, m] * inverse[2, m, k]
             for k in range(rates):
                 found[i, j, k] /= np.sqrt(size[k])
     return found
