@@ -308,5 +308,5 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
       }
     }
   }
-  for (int i = 0; i < network->n; i++) network->fade[i] = exp(-numbers->dt * network->rates[i]);
+  heat_pace(numbers, network);
 }

@@ -62,32 +62,23 @@ typedef struct {
   double* all; /* what the others point into */
 } Numbers;
 
-/* An object's network of its places: x' = -rates x + ports q. ports: of each pattern of each place, `states` apart, the
-last of the four, which stand behind one another. */
+/* A field: the network of an object's places, or a fingertip's; x' = -rates x + ports q. ports: of each pattern of each
+place, `stride` apart. Of a sample's step, fade: what it leaves of the states; where contacts are closed, kept: what the
+step's rational function does, and scale: 1 / (pole + dt rates), of each pole the real parts and then the imaginary. The
+numbers of an object's stand behind one another, the ports last. */
 typedef struct {
-  int count, n;
-  double *places, *rates, *fade, *ports;
+  int count, n, stride;
+  double *places, *rates, *fade, *kept, *scale, *ports;
 } Network;
 
-/* The contacts that are closed, and what the step of the fields that they join needs. pairs: -1 where it is to be made
-anew. begin: of each field, -1 for one that no contact joins. seen: of each pair, where the states of its target and of its
-fingertip begin and end. weighed: scale times the poles' weights, then the sum of its real parts. x: the states. */
+/* gram: dt times how the ports of closed contacts hear one another at each pole, and room for a step; it is made for as many
+`ports`, and of so many pairs at such places, -1 for one that is open. pairs: -1 where it is to be made anew. */
 typedef struct {
-  int pairs, n;
-  int *pair, *begin, *seen;
-  double complex *gram, *matrix, *heard;
-  double *rates, *ports, *scale, *weighed, *x, *room;
-} System;
-
-typedef struct {
-  Network* networks;
-  System system;
-  bool* closed;                  /* what it was made of */
-  double* current;
-  double* pool;                  /* its numbers */
-  size_t pool_size;
-  double *room, *fade;
-  double *kept, *grown;          /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
+  Network* networks; /* of every target, and one for the network before a new place */
+  int pairs, *places;
+  size_t ports;
+  double complex* gram;
+  double *room, *kept, *grown;   /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
   int *role, *geom, *body;       /* of the model's geoms, as Numbers.roles or -1; of what a pad may meet */
 } Work;
 
@@ -115,6 +106,7 @@ double heat_curved(const double* table, const double grid[3], double force, doub
 
 void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches);
 
+void heat_pace(const Numbers* numbers, Network* network);
 void heat_network(const Numbers* numbers, int object, Network* network, double* room);
 void heat_copy_network(const Numbers* numbers, const Network* from, Network* to);
 size_t heat_network_room(const Numbers* numbers);

@@ -1,4 +1,4 @@
-/* A sample of heat: closed contacts join fields, which take one rational step of the exponential together;
+/* A sample of heat: the fields that closed contacts join take one rational step of the exponential together;
 touch/heat/systems.py, narrow.py and march.py, thermal/network/coupling.py and kernel.py. Groups that share no field are
 told apart by the zeros between them. */
 
@@ -9,197 +9,163 @@ told apart by the zeros between them. */
 
 #include "heat.h"
 
+#define MOST 1e100 /* K/W, of a contact */
+
+/* What a closed contact sees of its target or of its fingertip: a port for each of its patterns, `sign` of it. */
+typedef struct {
+  int field, n, stride;
+  double sign;
+  const double *ports, *scale;
+  double* x;
+} Side;
+
 static double* field(const Numbers* numbers, const State* state, int t) {
   int objects = numbers->objects;
   return t < objects ? state->x + t * numbers->states
                      : state->x + objects * numbers->states + (t - objects) * numbers->tip_states;
 }
 
-static int states_of(const Numbers* numbers, const Work* work, int t) {
-  return t < numbers->objects ? work->networks[t].n : numbers->tip_states;
+static Side side_of(const Numbers* numbers, const Work* work, const State* state, int t, int place, double sign) {
+  const Network* network = work->networks + t;
+  const double* ports = network->ports + (size_t)place * numbers->patterns * network->stride;
+  return (Side){t, network->n, network->stride, sign, ports, network->scale, field(numbers, state, t)};
 }
 
 /* Of the pairs of poles, the real and imaginary parts in turn. */
 static double complex at_pole(const double* parts, int q) { return CMPLX(parts[2 * q], parts[2 * q + 1]); }
 
-/* How many numbers a system has, and its parts where they begin at `at`. */
-static size_t lay_out(System* system, int ports, double* at) {
-  size_t n = system->n, m = ports, square = 2 * m * m; /* of complex numbers */
-  if (at) {
-    system->gram = (double complex*)at;
-    system->matrix = system->gram + POLES * m * m;
-    system->heard = system->matrix + m * m;
-    system->rates = (double*)(system->heard + POLES * m);
-    system->ports = system->rates + n;
-    system->scale = system->ports + n * m;
-    system->weighed = system->scale + 2 * POLES * n;
-    system->x = system->weighed + (2 * POLES + 1) * n;
-    system->room = system->x + n;
-  }
-  return (POLES + 1) * square + 2 * POLES * m + n * (1 + m + 4 * POLES + 1 + 1) + n * (2 + 2 * POLES) + 2 * m;
+/* Of finite numbers: C's own takes care of others. */
+static double complex times(double complex a, double complex b) {
+  return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
 }
 
-/* What the system's step needs. */
-static void assemble(const Numbers* numbers, const Work* work, const State* state, System* system) {
-  int patterns = numbers->patterns, ports = system->pairs * patterns, n = system->n;
-  int objects = numbers->objects, tip_states = numbers->tip_states;
-  for (int t = 0; t < numbers->targets; t++) {
-    if (system->begin[t] < 0) continue;
-    const double* rates =
-        t < objects ? work->networks[t].rates : numbers->tip_rates + (size_t)(t - objects) * tip_states;
-    memcpy(system->rates + system->begin[t], rates, sizeof(double) * states_of(numbers, work, t));
-  }
-  memset(system->ports, 0, sizeof(double) * n * ports);
-  for (int i = 0; i < system->pairs; i++) {
-    int f = system->pair[2 * i], t = system->pair[2 * i + 1], *seen = system->seen + 4 * i;
-    seen[0] = system->begin[t];
-    seen[1] = seen[0] + states_of(numbers, work, t);
-    seen[2] = system->begin[objects + f];
-    seen[3] = seen[2] + tip_states;
-    for (int p = 0; p < patterns; p++) {
-      double* row = system->ports + (size_t)(i * patterns + p) * n;
-      const double* given = numbers->tip_ports + (size_t)(f * patterns + p) * tip_states;
-      const double* taking =
-          t < objects
-              ? work->networks[t].ports + ((size_t)state->current[f * objects + t] * patterns + p) * numbers->states
-              : numbers->tip_ports + (size_t)((t - objects) * patterns + p) * tip_states;
-      for (int k = 0; k < tip_states; k++) row[seen[2] + k] = -given[k];
-      memcpy(row + seen[0], taking, sizeof(double) * (seen[1] - seen[0]));
+static double complex inverse_of(double complex a) {
+  double square = creal(a) * creal(a) + cimag(a) * cimag(a);
+  return CMPLX(creal(a) / square, -cimag(a) / square);
+}
+
+/* What a network's step needs besides its ports. */
+void heat_pace(const Numbers* numbers, Network* network) {
+  int n = network->n;
+  for (int i = 0; i < n; i++) {
+    double rate = numbers->dt * network->rates[i], at_once = 0;
+    for (int q = 0; q < POLES; q++) {
+      double complex scale = inverse_of(at_pole(numbers->poles, q) + rate);
+      network->scale[2 * q * n + i] = creal(scale);
+      network->scale[(2 * q + 1) * n + i] = cimag(scale);
+      at_once += creal(times(at_pole(numbers->weights, q), scale));
     }
+    network->kept[i] = 1 + 2 * rate * at_once;
+    network->fade[i] = exp(-rate);
   }
-  double* at_once = system->weighed + 2 * POLES * n;
-  memset(at_once, 0, sizeof(double) * n);
-  for (int q = 0; q < POLES; q++) {
-    double *real = system->scale + 2 * q * n, *imag = real + n, *of_real = system->weighed + 2 * q * n;
-    for (int k = 0; k < n; k++) {
-      double complex scale = 1 / (at_pole(numbers->poles, q) + numbers->dt * system->rates[k]);
-      double complex weighed = at_pole(numbers->weights, q) * scale;
-      real[k] = creal(scale);
-      imag[k] = cimag(scale);
-      of_real[k] = creal(weighed);
-      of_real[n + k] = -cimag(weighed);
-      at_once[k] += creal(weighed);
-    }
-    for (int i = 0; i < ports; i++) {
-      for (int j = 0; j <= i; j++) {
-        const double *one = system->ports + (size_t)i * n, *other = system->ports + (size_t)j * n;
-        double both_real = 0, both_imag = 0;
-        for (int k = 0; k < n; k++) {
-          double both = one[k] * other[k];
-          both_real += both * real[k];
-          both_imag += both * imag[k];
+}
+
+/* How the closed contacts' ports hear one another. Returns false where there is no memory. */
+static bool join(const Numbers* numbers, Work* work, const Side* sides, int pairs) {
+  int patterns = numbers->patterns;
+  size_t m = (size_t)pairs * patterns;
+  if (m > work->ports) {
+    free(work->gram);
+    work->ports = 0;
+    work->gram = malloc(sizeof(double complex) * ((POLES + 1) * m + POLES) * m);
+    if (!work->gram) return false;
+    work->ports = m;
+  }
+  memset(work->gram, 0, sizeof(double complex) * POLES * m * m);
+  for (int one = 0; one < 2 * pairs; one++) {
+    for (int other = 0; other < 2 * (one / 2 + 1); other++) {
+      const Side *own = sides + one, *theirs = sides + other;
+      if (own->field != theirs->field) continue;
+      double sign = numbers->dt * own->sign * theirs->sign;
+      for (int p = 0; p < patterns * patterns; p++) {
+        const double *port = own->ports + p / patterns * own->stride, *heard = theirs->ports + p % patterns * own->stride;
+        for (int q = 0; q < POLES; q++) {
+          const double *real = own->scale + 2 * q * own->n, *imag = real + own->n;
+          double sum = 0, aside = 0;
+          for (int k = 0; k < own->n; k++) {
+            sum += port[k] * heard[k] * real[k];
+            aside += port[k] * heard[k] * imag[k];
+          }
+          work->gram[(q * m + one / 2 * patterns + p / patterns) * m + other / 2 * patterns + p % patterns] +=
+              sign * CMPLX(sum, aside);
         }
-        double complex* gram = system->gram + (size_t)q * ports * ports;
-        gram[i * ports + j] = gram[j * ports + i] = CMPLX(both_real, both_imag);
       }
     }
   }
-}
-
-/* The system of the contacts that are closed now. Returns false where there is no memory. */
-static bool join(const Numbers* numbers, Work* work, const State* state, const bool* closed) {
-  int targets = numbers->targets, pairs = 0;
-  System* system = &work->system;
-  for (int t = 0; t < targets; t++) system->begin[t] = -1;
-  for (int i = 0; i < numbers->tips * targets; i++) {
-    if (!closed[i]) continue;
-    system->pair[2 * pairs] = i / targets;
-    system->pair[2 * pairs++ + 1] = i % targets;
-    system->begin[i % targets] = system->begin[numbers->objects + i / targets] = 0;
-  }
-  system->n = 0;
-  for (int t = 0; t < targets; t++) {
-    if (system->begin[t] < 0) continue;
-    system->begin[t] = system->n;
-    system->n += states_of(numbers, work, t);
-  }
-  system->pairs = pairs ? -1 : 0;
-  if (!pairs) return true;
-  size_t size = lay_out(system, pairs * numbers->patterns, NULL);
-  if (size > work->pool_size) {
-    free(work->pool);
-    work->pool_size = 0;
-    if (!(work->pool = malloc(sizeof(double) * size))) return false;
-    work->pool_size = size;
-  }
-  system->pairs = pairs;
-  lay_out(system, pairs * numbers->patterns, work->pool);
-  assemble(numbers, work, state, system);
   return true;
 }
 
-/* One step of the system's states; conductance W/K and difference K of each port. Returns its mean flow W. Of a port, only
-the states that it sees are gone through: its target's and its fingertip's. */
-static const double* step(const Numbers* numbers, const System* system, const double* conductance,
-                          const double* difference) {
-  int n = system->n, patterns = numbers->patterns, m = system->pairs * patterns;
-  double *restrict state = system->x, *restrict rate = system->room, *restrict change = rate + n;
-  double *restrict scaled = change + n, *flow = scaled + 2 * POLES * n, *through = flow + m;
-  const double* at_once = system->weighed + 2 * POLES * n;
-  for (int i = 0; i < n; i++) {
-    rate[i] = -system->rates[i] * state[i];
-    change[i] = at_once[i] * rate[i];
-  }
-  for (int k = 0; k < 2 * POLES; k++)
-    for (int i = 0; i < n; i++) scaled[k * n + i] = rate[i] * system->scale[k * n + i];
-  for (int j = 0; j < m; j++) {
-    const double* restrict port = system->ports + (size_t)j * n;
-    const int* seen = system->seen + 4 * (j / patterns);
-    double now = 0, later[2 * POLES] = {0};
-    for (int part = 0; part < 4; part += 2) {
-      for (int i = seen[part]; i < seen[part + 1]; i++) {
-        now += port[i] * state[i];
-        for (int k = 0; k < 2 * POLES; k++) later[k] += port[i] * scaled[k * n + i];
-      }
+/* Solves a symmetric matrix (m, m), of which the lower half counts and is lost; no pivots, as they are never small
+(thermal/batch/step.py). */
+static void solve(int m, double complex* matrix, double complex* x) {
+  for (int c = 0; c < m; c++) {
+    double complex inverse = matrix[c * m + c] = inverse_of(matrix[c * m + c]);
+    for (int r = c + 1; r < m; r++) {
+      double complex factor = times(matrix[r * m + c], inverse);
+      if (factor == 0) continue;
+      for (int k = c + 1; k <= r; k++) matrix[r * m + k] -= times(factor, matrix[k * m + c]);
+      x[r] -= times(factor, x[c]);
     }
-    flow[j] = conductance[j] * (difference[j] - now);
-    through[j] = 0;
-    for (int q = 0; q < POLES; q++) system->heard[q * m + j] = at_pole(later, q);
   }
+  for (int c = m - 1; c >= 0; c--) {
+    for (int r = c + 1; r < m; r++) x[c] -= times(matrix[r * m + c], x[r]);
+    x[c] = times(x[c], matrix[c * m + c]);
+  }
+}
+
+/* A step of every field; of each closed contact its sides, resistance K/W and difference K. through: its mean flow W. */
+static void step(const Numbers* numbers, const Work* work, const State* state, const Side* sides,
+                 const double* resistance, const double* difference, double* through) {
+  int patterns = numbers->patterns, pairs = work->pairs, m = pairs * patterns;
+  double complex *matrix = work->gram + (size_t)POLES * m * m, *flow = matrix + (size_t)m * m;
+  for (int i = 0, j = 0; i < pairs; i++) {
+    for (int p = 0; p < patterns; p++, j++) {
+      double heard[2 * POLES] = {0};
+      for (const Side* side = sides + 2 * i; side < sides + 2 * i + 2; side++) {
+        const double *restrict port = side->ports + p * side->stride, *restrict scale = side->scale;
+        for (int k = 0; k < side->n; k++) {
+          double seen = side->sign * port[k] * side->x[k];
+          for (int q = 0; q < 2 * POLES; q++) heard[q] += seen * scale[q * side->n + k];
+        }
+      }
+      for (int q = 0; q < POLES; q++)
+        flow[q * m + j] = (p ? 0 : difference[i]) - times(at_pole(numbers->poles, q), at_pole(heard, q));
+    }
+  }
+  memset(through, 0, sizeof(double) * pairs);
   for (int q = 0; q < POLES; q++) {
-    const double complex *gram = system->gram + (size_t)q * m * m;
-    double complex lag = at_pole(numbers->weights, q) / at_pole(numbers->poles, q);
-    double complex *gathered = system->heard + q * m, *matrix = system->matrix;
-    for (int j = 0; j < m; j++) {
-      double weight = numbers->dt * conductance[j];
-      gathered[j] = flow[j] - weight * gathered[j];
-      for (int k = 0; k < m; k++) matrix[j * m + k] = weight * gram[j * m + k];
-      matrix[j * m + j] += 1;
-    }
-    /* elimination without pivots, as they are never small (thermal/batch/step.py) */
-    for (int c = 0; c < m; c++) {
-      double complex inverse = matrix[c * m + c] = 1 / matrix[c * m + c];
-      for (int r = c + 1; r < m; r++) {
-        double complex factor = matrix[r * m + c] * inverse;
-        if (factor == 0) continue;
-        for (int k = c + 1; k < m; k++) matrix[r * m + k] -= factor * matrix[c * m + k];
-        gathered[r] -= factor * gathered[c];
-      }
-    }
-    for (int j = m - 1; j >= 0; j--) {
-      for (int k = j + 1; k < m; k++) gathered[j] -= matrix[j * m + k] * gathered[k];
-      gathered[j] *= matrix[j * m + j];
-      through[j] -= 2 * creal(lag * gathered[j]);
-    }
+    double complex weight = at_pole(numbers->weights, q), lag = times(weight, inverse_of(at_pole(numbers->poles, q)));
+    memcpy(matrix, work->gram + (size_t)q * m * m, sizeof(double complex) * m * m);
+    for (int i = 0, j = 0; i < pairs; i++)
+      for (int p = 0; p < patterns; p++, j++) matrix[j * m + j] += resistance[i];
+    solve(m, matrix, flow + q * m);
+    for (int i = 0; i < pairs; i++) through[i] -= 2 * creal(times(lag, flow[q * m + i * patterns]));
+    for (int j = 0; j < m; j++) flow[q * m + j] = 2 * numbers->dt * times(weight, flow[q * m + j]);
   }
-  for (int j = 0; j < m; j++) {
-    const double *restrict port = system->ports + (size_t)j * n, *restrict weighed = system->weighed;
-    const int* seen = system->seen + 4 * (j / patterns);
-    double total[2 * POLES];
-    for (int q = 0; q < POLES; q++) {
-      total[2 * q] = creal(system->heard[q * m + j]);
-      total[2 * q + 1] = cimag(system->heard[q * m + j]);
-    }
-    for (int part = 0; part < 4; part += 2) {
-      for (int i = seen[part]; i < seen[part + 1]; i++) {
-        double sum = 0;
-        for (int k = 0; k < 2 * POLES; k++) sum += weighed[k * n + i] * total[k];
-        change[i] += port[i] * sum;
+  for (int t = 0; t < numbers->targets; t++) {
+    const Network* network = work->networks + t;
+    double *x = field(numbers, state, t), *left = network->fade;
+    for (int i = 0; i < 2 * pairs; i++)
+      if (sides[i].field == t) left = network->kept;
+    for (int k = 0; k < network->n; k++) x[k] *= left[k];
+  }
+  for (int i = 0, j = 0; i < pairs; i++) {
+    for (int p = 0; p < patterns; p++, j++) {
+      for (const Side* side = sides + 2 * i; side < sides + 2 * i + 2; side++) {
+        const double *restrict port = side->ports + p * side->stride, *restrict scale = side->scale;
+        double given[2 * POLES];
+        for (int q = 0; q < POLES; q++) {
+          given[2 * q] = side->sign * creal(flow[q * m + j]);
+          given[2 * q + 1] = -side->sign * cimag(flow[q * m + j]);
+        }
+        for (int k = 0; k < side->n; k++) {
+          double sum = 0;
+          for (int q = 0; q < 2 * POLES; q++) sum += scale[q * side->n + k] * given[q];
+          side->x[k] -= port[k] * sum;
+        }
       }
     }
   }
-  for (int i = 0; i < n; i++) state[i] -= 2 * numbers->dt * change[i];
-  return through;
 }
 
 /* Fills root with the b_k of a narrow contact; false where it is as wide as the face. */
@@ -225,57 +191,45 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, double
 
 /* Advances every field by a sample. Returns false where there is no memory. */
 bool heat_march(const Numbers* numbers, Work* work, State* state) {
-  int tips = numbers->tips, objects = numbers->objects, targets = numbers->targets, patterns = numbers->patterns;
-  System* system = &work->system;
-  bool closed[tips * targets], same = system->pairs >= 0;
-  for (int i = 0; i < tips * targets; i++) {
-    closed[i] = state->touches[i * COLUMNS + CONDUCTANCE] > 0;
-    same = same && closed[i] == work->closed[i];
+  int tips = numbers->tips, objects = numbers->objects, targets = numbers->targets, rates = numbers->rates, pairs = 0;
+  int places[tips * targets], pair[tips * targets];
+  for (int f = 0, i = 0; f < tips; f++) {
+    for (int t = 0; t < targets; t++, i++) {
+      bool closed = state->touches[i * COLUMNS + CONDUCTANCE] > 0;
+      places[i] = !closed ? -1 : t < objects ? (int)state->current[f * objects + t] : 0;
+      if (closed) pair[pairs++] = i;
+    }
   }
-  if (!same || memcmp(work->current, state->current, sizeof(double) * tips * objects)) {
-    if (!join(numbers, work, state, closed)) return false;
-    memcpy(work->closed, closed, sizeof closed);
-    memcpy(work->current, state->current, sizeof(double) * tips * objects);
-  }
-  int rates = numbers->rates, pairs = system->pairs;
-  const double *kept = work->kept, *grown = work->grown;
-  for (int i = 0; i < tips * targets; i++)
-    for (int k = 0; k < rates && !closed[i]; k++) state->narrow[i * rates + k] *= kept[k];
-  for (int t = 0; t < targets; t++) {
-    const double* fade = t < objects ? work->networks[t].fade : work->fade + (t - objects) * numbers->tip_states;
-    double* x = field(numbers, state, t);
-    int size = states_of(numbers, work, t);
-    if (system->begin[t] >= 0) memcpy(system->x + system->begin[t], x, sizeof(double) * size);
-    else for (int k = 0; k < size; k++) x[k] *= fade[k];
-  }
-  if (!pairs) return true;
-  double conductance[pairs * patterns], difference[pairs * patterns], roots[pairs * rates];
-  memset(difference, 0, sizeof difference);
+  Side sides[2 * pairs + 1]; /* never empty */
+  double resistance[pairs + 1], difference[pairs + 1], through[pairs + 1], roots[pairs * rates + 1];
   memset(roots, 0, sizeof roots);
   for (int i = 0; i < pairs; i++) {
-    int f = system->pair[2 * i], t = system->pair[2 * i + 1], pair = f * targets + t;
-    const double* touch = state->touches + pair * COLUMNS;
-    double mean = touch[CONDUCTANCE] / numbers->sample_steps, behind = 0, resists = 0, *root = roots + i * rates;
-    if (spread(numbers, pair, touch, root)) {
-      for (int k = 0; k < rates; k++) {
-        double part = grown[k] / numbers->dt; /* of a state that fades, over the step */
-        behind += root[k] * part * state->narrow[pair * rates + k];
-        resists += root[k] * root[k] * (1 - part) / numbers->decay[k];
-      }
-      mean = 1 / (1 / mean + resists);
+    int f = pair[i] / targets, t = pair[i] % targets;
+    const double *touch = state->touches + pair[i] * COLUMNS, *own = state->narrow + pair[i] * rates;
+    double* root = roots + i * rates;
+    sides[2 * i] = side_of(numbers, work, state, t, places[pair[i]], 1);
+    sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
+    resistance[i] = fmin(numbers->sample_steps / touch[CONDUCTANCE], MOST);
+    difference[i] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0);
+    if (!spread(numbers, pair[i], touch, root)) continue;
+    for (int k = 0; k < rates; k++) {
+      double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
+      difference[i] -= root[k] * part * own[k];
+      resistance[i] += root[k] * root[k] * (1 - part) / numbers->decay[k];
     }
-    for (int k = 0; k < patterns; k++) conductance[i * patterns + k] = mean;
-    difference[i * patterns] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0) - behind;
   }
-  const double* through = step(numbers, system, conductance, difference);
-  for (int i = 0; i < pairs; i++) {
-    double* own = state->narrow + (system->pair[2 * i] * targets + system->pair[2 * i + 1]) * rates;
+  if (work->pairs != pairs || memcmp(work->places, places, sizeof places)) {
+    work->pairs = -1;
+    if (!join(numbers, work, sides, pairs)) return false;
+    work->pairs = pairs;
+    memcpy(work->places, places, sizeof places);
+  }
+  step(numbers, work, state, sides, resistance, difference, through);
+  for (int i = 0; i < tips * targets; i++)
+    for (int k = 0; k < rates; k++) state->narrow[i * rates + k] *= work->kept[k];
+  for (int i = 0; i < pairs; i++)
     for (int k = 0; k < rates; k++)
-      own[k] = kept[k] * own[k] + grown[k] * roots[i * rates + k] * through[i * patterns];
-  }
-  for (int t = 0; t < targets; t++)
-    if (system->begin[t] >= 0)
-      memcpy(field(numbers, state, t), system->x + system->begin[t], sizeof(double) * states_of(numbers, work, t));
+      state->narrow[pair[i] * rates + k] += work->grown[k] * roots[i * rates + k] * through[i];
   return true;
 }
 

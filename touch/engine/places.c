@@ -154,7 +154,7 @@ static Network* network_of(const Numbers* numbers, Work* work, const State* stat
   network->count = count;
   memcpy(network->places, places, count * SLOT * sizeof(double));
   heat_network(numbers, o, network, work->room);
-  work->system.pairs = -1;
+  work->pairs = -1;
   return network;
 }
 
@@ -167,7 +167,7 @@ static void add(const Numbers* numbers, Work* work, State* state, int o, const d
     for (int f = 0; f < numbers->tips; f++) used |= f != tip && state->current[f * objects + o] == n;
     if (!used) oldest = n, idle++;
   }
-  Network *network = network_of(numbers, work, state, o), *before = &work->networks[objects];
+  Network *network = network_of(numbers, work, state, o), *before = &work->networks[numbers->targets];
   heat_copy_network(numbers, network, before);
   if (idle > IDLE || count == numbers->places) {
     memmove(places + oldest * SLOT, places + (oldest + 1) * SLOT, sizeof(double) * SLOT * (count - oldest - 1));

@@ -26,26 +26,25 @@ static int failed(const char* what) {
 /* Says where the parts of the work stand in the block, and returns its size in doubles; each part begins on a line of the
 processor's cache. */
 static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* block) {
-  size_t used = 0, ports = (size_t)n->places * n->patterns, contacts = (size_t)n->tips * n->targets;
+  size_t used = 0, contacts = (size_t)n->tips * n->targets;
 #define PART(name, count, type)                                       \
   do {                                                                \
     if (block) (name) = (type*)(block + used);                        \
     used += ((count) * sizeof(type) + 63) / 64 * (64 / sizeof(double)); \
   } while (0)
-  PART(work->networks, n->objects + 1, Network); /* one for the network before a new place */
-  for (int o = 0; o <= n->objects; o++) {
-    Network none, *network = block ? &work->networks[o] : &none;
-    PART(network->places, (size_t)n->places * SLOT, double);
-    PART(network->rates, n->states, double);
-    PART(network->fade, n->states, double);
-    PART(network->ports, ports * n->states, double);
+  PART(work->networks, n->targets + 1, Network);
+  for (int t = 0; t <= n->targets; t++) {
+    bool tip = t >= n->objects && t < n->targets;
+    Network none, *network = block ? &work->networks[t] : &none;
+    size_t states = network->stride = tip ? n->tip_states : n->states;
+    PART(network->places, tip ? 0 : (size_t)n->places * SLOT, double);
+    PART(network->rates, states, double);
+    PART(network->fade, states, double);
+    PART(network->kept, states, double);
+    PART(network->scale, 2 * POLES * states, double);
+    PART(network->ports, (tip ? 1 : n->places) * n->patterns * states, double);
   }
-  PART(work->system.pair, 2 * contacts, int);
-  PART(work->system.begin, n->targets, int);
-  PART(work->system.seen, 4 * contacts, int);
-  PART(work->closed, contacts, bool);
-  PART(work->current, (size_t)n->tips * n->objects, double);
-  PART(work->fade, (size_t)n->tips * n->tip_states, double);
+  PART(work->places, contacts, int);
   PART(work->kept, n->rates, double);
   PART(work->grown, n->rates, double);
   PART(work->role, m->ngeom, int);
@@ -108,7 +107,7 @@ static int nsensordata(const mjModel* m, int instance, int sensor) {
 static void destroy(mjData* d, int instance) {
   Heat* heat = heat_of(d, instance);
   if (!heat) return;
-  free(heat->work.pool);
+  free(heat->work.gram);
   free(heat->numbers.all);
   free(heat->block);
   free(heat);
@@ -134,9 +133,15 @@ static int init(const mjModel* m, mjData* d, int instance) {
     destroy(d, instance);
     return failed(wrong);
   }
-  heat->work.system.pairs = -1;
+  heat->work.pairs = -1;
   for (int o = 0; o < n->objects; o++) heat->work.networks[o].count = -1;
-  for (int i = 0; i < n->tips * n->tip_states; i++) heat->work.fade[i] = exp(-n->dt * n->tip_rates[i]);
+  for (int f = 0; f < n->tips; f++) {
+    Network* network = &heat->work.networks[n->objects + f];
+    int states = network->n = n->tip_states, ports = n->patterns * states;
+    memcpy(network->rates, n->tip_rates + f * states, sizeof(double) * states);
+    memcpy(network->ports, n->tip_ports + f * ports, sizeof(double) * ports);
+    heat_pace(n, network);
+  }
   for (int k = 0; k < n->rates; k++) {
     heat->work.kept[k] = exp(-n->dt * n->decay[k]);
     heat->work.grown[k] = (1 - heat->work.kept[k]) / n->decay[k];
@@ -158,7 +163,7 @@ static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance
   Heat* to = heat_of(dest, instance);
   if (!from || !to) return;
   const Numbers* n = &from->numbers;
-  to->work.system.pairs = -1;
+  to->work.pairs = -1;
   for (int o = 0; o < n->objects; o++) heat_copy_network(n, &from->work.networks[o], &to->work.networks[o]);
 }
 
