@@ -172,14 +172,15 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
     own[1] += force * y;
     own[2] += force * z;
   }
-  bool again = false;
-  for (int i = 0, last = -1; any && i < tips * things; i++) {
-    int f = i / things, g = i % things;
-    int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
-    int touch = f * numbers->targets + target;
-    again = again && touch == last; /* an object's geoms follow one another */
-    last = touch;
-    if (pushed[3 * i] > 0)
-      again = feel(numbers, work, d, f, g, pushed + 3 * i, poses, again, touches + touch * COLUMNS);
+  for (int f = 0; any && f < tips; f++) {
+    bool again = false;
+    for (int g = 0, last = -1; g < things; g++) {
+      int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
+      const double* own = pushed + (f * things + g) * 3;
+      again = again && target == last; /* an object's geoms follow one another */
+      last = target;
+      if (own[0] > 0)
+        again = feel(numbers, work, d, f, g, own, poses, again, touches + (f * numbers->targets + target) * COLUMNS);
+    }
   }
 }

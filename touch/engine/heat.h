@@ -84,7 +84,7 @@ typedef struct {
 
 /* The state of an instance, numbers in MuJoCo's plugin_state. */
 typedef struct {
-  double *count, *touches, *places, *used, *current, *narrow, *x;
+  double *count, *voltages, *touches, *places, *used, *current, *narrow, *x;
 } State;
 
 const char* heat_parse(Numbers* numbers, const char* text);
@@ -94,7 +94,6 @@ void heat_reset(const Numbers* numbers, double* at);
 bool heat_valid(const Numbers* numbers, const State* state);
 void heat_settle(const Numbers* numbers, Work* work, State* state);
 bool heat_march(const Numbers* numbers, Work* work, State* state);
-double heat_voltage(const Numbers* numbers, const State* state, int tip);
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);

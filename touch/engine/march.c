@@ -67,7 +67,7 @@ static bool join(const Numbers* numbers, Work* work, const Side* sides, int pair
   if (m > work->ports) {
     free(work->gram);
     work->ports = 0;
-    work->gram = malloc(sizeof(double complex) * ((POLES + 1) * m + POLES) * m);
+    work->gram = malloc(sizeof(double complex) * POLES * (2 * m + 1) * m);
     if (!work->gram) return false;
     work->ports = m;
   }
@@ -86,7 +86,7 @@ static bool join(const Numbers* numbers, Work* work, const Side* sides, int pair
             sum += port[k] * heard[k] * real[k];
             aside += port[k] * heard[k] * imag[k];
           }
-          work->gram[(q * m + one / 2 * patterns + p / patterns) * m + other / 2 * patterns + p % patterns] +=
+          work->gram[((one / 2 * patterns + p / patterns) * m + other / 2 * patterns + p % patterns) * POLES + q] +=
               sign * CMPLX(sum, aside);
         }
       }
@@ -95,29 +95,39 @@ static bool join(const Numbers* numbers, Work* work, const Side* sides, int pair
   return true;
 }
 
-/* Solves a symmetric matrix (m, m), of which the lower half counts and is lost; no pivots, as they are never small
-(thermal/batch/step.py). */
+/* Solves a symmetric matrix (m, m) at every pole, of which the lower half counts and is lost; no pivots, as they are never
+small (thermal/batch/step.py). Poles come last: each waits for itself alone. */
 static void solve(int m, double complex* matrix, double complex* x) {
+#define AT(r, c) matrix[((r) * m + (c)) * POLES + q]
+  double complex factor[POLES];
   for (int c = 0; c < m; c++) {
-    double complex inverse = matrix[c * m + c] = inverse_of(matrix[c * m + c]);
+    for (int q = 0; q < POLES; q++) AT(c, c) = inverse_of(AT(c, c));
     for (int r = c + 1; r < m; r++) {
-      double complex factor = times(matrix[r * m + c], inverse);
-      if (factor == 0) continue;
-      for (int k = c + 1; k <= r; k++) matrix[r * m + k] -= times(factor, matrix[k * m + c]);
-      x[r] -= times(factor, x[c]);
+      bool apart = true;
+      for (int q = 0; q < POLES; q++) {
+        factor[q] = times(AT(r, c), AT(c, c));
+        apart = apart && factor[q] == 0;
+      }
+      if (apart) continue;
+      for (int k = c + 1; k <= r; k++)
+        for (int q = 0; q < POLES; q++) AT(r, k) -= times(factor[q], AT(k, c));
+      for (int q = 0; q < POLES; q++) x[r * POLES + q] -= times(factor[q], x[c * POLES + q]);
     }
   }
   for (int c = m - 1; c >= 0; c--) {
-    for (int r = c + 1; r < m; r++) x[c] -= times(matrix[r * m + c], x[r]);
-    x[c] = times(x[c], matrix[c * m + c]);
+    for (int r = c + 1; r < m; r++)
+      for (int q = 0; q < POLES; q++) x[c * POLES + q] -= times(AT(r, c), x[r * POLES + q]);
+    for (int q = 0; q < POLES; q++) x[c * POLES + q] = times(x[c * POLES + q], AT(c, c));
   }
+#undef AT
 }
 
 /* A step of every field; of each closed contact its sides, resistance K/W and difference K. through: its mean flow W. */
 static void step(const Numbers* numbers, const Work* work, const State* state, const Side* sides,
                  const double* resistance, const double* difference, double* through) {
   int patterns = numbers->patterns, pairs = work->pairs, m = pairs * patterns;
-  double complex *matrix = work->gram + (size_t)POLES * m * m, *flow = matrix + (size_t)m * m;
+  size_t square = (size_t)POLES * m * m;
+  double complex *matrix = work->gram + square, *flow = matrix + square;
   for (int i = 0, j = 0; i < pairs; i++) {
     for (int p = 0; p < patterns; p++, j++) {
       double heard[2 * POLES] = {0};
@@ -129,18 +139,18 @@ static void step(const Numbers* numbers, const Work* work, const State* state, c
         }
       }
       for (int q = 0; q < POLES; q++)
-        flow[q * m + j] = (p ? 0 : difference[i]) - times(at_pole(numbers->poles, q), at_pole(heard, q));
+        flow[j * POLES + q] = (p ? 0 : difference[i]) - times(at_pole(numbers->poles, q), at_pole(heard, q));
     }
   }
+  memcpy(matrix, work->gram, sizeof(double complex) * square);
+  for (int j = 0; j < m; j++)
+    for (int q = 0; q < POLES; q++) matrix[(j * m + j) * POLES + q] += resistance[j / patterns];
+  solve(m, matrix, flow);
   memset(through, 0, sizeof(double) * pairs);
   for (int q = 0; q < POLES; q++) {
-    double complex weight = at_pole(numbers->weights, q), lag = times(weight, inverse_of(at_pole(numbers->poles, q)));
-    memcpy(matrix, work->gram + (size_t)q * m * m, sizeof(double complex) * m * m);
-    for (int i = 0, j = 0; i < pairs; i++)
-      for (int p = 0; p < patterns; p++, j++) matrix[j * m + j] += resistance[i];
-    solve(m, matrix, flow + q * m);
-    for (int i = 0; i < pairs; i++) through[i] -= 2 * creal(times(lag, flow[q * m + i * patterns]));
-    for (int j = 0; j < m; j++) flow[q * m + j] = 2 * numbers->dt * times(weight, flow[q * m + j]);
+    double complex weight = 2 * at_pole(numbers->weights, q), lag = times(weight, inverse_of(at_pole(numbers->poles, q)));
+    for (int i = 0; i < pairs; i++) through[i] -= creal(times(lag, flow[i * patterns * POLES + q]));
+    for (int j = 0; j < m; j++) flow[j * POLES + q] = numbers->dt * times(weight, flow[j * POLES + q]);
   }
   for (int t = 0; t < numbers->targets; t++) {
     const Network* network = work->networks + t;
@@ -155,8 +165,8 @@ static void step(const Numbers* numbers, const Work* work, const State* state, c
         const double *restrict port = side->ports + p * side->stride, *restrict scale = side->scale;
         double given[2 * POLES];
         for (int q = 0; q < POLES; q++) {
-          given[2 * q] = side->sign * creal(flow[q * m + j]);
-          given[2 * q + 1] = -side->sign * cimag(flow[q * m + j]);
+          given[2 * q] = side->sign * creal(flow[j * POLES + q]);
+          given[2 * q + 1] = -side->sign * cimag(flow[j * POLES + q]);
         }
         for (int k = 0; k < side->n; k++) {
           double sum = 0;
@@ -230,13 +240,10 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
   for (int i = 0; i < pairs; i++)
     for (int k = 0; k < rates; k++)
       state->narrow[pair[i] * rates + k] += work->grown[k] * roots[i * rates + k] * through[i];
+  for (int f = 0; f < tips; f++) {
+    const double *x = field(numbers, state, objects + f), *row = numbers->tip_drop + f * numbers->tip_states;
+    state->voltages[f] = 0;
+    for (int k = 0; k < numbers->tip_states; k++) state->voltages[f] += numbers->seebeck[f] * row[k] * x[k];
+  }
   return true;
-}
-
-/* V of a fingertip's sensor. */
-double heat_voltage(const Numbers* numbers, const State* state, int tip) {
-  const double *x = field(numbers, state, numbers->objects + tip), *row = numbers->tip_drop + tip * numbers->tip_states;
-  double drop = 0;
-  for (int k = 0; k < numbers->tip_states; k++) drop += row[k] * x[k];
-  return drop * numbers->seebeck[tip];
 }

@@ -174,7 +174,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   for (int s = 0; s < m->nsensor; s++) {
     if (m->sensor_type[s] != mjSENS_PLUGIN || m->sensor_plugin[s] != instance) continue;
     for (int f = 0; f < heat->numbers.tips; f++)
-      d->sensordata[m->sensor_adr[s] + f] = on_time(&heat->numbers, m) ? heat_voltage(&heat->numbers, &state, f) : NAN;
+      d->sensordata[m->sensor_adr[s] + f] = on_time(&heat->numbers, m) ? state.voltages[f] : NAN;
   }
 }
 
