@@ -64,10 +64,10 @@ void heat_pace(const Numbers* numbers, Network* network) {
 static bool join(const Numbers* numbers, Work* work, const Side* sides, int pairs) {
   int patterns = numbers->patterns;
   size_t m = (size_t)pairs * patterns;
-  if (m > work->ports) {
+  if (m > work->ports || !work->gram) {
     free(work->gram);
     work->ports = 0;
-    work->gram = malloc(sizeof(double complex) * POLES * (2 * m + 1) * m);
+    work->gram = malloc(sizeof(double complex) * (POLES * (2 * m + 1) * m + 1)); /* never empty */
     if (!work->gram) return false;
     work->ports = m;
   }
