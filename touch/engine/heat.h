@@ -84,7 +84,7 @@ typedef struct {
 
 /* The state of an instance, numbers in MuJoCo's plugin_state. */
 typedef struct {
-  double *count, *voltages, *touches, *places, *used, *current, *narrow, *x;
+  double *count, *touches, *places, *used, *current, *narrow, *x, *voltages;
 } State;
 
 const char* heat_parse(Numbers* numbers, const char* text);

@@ -15,18 +15,19 @@ enum { IDLE = 2 };    /* places that an object remembers besides those in use */
 
 size_t heat_states(const Numbers* numbers) {
   size_t tips = numbers->tips, objects = numbers->objects, fields = numbers->targets;
-  return 1 + tips + tips * fields * COLUMNS + objects * (numbers->places * SLOT + 1) + tips * objects +
-         tips * fields * numbers->rates + objects * numbers->states + tips * numbers->tip_states;
+  return 1 + tips * fields * COLUMNS + objects * (numbers->places * SLOT + 1) + tips * objects +
+         tips * fields * numbers->rates + objects * numbers->states + tips * numbers->tip_states + tips;
 }
 
 State heat_state(const Numbers* numbers, double* at) {
   size_t tips = numbers->tips, objects = numbers->objects;
-  State state = {.count = at, .voltages = at + 1, .touches = at + 1 + tips};
+  State state = {.count = at, .touches = at + 1};
   state.places = state.touches + tips * numbers->targets * COLUMNS;
   state.used = state.places + objects * numbers->places * SLOT;
   state.current = state.used + objects;
   state.narrow = state.current + tips * objects;
   state.x = state.narrow + tips * numbers->targets * numbers->rates;
+  state.voltages = state.x + objects * numbers->states + tips * numbers->tip_states;
   return state;
 }
 
