@@ -17,11 +17,12 @@ import os
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Any, cast
 
 import numba
 import numpy as np
+from numba.core import event, ir
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
@@ -29,10 +30,12 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.environment import lookup_environment
 from numba.core.extending import _Intrinsic
+from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.core.targetconfig import TargetConfig
+from numba.core.transforms import canonicalize_cfg
 from numba.core.types.functions import BaseFunction
 
 from thermograsp.beside import start_beside, turn
@@ -54,6 +57,9 @@ _PLAIN = frozenset(
 )
 """Kinds of types on which alone depends what an operator makes of them."""
 
+_NUMBERS = numba.types.IntegerLiteral, numba.types.BooleanLiteral
+"""The type of a number that is written into the code."""
+
 _DEFAULTS: dict[type, dict[str, Any]] = {}
 """The default of every option of a kind of numba's configurations."""
 
@@ -67,7 +73,8 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
     cache: keep the compiled code beside the source, or where NUMBA_CACHE_DIR says. inner: only compiled code calls the
     function. No entry from Python is then compiled, which may take longer than the function itself; a call from Python
     raises TypeError. Every other function has an inner twin, which compiled code calls; its entry is compiled when
-    Python first calls it.
+    Python first calls it. A number written into a call is an argument as others are: numba would compile the function
+    once more for each.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
@@ -81,6 +88,7 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
             dispatcher._insert = _nothing
             dispatcher._compile_for_args = functools.partial(_refused, function.__name__)
             dispatcher.called = lambda: dispatcher
+            dispatcher.get_call_template = _without_numbers(dispatcher.get_call_template)
         else:
 
             @functools.cache
@@ -138,6 +146,19 @@ class _OuterCompiler(_InnerCompiler):
     _library = JITCodeLibrary
 
 
+def _without_numbers(call_template: Callable[..., Any]) -> Callable[..., Any]:
+    """A dispatcher's get_call_template, for any numbers of the arguments' types."""
+
+    def plain(kind: Any) -> Any:
+        return numba.types.unliteral(kind) if isinstance(kind, _NUMBERS) else kind
+
+    def run(arguments: Any, keywords: Any) -> Any:
+        named = {name: plain(kind) for name, kind in keywords.items()}
+        return call_template(tuple(map(plain, arguments)), named)
+
+    return run
+
+
 def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
     """The dispatcher's compile in less time. The code then learns the environments of inner functions."""
     compile_ = dispatcher.compile
@@ -184,17 +205,22 @@ def compile_beside(module: str, *needed: Any) -> None:
 def _in_less_time() -> Iterator[None]:
     """While it lasts, Python collects no cycles: of what a compilation builds, it would search all a thousand times
     and find little. numba's options, which it compares tens of thousands of times, make their dictionaries at once in
-    place of calling a property for each. And numba finds only once what an operator makes of numbers and arrays: at
-    each place it would try all that the operator can mean, for dates too."""
-    collects, values, call_type = gc.isenabled(), TargetConfig.values, BaseFunction.get_call_type
+    place of calling a property for each. numba finds only once what an operator makes of numbers and arrays: at each
+    place it would try all that the operator can mean, for dates too. After each of its passes it finds no variables
+    that only generators and Python's objects need. And it takes no times, which nobody reads."""
+    collects = gc.isenabled()
+    call_type: Any = BaseFunction.get_call_type
+    kept = [(place, name, getattr(place, name)) for place, name, _ in _QUICKER]
     gc.disable()
-    TargetConfig.values = _values
+    for place, name, quicker in _QUICKER:
+        setattr(place, name, quicker)
     if not isinstance(call_type, _CallTypes):
         setattr(BaseFunction, "get_call_type", _CallTypes(call_type))  # noqa: B010
     try:
         yield
     finally:
-        TargetConfig.values = values
+        for place, name, before in kept:
+            setattr(place, name, before)
         BaseFunction.get_call_type = call_type
         if collects:
             gc.enable()
@@ -240,6 +266,42 @@ def _values(self: Any) -> dict[str, Any]:
     if (kind := type(self)) not in _DEFAULTS:
         _DEFAULTS[kind] = {name: option.default for name, option in kind.options.items()}
     return {**_DEFAULTS[kind], **self._values}
+
+
+def _variables(self: Any, value: Any) -> list[Any]:
+    """ir.Inst._rec_list_vars."""
+    if isinstance(value, dict):
+        value = value.values()
+    elif not isinstance(value, list | tuple):
+        return [value] if isinstance(value, ir.Var) else value.list_vars() if isinstance(value, ir.Inst) else []
+    found: list[Any] = []
+    for one in value:
+        kind = type(one)
+        if kind is ir.Var:
+            found.append(one)
+        elif kind is not ir.Loc and kind is not str:
+            found += _variables(self, one)
+    return found
+
+
+def _processed(self: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+    """PostProcessor.run."""
+    found = self.func_ir
+    if emit_dels or extend_lifetimes or found.is_generator:
+        _PROCESSED(self, emit_dels, extend_lifetimes)
+        return
+    found.blocks = canonicalize_cfg(found.blocks)
+    found.variable_lifetime, found.generator_info = VariableLifetime(found.blocks), None
+
+
+_PROCESSED = PostProcessor.run
+_QUICKER: tuple[tuple[Any, str, Any], ...] = (
+    (TargetConfig, "values", _values),
+    (ir.Inst, "_rec_list_vars", _variables),
+    (PostProcessor, "run", _processed),
+    (event, "install_timer", lambda kind, callback: nullcontext()),
+)
+"""What of numba is replaced while it compiles."""
 
 
 def _nothing(*_: Any) -> None:

@@ -43,7 +43,7 @@ def compile_ahead() -> None:
         types.float64,
         _made_by(workspace, types.int64, types.int64),
         _made_by(_reading, types.int64, types.int64),
-        types.literal(0),
+        types.int64,
         types.int64,
     )
     chains, matrix, cube = (

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -176,6 +175,8 @@ def _along_oblique(patch: PlacedPatch, axis: int, gridding: MeshGridding) -> tup
 def _staggered(breaks: np.ndarray, fine: dict[float, float], growth: float, largest: float) -> GridAxis:
     """Nodes and boundaries between them on one smooth map of their numbers: between them the errors that graded cells
     make with nodes in their middles, and the opposite ones with boundaries midway between nodes, cancel."""
+    from scipy.interpolate import PchipInterpolator  # slow to import, and boxes do without it
+
     edges, nodes = [breaks[:1]], []
     for start, stop in zip(breaks[:-1], breaks[1:], strict=True):
         points = graded_cells([start, stop], fine, growth, largest)
