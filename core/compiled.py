@@ -193,12 +193,10 @@ def _turn(dispatcher: Any, signature: Any) -> Iterator[None]:
 def compile_beside(module: str, *needed: Any) -> None:
     """Where the code of one of the functions is not kept on disk yet, a second process calls compile_ahead() of the
     module while this one goes on (see start_beside). This one waits only where it needs what the other is compiling at
-    that moment. The code is the same whoever compiles it."""
-    for function in needed:
-        cache = function.called()._cache
-        if not cache.keeps_any():
-            start_beside(module, cache.cache_path)
-            return
+    that moment. The code is the same whoever compiles it. One second process at a time has the same first function."""
+    caches = [function.called()._cache for function in needed]
+    if not all(cache.keeps_any() for cache in caches):
+        start_beside(module, caches[0].cache_path)
 
 
 @contextmanager
@@ -273,7 +271,9 @@ def _variables(self: Any, value: Any) -> list[Any]:
     if isinstance(value, dict):
         value = value.values()
     elif not isinstance(value, list | tuple):
-        return [value] if isinstance(value, ir.Var) else value.list_vars() if isinstance(value, ir.Inst) else []
+        return (
+            [value] if isinstance(value, ir.Var) else value.list_vars() if isinstance(value, ir.Inst) else []
+        )
     found: list[Any] = []
     for one in value:
         kind = type(one)

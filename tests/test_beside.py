@@ -177,3 +177,27 @@ print(missed, sum(kernel.advance_grasps.stats.cache_misses.values()), total.hexd
         printed.append(done.stdout.split())
     (missed, compiled, found), (_, _, alone) = printed
     assert (missed, compiled, found) == ("0", "1", alone)
+
+
+@pytest.mark.slow
+def test_a_second_process_compiles_what_a_mesh_needs(tmp_path):
+    """A first mesh finds it, also what the mesh's networks are solved with."""
+    mesh = """
+import gymnasium, numpy as np, thermograsp
+from thermograsp.envs.footprint import foundation
+from thermograsp.thermal.meshes import cut, patch, place, rays, solve
+env = gymnasium.make("thermograsp/Grasp-v0", objects="mug")
+env.reset(seed=0)
+env.step(np.array([-1, 0, 0], np.float32))
+ahead = [solve._factor, solve._iterate, solve._multiply, cut._accumulate, patch._pieces, place.within_cube]
+ahead += [rays.crossed_above, foundation.pressure_map]
+print(*(sum(one.stats.cache_misses.values()) for one in ahead))
+"""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "code"), ALONE: "1"}
+    environment["THERMOGRASP_CACHE"] = str(tmp_path / "networks")
+    code = "from thermograsp.envs.sensing.mesh_ahead import compile_ahead; compile_ahead()"
+    subprocess.run([sys.executable, "-c", code], env=environment, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", mesh], env=environment, check=True, capture_output=True, text=True
+    )
+    assert set(done.stdout.split()) == {"0"}

@@ -9,8 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from thermograsp.compiled import compile_beside
 from thermograsp.errors import MeshError, MissingDependencyError, install, positive
 
+from ...thermal.contact import gas_conduction
+from ...thermal.meshes import crossed_above
 from .mesh_files import FORMATS, read_surface
 
 SMALLEST = 0.005  # m, along the shortest extent
@@ -64,6 +67,7 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
     positive("scale", scale)
     if pieces < 1 or int(pieces) != pieces:
         raise MeshError(f"pieces {pieces}: give a whole number, 1 for the convex hull")
+    compile_beside("thermograsp.envs.sensing.mesh_ahead", gas_conduction, crossed_above)
     surface = read_surface(str(path))
     mesh = trimesh.Trimesh(surface.vertices * scale, surface.faces, process=False)
     _check_size(path, mesh.extents, scale)

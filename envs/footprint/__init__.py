@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
+    from .foundation import pressure_map
     from .grasp_body import PAD, GraspBody
     from .taxels import MOST_PRESSURE, Taxels, checked_taxels
 
@@ -14,6 +15,7 @@ __all__ = [
     "GraspBody",
     "Taxels",
     "checked_taxels",
+    "pressure_map",
 ]
 
 __getattr__ = opened(__name__)

@@ -48,7 +48,7 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
     tables = HeatTables(*numbers)
     samples, tips = drop.shape[1], fingertips_of(tables)
     room, reading = workspace(tables.rows.shape[2], tables.gram.shape[3]), _reading(samples, tips)
-    conducts = np.zeros((samples, 2))
+    conducts = np.empty((samples, 2))
     duration = tables.dt * samples
     for b in range(len(rows)):
         row, one, x = rows[b], info[b], state[b]
@@ -100,7 +100,7 @@ def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *nu
     tables = FixedTables(*numbers)
     samples, tips = drop.shape[1], (tables.links.shape[1] - WHERE) // 2
     room, reading = fixed_room(tables.gram.shape[1]), _reading(samples, tips)
-    conducts = np.zeros((samples, 2))
+    conducts = np.empty((samples, 2))
     for b in range(len(rows)):
         row, one = rows[b], info[b]
         if row.boxed == 0:
@@ -127,7 +127,7 @@ def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *nu
 @njit(cache=True, inner=True, error_model="numpy")
 def _reading(samples, tips):
     """Room for the HeatReading of one row."""
-    by_tip, by_row = np.zeros((5, samples, tips)), np.zeros((2, samples))
+    by_tip, by_row = np.empty((5, samples, tips)), np.empty((2, samples))
     return HeatReading(
         by_tip[0:1], by_tip[1:2], by_row[0:1], by_tip[2:3], by_tip[3:4], by_tip[4:5], by_row[1:2]
     )
@@ -137,7 +137,7 @@ def _reading(samples, tips):
 def _meet(law, row, one, normal, place, drop, conducts, first):
     """Where a row's fingertips touch in a control step: fills conducts (N, F) W/K of each sample, notes what has begun
     and ended, and before the first sample clears what the step adds up."""
-    samples, at = len(drop), np.zeros(3)
+    samples, at = len(drop), np.empty(3)
     for f in range(2):
         _along_pad(law, place, f, at)
         touching = _mean_contacts(law, normal[:, f], one, f, at, conducts)

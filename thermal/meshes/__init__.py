@@ -4,7 +4,7 @@ from .check import open_edges, wrongly_enclosed
 from .nesting import BENEATH, NEARLY_ALL, hosts, shares_within
 from .network import body_network
 from .press import press_body
-from .rays import crossings
+from .rays import crossed_above, crossings
 from .solid import Solid, SolidPart, SurfacePatch, solid
 from .touched import TouchedBody, field_carried, surface_normal, touched_body
 
@@ -16,6 +16,7 @@ __all__ = [
     "SurfacePatch",
     "TouchedBody",
     "body_network",
+    "crossed_above",
     "crossings",
     "field_carried",
     "hosts",

@@ -103,16 +103,29 @@ def cell_range(polygon, count, axis, edges, outward):
         high = max(high, polygon[i, axis])
     last = len(edges) - 2
     if low == high:
-        at = np.searchsorted(edges, low, side="left")
+        at = _place(edges, low, False)
         if at < len(edges) and edges[at] == low:
             first = at - 1 if outward > 0 else at
         else:
             first = at - 1
         first = min(max(first, 0), last)
         return first, first
-    first = np.searchsorted(edges, low, side="right") - 1
-    final = np.searchsorted(edges, high, side="left") - 1
+    first = _place(edges, low, True) - 1
+    final = _place(edges, high, False) - 1
     return min(max(first, 0), last), min(max(final, 0), last)
+
+
+@njit(cache=True, inner=True)
+def _place(edges, value, beyond):
+    """np.searchsorted, to the right of equal ones if beyond: numba's takes longer to compile."""
+    low, high = 0, len(edges)
+    while low < high:
+        middle = (low + high) // 2
+        if edges[middle] < value or (beyond and edges[middle] == value):
+            low = middle + 1
+        else:
+            high = middle
+    return low
 
 
 @njit(cache=True)

@@ -132,7 +132,8 @@ def _span(polygon, count, axes, span):
 def _seen(polygon, count, normal, middle):
     """Area m2 of a polygon seen along a normal; its middle is filled in."""
     total = 0.0
-    middle[:] = 0.0
+    for c in range(3):
+        middle[c] = 0.0
     for t in range(1, count - 1):
         part = 0.0
         for c in range(3):
@@ -149,5 +150,6 @@ def _seen(polygon, count, normal, middle):
         for c in range(3):
             middle[c] += part * (polygon[0, c] + polygon[t, c] + polygon[t + 1, c]) / 3
     if total > 0:
-        middle /= total
+        for c in range(3):
+            middle[c] /= total
     return total

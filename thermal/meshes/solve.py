@@ -27,7 +27,10 @@ def solve_shifted(
     diagonal = s * grid.capacity + grid.links.sum(axis=1)
     pivots = _factor(diagonal, grid.neighbours, grid.links)
     x = np.array(guess, float)
-    count = _iterate(diagonal, pivots, grid.neighbours, grid.links, right, x, tolerance, _MOST_ITERATIONS)
+    fields, sums = tuple(np.empty((4, *x.shape))), tuple(np.empty((5, x.shape[1])))
+    count = _iterate(
+        *(diagonal, pivots, grid.neighbours, grid.links, right, x, tolerance, _MOST_ITERATIONS, fields, sums)
+    )
     if count < 0:
         raise SimulationError(
             f"the temperatures of a mesh's grid of {len(diagonal)} cells did not settle in {_MOST_ITERATIONS} "
@@ -38,17 +41,12 @@ def solve_shifted(
 
 def conduct(grid: MeshGrid, fields: np.ndarray) -> np.ndarray:
     """Heat flow (N, P) W out of each cell by conduction at temperatures (N, P)."""
-    return _apply(grid.links.sum(axis=1), grid.neighbours, grid.links, np.ascontiguousarray(fields))
-
-
-@njit(cache=True)
-def _apply(diagonal, neighbours, links, x):
-    out = np.empty_like(x)
-    _multiply(diagonal, neighbours, links, x, out)
+    out = np.empty(fields.shape)
+    _multiply(grid.links.sum(axis=1), grid.neighbours, grid.links, np.ascontiguousarray(fields), out)
     return out
 
 
-@njit(cache=True, inner=True)
+@njit(cache=True)
 def _multiply(diagonal, neighbours, links, x, out):
     cells, columns = x.shape
     for i in range(cells):
@@ -102,32 +100,28 @@ def _precondition(inverse, neighbours, links, right, out):
 
 @njit(cache=True, inner=True)
 def _dots(a, b, out):
-    out[:] = 0.0
+    for p in range(a.shape[1]):
+        out[p] = 0.0
     for i in range(a.shape[0]):
         for p in range(a.shape[1]):
             out[p] += a[i, p] * b[i, p]
 
 
 @njit(cache=True)
-def _iterate(diagonal, inverse, neighbours, links, right, x, tolerance, most):
-    """Conjugate gradients on every column; x (N, P) in place. Returns the iterations taken, -1 where too many."""
+def _iterate(diagonal, inverse, neighbours, links, right, x, tolerance, most, fields, sums):
+    """Conjugate gradients on every column; x (N, P) in place. fields: four (N, P) and sums: five (P,), room. Returns
+    the iterations taken, -1 where too many."""
     columns = x.shape[1]
-    residual, product = np.empty_like(x), np.empty_like(x)
+    residual, product, better, direction = fields
     _multiply(diagonal, neighbours, links, x, product)
     for i in range(x.shape[0]):  # written out: it takes a second less to compile
         for p in range(columns):
             residual[i, p] = right[i, p] - product[i, p]
-    whole, rest, old, new, curve = (
-        np.zeros(columns),
-        np.zeros(columns),
-        np.zeros(columns),
-        np.zeros(columns),
-        np.zeros(columns),
-    )
+            direction[i, p] = 0.0
+    whole, rest, old, new, curve = sums
     _dots(right, right, whole)
-    better = np.empty_like(x)
-    direction = np.zeros_like(x)
-    old[:] = 1.0
+    for p in range(columns):
+        old[p] = 1.0
     for iteration in range(most):
         _dots(residual, residual, rest)
         done = True

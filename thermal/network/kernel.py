@@ -90,8 +90,8 @@ class Workspace(NamedTuple):
 def workspace(states: int, ports: int) -> Workspace:
     """Room for systems of up to that many states and ports."""
     # Few blocks: getting one takes as long as a loop over it.
-    long, short = np.zeros((2 + 2 * _PAIRS, states)), np.zeros((5, ports))
-    matrix = np.zeros((_PAIRS + ports, ports), np.complex128)
+    long, short = np.empty((2 + 2 * _PAIRS, states)), np.empty((5, ports))
+    matrix = np.empty((_PAIRS + ports, ports), np.complex128)
     return Workspace(
         long[0],
         long[1],

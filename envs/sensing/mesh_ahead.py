@@ -1,0 +1,28 @@
+"""What a second process compiles while the first one reads and checks a mesh: what a mesh's contacts and networks need,
+and then what any first step does (see ahead.py)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...thermal import SolidPart, SurfacePatch, body_network, material
+from ...thermal.meshes import Solid
+from ..footprint import pressure_map
+from . import ahead
+
+_SIDE = 0.01  # m
+
+
+def compile_ahead() -> None:
+    """Calls the functions as for a mesh, but on little: one point of a pad, and a cube."""
+    one, middle = np.ones(1), np.zeros(2)
+    pressure_map(np.zeros(1), one, np.zeros((1, 2)), 1.0, 1.0, 1.0, 1.0, middle, np.zeros(1))
+    body_network(_cube(), (SurfacePatch((0.0, 0.0, _SIDE / 2), (0.0, 0.0, 1.0), 4e-6),), cache=False)
+    ahead.compile_ahead()
+
+
+def _cube() -> Solid:
+    corners = np.array([[i >> 2, i >> 1 & 1, i & 1] for i in range(8)], float)
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    faces = np.array([[a, *pair] for a, b, c, d in sides for pair in ((b, c), (c, d))])
+    return Solid((SolidPart((corners - 0.5) * _SIDE, faces, material("glass")),))
