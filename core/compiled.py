@@ -207,19 +207,20 @@ def _in_less_time() -> Iterator[None]:
     place it would try all that the operator can mean, for dates too. After each of its passes it finds no variables
     that only generators and Python's objects need. And it takes no times, which nobody reads."""
     collects = gc.isenabled()
-    call_type: Any = BaseFunction.get_call_type
+    calls: Any = BaseFunction
+    call_type = calls.get_call_type
     kept = [(place, name, getattr(place, name)) for place, name, _ in _QUICKER]
     gc.disable()
     for place, name, quicker in _QUICKER:
         setattr(place, name, quicker)
     if not isinstance(call_type, _CallTypes):
-        setattr(BaseFunction, "get_call_type", _CallTypes(call_type))  # noqa: B010
+        calls.get_call_type = _CallTypes(call_type)
     try:
         yield
     finally:
         for place, name, before in kept:
             setattr(place, name, before)
-        BaseFunction.get_call_type = call_type
+        calls.get_call_type = call_type
         if collects:
             gc.enable()
 
