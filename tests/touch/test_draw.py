@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from thermograsp.cli import main
-from thermograsp.touch import ThermalTouch
+from thermograsp.touch import ThermalBody, ThermalTouch
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
@@ -23,7 +23,9 @@ PADS = {name: f"{name}_pad" for name in hand.FINGERS}
 
 def test_a_cold_touch_is_drawn_blue_with_a_bar() -> None:
     model, data = hand.hand()
-    touch = ThermalTouch(model, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal")
+    touch = ThermalTouch(
+        model, fingertips=PADS, objects={"can": ThermalBody("aluminium", 5.0)}, chain="ideal"
+    )
     hand.press(data, 10.0)
     scene = mujoco.MjvScene(model, 50)
     mujoco.mj_forward(model, data)
