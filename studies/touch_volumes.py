@@ -29,7 +29,7 @@ from scipy.sparse.linalg import splu
 import thermograsp
 from thermograsp import Fingertip
 from thermograsp.thermal import material, sensor
-from thermograsp.thermal.contact import Pad, cylinder_contact
+from thermograsp.thermal.contact import Pad, Surface, bare_footprint, even_patch
 from thermograsp.touch.contacts import CONDUCTANCE, FORCE
 
 STACK = sensor("seed")
@@ -408,13 +408,14 @@ def one_on_can(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.n
 
 
 def _on_can(run: Run, made_of: str, sector: float, refine: float) -> np.ndarray:
-    """(samples, 1). Heat passes the strip in contact, which is here always as wide as in the end."""
+    """(samples, 1). Heat passes the strip of even_patch, which is here always as wide as in the end."""
     length, through = 2 * HALF, run.through.mean(axis=1, keepdims=True)
-    area = float(cylinder_contact(Pad(width=0.020, face=length), run.force[-1].mean(), RADIUS, LENGTH).face)
+    law = bare_footprint(Pad(width=0.020, face=length), Surface.of(material(made_of)), RADIUS, LENGTH)
+    area = even_patch(law, material(made_of), run.force[-1].mean())
     reach = area / (2 * length)
     half = np.concatenate(
-        (np.sort(reach - lines(0.0, reach, round(4 * refine), reach / (10 * refine))),
-         lines(reach, HALF, round(5 * refine), reach / (10 * refine))[1:])
+        (np.sort(reach - lines(0.0, reach, round(6 * refine), reach / (30 * refine))),
+         lines(reach, HALF, round(8 * refine), reach / (30 * refine))[1:])
     )  # fmt: skip
     tip = body(element(half, face(refine), refine))
     thing = body(can(made_of, RADIUS, LENGTH / 2, sector, half, refine))
