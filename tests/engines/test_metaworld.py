@@ -19,7 +19,10 @@ def picked(material: str) -> Any:
 
     env = thermograsp.wrappers.AddThermalObservation(
         gymnasium.make("Meta-World/MT1", env_name="pick-place-v3", seed=1),
-        fingertips={side: f"{side}pad" for side in ("left", "right")},
+        fingertips={
+            side: thermograsp.Fingertip(f"{side}pad", (0.033, y, -0.006), (0, y / 0.003, 0), (0.024, 0.018))
+            for side, y in (("left", -0.003), ("right", 0.003))
+        },
         objects={"obj": material},
         chain="ideal",
     )
