@@ -75,16 +75,16 @@ def watched(
     return Seen(np.concatenate(vectors), np.concatenate(rights).astype(np.float32), gained.ravel())
 
 
-def imitate(policy: Any, seen: Seen, recipe: Recipe, minibatches: int, seed: int) -> float:
-    """Fits a policy of stable-baselines3 by so many minibatches, its mean actions to the teacher's and its values to
-    what was gained; returns the mean squared error of the actions over the last pass."""
+def imitate(policy: Any, seen: Seen, recipe: Recipe, seed: int) -> float:
+    """Fits a policy of stable-baselines3, its mean actions to the teacher's and its values to what was gained; returns
+    the mean squared error of the actions over the last pass."""
     generator = torch.Generator().manual_seed(seed)
     count = len(seen.vector)
     optimizer = torch.optim.Adam(policy.parameters(), lr=recipe.imitation_rate)
-    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, minibatches)
+    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, recipe.minibatches)
     vector, right, gained = (torch.from_numpy(each) for each in (seen.vector, seen.right, seen.gained))
     errors = []
-    for _ in range(minibatches):
+    for _ in range(recipe.minibatches):
         chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
         acting, valuing = policy.mlp_extractor(vector[chosen])
         error = ((policy.action_net(acting) - right[chosen]) ** 2).mean()

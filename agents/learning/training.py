@@ -162,12 +162,10 @@ class Training:
             agent = self._mean_action if done else None
             new = watched(self._practice, teacher, agent, self._per_round, recipe.gamma, advance)
             seen = new if seen is None else seen.and_also(new)
-            last = done + 1 == recipe.rounds
-            minibatches = recipe.last_minibatches if last else recipe.minibatches
-            error = imitate(self._model.policy, seen, recipe, minibatches, self.seed + done)
+            error = imitate(self._model.policy, seen, recipe, self.seed + done)
             self._model.logger.record("imitation/error", error)
             self._state["rounds_done"] = done + 1
-            if not last:
+            if done + 1 < recipe.rounds:
                 with atomic_write(self.out / SEEN) as temporary:
                     np.savez(temporary, vector=seen.vector, right=seen.right, gained=seen.gained)
             self.evaluate("imitation")

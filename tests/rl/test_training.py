@@ -39,7 +39,6 @@ TINY = Recipe(
     taught=0.5,
     rounds=2,
     minibatches=4,
-    last_minibatches=6,
     num_envs=4,
     hidden=(8,),
     decisions=12,
