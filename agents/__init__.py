@@ -7,28 +7,27 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from thermograsp.agents.episodes import rollout
     from thermograsp.agents.gripper_check import FELT_AFTER, check_gripper
+    from thermograsp.agents.learning import Agent
     from thermograsp.agents.policies import POLICIES, Policy, load_policy, policy
     from thermograsp.agents.recording import LONGEST, Recording, columns_of, record
     from thermograsp.agents.scripted import ScriptedGrasp
     from thermograsp.agents.stopwatch import Stopwatch
-    from thermograsp.agents.trained import Network, load_network
 
 __all__ = [
     "FELT_AFTER",
     "LONGEST",
     "POLICIES",
-    "Network",
+    "Agent",
     "Policy",
     "Recording",
     "ScriptedGrasp",
     "Stopwatch",
     "check_gripper",
     "columns_of",
-    "load_network",
     "load_policy",
     "policy",
     "record",
     "rollout",
 ]
 
-__getattr__ = opened(__name__)
+__getattr__ = opened(__name__, renamed={"Network": "Agent", "load_network": "load_policy"})

@@ -18,7 +18,6 @@ from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:
     from thermograsp.agents.learning.agent import Agent
-    from thermograsp.agents.trained import Network
 
 POLICIES = ("scripted", "feeling", "trained", "random", "zero")
 
@@ -66,20 +65,17 @@ def shipped(env: gymnasium.vector.VectorEnv) -> Path:
     return path
 
 
-def load_policy(path: str | Path) -> Agent | Network:
-    """A trained policy's file, of `thermograsp train` or older. Raises InvalidValueError where there is none."""
-    from thermograsp.agents.learning.agent import is_agent, load_agent
-    from thermograsp.agents.trained import load_network
+def load_policy(path: str | Path) -> Agent:
+    """A trained policy's file, of `thermograsp train`. Raises InvalidValueError where there is none."""
+    from thermograsp.agents.learning.agent import load_agent
 
-    return load_agent(path) if is_agent(path) else load_network(path)
+    return load_agent(path)
 
 
 def _of_file(env: gymnasium.vector.VectorEnv, path: str | Path) -> Policy:
-    from thermograsp.agents.learning.agent import Acting, Agent
-    from thermograsp.agents.trained import Trained
+    from thermograsp.agents.learning.agent import Acting
 
-    found = load_policy(path)
-    return Acting(env, found) if isinstance(found, Agent) else Trained(env, path)
+    return Acting(env, load_policy(path))
 
 
 class _Zero:

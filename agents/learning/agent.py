@@ -72,15 +72,6 @@ def load_agent(path: str | Path) -> Agent:
     return agent
 
 
-def is_agent(path: str | Path) -> bool:
-    """Whether a file is one that `Agent.save` wrote."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            return "agent" in file.files
-    except (AttributeError, EOFError, OSError, TypeError, ValueError, BadZipFile):
-        return False
-
-
 class Acting:
     """An agent as a policy of a vector environment. Raises InvalidValueError where its actions or what it is asked do
     not fit."""

@@ -1,4 +1,4 @@
-"""Shipped networks grasp what no constant force does; networks are read back as they were written."""
+"""Shipped agents grasp what no constant force does."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import thermograsp  # noqa: F401  registers the environments
+from thermograsp import agents
 from thermograsp.agents.episodes import rollout
-from thermograsp.agents.learning import learning_task, load_agent, score
-from thermograsp.agents.trained import Network, load_network
+from thermograsp.agents.learning import Agent, learning_task, load_agent, score
+from thermograsp.agents.policies import load_policy
 from thermograsp.assets import ROOT
 from thermograsp.envs import STAKES, force_window
-from thermograsp.envs.spaces.senses import SIZE, Senses
 from thermograsp.errors import InvalidValueError
 
 SHIPPED = sorted((ROOT / "policies").glob("*.npz"))
@@ -24,16 +24,6 @@ def stakes(num_envs: int) -> gymnasium.vector.VectorEnv:
     return gymnasium.make_vec(
         "thermograsp/Grasp-v0", num_envs=num_envs, vectorization_mode="vector_entry_point", **STAKES
     )
-
-
-def small_network(actions: int = 3) -> Network:
-    rng = np.random.default_rng(0)
-    sizes = (SIZE, 8, actions)
-    layers = tuple(
-        (rng.standard_normal((out, into)).astype(np.float32), rng.standard_normal(out).astype(np.float32))
-        for into, out in zip(sizes, sizes[1:], strict=False)
-    )
-    return Network(layers, Senses(heat=False), 5, {"seed": 3})
 
 
 @pytest.mark.slow
@@ -82,18 +72,8 @@ def test_what_no_shipped_agent_was_trained_for_is_refused() -> None:
         rollout(env, 1, 0, "trained")
 
 
-def test_a_network_is_read_back_as_it_was_written(tmp_path: Path) -> None:
-    written = small_network()
-    read = load_network(written.save(tmp_path / "one.npz"))
-    assert (read.senses, read.repeat, read.about) == (written.senses, written.repeat, written.about)
-    for ours, theirs in zip(written.layers, read.layers, strict=True):
-        np.testing.assert_array_equal(ours[0], theirs[0])
-        np.testing.assert_array_equal(ours[1], theirs[1])
-
-
-def test_episodes_do_not_depend_on_how_many_run_at_once(tmp_path: Path) -> None:
-    path = str(small_network().save(tmp_path / "one.npz"))
-    one, two, many = (rollout(stakes(n), 4, 11, path, max_steps=40) for n in (1, 2, 5))
+def test_episodes_do_not_depend_on_how_many_run_at_once() -> None:
+    one, two, many = (rollout(stakes(n), 4, 11, "trained", max_steps=40) for n in (1, 2, 5))
     assert one.digest == two.digest == many.digest and one.steps == many.steps
 
 
@@ -103,9 +83,14 @@ def test_what_is_no_policy_is_refused(tmp_path: Path) -> None:
         rollout(stakes(1), 1, 0, str(path))
     path.write_bytes(b"no archive")
     with pytest.raises(InvalidValueError, match="no trained policy"):
-        load_network(path)
+        load_policy(path)
     np.savez(path, weights=np.zeros(3))
     with pytest.raises(InvalidValueError, match="no trained policy"):
-        load_network(path)
-    with pytest.raises(InvalidValueError, match="4 numbers"):
-        rollout(stakes(1), 1, 0, str(small_network(actions=4).save(path)))
+        load_policy(path)
+
+
+def test_old_names_warn_and_are_those_of_today() -> None:
+    with pytest.warns(DeprecationWarning, match=r"agents\.Network is now thermograsp\.agents\.Agent"):
+        assert agents.Network is Agent  # pyright: ignore[reportAttributeAccessIssue]
+    with pytest.warns(DeprecationWarning, match="load_policy"):
+        assert agents.load_network is load_policy  # pyright: ignore[reportAttributeAccessIssue]
