@@ -34,28 +34,28 @@ def holder(folder: Path) -> subprocess.Popen[str]:
 
 def test_one_enters_at_a_time(tmp_path: Path) -> None:
     with holder(tmp_path) as other:
-        with turn(str(tmp_path), 7, wait=False) as own:
-            assert not own
-        with turn(str(tmp_path), 8, wait=False) as own:
-            assert own
+        with turn(str(tmp_path), 7, wait=False) as taken:
+            assert not taken
+        with turn(str(tmp_path), 8, wait=False) as taken:
+            assert taken
         assert other.stdin is not None
         other.stdin.close()
-        with turn(str(tmp_path), 7) as own:
-            assert own
+        with turn(str(tmp_path), 7) as taken:
+            assert taken
 
 
 def test_a_process_that_is_killed_holds_nothing(tmp_path: Path) -> None:
     with holder(tmp_path) as other:
         other.kill()
-        with turn(str(tmp_path), 7) as own:
-            assert own
+        with turn(str(tmp_path), 7) as taken:
+            assert taken
 
 
 def test_nobody_waits_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(beside, "_PATIENCE", 0.05)
     with holder(tmp_path) as other:
-        with turn(str(tmp_path), 7) as own:
-            assert not own
+        with turn(str(tmp_path), 7) as taken:
+            assert not taken
         other.kill()
 
 
@@ -66,8 +66,8 @@ def test_a_turn_may_be_taken_within_another_and_again(tmp_path: Path) -> None:
 
 
 def test_without_a_folder_nobody_waits(tmp_path: Path) -> None:
-    with turn(str(tmp_path / "none"), 7) as own:
-        assert not own
+    with turn(str(tmp_path / "none"), 7) as taken:
+        assert not taken
 
 
 @pytest.fixture

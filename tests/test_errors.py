@@ -67,7 +67,7 @@ def test_zero_and_below() -> None:
 
 
 @pytest.mark.parametrize(
-    ("refused", "told"),
+    ("refused", "unit"),
     [
         (lambda: celsius("t", 309.15), "309.15 looks like kelvin: give 36"),
         (lambda: length("size", 40), "40 looks like millimetres: give 0.04"),
@@ -76,10 +76,10 @@ def test_zero_and_below() -> None:
         (lambda: within("force", 20_000, 0.0, 40.0, "N"), "20000 looks like millinewtons: give 20"),
     ],
 )
-def test_a_number_in_another_unit_is_asked_about(refused, told) -> None:
+def test_a_number_in_another_unit_is_asked_about(refused, unit) -> None:
     with pytest.raises(InvalidValueError) as error:
         refused()
-    assert str(error.value).endswith("; " + told)
+    assert str(error.value).endswith("; " + unit)
 
 
 def test_a_number_that_no_other_unit_explains_is_only_refused() -> None:

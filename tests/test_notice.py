@@ -20,23 +20,23 @@ class Terminal(io.StringIO):
         return True
 
 
-def wait_for_notice(told: threading.Event) -> None:
+def wait_for_notice(noticed: threading.Event) -> None:
     """Work that goes on until it has been said."""
     with notice.busy("building"):
-        assert told.wait(30.0)
+        assert noticed.wait(30.0)
 
 
 def test_on_a_terminal_one_line_says_what_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = threading.Event()
+    noticed = threading.Event()
 
     class Watched(Terminal):
         def flush(self) -> None:
-            told.set()
+            noticed.set()
 
     stream = Watched()
     monkeypatch.setattr("sys.stderr", stream)
     monkeypatch.setattr(notice, "PATIENCE", 0.0)
-    wait_for_notice(told)
+    wait_for_notice(noticed)
     assert stream.getvalue() == "thermograsp: building ...\n"
 
 

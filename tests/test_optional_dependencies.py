@@ -197,9 +197,9 @@ def test_a_missing_package_is_one_line_with_its_extra(
 ) -> None:
     raised: list[tuple[str, str]] = []
 
-    def note(error: MissingDependencyError, *told: object) -> None:
-        raised.append((sys._getframe(1).f_code.co_filename, str(told[0])))
-        ImportError.__init__(error, *told)
+    def note(error: MissingDependencyError, *words: object) -> None:
+        raised.append((sys._getframe(1).f_code.co_filename, str(words[0])))
+        ImportError.__init__(error, *words)
 
     monkeypatch.setattr(MissingDependencyError, "__init__", note)
     without(case.module, case.file)

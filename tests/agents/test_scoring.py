@@ -155,9 +155,9 @@ def test_an_agent_is_read_back_as_it_was_written(tmp_path: Path) -> None:
     written = small_agent()
     read = load_agent(written.save(tmp_path / "one.npz"))
     assert (read.task, read.inputs, read.about) == (written.task, written.inputs, written.about)
-    for ours, theirs in zip(written.layers, read.layers, strict=True):
-        np.testing.assert_allclose(ours[0], theirs[0], rtol=2**-11, atol=2**-25)  # of float16
-        np.testing.assert_array_equal(ours[1], theirs[1])
+    for written_layer, read_layer in zip(written.layers, read.layers, strict=True):
+        np.testing.assert_allclose(written_layer[0], read_layer[0], rtol=2**-11, atol=2**-25)  # of float16
+        np.testing.assert_array_equal(written_layer[1], read_layer[1])
 
 
 def test_an_agent_is_scored_from_its_file(tmp_path: Path) -> None:

@@ -32,8 +32,8 @@ def test_who_feels_heat_beats_every_constant_force(policy: str, points: int) -> 
     """No constant force serves more than those episodes whose windows it is in."""
     env = stakes(48)
     _, info = env.reset(seed=7)
-    things = env.unwrapped.batch.plant.bodies  # pyright: ignore
-    windows = [force_window(thing) for thing in things]
+    bodies = env.unwrapped.batch.plant.bodies  # pyright: ignore
+    windows = [force_window(body) for body in bodies]
     best = max(sum(low < force < high for low, high in windows) for force in np.linspace(1, 40, 300))
     found = rollout(env, 48, 7, policy)
     assert found.successes > best + 48 * points / 100

@@ -14,7 +14,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "mjx_feels.py"
 def test_grippers_press_with_their_motors_and_feel_aluminium_colder_than_wood() -> None:
     run = subprocess.run([sys.executable, EXAMPLE], capture_output=True, text=True, timeout=1800)
     assert run.returncode == 0, run.stderr
-    told = [line.split() for line in run.stdout.splitlines() if line.endswith(" N")]
-    felt = {words[0]: (float(words[1]), float(words[4])) for words in told}
-    assert felt["aluminium:"][0] > 2 * felt["wood:"][0] > 0
-    assert all(force == pytest.approx(8.0, rel=0.02) for _, force in felt.values())
+    rows = [line.split() for line in run.stdout.splitlines() if line.endswith(" N")]
+    printed = {words[0]: (float(words[1]), float(words[4])) for words in rows}
+    assert printed["aluminium:"][0] > 2 * printed["wood:"][0] > 0
+    assert all(force == pytest.approx(8.0, rel=0.02) for _, force in printed.values())

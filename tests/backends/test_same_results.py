@@ -80,26 +80,31 @@ def test_forces_to_voltages(kind: Kind, mode: thermal.Mode) -> None:
     """Mean of the substeps, heat, electronics with noise and converter, and a start anew of some rows."""
     rng, rows = np.random.default_rng(0), 12
     which, restarted = np.arange(rows) % 3, np.arange(rows) < 4
-    ours, theirs = (
+    numpy_model, array_model = (
         thermal.array_fingertips(OBJECTS, dt=0.02, like=like, mode=mode, tolerance=0.2)
         for like in (np.zeros(0), kind.float64)
     )
-    conductance, step = kind.compiled(theirs.conductance), kind.compiled(theirs.step)
-    state, other = ours.start(rows), theirs.start(rows)
+    conductance, step = kind.compiled(array_model.conductance), kind.compiled(array_model.step)
+    state, other = numpy_model.start(rows), array_model.start(rows)
     force = np.zeros((rows, 10, 2))
     for k in range(20):
         force = rng.uniform(-5.0, 20.0, (rows, 10, 2))
         noise = rng.standard_normal((rows, 2))
         if k == 10:
-            state, other = ours.restart(state, restarted), theirs.restart(other, kind.of(restarted))
+            state, other = (
+                numpy_model.restart(state, restarted),
+                array_model.restart(other, kind.of(restarted)),
+            )
         if k == 15:  # some rows go on to another object
             which = np.roll(which, 1)
-        state, expected, _ = ours.step(state, ours.conductance(force, which).mean(1), which, noise)
-        felt = conductance(kind.of(force), kind.of(which)).mean(1)
-        other, voltage, _ = step(other, felt, kind.of(which), kind.of(noise))
+        state, expected, _ = numpy_model.step(
+            state, numpy_model.conductance(force, which).mean(1), which, noise
+        )
+        between = conductance(kind.of(force), kind.of(which)).mean(1)
+        other, voltage, _ = step(other, between, kind.of(which), kind.of(noise))
         np.testing.assert_allclose(np.asarray(voltage), expected, rtol=0, atol=1e-12)
     force[3, 0, 1] = np.nan
-    felt = conductance(kind.of(force), kind.of(which)).mean(1)
-    _, voltage, _ = step(other, felt, kind.of(which), 0.0)
+    between = conductance(kind.of(force), kind.of(which)).mean(1)
+    _, voltage, _ = step(other, between, kind.of(which), 0.0)
     spoilt = np.isnan(np.asarray(voltage)).any(axis=1)
     assert np.flatnonzero(spoilt).tolist() == [3]

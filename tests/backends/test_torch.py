@@ -80,8 +80,8 @@ def test_the_contact_law_is_one_graph(torch_kind: Kind) -> None:
 
 
 def test_a_table_of_curved_contacts_is_one_graph(torch_kind: Kind) -> None:
-    own = curved_table(thermal.Pad(), None, thermal.material("steel"), 0.02)
-    table, force = torch.tensor(own), torch.tensor([0.0, 2.0, 20.0], dtype=torch.float64)
+    first = curved_table(thermal.Pad(), None, thermal.material("steel"), 0.02)
+    table, force = torch.tensor(first), torch.tensor([0.0, 2.0, 20.0], dtype=torch.float64)
     at, number = torch.full((3,), 0.004, dtype=torch.float64), torch.zeros(3, dtype=torch.int64)
 
     def conducts(force: Any) -> Any:
@@ -91,8 +91,8 @@ def test_a_table_of_curved_contacts_is_one_graph(torch_kind: Kind) -> None:
         torch.compile(conducts, fullgraph=True, backend="aot_eager")(force), conducts(force), strict=True
     ):
         torch.testing.assert_close(found, same, rtol=1e-12, atol=0)
-    told = array_curved_contact(own, number.numpy(), force.numpy(), at.numpy(), at.numpy())
-    np.testing.assert_allclose(conducts(force)[0].numpy(), told[0], rtol=1e-12)
+    numpys = array_curved_contact(first, number.numpy(), force.numpy(), at.numpy(), at.numpy())
+    np.testing.assert_allclose(conducts(force)[0].numpy(), numpys[0], rtol=1e-12)
 
 
 def test_vmap_over_rows(torch_kind: Kind) -> None:

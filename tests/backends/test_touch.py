@@ -76,8 +76,8 @@ def test_contacts_are_felt_as_in_numpy(kind: Kind) -> None:
         expected, right = exact.advance(expected, exact.contacts(record))
         state, reading = compiled(state, kind.of(record))
         assert reading.temperature_drop.dtype == kind.float64.dtype
-        for own, numpys in zip(reading, right, strict=True):
-            np.testing.assert_allclose(np.asarray(own), numpys, rtol=1e-9, atol=1e-10)
+        for field, numpys in zip(reading, right, strict=True):
+            np.testing.assert_allclose(np.asarray(field), numpys, rtol=1e-9, atol=1e-10)
     assert (expected.signal.last[1] > expected.signal.last[0]).all() and expected.narrow.max() > 0
     record = every[:, -exact.substeps :].astype(np.float32)
     near, reading = single.advance(near, single.contacts(kind.of(record)))

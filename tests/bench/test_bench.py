@@ -176,9 +176,9 @@ def test_explicit_steps_on_the_plain_grid_blow_up_beyond_twice_the_bound() -> No
 def test_fipy_and_backward_euler_on_the_plain_grid_are_one_method(mode: str) -> None:
     pytest.importorskip("fipy")
     problem = press_problem("glass", mode)
-    theirs = fipy_press.fipy_press(problem, 0.02, 10, 1e-3)()
+    fipy_drop = fipy_press.fipy_press(problem, 0.02, 10, 1e-3)()
     ours = steppers.theta(disc_press(problem, 1e-3), 0.02, 10, 1.0)()
-    np.testing.assert_allclose(theirs, ours, atol=1e-9)
+    np.testing.assert_allclose(fipy_drop, ours, atol=1e-9)
 
 
 @pytest.mark.parametrize("mode", ["T", "O"])
@@ -247,10 +247,10 @@ def test_accuracy_points_are_complete_and_auto_keeps_its_tolerance(written: tupl
         if point["method"] == "auto":
             assert point["error_K"] <= float(point["setting"].split()[0])
     for mode in "TO":
-        mine = [p for p in points if p["mode"] == mode]
-        front = sorted((p for p in mine if p["pareto"]), key=lambda p: p["seconds_per_second"])
+        of_mode = [p for p in points if p["mode"] == mode]
+        front = sorted((p for p in of_mode if p["pareto"]), key=lambda p: p["seconds_per_second"])
         assert all(b["error_K"] <= a["error_K"] for a, b in zip(front, front[1:], strict=False))
-        best = min(p["error_K"] for p in mine)
+        best = min(p["error_K"] for p in of_mode)
         assert front[-1]["error_K"] == best
 
 

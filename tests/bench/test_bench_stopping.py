@@ -12,7 +12,9 @@ TIMES = np.array([0.0, 0.1, 0.2, 0.3])
 TOUCH = np.array([0.05, 0.05])
 
 
-def told(shares: list[list[float]], declares: list[list[bool]], voltage: np.ndarray | None = None) -> Touched:
+def touched(
+    shares: list[list[float]], declares: list[list[bool]], voltage: np.ndarray | None = None
+) -> Touched:
     """Two episodes of the first of two materials. shares: (2, 4) of the first."""
     first = np.array(shares)
     samples = np.zeros((2, 30, 2)) if voltage is None else voltage
@@ -32,7 +34,7 @@ NEVER = [[False] * 4] * 2
 
 def test_who_waits_until_sure_is_right_more_often_than_any_fixed_time_of_the_same_mean() -> None:
     """One episode is plain at once; the other is at first taken for the wrong one, but not surely."""
-    touches = told([[0.5, 0.99, 0.99, 0.99], [0.5, 0.4, 0.99, 0.99]], NEVER)
+    touches = touched([[0.5, 0.99, 0.99, 0.99], [0.5, 0.4, 0.99, 0.99]], NEVER)
     seconds, right = fixed(touches)
     np.testing.assert_allclose(seconds, [0.05, 0.15, 0.25])
     np.testing.assert_allclose(right, [0.5, 1.0, 1.0])
@@ -42,19 +44,21 @@ def test_who_waits_until_sure_is_right_more_often_than_any_fixed_time_of_the_sam
 
 
 def test_nobody_is_sure_before_the_touch_and_the_last_decision_ends_the_wait() -> None:
-    assert sure(told([[1.0, 0.6, 0.6, 0.6]] * 2, NEVER), 0.9)[0] == pytest.approx(0.25)
-    assert sure(told([[1.0, 1.0, 0.6, 0.6]] * 2, NEVER), 0.9)[0] == pytest.approx(0.05)
+    assert sure(touched([[1.0, 0.6, 0.6, 0.6]] * 2, NEVER), 0.9)[0] == pytest.approx(0.25)
+    assert sure(touched([[1.0, 1.0, 0.6, 0.6]] * 2, NEVER), 0.9)[0] == pytest.approx(0.05)
 
 
 def test_what_is_declared_stands() -> None:
-    touches = told([[0.5, 0.9, 0.1, 0.1], [0.5, 0.9, 0.1, 0.9]], [[False, True, False, False], [False] * 4])
+    touches = touched(
+        [[0.5, 0.9, 0.1, 0.1], [0.5, 0.9, 0.1, 0.9]], [[False, True, False, False], [False] * 4]
+    )
     np.testing.assert_array_equal(answers(touches)[:, 1:], [[0, 0, 0], [0, 1, 0]])
     assert sure(touches, 2.0) == (pytest.approx((0.05 + 0.25) / 2), 1.0)
 
 
 def test_windows_count_from_each_touch() -> None:
     np.testing.assert_array_equal(
-        last_decisions(told([[0.5] * 4] * 2, NEVER), (0.05, 0.1, 0.16, 9.0)), [[1, 1, 2, 3]] * 2
+        last_decisions(touched([[0.5] * 4] * 2, NEVER), (0.05, 0.1, 0.16, 9.0)), [[1, 1, 2, 3]] * 2
     )
 
 
@@ -82,7 +86,7 @@ def test_the_fitted_posterior_knows_curves_by_their_spread() -> None:
 
 
 def test_a_material_without_an_example_is_never_named() -> None:
-    touches = told([[0.5] * 4] * 2, NEVER)
+    touches = touched([[0.5] * 4] * 2, NEVER)
     with np.errstate(all="raise"):
         np.testing.assert_array_equal(fitted(touches, touches, (0.2,), 1e-5), [[0], [0]])
 

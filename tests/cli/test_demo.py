@@ -46,8 +46,8 @@ def test_the_quick_demo_without_opengl(
     assert main(["demo", "--quick", "--out", str(out), "--json"]) == 0
     printed = capsys.readouterr()
     assert "apt-get install libegl1" in printed.err
-    told = json.loads(printed.out)
-    runs = {(run["material"], run["mode"]): run for run in told["runs"]}
+    summary = json.loads(printed.out)
+    runs = {(run["material"], run["mode"]): run for run in summary["runs"]}
     assert set(runs) == {(name, mode) for name in SEED_MATERIALS for mode in "TO"}
     for run in runs.values():
         assert run["success"]

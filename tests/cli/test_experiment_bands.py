@@ -37,9 +37,10 @@ def test_rough_slack_contacts_conduct_less() -> None:
 def test_fixed_networks_are_as_good_as_chosen_ones(
     mode: thermal.Mode, name: str, air: float, tolerance: float
 ) -> None:
-    asked = {"conductance": 2000.0, "object_size": OBJECT_SIZE, "air": air, "tolerance": tolerance}
+    keywords = {"conductance": 2000.0, "object_size": OBJECT_SIZE, "air": air, "tolerance": tolerance}
     curves = [
-        thermal.press(name, mode=mode, rung=rung, **asked).temperature_drop for rung in ("auto", RUNGS[mode])
+        thermal.press(name, mode=mode, rung=rung, **keywords).temperature_drop
+        for rung in ("auto", RUNGS[mode])
     ]
     assert np.abs(curves[0] - curves[1])[3:].max() < 0.01
 
@@ -48,7 +49,7 @@ def test_what_parts_the_rigs_is_named() -> None:
     rigs = draw_rigs(24)
     bands = Bands(rigs, ())
     rough = np.array([rig.roughness for rig in rigs])
-    name, there, elsewhere = bands.deciding(rough > np.median(rough)) or ("", 0.0, 0.0)
-    assert name == "roughness" and there > np.median(rough) > elsewhere
+    name, deciding_value, elsewhere = bands.deciding(rough > np.median(rough)) or ("", 0.0, 0.0)
+    assert name == "roughness" and deciding_value > np.median(rough) > elsewhere
     assert bands.deciding(np.ones(24, bool)) is None
     assert bands.deciding(np.arange(24) % 2 == 0) is None

@@ -24,13 +24,13 @@ def test_a_grasp_is_lifted_held_and_written(tmp_path: Path, capsys: pytest.Captu
     file = tmp_path / "aluminium.csv"
     line = f"grasp --material aluminium --seconds 4.5 --seed 3 --csv {file} --json"
     assert main(line.split()) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["success"] and told["material"] == "aluminium" and 0.2 < told["touch_time_s"] < 1.0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["success"] and summary["material"] == "aluminium" and 0.2 < summary["touch_time_s"] < 1.0
     table = np.genfromtxt(file, delimiter=",", names=True)
     assert list(table.dtype.names or ()) == COLUMNS
     np.testing.assert_allclose(table["time_s"], np.arange(1, 451) / 100, rtol=1e-8)
     assert np.isfinite(np.array(table.tolist())).all()
-    before = table["time_s"] < told["touch_time_s"] - 0.1  # the first fingertip touches a little earlier
+    before = table["time_s"] < summary["touch_time_s"] - 0.1  # the first fingertip touches a little earlier
     assert (table["temperature_drop_left_K"][before] == 0).all() and (
         table["force_left_N"][before] == 0
     ).all()
@@ -58,8 +58,8 @@ def test_a_weak_grip_is_a_failure(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_a_crushed_object_is_a_failure(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("grasp --material butter --force 40 --seconds 3 --json".split()) == 1
-    told = json.loads(capsys.readouterr().out)
-    assert told["ending"] == "crushed" and not told["success"]
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["ending"] == "crushed" and not summary["success"]
 
 
 @pytest.mark.parametrize("shape", ["cylinder", "sphere"])

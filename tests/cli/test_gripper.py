@@ -44,20 +44,20 @@ def strong(tmp_path: Path) -> Path:
 def test_one_that_is_fit(strong: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "strong.png"
     assert main(["gripper", "check", str(strong), "--render", str(picture)]) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     for part in ("fingertips on 'one' and 'two'", "geom 'face_two'", "glass", "aluminium", "fit: it grasps"):
-        assert part in told
+        assert part in output
     # a picture where there is OpenGL, a word on stderr where there is none
-    assert picture.exists() == (f"wrote {picture}" in told)
+    assert picture.exists() == (f"wrote {picture}" in output)
 
 
 def test_its_document(strong: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["gripper", "check", str(strong), "--json", "--shape", "cylinder", "--force", "12"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["passed"] is True and told["problem"] == "" and told["png"] is None
-    assert told["limit_N"] == 12 and told["shape"] == "cylinder"
-    assert told["gripper"]["widest_m"] == pytest.approx(0.08, abs=1e-5)
-    glass, aluminium = told["trials"]
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["passed"] is True and summary["problem"] == "" and summary["png"] is None
+    assert summary["limit_N"] == 12 and summary["shape"] == "cylinder"
+    assert summary["gripper"]["widest_m"] == pytest.approx(0.08, abs=1e-5)
+    glass, aluminium = summary["trials"]
     assert glass["force_N"] == pytest.approx([12.0, 12.0], rel=0.02)
     assert min(aluminium["drop_K"]) > max(glass["drop_K"]) > 0
     assert glass["slip_m"] < 5e-4 and glass["lifted_m"] > 0.05
@@ -78,8 +78,8 @@ def test_without_opengl_the_rest_goes_on(
 
     monkeypatch.setattr("thermograsp.figures.draw_gripper", nothing)
     assert main(["gripper", "check", str(strong), "--render", str(tmp_path / "no.png")]) == 0
-    told = capsys.readouterr()
-    assert "no picture: no OpenGL" in told.err and "fit:" in told.out and "wrote" not in told.out
+    captured = capsys.readouterr()
+    assert "no picture: no OpenGL" in captured.err and "fit:" in captured.out and "wrote" not in captured.out
 
 
 def test_other_commands_take_it(strong: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,9 +92,9 @@ def test_one_that_opens_little_is_tried_with_less(tmp_path: Path, capsys: pytest
     file = tmp_path / "narrow.xml"
     file.write_text(SLIDES.format(newton=15).replace(".05 0 -.06", ".025 0 -.06"), encoding="utf-8")
     assert main(["gripper", "check", str(file), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["gripper"]["widest_m"] == pytest.approx(0.030, abs=1e-5)
-    assert told["width_m"] == pytest.approx(0.022, abs=1e-5)
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["gripper"]["widest_m"] == pytest.approx(0.030, abs=1e-5)
+    assert summary["width_m"] == pytest.approx(0.022, abs=1e-5)
 
 
 @pytest.mark.parametrize(

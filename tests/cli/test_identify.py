@@ -29,11 +29,11 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_recording_is_identified(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = recording.with_name("touch.svg")
     assert main(f"identify {recording} {AMONG} --out {picture} --json".split()) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert (told["verdict"], told["best"]) == ("material", "glass")
-    assert told["touch_s"][0] == pytest.approx(0.5, abs=0.005)
-    assert sum(told["probability"].values()) == pytest.approx(1)
-    low, high = told["effusivity_90_Ws05_m2K"]
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["verdict"], summary["best"]) == ("material", "glass")
+    assert summary["touch_s"][0] == pytest.approx(0.5, abs=0.005)
+    assert sum(summary["probability"].values()) == pytest.approx(1)
+    low, high = summary["effusivity_90_Ws05_m2K"]
     assert low < thermal.material("glass").effusivity < high
     assert "effusivity" in picture.read_text(encoding="utf-8")
 
@@ -90,11 +90,11 @@ def test_a_grasp_is_identified(tmp_path: Path, capsys: pytest.CaptureFixture[str
     capsys.readouterr()
     among = " ".join(thermal.SEED_MATERIALS)
     assert main(f"identify {file} --among {among} --json".split()) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert "marble" in told["likely"][:2] and len(told["likely"]) <= 3
-    assert len(told["touch_s"]) == 2
-    assert told["samples"] == 800 - 2 * 6  # without those in which the contacts opened, 60 ms each
-    low, high = told["effusivity_90_Ws05_m2K"]
+    summary = json.loads(capsys.readouterr().out)
+    assert "marble" in summary["likely"][:2] and len(summary["likely"]) <= 3
+    assert len(summary["touch_s"]) == 2
+    assert summary["samples"] == 800 - 2 * 6  # without those in which the contacts opened, 60 ms each
+    low, high = summary["effusivity_90_Ws05_m2K"]
     assert low < thermal.material("marble").effusivity < high
 
 

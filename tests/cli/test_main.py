@@ -52,13 +52,16 @@ def test_versions_of_what_it_runs_on(argv: list[str], capsys: pytest.CaptureFixt
         return set(re.findall(r"^(?!thermograsp|#)[\w-]+", text, re.MULTILINE))
 
     assert main(argv) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["thermograsp"] == thermograsp.__version__
-    assert told["python"] == ".".join(map(str, sys.version_info[:3]))
-    assert set(told["packages"]) == names(setup["options"]["install_requires"])
-    assert told["packages"]["numpy"] == np.__version__ and told["packages"]["mujoco"] == mujoco.__version__
+    versions = json.loads(capsys.readouterr().out)
+    assert versions["thermograsp"] == thermograsp.__version__
+    assert versions["python"] == ".".join(map(str, sys.version_info[:3]))
+    assert set(versions["packages"]) == names(setup["options"]["install_requires"])
+    assert (
+        versions["packages"]["numpy"] == np.__version__
+        and versions["packages"]["mujoco"] == mujoco.__version__
+    )
     needed = {extra: names(text) for extra, text in setup["options.extras_require"].items()}
-    assert {extra: set(found) for extra, found in told["extras"].items()} == {
+    assert {extra: set(found) for extra, found in versions["extras"].items()} == {
         extra: found for extra, found in needed.items() if extra not in OWN_WORK
     }
 
@@ -161,9 +164,9 @@ BAD = {
 def test_an_error_is_a_document_too(line: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(line.split()) == 2
     out, err = capsys.readouterr()
-    told = json.loads(out)
-    assert told["status"] == 2 and told["error"]["kind"] == "UnknownNameError"
-    assert "did you mean 'glass'" in told["error"]["message"] and err.count("\n") == 1
+    printed = json.loads(out)
+    assert printed["status"] == 2 and printed["error"]["kind"] == "UnknownNameError"
+    assert "did you mean 'glass'" in printed["error"]["message"] and err.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -196,14 +199,14 @@ OLD = {
 }
 
 
-@pytest.mark.parametrize(("line", "told"), OLD.items(), ids=OLD)
+@pytest.mark.parametrize(("line", "new"), OLD.items(), ids=OLD)
 def test_old_names_of_options_go_on_and_say_so(
-    line: str, told: tuple[str, str], capsys: pytest.CaptureFixture[str]
+    line: str, new: tuple[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(line.split()) == 2
     first, second = capsys.readouterr().err.splitlines()
-    assert first.endswith(f"is an old name of {told[0]}")
-    assert told[1] in second
+    assert first.endswith(f"is an old name of {new[0]}")
+    assert new[1] in second
 
 
 def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
@@ -235,15 +238,19 @@ def test_one_name_for_one_thing() -> None:
                 assert name not in gone, (parser.prog, name)
 
 
-@pytest.mark.parametrize(("line", "told"), BAD.items(), ids=BAD)
+@pytest.mark.parametrize(("line", "message"), BAD.items(), ids=BAD)
 def test_bad_input_is_one_line_and_2(
-    line: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    line: str,
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(line.split()) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.count("\n") == 1 and told in err
+    assert err.count("\n") == 1 and message in err
     assert not list(tmp_path.iterdir())
 
 

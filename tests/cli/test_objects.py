@@ -25,10 +25,10 @@ def test_the_list_is_the_library(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_an_object_is_grasped_by_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("grasp --object butter --seconds 4.5 --json".split()) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["object"] == "butter" and told["material"] == "butter" and told["success"]
-    assert told["final"]["object_temperature_degC"] < 8.0
-    assert told["final"]["force_left_N"] == pytest.approx(objects()["butter"].grip_force, rel=0.02)
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["object"] == "butter" and summary["material"] == "butter" and summary["success"]
+    assert summary["final"]["object_temperature_degC"] < 8.0
+    assert summary["final"]["force_left_N"] == pytest.approx(objects()["butter"].grip_force, rel=0.02)
 
 
 @pytest.mark.parametrize("more", ["--width 0.05", "--mesh cup.stl", "--shape sphere --height 0.03"])

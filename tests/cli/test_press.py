@@ -17,14 +17,14 @@ def test_the_csv_is_the_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     file = tmp_path / "glass.csv"
     line = f"press glass --mode O --conductance 2e3 --seconds 3 --tolerance 0.02 --csv {file} --json"
     assert main(line.split()) == 0
-    told = json.loads(capsys.readouterr().out)
+    summary = json.loads(capsys.readouterr().out)
     expected = thermal.press("glass", mode="O", conductance=2e3, seconds=3.0, tolerance=0.02)
     assert file.read_text().splitlines()[0] == (
         "time_s,temperature_drop_K,voltage_V,heat_flow_W,sensor_surface_degC,object_surface_degC,"
         "stored_heat_sensor_J,stored_heat_object_J"
     )
     table = np.genfromtxt(file, delimiter=",", names=True)
-    assert len(table) == told["samples"] == 151
+    assert len(table) == summary["samples"] == 151
     for name, values in (
         ("time_s", expected.t),
         ("temperature_drop_K", expected.temperature_drop),
@@ -32,8 +32,8 @@ def test_the_csv_is_the_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         ("stored_heat_object_J", expected.stored_heat[:, 1]),
     ):
         np.testing.assert_allclose(table[name], values, rtol=1e-8, atol=1e-12)
-    assert told["rung"]["error_K"] <= 0.02
-    assert told["peak_temperature_drop_K"] == max(expected.temperature_drop)
+    assert summary["rung"]["error_K"] <= 0.02
+    assert summary["peak_temperature_drop_K"] == max(expected.temperature_drop)
 
 
 def test_a_second_fingertip_and_a_weak_thermostat(capsys: pytest.CaptureFixture[str]) -> None:

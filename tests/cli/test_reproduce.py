@@ -167,8 +167,8 @@ def test_the_experiment_is_judged_on_every_rig(document: dict, folder: Path) -> 
     assert all(sum(support["counts"].values()) == rigs for support in found.values())
     assert found["measured_order"]["counts"] == {"holds": 0, "partly": rigs, "fails": 0}
     assert found["slower_experiment"]["counts"]["holds"] > 0.8 * rigs
-    name, there, elsewhere = found["slower_experiment"]["deciding"]
-    assert name == "roughness" and there > elsewhere
+    name, deciding_value, elsewhere = found["slower_experiment"]["deciding"]
+    assert name == "roughness" and deciding_value > elsewhere
     text = (folder / "claims.txt").read_text(encoding="utf-8")
     assert text.count(f"Of the {rigs} rigs drawn the statement") == len(found)
 

@@ -20,8 +20,8 @@ def rollout(line: str, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
 
 
 def test_scripted_episodes_succeed_and_pass_the_checks(capsys: pytest.CaptureFixture[str]) -> None:
-    told = rollout(f"{ENV} --episodes 3 --num-envs 3 --check", capsys)
-    assert told["success_rate"] == 1.0 and told["checked"] and told["violations"] == []
+    summary = rollout(f"{ENV} --episodes 3 --num-envs 3 --check", capsys)
+    assert summary["success_rate"] == 1.0 and summary["checked"] and summary["violations"] == []
 
 
 @pytest.mark.parametrize("policy", ["scripted", "random", "zero"])
@@ -74,14 +74,14 @@ def test_nothing_is_found_where_all_is_well(env: Any) -> None:
 
 
 def test_a_temperature_out_of_nowhere_is_found(env: Any) -> None:
-    (told,) = spoiled(env, object_temperature=np.array([24.0, 36.2]))
-    assert told.startswith("episode 11, step 1: object_temperature [36.2] degC is outside")
+    (violation,) = spoiled(env, object_temperature=np.array([24.0, 36.2]))
+    assert violation.startswith("episode 11, step 1: object_temperature [36.2] degC is outside")
     assert len(spoiled(env, sensor_surface=np.array([[36.0, np.nan], [20.0, 36.0]]))) == 2
 
 
 def test_missing_heat_is_found(env: Any) -> None:
-    (told,) = spoiled(env, heat_exchanged=np.array([5.0, 5.0]), heat_imbalance=np.array([1e-6, 1e-5]))
-    assert told == "episode 11, step 1: 1e-05 J are missing of 5 J exchanged"
+    (violation,) = spoiled(env, heat_exchanged=np.array([5.0, 5.0]), heat_imbalance=np.array([1e-6, 1e-5]))
+    assert violation == "episode 11, step 1: 1e-05 J are missing of 5 J exchanged"
     assert len(spoiled(env, heat_imbalance=np.array([np.nan, 0.0]))) == 1
 
 
@@ -90,14 +90,16 @@ def test_observations_and_rewards_are_looked_at(env: Any) -> None:
     observation["voltage"][0, 1, 3] = np.nan
     observation["gripper"][1, 0] = 1.0
     found = violations(env, observation, np.array([0.0, np.inf]), {}, np.arange(2), 0, 4, True)
-    told = sorted(str(one) for one in found)
-    assert [line.split(":")[0] for line in told] == [
+    texts = sorted(str(one) for one in found)
+    assert [line.split(":")[0] for line in texts] == [
         "episode 0, step 4",
         "episode 1, step 4",
         "episode 1, step 4",
     ]
     assert (
-        "voltage is not finite" in told[0] and "gripper is outside" in told[1] and "reward is inf" in told[2]
+        "voltage is not finite" in texts[0]
+        and "gripper is outside" in texts[1]
+        and "reward is inf" in texts[2]
     )
     assert violations(env, observation, np.zeros(2), {}, np.arange(2), 0, 4, False) == []
 
@@ -105,5 +107,5 @@ def test_observations_and_rewards_are_looked_at(env: Any) -> None:
 def test_a_broken_simulation_counts_without_checks(env: Any) -> None:
     observation, _ = env.reset(seed=0)
     info = {"error": np.array(["it broke", None], object), "_error": np.array([True, False])}
-    (told,) = violations(env, observation, np.zeros(2), info, np.arange(2), 0, 9, False)
-    assert str(told) == "episode 0, step 9: it broke"
+    (violation,) = violations(env, observation, np.zeros(2), info, np.arange(2), 0, 9, False)
+    assert str(violation) == "episode 0, step 9: it broke"

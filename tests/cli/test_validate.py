@@ -30,9 +30,9 @@ def recording(tmp_path: Path) -> Path:
 def test_the_shipped_touches_are_all_predicted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "validation.svg"
     assert main(f"validate --json --plot {picture}".split()) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["predicted"] == len(told["touches"]) == 180
-    assert [(p["runs"], p["label"]) for p in told["parts"]][:2] == [
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["predicted"] == len(summary["touches"]) == 180
+    assert [(p["runs"], p["label"]) for p in summary["parts"]][:2] == [
         ("runs up to 12", "cold_wood"),
         ("runs up to 12", "metal"),
     ]
@@ -44,9 +44,9 @@ def test_a_file_of_ones_own(recording: Path, capsys: pytest.CaptureFixture[str])
     assert main(["validate", str(recording), "--sample", "glass=glass@21.5"]) == 0
     assert "all runs, glass" in capsys.readouterr().out
     assert main(["validate", str(recording), "--split", "0", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert {part["runs"] for part in told["parts"]} == {"runs up to 0", "later runs"}
-    assert told["touches"][0]["sample_degC"] == 22.0
+    summary = json.loads(capsys.readouterr().out)
+    assert {part["runs"] for part in summary["parts"]} == {"runs up to 0", "later runs"}
+    assert summary["touches"][0]["sample_degC"] == 22.0
 
 
 @pytest.mark.parametrize(

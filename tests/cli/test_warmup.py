@@ -27,9 +27,9 @@ def test_every_stage_is_done_and_told(monkeypatch: pytest.MonkeyPatch, capsys: p
     stages = {name: lambda name=name: done.append(name) for name in warmup.stages()}
     monkeypatch.setattr(warmup, "stages", lambda: stages)
     assert main(["warmup", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)["stages"]
-    assert [one["stage"] for one in told] == done == list(stages)
-    assert all(one["seconds"] >= 0 for one in told)
+    printed = json.loads(capsys.readouterr().out)["stages"]
+    assert [one["stage"] for one in printed] == done == list(stages)
+    assert all(one["seconds"] >= 0 for one in printed)
     assert main(["warmup"]) == 0
     shown = capsys.readouterr().out
     assert all(name in shown for name in stages) and done == 2 * list(stages)
@@ -37,7 +37,7 @@ def test_every_stage_is_done_and_told(monkeypatch: pytest.MonkeyPatch, capsys: p
 
 @pytest.mark.slow
 def test_after_it_nothing_is_compiled(tmp_path: Path) -> None:
-    own = {
+    environment = {
         **os.environ,
         "NUMBA_CACHE_DIR": str(tmp_path / "code"),
         "THERMOGRASP_CACHE": str(tmp_path / "networks"),
@@ -45,7 +45,7 @@ def test_after_it_nothing_is_compiled(tmp_path: Path) -> None:
 
     def run(*words: str) -> str:
         return subprocess.run(
-            [sys.executable, *words], env=own, check=True, capture_output=True, text=True
+            [sys.executable, *words], env=environment, check=True, capture_output=True, text=True
         ).stderr
 
     run("-m", "thermograsp", "warmup", "--json")

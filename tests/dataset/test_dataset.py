@@ -137,8 +137,8 @@ def test_units_and_the_plan_are_in_every_file(folder: Path) -> None:
 
 def test_a_manifest_read_is_the_plan(folder: Path) -> None:
     assert read_plan(folder) == PLAN
-    own = dataclasses.replace(material("glass"), name="own", conductivity=2.0)
-    plan = dataset.Plan(materials=(own,), mode="O")
+    glass = dataclasses.replace(material("glass"), name="own", conductivity=2.0)
+    plan = dataset.Plan(materials=(glass,), mode="O")
     assert dataset.Plan.from_document(json.loads(json.dumps(plan.document()))) == plan
 
 
@@ -160,7 +160,7 @@ def test_lost_and_broken_files_are_made_again_and_no_others(folder: Path, tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "message"),
     [
         ({"episodes": 5}, "its episodes is 7, not 5"),
         ({"episodes": 9, "mode": "O"}, "its mode is T, not O"),  # and it does not grow
@@ -178,11 +178,11 @@ def test_lost_and_broken_files_are_made_again_and_no_others(folder: Path, tmp_pa
         ({"versions": {**PLAN.versions, "mujoco": "1.0"}}, "its version of mujoco is"),
     ],
 )
-def test_another_plan_is_refused_by_name(folder: Path, changed: dict[str, Any], told: str) -> None:
+def test_another_plan_is_refused_by_name(folder: Path, changed: dict[str, Any], message: str) -> None:
     before = contents(folder)
     with pytest.raises(InvalidValueError, match="holds another dataset") as raised:
         dataset.make(dataclasses.replace(PLAN, **changed), folder)
-    assert told in str(raised.value)
+    assert message in str(raised.value)
     assert contents(folder) == before
 
 
@@ -475,8 +475,8 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         "wood",
     ]
     assert main([*line, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert (told["episodes"], told["shards"], told["found"]) == (3, 2, 0)
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["episodes"], summary["shards"], summary["found"]) == (3, 2, 0)
     assert main(line) == 0
     shown = capsys.readouterr()
     assert "2 of them found done" in shown.out and shown.err == ""

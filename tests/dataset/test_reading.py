@@ -171,12 +171,12 @@ def test_the_docs_list_every_column(folder: Path) -> None:
     import pyarrow.parquet as pq
 
     docs = (ROOT / "docs" / "datasets.md").read_text(encoding="utf-8")
-    told = {}
+    listed = {}
     for line in re.findall(r"^\| (.*) \|$", docs, re.MULTILINE):
         names, _, unit, per, *_ = (cell.strip() for cell in line.split("|"))
-        told |= {name: (unit, per) for name in names.split(", ")}
+        listed |= {name: (unit, per) for name in names.split(", ")}
     schema = pq.read_schema(next(folder.glob("*.parquet")))
     held = {
         field.name: (field.metadata[b"unit"].decode(), field.metadata[b"per"].decode()) for field in schema
     }
-    assert {name: told.get(name) for name in held} == held
+    assert {name: listed.get(name) for name in held} == held

@@ -27,10 +27,10 @@ def test_words_are_those_of_the_environments() -> None:
         observed |= set(env.observation_space.spaces)
         keys |= {*always, *ends}
         for option, more in variants(name):
-            seen, told = set(more.observation_space.spaces), set(info_keys(more)[0])
-            assert seen > set(env.observation_space.spaces) or told > set(always), option
+            seen, names = set(more.observation_space.spaces), set(info_keys(more)[0])
+            assert seen > set(env.observation_space.spaces) or names > set(always), option
             observed |= seen
-            keys |= told
+            keys |= names
             more.close()
         env.close()
     assert set(OBSERVATIONS) == observed
@@ -43,16 +43,16 @@ def test_words_are_those_of_the_environments() -> None:
 def test_nothing_is_told_that_has_no_word(name: str) -> None:
     env = gymnasium.make(name, randomize=EVERYTHING)
     _, info = env.reset(seed=0)
-    told, ended = set(info), False
+    names, ended = set(info), False
     while not ended:
         assert isinstance(env.action_space, gymnasium.spaces.Box)
         action = np.full(env.action_space.shape, -1.0, np.float32)
         action[1] = 1.0  # all the force, or a declaration
         _, _, terminated, truncated, info = env.step(action)
-        told |= set(info)
+        names |= set(info)
         ended = terminated or truncated
     env.close()
-    assert "randomized" in told and told <= set(INFOS)
+    assert "randomized" in names and names <= set(INFOS)
 
 
 def test_what_hardware_does_not_know_is_a_word_too() -> None:

@@ -42,9 +42,9 @@ def manipulated(material: str) -> Any:
 
 def test_a_manipulator_feels_aluminium_colder_than_wood() -> None:
     metal, wood = manipulated("aluminium"), manipulated("wood")
-    felt = metal > 0.1
-    assert felt.any()
-    assert (metal[felt] > 1.3 * wood[felt]).all()
+    touching = metal > 0.1
+    assert touching.any()
+    assert (metal[touching] > 1.3 * wood[touching]).all()
 
 
 def poked(material: str) -> float:

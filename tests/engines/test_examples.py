@@ -17,6 +17,6 @@ def test_an_example_feels_aluminium_colder_than_wood(name: str) -> None:
         [sys.executable, EXAMPLES / f"{name}.py"], capture_output=True, text=True, timeout=600
     )
     assert run.returncode == 0, run.stderr
-    told = [line.split() for line in run.stdout.splitlines() if line.endswith(" K")]
-    felt = {material: float(drop) for material, drop, _ in told}
-    assert felt["aluminium:"] > 1.3 * felt["wood:"] > 0
+    rows = [line.split() for line in run.stdout.splitlines() if line.endswith(" K")]
+    drops = {material: float(drop) for material, drop, _ in rows}
+    assert drops["aluminium:"] > 1.3 * drops["wood:"] > 0

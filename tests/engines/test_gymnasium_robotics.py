@@ -25,9 +25,9 @@ def grasped(material: str) -> Any:
     )
     observation, info = env.reset(seed=3)
     for step in range(49):
-        grip, thing = observation["observation"][:3], observation["observation"][3:6]
+        grip, block = observation["observation"][:3], observation["observation"][3:6]
         above = step < 12
-        goal = thing + (0.0, 0.0, 0.1 if above else 0.0)
+        goal = block + (0.0, 0.0, 0.1 if above else 0.0)
         action = np.append(np.clip(10 * (goal - grip), -1, 1), 1.0 if step < 24 else -1.0)
         observation, _, _, _, info = env.step(action.astype(np.float32))
         assert observation in env.observation_space
@@ -61,9 +61,9 @@ def in_hand(material: str) -> np.ndarray:
 
 def test_a_shadow_hand_feels_aluminium_colder_than_wood() -> None:
     metal, wood = in_hand("aluminium"), in_hand("wood")
-    felt = metal > 0.1
-    assert felt.any()
-    assert (metal[felt] > 1.3 * wood[felt]).all()
+    touching = metal > 0.1
+    assert touching.any()
+    assert (metal[touching] > 1.3 * wood[touching]).all()
 
 
 def test_fetch_is_timed_beside_itself_without_touch() -> None:

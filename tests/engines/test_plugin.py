@@ -45,8 +45,8 @@ def plain(xml: str) -> mujoco.MjData:
 
 
 def test_dm_control(xml: str, plain: mujoco.MjData) -> None:
-    theirs = pytest.importorskip("dm_control.mujoco")
-    physics = theirs.Physics.from_xml_string(xml)
+    dm_mujoco = pytest.importorskip("dm_control.mujoco")
+    physics = dm_mujoco.Physics.from_xml_string(xml)
     physics.set_control(10.0)
     for _ in range(STEPS):
         physics.step()
@@ -57,8 +57,8 @@ def test_dm_control(xml: str, plain: mujoco.MjData) -> None:
 
 
 def test_robosuite(xml: str, plain: mujoco.MjData) -> None:
-    theirs = pytest.importorskip("robosuite.utils.binding_utils")
-    sim = theirs.MjSim.from_xml_string(xml)
+    binding = pytest.importorskip("robosuite.utils.binding_utils")
+    sim = binding.MjSim.from_xml_string(xml)
     sim.data.ctrl[:] = 10.0
     for _ in range(STEPS):
         sim.step()

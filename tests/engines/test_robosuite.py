@@ -59,7 +59,7 @@ def grasped(task: str, seen: str, objects: dict[str, str]) -> Any:
 )
 def test_lift_has_the_voltages_in_its_sensordata() -> None:
     """With heat inside MuJoCo's step, in the model that the environment compiles at every reset."""
-    felt = {}
+    voltage_of = {}
     for material in ("aluminium", "wood"):
 
         def with_heat(xml: str, material: str = material) -> str:
@@ -71,13 +71,13 @@ def test_lift_has_the_voltages_in_its_sensordata() -> None:
         env.set_xml_processor(with_heat)
         grasp(env, "cube_pos")
         # robosuite 1.5.2's sim.data.get_sensor takes a sensor's number for its address
-        felt[material] = env.sim.data._data.sensor("heat").data.copy()
+        voltage_of[material] = env.sim.data._data.sensor("heat").data.copy()
         env.reset()
         assert not env.sim.data._data.sensor("heat").data.any()
     seebeck = thermograsp.thermal.sensor("seed").seebeck
-    assert felt["aluminium"].shape == (2,)
-    assert (felt["aluminium"] > 2.0 * seebeck).all()
-    assert (felt["aluminium"] > 2 * felt["wood"]).all()
+    assert voltage_of["aluminium"].shape == (2,)
+    assert (voltage_of["aluminium"] > 2.0 * seebeck).all()
+    assert (voltage_of["aluminium"] > 2 * voltage_of["wood"]).all()
 
 
 def test_lift_feels_aluminium_colder_than_wood() -> None:

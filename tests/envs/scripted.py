@@ -37,9 +37,9 @@ def sampled_conductance(contacts: list[tuple[np.ndarray, np.ndarray]], body: Gra
     a step."""
     one = GraspHeat(1, tolerance=0.05, air=0.0, dt=SAMPLE, samples=1, sensor_temperature=36.0)
     one.reset([0], [body])
-    told = []
+    conductances = []
     for force, place in contacts:
         first = force[:1] if force.ndim == 3 else force[:1, 0]
         at = place[:1] if force.ndim == 3 else place[:1, 0]
-        told += [one.advance(half, at).info["conductance"][0] for half in np.split(first, 2, axis=1)]
-    return np.array(told)
+        conductances += [one.advance(half, at).info["conductance"][0] for half in np.split(first, 2, axis=1)]
+    return np.array(conductances)

@@ -31,7 +31,7 @@ from thermograsp.envs import (
 
 
 @dataclass(frozen=True)
-class Theirs:
+class Packaged:
     """A gripper in somebody's wheel. package, path: of its file. radians: a fragment of a file in radians. servos:
     joints that get position servos, for a file whose own package adds actuators in Python. options: of load_gripper.
     fingers: parts of the names of the two bodies that are to be found."""
@@ -62,13 +62,13 @@ class Theirs:
         return spec
 
 
-def robosuite(name: str, *fingers: str, **options: Any) -> Theirs:
-    return Theirs("robosuite", f"models/assets/grippers/{name}.xml", fingers, radians=True, options=options)  # pyright: ignore[reportArgumentType]
+def robosuite(name: str, *fingers: str, **options: Any) -> Packaged:
+    return Packaged("robosuite", f"models/assets/grippers/{name}.xml", fingers, radians=True, options=options)  # pyright: ignore[reportArgumentType]
 
 
 PAGE = (Path(__file__).parents[2] / "docs" / "grippers.md").read_text(encoding="utf-8")
 HANDS = "envs/assets"
-THEIRS = {
+GRIPPERS = {
     "Franka hand": robosuite("panda_gripper", "leftfinger", "rightfinger"),
     "Rethink": robosuite("rethink_gripper", "l_finger", "r_finger"),
     "Robotiq 2F-140": robosuite("robotiq_gripper_140", "left_inner_finger", "right_inner_finger"),
@@ -79,17 +79,17 @@ THEIRS = {
         "inspire_left_hand", "thumb_distal", "middle_distal", fingertips=("thumb", "middle")
     ),
     "Fourier hand": robosuite("fourier_left_hand", "thumb_distal", "index"),
-    "Kinova of dm_control": Theirs(
+    "Kinova of dm_control": Packaged(
         "dm_control",
         "third_party/kinova/jaco_hand.xml",
         ("finger_1", "finger_"),
         servos=("finger_1", "finger_2", "finger_3"),
     ),
-    "Fetch, the whole robot": Theirs(
+    "Fetch, the whole robot": Packaged(
         "gymnasium_robotics", f"{HANDS}/fetch/pick_and_place.xml", ("r_gripper_finger", "l_gripper_finger")
     ),
-    "Shadow hand": Theirs("gymnasium_robotics", f"{HANDS}/hand/reach.xml", ("ff", "th")),
-    "Adroit hand": Theirs(
+    "Shadow hand": Packaged("gymnasium_robotics", f"{HANDS}/hand/reach.xml", ("ff", "th")),
+    "Adroit hand": Packaged(
         "gymnasium_robotics", f"{HANDS}/adroit_hand/adroit_pen.xml", ("distal", "thdistal")
     ),
 }
@@ -97,21 +97,21 @@ THEIRS = {
 
 @cache
 def loaded(name: str) -> Gripper:
-    theirs = THEIRS[name]
-    return load_gripper(theirs.source(), **theirs.options)
+    packaged = GRIPPERS[name]
+    return load_gripper(packaged.source(), **packaged.options)
 
 
-@pytest.mark.parametrize("name", THEIRS)
+@pytest.mark.parametrize("name", GRIPPERS)
 def test_its_fingers_are_found(name: str):
     gripper = loaded(name)
-    for finger, part in zip(gripper.fingers, THEIRS[name].fingers, strict=True):
+    for finger, part in zip(gripper.fingers, GRIPPERS[name].fingers, strict=True):
         assert part in finger, gripper
     assert gripper.widest > 0.047 and gripper.widest - gripper.narrowest > 0.04
     assert gripper.flat[0] < 0.04 < gripper.flat[1]
 
 
 @pytest.mark.parametrize("shape", ["box", "cylinder"])
-@pytest.mark.parametrize("name", THEIRS)
+@pytest.mark.parametrize("name", GRIPPERS)
 def test_it_grasps_holds_and_feels(name: str, shape: Literal["box", "cylinder"]):
     check = check_gripper(loaded(name), shape=shape)
     assert check.passed, check.problem
@@ -123,7 +123,7 @@ def test_it_grasps_holds_and_feels(name: str, shape: Literal["box", "cylinder"])
         assert trial.force == pytest.approx((check.limit, check.limit), rel=0.1)
 
 
-@pytest.mark.parametrize("name", THEIRS)
+@pytest.mark.parametrize("name", GRIPPERS)
 def test_the_opening_is_the_distance_of_the_pads(name: str):
     gripper = loaded(name)
     thick = max(0.01, gripper.narrowest + 0.002)
@@ -140,21 +140,21 @@ def test_the_opening_is_the_distance_of_the_pads(name: str):
         assert spots[1][0] - spots[0][0] == pytest.approx(opening, abs=1e-3)
 
 
-@pytest.mark.parametrize("name", THEIRS)
+@pytest.mark.parametrize("name", GRIPPERS)
 def test_the_page_has_what_is_found(name: str):
     row = next(line for line in PAGE.splitlines() if line.startswith(f"| {name} |"))
     _, package, fingers, opens, flat, most = (cell.strip() for cell in row.strip("|").split("|"))
     gripper = loaded(name)
-    assert (package, fingers) == (THEIRS[name].package, ", ".join(gripper.fingers))
+    assert (package, fingers) == (GRIPPERS[name].package, ", ".join(gripper.fingers))
     for cell, found in ((opens, (gripper.narrowest, gripper.widest)), (flat, gripper.flat)):
         assert [float(end) / 1e3 for end in cell.split("..")] == pytest.approx(found, abs=4.5e-3)
     assert float(most) == pytest.approx(gripper.strongest, abs=0.5)
 
 
-@pytest.mark.parametrize("name", THEIRS)
+@pytest.mark.parametrize("name", GRIPPERS)
 def test_fingertips_fit_on_the_file_as_it_is(name: str):
     """Both compile into the whole of it, and feel nothing while nothing touches them."""
-    source = THEIRS[name].source()
+    source = GRIPPERS[name].source()
     spec = mujoco.MjSpec.from_file(str(source)) if isinstance(source, Path) else source
     for number, finger in enumerate(loaded(name).fingers):
         report = fit_fingertip(spec, finger, name=f"mine_{number}")
@@ -175,7 +175,7 @@ def test_the_force_of_a_franka_hand_is_that_of_its_joints():
 
 
 def test_a_file_is_all_that_an_environment_needs():
-    file = THEIRS["Fetch, the whole robot"].file()
+    file = GRIPPERS["Fetch, the whole robot"].file()
     env = gymnasium.make("thermograsp/Grasp-v0", gripper=str(file), material="glass")
     env.reset(seed=0)
     for _ in range(80):
@@ -185,11 +185,11 @@ def test_a_file_is_all_that_an_environment_needs():
 
 def test_a_fragment_in_radians_is_recognised():
     with pytest.raises(ValueError, match="in radians"):
-        load_gripper(THEIRS["Robotiq 2F-140"].file())
+        load_gripper(GRIPPERS["Robotiq 2F-140"].file())
 
 
 def test_the_command_says_that_it_is_fit(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    file = THEIRS["Franka hand"].file()
+    file = GRIPPERS["Franka hand"].file()
     assert main(["gripper", "check", str(file)]) == 0
-    told = capsys.readouterr().out
-    assert "fit: it grasps, holds and feels" in told and "leftfinger" in told
+    output = capsys.readouterr().out
+    assert "fit: it grasps, holds and feels" in output and "leftfinger" in output

@@ -41,7 +41,7 @@ def served(tmp_path: Path) -> Iterator[PtyDevice]:
         yield device
 
 
-def told(capsys: pytest.CaptureFixture[str], *argv: str, status: int = 0) -> dict[str, Any]:
+def printed(capsys: pytest.CaptureFixture[str], *argv: str, status: int = 0) -> dict[str, Any]:
     """The JSON document of a command."""
     assert main([*argv, "--json"]) == status
     return json.loads(capsys.readouterr().out)
@@ -69,7 +69,7 @@ def test_the_page_s_commands_parse(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_list(capsys: pytest.CaptureFixture[str]) -> None:
-    assert isinstance(told(capsys, "device", "list")["ports"], list)
+    assert isinstance(printed(capsys, "device", "list")["ports"], list)
     assert main(["device", "list"]) == 0
     assert capsys.readouterr().out
 
@@ -127,11 +127,11 @@ def test_a_stream_is_lines_of_json_whatever_happens(
 
 def test_record_and_replay(served: PtyDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, csv = str(tmp_path / "line.tgr"), tmp_path / "line.csv"
-    seen = told(
+    seen = printed(
         capsys, "device", "record", served.path, file, "--seconds", "0.5", "--rate", "200", "--note", "hello"
     )
     assert seen["samples"] >= 90 and seen["lost"] == 0
-    again = told(capsys, "device", "replay", file, "--csv", str(csv))
+    again = printed(capsys, "device", "replay", file, "--csv", str(csv))
     assert again["samples"] >= seen["samples"] and again["complete"]
     assert again["metadata"]["note"] == "hello"
     table = np.genfromtxt(csv, delimiter=",", names=True)
@@ -160,10 +160,10 @@ def test_record_leaves_no_file_where_there_is_no_device(
 
 
 def test_selftest(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
-    good = told(capsys, "device", "selftest", served.path)
+    good = printed(capsys, "device", "selftest", served.path)
     assert good["good"] and good["protocol"] == "2.0" and good["samples"] >= 100
     plan_fault(served, "open_thermistor=left")
-    bad = told(capsys, "device", "selftest", served.path, status=1)
+    bad = printed(capsys, "device", "selftest", served.path, status=1)
     assert bad["failed"] == ["LEFT_THERMISTOR"]
     assert bad["reset"] == ["POWER_ON"] and bad["heaters_off"] == []
 
@@ -177,7 +177,7 @@ def test_selftest_calls_good_only_what_was_checked(
         lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines() if line.strip())
         assert lines["converter"].strip() == "good" and lines["memory"].strip() == "good"
         assert lines["left_heater"].strip() == "not checked" == lines["load_cells"].strip()
-        document = told(capsys, "device", "selftest", served.path)
+        document = printed(capsys, "device", "selftest", served.path)
         assert document["checked"] == ["CONVERTER", "MEMORY"]
         assert document["heater_current_A"] == [None, None]
 
@@ -185,7 +185,7 @@ def test_selftest_calls_good_only_what_was_checked(
 def test_clear_faults(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> None:
     with served.paused():
         served.device._plates.latched = HeatersOff.RUNAWAY_LEFT
-    assert told(capsys, "device", "clear-faults", served.path) == {"cleared": ["RUNAWAY_LEFT"], "left": []}
+    assert printed(capsys, "device", "clear-faults", served.path) == {"cleared": ["RUNAWAY_LEFT"], "left": []}
     assert not served.device._plates.latched
     assert main(["device", "clear-faults", served.path]) == 0
     assert "nothing was latched" in capsys.readouterr().out
@@ -193,17 +193,17 @@ def test_clear_faults(served: PtyDevice, capsys: pytest.CaptureFixture[str]) -> 
 
 def test_calibrate(served: PtyDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ("device", "calibrate", served.path)
-    assert told(capsys, *command)["calibration"]["date"] == 0
-    changed = told(
+    assert printed(capsys, *command)["calibration"]["date"] == 0
+    changed = printed(
         capsys, *command, "--set", "voltage_offset=20e-6,-10e-6", "--set", "force_gain=.05,0,0,0,0,.1"
     )
     assert served.device.calibration.voltage_offset == CONSTANTS.voltage_offset
     assert served.device.calibration.force_gain == CONSTANTS.force_gain
     file = tmp_path / "constants.json"
     file.write_text(json.dumps(changed))
-    told(capsys, *command, "--set", "voltage_offset=0,0")
+    printed(capsys, *command, "--set", "voltage_offset=0,0")
     assert served.device.calibration.voltage_offset == (0.0, 0.0)
-    loaded = told(capsys, *command, "--load", str(file))["calibration"]
+    loaded = printed(capsys, *command, "--load", str(file))["calibration"]
     assert {**loaded, "date": 0} == {**changed["calibration"], "date": 0}
     assert main(list(command)) == 0
     assert "voltage_offset     2e-05  -1e-05" in capsys.readouterr().out

@@ -36,7 +36,7 @@ def record(
 ) -> None:
     """A touch of both fingertips on an object of that temperature, °C, after a second, on an ADS1115, in virtual time;
     voltages come late."""
-    felt = press_source(
+    source = press_source(
         material,
         sensor=with_shared(sensor("seed"), TRUE),
         conductance=conductance,
@@ -49,7 +49,7 @@ def record(
     )
 
     def late(time: float) -> Feel:
-        return replace(felt(time), voltage=felt(max(time - DELAY, 0.0)).voltage, thermostat=(36.0, 36.0))
+        return replace(source(time), voltage=source(max(time - DELAY, 0.0)).voltage, thermostat=(36.0, 36.0))
 
     line = VirtualLine(EmulatedFingertips(late, DeviceModel(chain=ADS1115), rng=rng))
     with Recorder(file) as recorder:
@@ -78,15 +78,15 @@ def test_ten_recordings_tell_the_sensor_to_2_percent_and_the_simulation_loads_it
 ) -> None:
     preset = tmp_path / "left.toml"
     assert main(["device", "fit", *recordings, "--save", str(preset), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    summary = json.loads(capsys.readouterr().out)
     true = {**TRUE, "offset": ADS1115.offset, "delay": DELAY}
     for name in UNITS:
-        found = told["shared"][name]
+        found = summary["shared"][name]
         assert found["value"] == pytest.approx(true[name], rel=0.02), name
         assert found["low"] < found["value"] < found["high"] and found["unit"] == UNITS[name]
-    conductances = [touch["conductance"]["value"] for touch in told["touches"]]
+    conductances = [touch["conductance"]["value"] for touch in summary["touches"]]
     np.testing.assert_allclose(conductances, np.repeat(np.geomspace(3e3, 2e4, 5), 2), rtol=0.02)
-    assert told["untold"] == [] and told["preset"] == str(preset)
+    assert summary["untold"] == [] and summary["preset"] == str(preset)
 
     text = preset.read_text()
     assert text.startswith("# Fitted to 10 touches of the left fingertip (aluminium, glass); 95% intervals:")
@@ -110,13 +110,13 @@ def test_the_recipe_two_touches_tell_the_sensor_and_a_third_colder_one_agrees(
         files.append(tmp_path / f"{material}{celsius:g}.tgr")
         record(files[-1], material, 8e3, rng, celsius)
     metal, glass, cold = files
-    told = []
+    fits = []
     for words in ([f"aluminium={metal}", f"glass={glass}"], [f"glass@14={cold}"]):
         preset = tmp_path / f"{len(words)}.toml"
-        start = [] if not told else ["--start", str(tmp_path / "2.toml"), "--hold", "conductivity"]
+        start = [] if not fits else ["--start", str(tmp_path / "2.toml"), "--hold", "conductivity"]
         assert main(["device", "fit", *words, *start, "--save", str(preset), "--json"]) == 0
-        told.append(json.loads(capsys.readouterr().out)["shared"])
-    first, check = told
+        fits.append(json.loads(capsys.readouterr().out)["shared"])
+    first, check = fits
     for name in ("seebeck", "conductivity", "heat_capacity"):
         assert first[name]["value"] == pytest.approx(TRUE[name], rel=0.01), name
     assert check["seebeck"]["value"] == pytest.approx(first["seebeck"]["value"], rel=0.005)

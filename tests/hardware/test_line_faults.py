@@ -119,11 +119,11 @@ class Mute(EmulatedFingertips):
 
 
 @pytest.mark.parametrize(
-    ("kind", "told"), [(Chatter, "not a fingertip, or has another baud"), (Mute, "nothing came")]
+    ("kind", "message"), [(Chatter, "not a fingertip, or has another baud"), (Mute, "nothing came")]
 )
-def test_wrong_device(tmp_path: Path, kind: type[EmulatedFingertips], told: str) -> None:
+def test_wrong_device(tmp_path: Path, kind: type[EmulatedFingertips], message: str) -> None:
     begun = time.monotonic()
-    with serving(tmp_path, kind()) as served, pytest.raises(NoAnswerError, match=told):
+    with serving(tmp_path, kind()) as served, pytest.raises(NoAnswerError, match=message):
         driver(served, settings=LinkSettings(open_within=0.2, tries=2))
     assert time.monotonic() - begun < PATIENCE
 
@@ -357,7 +357,7 @@ def test_a_device_that_takes_no_bytes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("break_it", "flag", "told"),
+    ("break_it", "flag", "message"),
     [
         (lambda device: device.broken_thermistors.add(0), Flag.OPEN_LEFT, "left thermistor is open"),
         (lambda device: device.saturated.add(1), Flag.SATURATED_RIGHT, "end of the converter's range"),
@@ -367,7 +367,7 @@ def test_a_device_that_takes_no_bytes(tmp_path: Path) -> None:
     ],
     ids=["open", "saturated", "hot", "deaf", "cold"],
 )
-def test_sensor_faults_are_told(tmp_path: Path, break_it, flag: Flag, told: str) -> None:  # noqa: ANN001
+def test_sensor_faults_are_told(tmp_path: Path, break_it, flag: Flag, message: str) -> None:  # noqa: ANN001
     with serving(tmp_path) as served, driver(served, setpoint=36.0) as tips:
         with served.paused():
             break_it(served.device)
@@ -376,7 +376,7 @@ def test_sensor_faults_are_told(tmp_path: Path, break_it, flag: Flag, told: str)
         samples = tips.wait(5, 1.0)
     assert samples.faults & flag
     assert np.isnan(samples.voltage[:, 0]).all() == (flag == Flag.NO_VOLTAGE_LEFT)
-    with pytest.raises(SensorFaultError, match=told):
+    with pytest.raises(SensorFaultError, match=message):
         samples.require_healthy()
     samples.require_healthy(but=samples.faults)
     if flag == Flag.OPEN_LEFT:

@@ -27,14 +27,14 @@ MANUAL = [
 
 @pytest.mark.parametrize(("request_", "registers", "expected"), MANUAL)
 def test_the_manual_s_examples(request_: str, registers: list[int], expected: str) -> None:
-    asked = []
+    requests = []
 
     def read(address: int, count: int) -> list[int]:
-        asked.append((address, count))
+        requests.append((address, count))
         return registers
 
     def write(address: int, values: list[int]) -> bool:
-        asked.append((address, values))
+        requests.append((address, values))
         return True
 
     frame = bytes.fromhex(request_)
@@ -42,7 +42,7 @@ def test_the_manual_s_examples(request_: str, registers: list[int], expected: st
         frame += crc16(frame)
     assert answer(frame, 9, read, write) == bytes.fromhex(expected)
     wanted = (1000, [0x0900, 0, 0xFFFF]) if frame[1] == 16 else (2000, len(registers))
-    assert asked == [wanted]
+    assert requests == [wanted]
 
 
 def rtu(*body: int) -> bytes:

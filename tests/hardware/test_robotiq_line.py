@@ -174,10 +174,10 @@ def test_a_stop_waits_for_one_transaction_of_others_at_most(tmp_path: Path) -> N
             for _ in range(10):
                 before = len(writers)
                 gripper.stop()
-                mine = writers.index("MainThread", before)
-                assert mine - before <= 1
+                main_at = writers.index("MainThread", before)
+                assert main_at - before <= 1
                 assert (
-                    "MainThread" in writers[mine + 1 : mine + 3]
+                    "MainThread" in writers[main_at + 1 : main_at + 3]
                 )  # one of the others' at most between its two
             ended.set()
             for thread in threads:
@@ -358,10 +358,10 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 @pytest.mark.parametrize(
-    ("text", "told"), [("overcurent", "overcurrent"), ("corrupt=2", "chance"), ("stall", "number")]
+    ("text", "message"), [("overcurent", "overcurrent"), ("corrupt=2", "chance"), ("stall", "number")]
 )
-def test_a_fault_that_cannot_be_planned(text: str, told: str) -> None:
-    with pytest.raises(ThermograspError, match=told):
+def test_a_fault_that_cannot_be_planned(text: str, message: str) -> None:
+    with pytest.raises(ThermograspError, match=message):
         plan_gripper_fault(EmulatedGripper(), text)
 
 

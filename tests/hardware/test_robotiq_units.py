@@ -75,16 +75,16 @@ def test_a_gripper_that_cannot_be(bad: dict) -> None:
 
 
 @pytest.mark.parametrize(
-    ("told", "registers"),
+    ("command", "registers"),
     [
         (Action(activate=True), [0x0100, 0, 0]),
         (Action(activate=True, go=True, position=255, speed=255, force=255), [0x0900, 0x00FF, 0xFFFF]),
         (Action(activate=True, release=True, release_opens=True), [0x3100, 0, 0]),
     ],
 )
-def test_commands_as_in_the_manual(told: Action, registers: list[int]) -> None:
-    assert told.registers() == registers
-    assert action(registers) == told
+def test_commands_as_in_the_manual(command: Action, registers: list[int]) -> None:
+    assert command.registers() == registers
+    assert action(registers) == command
 
 
 @pytest.mark.parametrize(

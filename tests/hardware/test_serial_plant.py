@@ -330,9 +330,9 @@ def test_a_gripper_of_another_stroke(stroke: float, widest: float) -> None:
 class Older:
     """A gripper whose class was written before grippers told their stroke."""
 
-    def __init__(self, gripper: Any, **own: float) -> None:
+    def __init__(self, gripper: Any, **attributes: float) -> None:
         self._gripper = gripper
-        self.__dict__ |= own
+        self.__dict__ |= attributes
 
     def __getattr__(self, name: str) -> Any:
         if name == "stroke":
@@ -342,14 +342,14 @@ class Older:
 
 def test_a_gripper_that_does_not_tell_its_stroke() -> None:
     hand = Hand()
-    told, _ = in_step(hand)
-    plant = SerialPlant(told._tips, Older(told._gripper), told.config, told._pace)  # pyright: ignore[reportArgumentType]
+    plain, _ = in_step(hand)
+    plant = SerialPlant(plain._tips, Older(plain._gripper), plain.config, plain._pace)  # pyright: ignore[reportArgumentType]
     assert fresh(plant).opening[0] == pytest.approx(0.085, abs=1e-3)
     assert plant.step(CLOSE).error == ("",)
     for stroke in (float("nan"), 0.0, -0.05):
-        older = Older(told._gripper, stroke=stroke)
+        older = Older(plain._gripper, stroke=stroke)
         with pytest.raises(InvalidValueError, match="the gripper's stroke"):
-            SerialPlant(told._tips, older, told.config, told._pace)  # pyright: ignore[reportArgumentType]
+            SerialPlant(plain._tips, older, plain.config, plain._pace)  # pyright: ignore[reportArgumentType]
 
 
 class Stubborn:

@@ -48,7 +48,7 @@ def test_both_plants_give_the_same_voltages(simulations: tuple[SimulatedPlant, S
     gripper = RobotiqGripper(lines[1].open, clock=lines[1].clock, sleep=lines[1].advance)
     plant = SerialPlant(tips, gripper, pace=VirtualTime(lines))
     rng = np.random.default_rng(11)
-    worst, felt = 0.0, 0.0
+    worst, largest = 0.0, 0.0
     for grasp in range(size(3, 100)):
         plant.reset([0], [rng], {})
         alone.reset([0], [np.random.default_rng(grasp)], {})
@@ -57,13 +57,13 @@ def test_both_plants_give_the_same_voltages(simulations: tuple[SimulatedPlant, S
             serial = plant.step(command)
             assert serial.error == ("",)
             worst = max(worst, float(abs(serial.voltage - expected.voltage).max()))
-            felt = max(felt, float(abs(serial.voltage).max()))
+            largest = max(largest, float(abs(serial.voltage).max()))
             np.testing.assert_allclose(serial.force, expected.force, atol=0.0051)
             np.testing.assert_allclose(serial.thermostat, expected.thermostat, atol=0.0051)
             np.testing.assert_allclose(
                 serial.opening, expected.opening, atol=0.0003
             )  # half a count is 0.19 mm
     assert hand.episodes == size(3, 100)
-    assert felt > 3e-3  # V: the object was felt
+    assert largest > 3e-3  # V: the object was felt
     assert worst <= 1e-9 < ADS1115.resolution  # a nanovolt, the wire's unit
     assert (plant.counts.overruns, plant.counts.repeated, plant.counts.skipped) == (0, 0, 0)

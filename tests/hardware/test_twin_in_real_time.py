@@ -142,11 +142,11 @@ def test_the_page_s_grasp_beside_a_simulation(tmp_path: Path, capsys: pytest.Cap
         assert process.stdout is not None
         assert "robotiq://" in process.stdout.readline()
         assert main([*grasp, "--seconds", "1.5", "--hold", "0.5", "--json"]) == 0
-        told = json.loads(capsys.readouterr().out)
+        summary = json.loads(capsys.readouterr().out)
         process.terminate()
-    assert told["held"] and told["error"] == "" and told["steps"] == 75
-    assert abs(told["delay_s"]) < LATENCY + told["latest_s"] + 0.05
-    assert told["difference_V"] < 2e-4
+    assert summary["held"] and summary["error"] == "" and summary["steps"] == 75
+    assert abs(summary["delay_s"]) < LATENCY + summary["latest_s"] + 0.05
+    assert summary["difference_V"] < 2e-4
     table = np.genfromtxt(files["beside.csv"], delimiter=",", names=True)
     assert len(table) == 150 and (np.diff(table["time_s"]) > 0).all()
     assert table["voltage_left_V"].max() > 1e-3 and table["simulated_voltage_left_V"].max() > 1e-3

@@ -52,22 +52,22 @@ def test_every_number_is_the_same(
     observed = list(dict.fromkeys(name.split(".")[0] for name in names))
     assert set(observed) == OBSERVED
     for k in range(3):
-        mine, steps = slice(starts[k], starts[k + 1]), rows["steps"][k]
+        rows_of, steps = slice(starts[k], starts[k + 1]), rows["steps"][k]
         seen = np.concatenate([rows[name][k][:-1].reshape(steps, -1) for name in observed], axis=1)
-        state = np.stack(frames["observation.state"][mine])
+        state = np.stack(frames["observation.state"][rows_of])
         assert state.dtype == np.float32 and state.shape == (steps, len(names))
         assert np.array_equal(state, seen)
         newest = names.index("voltage.1.15")
         assert np.array_equal(state[:, newest], rows["voltage"][k][:-1, 1, 15])
-        assert np.array_equal(np.stack(frames["action"][mine]), rows["action"][k])
-        assert np.array_equal(frames["next.reward"][mine], rows["reward"][k].astype(np.float32))
+        assert np.array_equal(np.stack(frames["action"][rows_of]), rows["action"][k])
+        assert np.array_equal(frames["next.reward"][rows_of], rows["reward"][k].astype(np.float32))
         for name in TRUTH:
-            assert np.array_equal(np.stack(frames[f"truth.{name}"][mine]), rows[name][k][:-1])
-        assert np.flatnonzero(frames["next.done"][mine]).tolist() == [steps - 1]
-        assert bool(frames["next.success"][mine][-1]) == rows["success"][k]
-        assert set(frames["seed"][mine]) == {rows["seed"][k]} == {3 + k}
-        assert set(frames["material"][mine]) == {rows["material"][k]}
-        assert np.allclose(frames["timestamp"][mine], np.arange(steps) * 0.02, atol=1e-5)
+            assert np.array_equal(np.stack(frames[f"truth.{name}"][rows_of]), rows[name][k][:-1])
+        assert np.flatnonzero(frames["next.done"][rows_of]).tolist() == [steps - 1]
+        assert bool(frames["next.success"][rows_of][-1]) == rows["success"][k]
+        assert set(frames["seed"][rows_of]) == {rows["seed"][k]} == {3 + k}
+        assert set(frames["material"][rows_of]) == {rows["material"][k]}
+        assert np.allclose(frames["timestamp"][rows_of], np.arange(steps) * 0.02, atol=1e-5)
     (block,) = re.findall(
         r"```python lerobot\n(.*?)```", (ROOT / "docs" / "datasets.md").read_text("utf-8"), re.DOTALL
     )

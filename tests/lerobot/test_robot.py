@@ -67,63 +67,63 @@ def test_it_is_read_and_moved_and_lets_go(
 ) -> None:
     _, tips, gripper = hand
     url = f"robotiq://{gripper.path}"
-    mine = robot(tmp_path, f"--robot.port={tips.path}", f"--robot.gripper={url}")
+    fingers = robot(tmp_path, f"--robot.port={tips.path}", f"--robot.gripper={url}")
     with pytest.raises(DeviceNotConnectedError):
-        mine.get_observation()
-    mine.connect()
-    assert mine.is_connected and mine.is_calibrated
+        fingers.get_observation()
+    fingers.connect()
+    assert fingers.is_connected and fingers.is_calibrated
     with pytest.raises(DeviceAlreadyConnectedError):
-        mine.connect()
-    seen = mine.get_observation()
-    assert seen.keys() == mine.observation_features.keys()
+        fingers.connect()
+    seen = fingers.get_observation()
+    assert seen.keys() == fingers.observation_features.keys()
     assert all(
         isinstance(value, kind)
-        for value, kind in zip(seen.values(), mine.observation_features.values(), strict=True)
+        for value, kind in zip(seen.values(), fingers.observation_features.values(), strict=True)
     )
     assert (seen["voltage_left_V"], seen["voltage_right_V"]) == pytest.approx((1e-3, -2e-3), abs=1e-8)
     assert (seen["force_left_N"], seen["shear_2_right_N"]) == pytest.approx((3.0, 0.4), abs=1e-3)
     assert seen["thermostat_right_degC"] == pytest.approx(36.0, abs=0.01)
     assert seen["opening_m"] == pytest.approx(0.085, abs=1e-3)
-    sent = mine.send_action({"opening_m": 0.04, "force_N": 30.0})
-    assert sent.keys() == mine.action_features.keys()
+    sent = fingers.send_action({"opening_m": 0.04, "force_N": 30.0})
+    assert sent.keys() == fingers.action_features.keys()
     assert sent == pytest.approx({"opening_m": 0.04, "force_N": 30.0}, abs=0.84)
     assert abs(sent["opening_m"] - 0.04) < 4e-4
-    assert mine.send_action({"opening_m": 1.0, "force_N": 30.0})["opening_m"] == pytest.approx(
+    assert fingers.send_action({"opening_m": 1.0, "force_N": 30.0})["opening_m"] == pytest.approx(
         0.085, abs=4e-4
     )
-    mine.disconnect()
-    assert not mine.is_connected
+    fingers.disconnect()
+    assert not fingers.is_connected
     with pytest.raises(DeviceNotConnectedError):
-        mine.disconnect()
+        fingers.disconnect()
     with Fingertips(tips.path) as again, open_gripper(url) as free:  # nobody holds the ports
         assert len(again.wait(1, 2.0)) and free.status().active
-    mine.connect()
-    mine.disconnect()
+    fingers.connect()
+    fingers.disconnect()
 
 
 def test_fingertips_alone_have_no_actions(
     hand: tuple[EmulatedFingertips, PtyDevice, PtyDevice], tmp_path: Path
 ) -> None:
     device, tips, _ = hand
-    with robot(tmp_path, f"--robot.port={tips.path}") as mine:
-        assert mine.action_features == {} and mine.send_action({}) == {}
-        assert "opening_m" not in mine.get_observation()
+    with robot(tmp_path, f"--robot.port={tips.path}") as fingers:
+        assert fingers.action_features == {} and fingers.send_action({}) == {}
+        assert "opening_m" not in fingers.get_observation()
         device.broken_converters.add(1)
-        mine._tips.wait(5, 2.0)
-        mine._tips.wait(1, 2.0)
+        fingers._tips.wait(5, 2.0)
+        fingers._tips.wait(1, 2.0)
         with pytest.raises(SensorFaultError, match="right voltage is missing"):
             while True:
-                mine.get_observation()
+                fingers.get_observation()
 
 
 def test_a_gripper_that_is_missing_holds_no_port(
     hand: tuple[EmulatedFingertips, PtyDevice, PtyDevice], tmp_path: Path
 ) -> None:
     _, tips, _ = hand
-    mine = robot(tmp_path, f"--robot.port={tips.path}", f"--robot.gripper=robotiq://{tmp_path / 'none'}")
+    fingers = robot(tmp_path, f"--robot.port={tips.path}", f"--robot.gripper=robotiq://{tmp_path / 'none'}")
     with pytest.raises(PortMissingError):
-        mine.connect()
-    assert not mine.is_connected
+        fingers.connect()
+    assert not fingers.is_connected
     Fingertips(tips.path).close()
 
 

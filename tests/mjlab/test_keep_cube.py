@@ -37,8 +37,8 @@ def test_each_reset_draws_the_material_and_what_is_asked_for(env: Any) -> None:
     for _ in range(4):
         observation, _ = env.reset()
         drawn |= set(zip(command.asked.tolist(), touch.material[:, 0].tolist(), strict=True))
-        asked = torch.nn.functional.one_hot(command.asked, 2).float()
-        assert torch.equal(observation["actor"][:, 4:6], asked)
+        goal = torch.nn.functional.one_hot(command.asked, 2).float()
+        assert torch.equal(observation["actor"][:, 4:6], goal)
         assert torch.equal(observation["actor"][:, 6:], touch.data.voltage.flatten(1))
     assert len(drawn) == 4
 
@@ -47,9 +47,9 @@ def test_it_holds_the_cube_and_feels_it_whatever_it_is_told_first(env: Any) -> N
     env.reset()
     touch = env.scene["touch"]
     matches = touch.material[:, 0] == env.command_manager.get_term("keep").asked
-    told = torch.ones(WORLDS, 1)
-    told[::2] = -1.0
-    _, reward, *_ = env.step(told)
+    action = torch.ones(WORLDS, 1)
+    action[::2] = -1.0
+    _, reward, *_ = env.step(action)
     assert (touch.data.force > 1.0).all()
     assert torch.equal(reward, matches.float())
     aluminium = touch.material[:, 0] == 0
@@ -62,11 +62,11 @@ def test_then_it_keeps_the_cube_or_lets_it_go_and_is_paid_for_what_was_asked(env
     env.reset()
     command, touch = env.command_manager.get_term("keep"), env.scene["touch"]
     matches = touch.material[:, 0] == command.asked
-    told = torch.ones(WORLDS, 1)
-    env.step(told)
-    told[::2] = -1.0
-    _, reward, terminated, late, _ = env.step(told)
-    kept = told[:, 0] > 0
+    action = torch.ones(WORLDS, 1)
+    env.step(action)
+    action[::2] = -1.0
+    _, reward, terminated, late, _ = env.step(action)
+    kept = action[:, 0] > 0
     assert torch.equal((touch.data.force > 1.0).all(-1), kept)
     assert torch.equal(reward, (kept == matches).float())
     assert late.all() and not terminated.any()

@@ -49,8 +49,8 @@ def test_each_reset_draws_which_cube_is_of_what_and_what_is_asked_for(env: Any) 
         assert torch.equal(command.asked, touch.material[rows, command.target_selection])
         drawn |= set(zip(command.asked.tolist(), command.target_selection.tolist(), strict=True))
     assert len(drawn) == 4
-    asked = torch.nn.functional.one_hot(command.asked, 2).float()
-    assert torch.equal(observation["actor"][:, -34:-32], asked)
+    one_hot = torch.nn.functional.one_hot(command.asked, 2).float()
+    assert torch.equal(observation["actor"][:, -34:-32], one_hot)
     cube = torch.nn.functional.one_hot(command.target_selection, 2).float()
     assert torch.equal(observation["critic"][:, -2:], cube)
     assert observation["critic"].shape[1] == observation["actor"].shape[1] + 2
@@ -66,11 +66,11 @@ def test_it_steps_and_pays_for_the_cube_that_is_asked_for(env: Any) -> None:
         cube.write_root_link_velocity_to_sim(torch.zeros(WORLDS, 6))
         observation, reward, *_ = env.step(action)
         assert observation["actor"].isfinite().all() and reward.shape == (WORLDS,)
-        asked = command.target_selection == number
+        wanted = command.target_selection == number
         at_goal = command.metrics["position_error"] < 0.05
-        assert at_goal[asked].all()
+        assert at_goal[wanted].all()
         if number == 0:
-            assert not at_goal[~asked].any()
+            assert not at_goal[~wanted].any()
 
 
 def test_the_example_starts_training(tmp_path: Path) -> None:

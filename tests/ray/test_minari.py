@@ -107,8 +107,8 @@ def test_an_incomplete_dataset_is_not_exported(folder: Path, home: Path, tmp_pat
 
 
 def test_materials_of_ones_own_are_exported_without_the_environment(home: Path, tmp_path: Path) -> None:
-    own = dataclasses.replace(material("glass"), name="own", conductivity=2.0)
-    dataset.make(dataset.Plan(episodes=1, materials=(own,)), tmp_path / "d")
+    glass = dataclasses.replace(material("glass"), name="own", conductivity=2.0)
+    dataset.make(dataset.Plan(episodes=1, materials=(glass,)), tmp_path / "d")
     dataset.export_minari(tmp_path / "d")
     assert minari.load_dataset(ID).env_spec is None
 

@@ -67,10 +67,10 @@ def installed(release: Release, tmp_path_factory: pytest.TempPathFactory) -> Ins
 
 
 def test_versions(installed: Installed) -> None:
-    told = json.loads(installed.run("thermograsp", "--version", "--json"))
-    assert told["thermograsp"] == thermograsp.__version__
-    assert None not in told["packages"].values()
-    assert told["extras"]["hardware"] == {"pymodbus": None, "pyserial": None}
+    versions = json.loads(installed.run("thermograsp", "--version", "--json"))
+    assert versions["thermograsp"] == thermograsp.__version__
+    assert None not in versions["packages"].values()
+    assert versions["extras"]["hardware"] == {"pymodbus": None, "pyserial": None}
     assert (
         installed.run("python", "-m", "thermograsp", "--version")
         == f"thermograsp {thermograsp.__version__}\n"

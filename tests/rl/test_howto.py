@@ -17,8 +17,8 @@ def test_the_block_runs_and_trains(block: str) -> None:
     names: dict[str, Any] = {"__name__": "__main__"}
     exec(compile(block, PAGE.name, "exec"), names)
     model, env = names["model"], names["env"]
-    (asked,) = re.findall(r"model\.learn\((\d+)\)", block)
-    assert model.num_timesteps >= int(asked) and model._n_updates > 0
+    (steps,) = re.findall(r"model\.learn\((\d+)\)", block)
+    assert model.num_timesteps >= int(steps) and model._n_updates > 0
     assert all(bool(part.isfinite().all()) for part in model.policy.parameters())
     observation, _ = env.reset(seed=0)
     actions, _ = model.predict(observation)

@@ -68,8 +68,8 @@ def test_the_file_acts_as_the_network_that_was_trained(tmp_path: Path) -> None:
     training.run()  # with one evaluation, which is the best
     agent = load_agent(tmp_path / POLICY)
     vector = np.random.default_rng(0).standard_normal((5, agent.inputs.size)).astype(np.float32)
-    theirs, _ = PPO.load(tmp_path / MODEL).predict(vector, deterministic=True)
-    np.testing.assert_allclose(agent.decide(vector), theirs, atol=1e-2)  # weights of float16
+    predicted, _ = PPO.load(tmp_path / MODEL).predict(vector, deterministic=True)
+    np.testing.assert_allclose(agent.decide(vector), predicted, atol=1e-2)  # weights of float16
 
 
 def test_a_killed_run_goes_on_from_its_checkpoint(tmp_path: Path) -> None:

@@ -44,11 +44,11 @@ def test_a_footprint_is_that_of_finite_elements(
     layer, pair, law = study.cases()[name]
     flexible = study.compliance(layer, 80)
     for force in FORCES:
-        fem, own = study.contact_of(*flexible, pair, force), study.ours(law, force, name != "bare")
-        assert own.radius == pytest.approx(fem.radius, rel=radius)
-        assert own.peak == pytest.approx(fem.peak, rel=peak)
-        assert own.conductance == pytest.approx(fem.conductance, rel=conductance)
-        assert own.share == pytest.approx(fem.share, abs=0.01)
+        fem, package = study.contact_of(*flexible, pair, force), study.ours(law, force, name != "bare")
+        assert package.radius == pytest.approx(fem.radius, rel=radius)
+        assert package.peak == pytest.approx(fem.peak, rel=peak)
+        assert package.conductance == pytest.approx(fem.conductance, rel=conductance)
+        assert package.share == pytest.approx(fem.share, abs=0.01)
 
 
 def test_nodes_press_or_part_and_the_forces_balance(study: ModuleType) -> None:

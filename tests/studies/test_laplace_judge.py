@@ -100,8 +100,8 @@ def test_the_environments_networks_know_where_a_part_of_the_face_lies(judge: Mod
     )
     sheet = judge.Scene(material("water_gel"), (0.098, 0.014, 1.2e-4), 0.0, touches, SEED)
     for scene in (glass, sheet):
-        apart = judge.networks(scene, FIXED_LEVEL) - judge.judged(scene, accuracy=judge.COARSE)
-        assert 12 * np.abs(apart).max() < 0.05
+        difference = judge.networks(scene, FIXED_LEVEL) - judge.judged(scene, accuracy=judge.COARSE)
+        assert 12 * np.abs(difference).max() < 0.05
 
 
 @pytest.mark.parametrize("detail", [Detail(8, 3), Detail(10, 4), Detail(12, 6)])
@@ -111,5 +111,5 @@ def test_networks_of_one_touch_keep_a_small_block_in_air(judge: ModuleType, deta
         judge.Touch((0.0, 0.0), (0.00756, 0.0086), (0.0, 0.0), 1.9e3, "low"),
     )
     scene = judge.Scene(material("aluminium"), (0.00756, 0.0086, 0.003), 11.0, touches, SEED)
-    apart = judge.networks(scene, detail) - judge.judged(scene, accuracy=judge.COARSE)
-    assert 12 * np.abs(apart).max() < 0.01
+    difference = judge.networks(scene, detail) - judge.judged(scene, accuracy=judge.COARSE)
+    assert 12 * np.abs(difference).max() < 0.01

@@ -15,7 +15,7 @@ from thermograsp.errors import MissingDependencyError
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         ("--port 70000", "port must be 0 to 65535"),
         ("--visitors 0", "visitors must be at least 1"),
@@ -32,11 +32,15 @@ from thermograsp.errors import MissingDependencyError
     ],
 )
 def test_what_it_refuses(
-    words: str, told: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    words: str,
+    message: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["view", *words.split()]) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

@@ -35,26 +35,26 @@ def looks(materials: Sequence[str], mode: Mode, named: tuple[str, ...]) -> dict[
             columns = grasp.step(Controls())
             for row, (name, feeling) in enumerate(zip(materials, feelings, strict=True)):
                 feeling.add(columns, row)
-                found[name] += [told for told in [feeling.look()] if told is not None]
+                found[name] += [look for look in [feeling.look()] if look is not None]
     grasp.close()
     return found
 
 
 @pytest.mark.parametrize("mode", [pytest.param("T", marks=pytest.mark.slow), pytest.param("O", marks=LONG)])
 def test_what_is_of_the_ten_is_never_none_of_them(mode: Mode) -> None:
-    for name, told in looks(SEED_MATERIALS, mode, ()).items():
-        assert len(told) >= HELD / 0.25, name
-        assert {one["verdict"] for one in told} <= {"no_touch", "several", "material"}, name
-        assert dict(told[-1]["likely"])[name] > 0.3, name
+    for name, seen in looks(SEED_MATERIALS, mode, ()).items():
+        assert len(seen) >= HELD / 0.25, name
+        assert {one["verdict"] for one in seen} <= {"no_touch", "several", "material"}, name
+        assert dict(seen[-1]["likely"])[name] > 0.3, name
 
 
 def test_what_is_not_of_them_is_none_of_them() -> None:
     """Between rubber and glass in effusivity, where none of the ten is; the apple holds as much heat as water."""
-    for name, told in looks(("apple", "gfrp"), "T", ()).items():
-        assert told[-1]["verdict"] == "not_listed", name
-        assert name not in dict(told[-1]["likely"])
+    for name, seen in looks(("apple", "gfrp"), "T", ()).items():
+        assert seen[-1]["verdict"] == "not_listed", name
+        assert name not in dict(seen[-1]["likely"])
 
 
 def test_what_was_chosen_is_known_too() -> None:
-    told = looks(("apple",), "T", ("apple",))["apple"]
-    assert told[-1]["verdict"] == "material" and told[-1]["likely"][0][0] == "apple"
+    seen = looks(("apple",), "T", ("apple",))["apple"]
+    assert seen[-1]["verdict"] == "material" and seen[-1]["likely"][0][0] == "apple"

@@ -100,11 +100,11 @@ def test_nothing_is_to_be_had_without_the_token(host: str) -> None:
 def test_scripts_of_other_pages_get_nothing() -> None:
     async def act() -> None:
         async with serving() as url:
-            own, first = "/".join(url.split("/")[:3]), f"/{token_of(url)}/"
-            for origin in (own, own.replace("http", "https")):  # a proxy may add encryption
+            host, first = "/".join(url.split("/")[:3]), f"/{token_of(url)}/"
+            for origin in (host, host.replace("http", "https")):  # a proxy may add encryption
                 async with connect(socket_of(url), origin=Origin(origin)) as socket:
                     await heard(socket, lambda message: message["kind"] == "frame")
-            for origin in ("http://example.org", "null", own + "0"):
+            for origin in ("http://example.org", "null", host + "0"):
                 with pytest.raises(InvalidStatus):
                     await connect(socket_of(url), origin=Origin(origin))
             assert (await get(url, "/", "Host: evil.example.org"))[0] == 403
@@ -159,8 +159,8 @@ def test_visitors_beyond_the_number_are_told_so() -> None:
     async def act() -> None:
         async with serving(most=1) as url, connect(socket_of(url)) as first:
             async with connect(socket_of(url)) as second:
-                told = await heard(second, lambda message: message["kind"] == "ended")
-                assert "1 visitors" in told["text"]
+                message = await heard(second, lambda message: message["kind"] == "ended")
+                assert "1 visitors" in message["text"]
             await heard(first, lambda message: message["kind"] == "frame")
             await first.close()
             async with asyncio.timeout(PATIENCE):
@@ -173,7 +173,7 @@ def test_visitors_beyond_the_number_are_told_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("error", "code", "told"),
+    ("error", "code", "reason"),
     [
         (OSError("no more processes"), 1011, "could not be started (no more processes)"),
         (SimulationError("it broke"), 1011, "it broke"),
@@ -181,7 +181,7 @@ def test_visitors_beyond_the_number_are_told_so() -> None:
         (RuntimeError("nobody thought of this"), 1011, ""),
     ],
 )
-def test_a_start_that_fails_leaves_its_place(error: Exception, code: int, told: str) -> None:
+def test_a_start_that_fails_leaves_its_place(error: Exception, code: int, reason: str) -> None:
     broken = [error, error, None]
 
     def make(stock: Stock, choices: Choices) -> Echo:
@@ -197,7 +197,7 @@ def test_a_start_that_fails_leaves_its_place(error: Exception, code: int, told: 
                     with pytest.raises(ConnectionClosed) as closed:
                         await heard(socket, lambda message: False)
                     assert closed.value.rcvd is not None and closed.value.rcvd.code == code
-                    assert told in closed.value.rcvd.reason
+                    assert reason in closed.value.rcvd.reason
             async with connect(socket_of(url)) as socket:
                 assert json.loads(await socket.recv())["kind"] == "frame"
 
@@ -245,8 +245,8 @@ def test_two_visitors_have_a_simulation_each_and_one_that_is_killed_says_so() ->
             assert running["controls"]["playing"]
             assert made[0].pid is not None and made[0].pid != made[1].pid
             os.kill(made[0].pid, signal.SIGKILL)
-            told = await heard(first, lambda message: message["kind"] == "ended")
-            assert told["text"] == "the simulation has ended unexpectedly (exit code -9)"
+            message = await heard(first, lambda message: message["kind"] == "ended")
+            assert message["text"] == "the simulation has ended unexpectedly (exit code -9)"
             with pytest.raises(ConnectionClosed) as closed:
                 await first.recv()
             assert closed.value.rcvd is not None and closed.value.rcvd.code == 1011

@@ -29,13 +29,13 @@ TURN = 1 / 30  # s
 
 def turn(session: Session, seconds: float = TURN) -> list[dict[str, Any]]:
     session.advance(seconds)
-    told = session.messages()
-    json.dumps(told, allow_nan=False)
-    return told
+    messages = session.messages()
+    json.dumps(messages, allow_nan=False)
+    return messages
 
 
-def of_kind(told: list[dict[str, Any]], kind: str) -> list[dict[str, Any]]:
-    return [message for message in told if message["kind"] == kind]
+def of_kind(messages: list[dict[str, Any]], kind: str) -> list[dict[str, Any]]:
+    return [message for message in messages if message["kind"] == kind]
 
 
 @pytest.fixture
@@ -51,10 +51,10 @@ def session() -> Iterator[Session]:
 
 def play(session: Session, seconds: float) -> list[dict[str, Any]]:
     session.handle({"do": "control", "playing": True})
-    told = []
+    messages = []
     for _ in range(round(seconds / TURN)):
-        told += turn(session)
-    return told
+        messages += turn(session)
+    return messages
 
 
 def learnt(session: Session) -> None:
@@ -80,11 +80,11 @@ def test_it_computes_what_the_command_grasp_computes(session: Session) -> None:
 
 
 def test_frames_carry_every_sample_once(session: Session) -> None:
-    told = play(session, 1.5)
-    time = [t for frame in of_kind(told, "frame") for t in frame["curves"].get("time", [])]
+    messages = play(session, 1.5)
+    time = [t for frame in of_kind(messages, "frame") for t in frame["curves"].get("time", [])]
     np.testing.assert_allclose(time, 0.01 * (1 + np.arange(len(time))), rtol=0, atol=1e-6)
     assert len(time) == round(100 * session.time)
-    for frame in of_kind(told, "frame"):
+    for frame in of_kind(messages, "frame"):
         for row in frame["curves"].get("rows", []):
             assert [len(curve) for curve in row] == [len(frame["curves"]["time"])] * 6
 
@@ -161,8 +161,8 @@ def test_a_grasp_that_cannot_be_told_of_is_closed() -> None:
             Broken.closed = True
 
     session = Session(make=lambda choices, stock: Broken())
-    told = [*turn(session), *turn(session)]
-    assert of_kind(told, "problem")[0]["text"] == "no such touch"
+    messages = [*turn(session), *turn(session)]
+    assert of_kind(messages, "problem")[0]["text"] == "no such touch"
     assert Broken.closed
     session.close()
 
@@ -204,8 +204,8 @@ def test_a_looser_tolerance_takes_a_cheaper_rung(session: Session) -> None:
     for tolerance in (0.02, 0.5):
         session.handle({"do": "choose", "tolerance": tolerance})
         turn(session)
-        told = turn(session)
-        costs.append(of_kind(told, "frame")[0]["rows"][0]["cost"])
+        messages = turn(session)
+        costs.append(of_kind(messages, "frame")[0]["rows"][0]["cost"])
         assert costs[-1]["rung"].startswith("network:")
     assert costs[1]["multiply_adds"] < costs[0]["multiply_adds"] and costs[1]["states"] < costs[0]["states"]
 
@@ -214,8 +214,8 @@ def test_it_is_told_that_a_choice_takes_a_moment(session: Session) -> None:
     session.handle({"do": "choose", "materials": ["wood"]})
     (frame,) = of_kind(turn(session), "frame")
     assert frame["busy"] == "wood"
-    told = turn(session)
-    assert of_kind(told, "scene")[0]["rows"] == ["wood"] and told[-1]["busy"] == ""
+    messages = turn(session)
+    assert of_kind(messages, "scene")[0]["rows"] == ["wood"] and messages[-1]["busy"] == ""
 
 
 def test_a_choice_that_cannot_be_had_leaves_what_was() -> None:
@@ -229,9 +229,9 @@ def test_a_choice_that_cannot_be_had_leaves_what_was() -> None:
         turn(session)
     session.handle({"do": "choose", "tolerance": 0.01})
     turn(session)
-    told = turn(session)
-    assert of_kind(told, "problem")[0]["text"] == "no network keeps that tolerance"
-    assert of_kind(told, "chosen")[0]["choices"] == session.choices.message() == Choices().message()
+    messages = turn(session)
+    assert of_kind(messages, "problem")[0]["text"] == "no network keeps that tolerance"
+    assert of_kind(messages, "chosen")[0]["choices"] == session.choices.message() == Choices().message()
     play(session, 0.5)
     assert session.time == pytest.approx(0.5, abs=0.021)
     session.close()

@@ -38,9 +38,9 @@ def set_up(stock: Stock) -> Session:
 
 
 def messages(session: Session) -> list[dict[str, Any]]:
-    told = session.messages()
-    json.dumps(told, allow_nan=False)
-    return told
+    sent = session.messages()
+    json.dumps(sent, allow_nan=False)
+    return sent
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +66,8 @@ def test_a_recording_gives_all_its_samples(
         found += [message for message in messages(session) if message["kind"] == "posterior"]
     assert {name for name, _ in found[-1]["likely"][:2]} & {"glass", "ceramic"}
     session.handle({"do": "csv"})
-    (told,) = [message for message in messages(session) if message["kind"] == "csv"]
-    assert told["text"] == file.read_text(encoding="utf-8")
+    (message,) = [message for message in messages(session) if message["kind"] == "csv"]
+    assert message["text"] == file.read_text(encoding="utf-8")
     (row,) = messages(session)[-1]["rows"]
     assert row["ending"] == "the recording’s end"
     assert row["celsius"]["object"] == pytest.approx(shown["celsius"]["object"], abs=1e-3)
@@ -138,14 +138,14 @@ def test_a_real_gripper(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     session.handle({"do": "control", "driver": "sliders", "opening": 0.0, "force": 20.0})
     for _ in range(150):  # a step each, whatever time has passed
         session.advance(0.0)
-    told = messages(session)
-    frame = told[-1]
+    sent = messages(session)
+    frame = sent[-1]
     assert session.time == pytest.approx(3.0, abs=0.1)
     assert max(frame["curves"]["rows"][0][0]) > 2e-3
     assert frame["rows"][0]["state"] == "gripped"
     assert frame["rows"][0]["opening"] == pytest.approx(0.04, abs=1e-3)
     assert "object" not in {
-        shape["part"] for message in told if message["kind"] == "scene" for shape in message["shapes"]
+        shape["part"] for message in sent if message["kind"] == "scene" for shape in message["shapes"]
     }
     for wrong in ({"playing": False}, {"speed": 0.5}, {"driver": "trained"}):
         session.handle({"do": "control", **wrong})

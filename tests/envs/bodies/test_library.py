@@ -219,13 +219,13 @@ def test_names_and_tables_are_checked(tmp_path) -> None:
 def test_environments_take_names() -> None:
     env = GraspEnv(objects="butter", tolerance=0.5)
     _, info = env.reset(seed=0)
-    thing = env.batch.plant.bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
+    body = env.batch.plant.bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
     butter = objects()["butter"]
-    assert info["material"] == "butter" and thing.temperature == 6.0
-    assert thing.spec.weight == pytest.approx(butter.spec().weight)
+    assert info["material"] == "butter" and body.temperature == 6.0
+    assert body.spec.weight == pytest.approx(butter.spec().weight)
     _, info = env.reset(seed=0, options={"material": "steel"})
-    thing = env.batch.plant.bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
-    assert info["material"] == "steel" and thing.spec.weight > 5 * butter.spec().weight
+    body = env.batch.plant.bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
+    assert info["material"] == "steel" and body.spec.weight > 5 * butter.spec().weight
     env.close()
     with pytest.raises(UnknownNameError, match="did you mean 'cold_can'"):
         GraspEnv(objects="cold_cann")
@@ -238,10 +238,10 @@ def test_environments_take_names() -> None:
 def test_contents_keep_an_object_hot() -> None:
     """The environment's heat takes the preset's reservoir and temperature."""
     config = SimulationConfig(objects="mug_of_coffee")
-    thing = config.possible_bodies(sensor("seed"))[0]
-    assert thing.temperature == 60.0 and thing.material.name == "ceramic"
-    assert thing.spec.reservoir == objects()["mug_of_coffee"].spec().reservoir
-    assert thing.spec.weight == pytest.approx(objects()["mug_of_coffee"].spec().weight)
+    body = config.possible_bodies(sensor("seed"))[0]
+    assert body.temperature == 60.0 and body.material.name == "ceramic"
+    assert body.spec.reservoir == objects()["mug_of_coffee"].spec().reservoir
+    assert body.spec.weight == pytest.approx(objects()["mug_of_coffee"].spec().weight)
 
 
 def test_an_object_lies_where_it_says() -> None:

@@ -71,10 +71,10 @@ def test_a_sleeve_is_felt_between_its_material_and_the_core_s():
     coated, _ = held(objects=COATED, **common)
     rubber, _ = held(objects=replace(COATED, parts=()), **common)
     steel, _ = held(objects=PLAIN, **common)
-    felt = rubber[:, 0] > 0.2
-    assert np.all(coated[felt] > rubber[felt] - 0.02) and np.all(coated[felt] < steel[felt])
+    touching = rubber[:, 0] > 0.2
+    assert np.all(coated[touching] > rubber[touching] - 0.02) and np.all(coated[touching] < steel[touching])
     assert np.all(coated[-25:] > rubber[-25:] + 0.2)
-    assert np.abs(coated - rubber)[: np.argmax(felt) + 15].max() < 0.02
+    assert np.abs(coated - rubber)[: np.argmax(touching) + 15].max() < 0.02
 
 
 def test_a_sleeve_of_no_thickness_is_none():
@@ -83,8 +83,8 @@ def test_a_sleeve_of_no_thickness_is_none():
     assert bare.weight == pytest.approx(PLAIN.weight, rel=1e-12)
     assert bare.inertia[1] == pytest.approx(PLAIN.inertia[1], rel=1e-12)
     assert bare.touched == STEEL and bare.sliding_friction == PLAIN.sliding_friction
-    felt, plain = (held(1.5, objects=spec, anywhere=True)[0] for spec in (bare, PLAIN))
-    assert felt == pytest.approx(plain, abs=1e-9)
+    sleeved, plain = (held(1.5, objects=spec, anywhere=True)[0] for spec in (bare, PLAIN))
+    assert sleeved == pytest.approx(plain, abs=1e-9)
 
 
 def test_heat_taken_is_the_rise_times_the_heat_capacity_of_all_parts():
@@ -175,21 +175,21 @@ def test_what_is_touched_decides_surface_and_friction():
     through = replace(COATED, parts=(Part("stainless_steel", size=(0.03, 0.039, 0.049)),))
     assert through.touched == STEEL and replace(through, yaw=np.pi / 2).touched == RUBBER
     config = SimulationConfig(objects=through)
-    (thing,) = config.possible_bodies(thermal.sensor("seed"))
-    assert thing.touched == STEEL and thing.material == RUBBER
-    plain = replace(thing, spec=replace(thing.spec, parts=()), material=STEEL)
-    assert thing.joint == plain.joint and thing.spec.sliding_friction == STEEL.friction
+    (body,) = config.possible_bodies(thermal.sensor("seed"))
+    assert body.touched == STEEL and body.material == RUBBER
+    plain = replace(body, spec=replace(body.spec, parts=()), material=STEEL)
+    assert body.joint == plain.joint and body.spec.sliding_friction == STEEL.friction
     soft = replace(through, material="butter", parts=(Part("steel", size=(0.02, 0.02, 0.02)),))
     (soft,) = SimulationConfig(objects=soft).possible_bodies(thermal.sensor("seed"))
-    assert np.isfinite(soft.crushing_force) and thing.crushing_force == np.inf
+    assert np.isfinite(soft.crushing_force) and body.crushing_force == np.inf
 
 
 def test_a_material_asked_for_is_that_around_the_parts():
     config = SimulationConfig(objects=COATED, material="cork")
-    (thing,) = config.possible_bodies(thermal.sensor("seed"))
-    assert thing.material.name == thing.touched.name == "cork"
-    assert thing.spec.weight == pytest.approx(replace(COATED, material="cork").weight)
-    assert thing.solid is not None and thing.solid.parts[0].material.name == "cork"
+    (body,) = config.possible_bodies(thermal.sensor("seed"))
+    assert body.material.name == body.touched.name == "cork"
+    assert body.spec.weight == pytest.approx(replace(COATED, material="cork").weight)
+    assert body.solid is not None and body.solid.parts[0].material.name == "cork"
 
 
 def test_vector_and_single_environments_agree_bit_for_bit_and_scenes_take_parts():
@@ -280,9 +280,9 @@ def test_pairs_to_sort_have_parts_too():
     env = SortEnv(objects=COATED, material=["rubber", "cork"], tolerance=0.5)
     _, info = env.reset(seed=0)
     assert set(info["material"]) == {"rubber", "cork"}
-    things = env.batch.plant.scenes[0]  # pyright: ignore[reportAttributeAccessIssue]
-    assert {thing.touched.name for thing in things} == {"rubber", "cork"}
-    assert {thing.spec.weight for thing in things} == {0.1}
+    bodies = env.batch.plant.scenes[0]  # pyright: ignore[reportAttributeAccessIssue]
+    assert {body.touched.name for body in bodies} == {"rubber", "cork"}
+    assert {body.spec.weight for body in bodies} == {0.1}
     env.close()
 
 
@@ -294,8 +294,10 @@ def test_a_state_goes_on_bit_for_bit_in_an_environment_of_others_sizes():
         batch.step(np.tile(action_of(0.0, 5.0, 0.0), (2, 1)))
     kept = pickle.loads(pickle.dumps(batch.state()))
     first, second = [], []
-    for told in (first, second):
+    for voltages in (first, second):
         for _ in range(3):
-            told.append(batch.step(np.tile(action_of(0.0, 5.0, 0.0), (2, 1))).observation["voltage"].copy())
+            voltages.append(
+                batch.step(np.tile(action_of(0.0, 5.0, 0.0), (2, 1))).observation["voltage"].copy()
+            )
         batch.set_state(kept)
     assert np.array_equal(first, second) and np.abs(first).max() > 0

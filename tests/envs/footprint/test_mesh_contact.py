@@ -61,7 +61,7 @@ def gear(angle: np.ndarray, height: np.ndarray) -> np.ndarray:
 FORCES = (0.3, 3.0, 10.0, 30.0)
 
 
-def met(spec: ObjectSpec) -> ContactArea:
+def contact_of(spec: ObjectSpec) -> ContactArea:
     found = mesh_contact(PAD, spec, FORCES)
     assert found is not None
     return found
@@ -70,7 +70,7 @@ def met(spec: ObjectSpec) -> ContactArea:
 @pytest.mark.parametrize("radius", [0.01, 0.02])  # a larger one's facets are as wide as the contact
 @pytest.mark.parametrize("axis", ["z", "y"])
 def test_a_rod_is_the_closed_form_s_cylinder(tmp_path: Path, radius: float, axis: str) -> None:
-    found = met(saved(rod(radius).along(axis), tmp_path))
+    found = contact_of(saved(rod(radius).along(axis), tmp_path))
     expected = cylinder_contact(PAD, np.array(FORCES), radius, 0.05)
     row = PAD.width**2 / 240  # of the points at which the mesh is looked at
     np.testing.assert_allclose(found.pad, expected.pad, rtol=0.01, atol=row)
@@ -85,7 +85,7 @@ def test_an_ellipsoid_is_a_sphere_of_its_mean_radius(
     tmp_path: Path, size: tuple[float, float, float]
 ) -> None:
     """Its contact is an ellipse whose axes go with the roots of the two radii: of the same area."""
-    found = met(saved(ellipsoid(size), tmp_path))
+    found = contact_of(saved(ellipsoid(size), tmp_path))
     x, y, z = (side / 2 for side in size)
     expected = sphere_contact(PAD, np.array(FORCES), y * z / x)
     np.testing.assert_allclose(found.pad[:3], expected.pad[:3], rtol=0.05)
@@ -93,7 +93,7 @@ def test_an_ellipsoid_is_a_sphere_of_its_mean_radius(
 
 def test_a_face_counts_up_to_its_edge(tmp_path: Path) -> None:
     bar = cut(np.array([[-0.05, -0.006, 0.006], [0.05, -0.006, 0.006]]), 0.02)
-    found = met(saved(bar, tmp_path))
+    found = contact_of(saved(bar, tmp_path))
     np.testing.assert_allclose(found.pad, 0.02 * 0.010, rtol=0.02)  # 2 mm of it are below the pad
     np.testing.assert_allclose(found.face, 0.009 * 0.0045, rtol=0.03)  # and its upper edge is on the face
 
@@ -102,13 +102,13 @@ def test_a_face_whose_edge_is_under_the_sensor_counts_for_its_part(tmp_path: Pat
     """A bar that is moved along the pad: the area on the face falls in proportion."""
     bar = cut(np.array([[-0.01, -0.03, 0.03], [0.01, -0.03, 0.03]]), 0.02)
     for aside in (0.007, 0.009, 0.011):  # the bar is 20 mm wide
-        found = met(saved(bar, tmp_path, position=(0.0, aside)))
+        found = contact_of(saved(bar, tmp_path, position=(0.0, aside)))
         np.testing.assert_allclose(found.face, 0.009 * (0.0145 - aside), rtol=0.03)
 
 
 def test_threads_and_teeth_touch_less_than_smooth_bodies(tmp_path: Path) -> None:
     for rough, radius in ((thread, 0.01), (gear, 0.02)):
-        found = met(saved(swept(rough), tmp_path))
+        found = contact_of(saved(swept(rough), tmp_path))
         smooth = cylinder_contact(PAD, np.array(FORCES), radius, 0.05)
         assert (found.face < 0.8 * smooth.face).all() and (np.diff(found.face) > 0).all()
         assert (found.face_force <= np.array(FORCES) * (1 + 1e-9)).all()
@@ -121,7 +121,7 @@ def test_the_heat_s_area_is_that_of_the_pressure_map(tmp_path: Path) -> None:
     frame = np.array([[-0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     pressure = pads._map(spec, frame, 10.0, np.zeros(2))
     covered = (pressure > 0).sum() * (PAD.width / 80) ** 2
-    assert covered == pytest.approx(met(spec).pad[2], rel=0.15)
+    assert covered == pytest.approx(contact_of(spec).pad[2], rel=0.15)
 
 
 @pytest.mark.parametrize(
@@ -130,15 +130,15 @@ def test_the_heat_s_area_is_that_of_the_pressure_map(tmp_path: Path) -> None:
 )
 def test_an_object_s_contact_is_that_of_its_shape(name: str, shape: str, radius: float) -> None:
     spec = objects()[name].spec()
-    thing = GraspBody(spec, material(str(spec.material)), 24.0, "T", sensor("seed"))
-    area = float(thing.contact(np.array(NOMINAL_FORCE)).pad)
+    body = GraspBody(spec, material(str(spec.material)), 24.0, "T", sensor("seed"))
+    area = float(body.contact(np.array(NOMINAL_FORCE)).pad)
     if shape == "flat":
         assert area == pytest.approx(PAD.width**2, rel=0.02)
         return
     ball = shape == "sphere"  # on the same springs: a mesh meets a pad that is as soft all over
     plain = (sphere_contact if ball else cylinder_contact)(PAD, NOMINAL_FORCE, radius)
     assert area == pytest.approx(float(plain.pad), rel=0.05)
-    assert GraspBody(spec, thing.material, 24.0, "O", thing.stack).contact_shape == "flat"
-    expected = thing.contact(np.array(NOMINAL_FORCE))
-    found = footprint(thing.law, NOMINAL_FORCE, np.zeros(3))
+    assert GraspBody(spec, body.material, 24.0, "O", body.stack).contact_shape == "flat"
+    expected = body.contact(np.array(NOMINAL_FORCE))
+    found = footprint(body.law, NOMINAL_FORCE, np.zeros(3))
     assert found == pytest.approx((float(expected.face), float(expected.face_force)), rel=0.04)

@@ -112,8 +112,8 @@ def test_force_and_moments_balance_under_any_surface(seed: int) -> None:
     untilted = pressed(height, force, middle, cover, count)  # a centre that the surface can bear
     centre = balance(untilted, count)[1] + rng.uniform(-3e-4, 3e-4, 2)
     found = pressed(height, force, centre, cover, count)
-    told, at = balance(found, count)
-    assert told == pytest.approx(force, rel=1e-13)
+    reading, at = balance(found, count)
+    assert reading == pytest.approx(force, rel=1e-13)
     assert at == pytest.approx(centre, abs=1e-9)
     assert (found >= 0).all() and not found[cover == 0].any()
 
@@ -130,8 +130,8 @@ def test_what_cannot_be_balanced_keeps_the_force() -> None:
     """A centre off the surface moves to it; with no surface at all the nearest point takes the force."""
     places = points(40)[0]
     found = pressed(np.zeros(1600), 10.0, (0.0, 0.0), cover=(places[:, 0] > 0.002) * 1.0, count=40)
-    told, at = balance(found, 40)
-    assert told == pytest.approx(10.0, rel=1e-13) and 0.002 < at[0] < 0.004 and abs(at[1]) < 1e-9
+    reading, at = balance(found, 40)
+    assert reading == pytest.approx(10.0, rel=1e-13) and 0.002 < at[0] < 0.004 and abs(at[1]) < 1e-9
     assert found.max() <= PAD.foundation_modulus
     nothing = pressed(np.zeros(1600), 10.0, (0.003, 0.0), cover=np.zeros(1600), count=40)
     assert balance(nothing, 40)[0] == pytest.approx(10.0) and (nothing > 0).sum() == 1

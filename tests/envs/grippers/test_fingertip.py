@@ -83,24 +83,24 @@ def test_the_fingertip_is_the_shipped_one():
     """Dimensions, inertia and compliance are those of assets/gripper.xml."""
     spec = spec_of(slides())
     fit_fingertip(spec, "one", name="left")
-    mine, shipped = spec.compile(), mujoco.MjModel.from_xml_path(str(asset("gripper.xml")))
+    built, shipped = spec.compile(), mujoco.MjModel.from_xml_path(str(asset("gripper.xml")))
     for name in ("pad_left", "sensor_left", "thermostat_left"):
         for field in ("size", "pos", "contype", "conaffinity", "group"):
-            assert getattr(mine.geom(name), field) == pytest.approx(getattr(shipped.geom(name), field)), (
+            assert getattr(built.geom(name), field) == pytest.approx(getattr(shipped.geom(name), field)), (
                 name,
                 field,
             )
     for name in ("tip_left_pitch", "tip_left_yaw"):
         for field in ("type", "axis", "range", "stiffness", "damping", "armature", "frictionloss"):
-            assert getattr(mine.joint(name), field) == pytest.approx(getattr(shipped.joint(name), field)), (
+            assert getattr(built.joint(name), field) == pytest.approx(getattr(shipped.joint(name), field)), (
                 field
             )
-    assert mine.body_gravcomp[mine.body("tip_left").id] == 1
+    assert built.body_gravcomp[built.body("tip_left").id] == 1
     for field in ("mass", "inertia"):
-        assert getattr(mine.body("tip_left"), field) == pytest.approx(
+        assert getattr(built.body("tip_left"), field) == pytest.approx(
             getattr(shipped.body("tip_left"), field)
         )
-    assert mine.site("pad_left").pos == pytest.approx(shipped.site("pad_left").pos)
+    assert built.site("pad_left").pos == pytest.approx(shipped.site("pad_left").pos)
 
 
 @pytest.mark.parametrize(

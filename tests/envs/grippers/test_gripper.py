@@ -217,15 +217,15 @@ def test_the_third_finger_closes_along():
     (index,) = (j for j in gripper.polynomials if gripper.model.joint(j).name == "index")
     for opening in (0.02, 0.07):
         half = opening / 2
-        there = [np.polynomial.polynomial.polyval(half, gripper.polynomials[j]) for j in (pinky, index)]
-        assert there[0] == pytest.approx(there[1], abs=1e-4)
+        openings = [np.polynomial.polynomial.polyval(half, gripper.polynomials[j]) for j in (pinky, index)]
+        assert openings[0] == pytest.approx(openings[1], abs=1e-4)
     assert model.njnt == 3 + 1 + 1 + 4 + 1  # fingers, drive, lift, hinges of the tips, the object's
 
 
 def test_pads_can_be_placed_by_hand():
     here = ((0.0, 0.0, -0.01), (1.0, 0.0, 0.0))
-    there = ((0.0, 0.0, -0.01), (-1.0, 0.0, 0.0))
-    gripper = read(ROUND, fingertips=("one", "two"), pads=(here, there))
+    second = ((0.0, 0.0, -0.01), (-1.0, 0.0, 0.0))
+    gripper = read(ROUND, fingertips=("one", "two"), pads=(here, second))
     assert gripper.pads == ("given", "given")
     mechanics = Mechanics((ObjectSpec(mass=0.05),), gripper=gripper)
     assert drive(mechanics, 1.4, force=5.0).force[0, -1, :, 0, 0] == pytest.approx((5.0, 5.0), rel=0.02)
@@ -360,9 +360,9 @@ def test_a_gripper_can_be_copied_and_tells_what_it_is():
     gripper.scene()
     copy = pickle.loads(pickle.dumps(gripper))
     assert str(copy) == str(gripper) and copy.document() == gripper.document()
-    told = str(gripper)
+    words = str(gripper)
     for part in ("palm 'base'", "1440 mm2 of geom 'face_one'", "0.0 to 80.0 mm", "push_two", "15 N"):
-        assert part in told
+        assert part in words
 
 
 def test_only_the_pads_collide_and_only_with_objects():

@@ -151,22 +151,22 @@ def test_a_limit_of_steps_truncates_vector_environments_too():
 def test_autoreset_modes_are_those_of_gymnasiums_own_vector_environment(mode: AutoresetMode):
     """Two of three are reset in between, so that not all end at once."""
     ours = make(3, autoreset_mode=mode)
-    theirs = SyncVectorEnv([lambda: GraspEnv(**SHORT)] * 3, autoreset_mode=mode)
+    gym_vector = SyncVectorEnv([lambda: GraspEnv(**SHORT)] * 3, autoreset_mode=mode)
     assert ours.autoreset_mode is mode and ours.metadata["autoreset_mode"] is mode
     assert make(1, autoreset_mode=mode.value).unwrapped.autoreset_mode is mode
-    assert same(ours.reset(seed=5)[0], theirs.reset(seed=5)[0])
+    assert same(ours.reset(seed=5)[0], gym_vector.reset(seed=5)[0])
     rng = np.random.default_rng(0)
     for k in range(16):
         if k == 2:
             mask = np.array([True, False, True])
-            pairs = [env.reset(seed=9, options={"reset_mask": mask})[0] for env in (ours, theirs)]
+            pairs = [env.reset(seed=9, options={"reset_mask": mask})[0] for env in (ours, gym_vector)]
             assert same(*pairs)
         action = rng.uniform(-1, 1, (3, 3)).astype(np.float32)
-        mine, other = ours.step(action), theirs.step(action)
-        ended = mine[2] | mine[3]
-        for a, b in zip(mine[:4], other[:4], strict=True):
+        expected_like, other = ours.step(action), gym_vector.step(action)
+        ended = expected_like[2] | expected_like[3]
+        for a, b in zip(expected_like[:4], other[:4], strict=True):
             assert same(a, b)
-        info, wanted = mine[4], other[4]
+        info, wanted = expected_like[4], other[4]
         assert same(info["temperature_drop"], wanted["temperature_drop"])
         assert info["material"].tolist() == wanted["material"].tolist()
         assert ("final_obs" in info) == ("final_obs" in wanted)
@@ -179,7 +179,7 @@ def test_autoreset_modes_are_those_of_gymnasiums_own_vector_environment(mode: Au
         if mode is AutoresetMode.DISABLED and ended.any():
             with pytest.raises(InvalidValueError, match="reset_mask"):
                 ours.step(action)
-            pairs = [env.reset(options={"reset_mask": ended.copy()})[0] for env in (ours, theirs)]
+            pairs = [env.reset(options={"reset_mask": ended.copy()})[0] for env in (ours, gym_vector)]
             assert same(*pairs)
 
 

@@ -114,15 +114,15 @@ def test_environment_i_is_the_single_one_seeded_s_plus_i_through_autoreset():
         expected: dict = {}
         for i, single in enumerate(singles):
             if ended[i]:
-                own, told = single.reset()
+                alone, alone_info = single.reset()
                 assert reward[i] == 0 and not terminated[i] and not truncated[i]
                 ended[i] = False
             else:
-                own, own_reward, *ends, told = single.step(actions[i])
-                assert own_reward == reward[i] and ends == [terminated[i], truncated[i]]
+                alone, alone_reward, *ends, alone_info = single.step(actions[i])
+                assert alone_reward == reward[i] and ends == [terminated[i], truncated[i]]
                 ended[i] = any(ends)
-            assert all(np.array_equal(own[key], seen[key][i]) for key in own)
-            expected = vector._add_info(expected, told, i)
+            assert all(np.array_equal(alone[key], seen[key][i]) for key in alone)
+            expected = vector._add_info(expected, alone_info, i)
         assert set(info) == set(expected)
         assert all(np.array_equal(info[name], values) for name, values in expected.items())
 

@@ -188,16 +188,16 @@ def test_environment_i_is_the_single_one_seeded_s_plus_i_through_touches_and_aut
         expected: dict = {}
         for i, single in enumerate(singles):
             if ended[i]:
-                own, told = single.reset()
+                alone, alone_info = single.reset()
                 assert reward[i] == 0 and not terminated[i] and not truncated[i]
                 policy.restart([i])
                 ended[i], resets = False, resets + 1
             else:
-                own, own_reward, *ends, told = single.step(actions[i])
-                assert own_reward == reward[i] and ends == [terminated[i], truncated[i]]
+                alone, alone_reward, *ends, alone_info = single.step(actions[i])
+                assert alone_reward == reward[i] and ends == [terminated[i], truncated[i]]
                 ended[i] = any(ends)
-            assert same(own, {name: values[i] for name, values in seen.items()})
-            expected = vector._add_info(expected, told, i)
+            assert same(alone, {name: values[i] for name, values in seen.items()})
+            expected = vector._add_info(expected, alone_info, i)
         assert set(info) == set(expected)
         for name, values in expected.items():
             if name not in ("randomized", "_randomized"):
@@ -258,13 +258,13 @@ def test_press_with_the_recorded_conductance_gives_the_same_drop(name):
     env = SortEnv(goal="hotter", material=name, object_temperature=(20.0, 24.0), fingertips=1, air=0.0)
     env.reset(seed=0)
     plant: Any = env.batch.plant
-    told, contacts = [], watched_contacts(plant.heat)
+    infos, contacts = [], watched_contacts(plant.heat)
     for k in range(170):
         action = sliding_action_of(0.085 if k < 35 else 0.0, 10.0, 0.0, -0.1 if k < 20 else 0.0)
-        told.append(env.step(action)[4])
+        infos.append(env.step(action)[4])
     touched = plant.scenes[0][0]
     conductance = sampled_conductance(contacts, touched)[:, 0]
-    drop = np.array([info["temperature_drop"][0] for info in told])
+    drop = np.array([info["temperature_drop"][0] for info in infos])
     first = 2 * int(np.argmax(conductance > 0) // 2)  # the beginning of a step
     held = conductance[first:]
     press = thermal.press(
@@ -274,7 +274,7 @@ def test_press_with_the_recorded_conductance_gives_the_same_drop(name):
         object_temperature=touched.temperature,
         seconds=len(held) * SAMPLE,
         dt=SAMPLE,
-        rung=told[-1]["rung"][0],
+        rung=infos[-1]["rung"][0],
     )
     assert drop.max() > 1.0
     assert np.max(np.abs(press.temperature_drop[2::2] - drop[first // 2 :])) < 1e-6
@@ -324,7 +324,7 @@ def test_bad_keywords_and_actions_say_what_to_do():
 def test_a_box_that_is_turned_is_touched_and_felt_by_its_other_sides():
     """As the same box with its sides named the other way round."""
     long, short = 0.06, 0.014  # m: a pad is 20 mm wide
-    felt = []
+    changes = []
     for spec in (
         ObjectSpec(size=(long, short, 0.05), yaw=np.pi / 2),
         ObjectSpec(size=(short, long, 0.05)),
@@ -337,8 +337,8 @@ def test_a_box_that_is_turned_is_touched_and_felt_by_its_other_sides():
             observation, *_, info = env.step(policy.action(observation))
             areas.append(info["contact_area"][0].max())
         network = env.batch.plant.heat._rows._things[0].geometry  # pyright: ignore[reportAttributeAccessIssue]
-        felt.append((network.area, max(areas)))
-    np.testing.assert_allclose(felt[0], felt[1], rtol=0.02)
+        changes.append((network.area, max(areas)))
+    np.testing.assert_allclose(changes[0], changes[1], rtol=0.02)
 
 
 def test_a_thermostat_that_is_too_hot_is_told():

@@ -26,17 +26,17 @@ def test_environment_i_is_the_single_one_seeded_s_plus_i():
     actions[:, :, 0] = -1.0
     singles = [GraspEnv() for _ in range(3)]
     for i, single in enumerate(singles):
-        first, own = single.reset(seed=5 + i)
+        first, alone_info = single.reset(seed=5 + i)
         assert all(np.array_equal(first[key], seen[key][i]) for key in first)
-        assert own["material"] == info["material"][i]
+        assert alone_info["material"] == info["material"][i]
     for action in actions:
         seen, reward, terminated, truncated, info = vector.step(action)
         for i, single in enumerate(singles):
-            own, own_reward, own_terminated, own_truncated, own_info = single.step(action[i])
-            assert all(np.array_equal(own[key], seen[key][i]) for key in own)
-            assert own_reward == reward[i]
-            assert (own_terminated, own_truncated) == (terminated[i], truncated[i])
-            assert np.array_equal(own_info["temperature_drop"], info["temperature_drop"][i])
+            alone, alone_reward, alone_terminated, alone_truncated, step_info = single.step(action[i])
+            assert all(np.array_equal(alone[key], seen[key][i]) for key in alone)
+            assert alone_reward == reward[i]
+            assert (alone_terminated, alone_truncated) == (terminated[i], truncated[i])
+            assert np.array_equal(step_info["temperature_drop"], info["temperature_drop"][i])
 
 
 def test_environments_that_end_start_anew_at_the_next_step():
@@ -89,8 +89,8 @@ def test_infos_are_what_gymnasium_makes_of_the_single_ones():
     for k in range(14):
         expected: dict = {}
         for i, first in enumerate(firsts):
-            own = first if k == 0 else singles[i].step(squeeze[i])[4]
-            expected = vector._add_info(expected, own, i)
+            alone_info = first if k == 0 else singles[i].step(squeeze[i])[4]
+            expected = vector._add_info(expected, alone_info, i)
         if k:
             seen, _, _, _, info = vector.step(squeeze)
         assert set(info) == set(expected)

@@ -21,8 +21,8 @@ def drawn(rng: np.random.Generator, first: ObjectSpec) -> ObjectSpec:
     x, y, z = rng.uniform(0.012, 0.1, 3) * (0.8, 0.8, 1.0)
     size = {"box": (x, y, z), "cylinder": (x, x, z), "sphere": (x, x, x)}[shape]
     colour = tuple(rng.uniform(0, 1, 4))
-    own = {"density": rng.uniform(50, 2e4), "friction": rng.uniform(0, 2), "rgba": colour}
-    return replace(first, shape=shape, size=size, **own)
+    fields = {"density": rng.uniform(50, 2e4), "friction": rng.uniform(0, 2), "rgba": colour}
+    return replace(first, shape=shape, size=size, **fields)
 
 
 @pytest.mark.parametrize("first", [FIRST[:1], FIRST], ids=["one", "two"])

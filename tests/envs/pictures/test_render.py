@@ -164,8 +164,8 @@ def test_every_object_has_its_own_colour_whatever_its_name(keywords, names):
     mechanics, reading = batch.plant.mechanics, batch.reading  # pyright: ignore[reportAttributeAccessIssue]
     assert reading is not None
     if len(names) > 1:
-        own = {"object_temperatures": np.array([[20.0, 40.0]])}
-        reading = reading._replace(truth={**reading.truth, **own})
+        warm = {"object_temperatures": np.array([[20.0, 40.0]])}
+        reading = reading._replace(truth={**reading.truth, **warm})
     celsius = temperatures(reading, mechanics.names)
     assert [celsius[name] for name in names] == ([20.0, 40.0] if len(names) > 1 else [24.0])
     stage = render._Stage(mechanics, 20.0, 40.0)

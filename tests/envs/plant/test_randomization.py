@@ -124,11 +124,11 @@ def test_mass_friction_and_size_are_those_of_the_model():
     plain = GraspEnv(**PLAIN)
     plain.reset(seed=0)
     body = plain.model.body("object").id
-    own, other = (each.batch.plant.mechanics.env_model(0) for each in (env, plain))  # pyright: ignore
-    assert own.body_mass[body] == pytest.approx(2 * other.body_mass[body] / 8)
-    geom = own.body_geomadr[body]
-    assert own.geom_friction[geom, 0] == pytest.approx(other.geom_friction[geom, 0] / 2)
-    assert np.allclose(own.geom_size[geom], other.geom_size[geom] / 2)
+    scaled, other = (each.batch.plant.mechanics.env_model(0) for each in (env, plain))  # pyright: ignore
+    assert scaled.body_mass[body] == pytest.approx(2 * other.body_mass[body] / 8)
+    geom = scaled.body_geomadr[body]
+    assert scaled.geom_friction[geom, 0] == pytest.approx(other.geom_friction[geom, 0] / 2)
+    assert np.allclose(scaled.geom_size[geom], other.geom_size[geom] / 2)
 
 
 def test_vector_and_single_agree_with_everything_on_and_shapes_mixed():
@@ -145,11 +145,11 @@ def test_vector_and_single_agree_with_everything_on_and_shapes_mixed():
     actions = np.tile(SQUEEZE, (3, 1))
     for k in range(70):
         for i, single in enumerate(singles):
-            own, told = firsts[i]
+            alone, alone_info = firsts[i]
             if k > 0:
-                own, _, _, _, told = single.step(actions[i])
-            assert all(np.array_equal(own[key], seen[key][i]) for key in own)
-            assert all(info["randomized"][n][i] == value for n, value in told["randomized"].items())
+                alone, _, _, _, alone_info = single.step(actions[i])
+            assert all(np.array_equal(alone[key], seen[key][i]) for key in alone)
+            assert all(info["randomized"][n][i] == value for n, value in alone_info["randomized"].items())
         seen, _, _, _, info = vector.step(actions)
         assert info["_randomized"].all() and info["randomized"]["_mass_factor"].all()
 

@@ -86,8 +86,8 @@ def test_a_ball_on_a_bare_face_touches_as_hertz_says_and_its_gas_conducts() -> N
     truth, body, force = batch.reading.truth, plant.bodies[0], batch.reading.force[0, 0, 0]
     expected = rigid_sphere(LAPPED_ALUMINA, Surface.of(material("steel")), force, 0.02, 0.009)
     assert truth["contact_area"][0, 0] == pytest.approx(np.pi * expected.half_width**2, rel=0.01)
-    felt = truth["contact_area"][0, 0] * truth["conductance"][0, 0]
-    assert felt == pytest.approx(expected.conductance, rel=0.03)
+    through = truth["contact_area"][0, 0] * truth["conductance"][0, 0]
+    assert through == pytest.approx(expected.conductance, rel=0.03)
     assert 100 * truth["contact_area"][0, 0] < body.geometry.area < 0.2 * body.stack.face_area
     imbalance, exchanged = truth["heat_imbalance"][0], truth["heat_exchanged"][0]
     assert exchanged > 0.01 and abs(imbalance) < 1e-9 * exchanged

@@ -53,13 +53,13 @@ def test_a_row_does_not_depend_on_the_others(task) -> None:
     for action, whole in zip(actions, readings, strict=True):
         state, outcome = task.judge(state, 0.02, action, whole)
         for row in range(rows):
-            own = slice(row, row + 1)
-            arrays = {n: v[own] for n, v in whole._asdict().items() if isinstance(v, np.ndarray)}
-            told = {name: values[own] for name, values in whole.truth.items()}
-            cut = whole._replace(**arrays, truth=told, error=("",))
-            alone[row], one = task.judge(alone[row], 0.02, action[own], cut)
-            assert alone[row].tobytes() == state[own].tobytes()
-            for mine, theirs in zip(one[:4], outcome[:4], strict=True):
-                assert mine.tobytes() == theirs[own].tobytes()
+            at = slice(row, row + 1)
+            arrays = {n: v[at] for n, v in whole._asdict().items() if isinstance(v, np.ndarray)}
+            truth = {name: values[at] for name, values in whole.truth.items()}
+            cut = whole._replace(**arrays, truth=truth, error=("",))
+            alone[row], one = task.judge(alone[row], 0.02, action[at], cut)
+            assert alone[row].tobytes() == state[at].tobytes()
+            for single, many in zip(one[:4], outcome[:4], strict=True):
+                assert single.tobytes() == many[at].tobytes()
             for name, values in one.info.items():
-                assert values.tobytes() == outcome.info[name][own].tobytes()
+                assert values.tobytes() == outcome.info[name][at].tobytes()

@@ -93,8 +93,8 @@ def least_margin(
     discounts. wins: who succeeded, which are to be `late` and the first."""
     assert [name for name, won in zip(names, wins, strict=True) if won] == [names[0], *late]
     for discount, values in total.items():
-        told = dict(zip(names, values.tolist(), strict=True))
-        assert values[0] > 0 and values[0] > values[1:].max(), (discount, told)
+        rewards = dict(zip(names, values.tolist(), strict=True))
+        assert values[0] > 0 and values[0] > values[1:].max(), (discount, rewards)
     return min(1 - values[1:].max() / values[0] for values in total.values())
 
 

@@ -155,7 +155,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(monkeypatch: pytest.Monke
     monkeypatch.setattr(
         sensor_model, "SensorResponse", lambda *_: model._response
     )  # of the same touches, computed once
-    held, asked = 0, 0
+    held, total = 0, 0
     for seed in range(10):
         rng = np.random.default_rng(seed)
         touches = []
@@ -166,8 +166,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(monkeypatch: pytest.Monke
         fit = fit_sensor(touches, chain=replace(CHAIN, bits=0), confidence=0.8)
         held += sum(e.low < TRUE[name] < e.high for name, e in fit.shared.items())
         held += sum(e.low < h < e.high for e, h in zip(fit.conductances, conductances, strict=True))
-        asked += len(fit.shared) + len(conductances)
-    assert 0.7 < held / asked < 0.9
+        total += len(fit.shared) + len(conductances)
+    assert 0.7 < held / total < 0.9
 
 
 def test_what_cannot_be_told_is_named_and_what_is_held_stays() -> None:

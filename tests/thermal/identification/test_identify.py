@@ -84,7 +84,7 @@ def test_between_its_nodes_the_library_is_exact_enough(identifier: thermal.Ident
     table, rng = library.objects, np.random.default_rng(1)
     family = SystemFamily(SETUP.geometry(thermal.material("glass")))
     basis, seen = library.basis(T), np.zeros((3, library.functions.shape[1]))
-    apart = []
+    distance = []
     for _ in range(40):
         conductivity, capacity = identify_prior.draw_object(rng)
         effusivity = np.sqrt(conductivity * capacity)
@@ -99,8 +99,8 @@ def test_between_its_nodes_the_library_is_exact_enough(identifier: thermal.Ident
             seen,
         )
         exact = unit_response(family.system(conductivity, capacity), 1 / resistance, T, 30.0)
-        apart.append(12 * np.abs(basis @ seen[0] - exact).max())
-    assert np.quantile(apart, 0.95) < 5e-4
+        distance.append(12 * np.abs(basis @ seen[0] - exact).max())
+    assert np.quantile(distance, 0.95) < 5e-4
 
 
 @pytest.mark.parametrize("seconds", [0.5, 4.0])
@@ -115,9 +115,9 @@ def test_materials_are_those_of_brute_force(
     for voltage in drawn.voltage[:, :count]:
         identifier.reset()
         found.append(identifier.update(T[:count], voltage).probability)
-    apart = np.abs(np.array(found) - exact).sum(axis=1) / 2
-    assert apart.mean() < 0.02
-    assert np.quantile(apart, 0.9) < 0.06
+    distance = np.abs(np.array(found) - exact).sum(axis=1) / 2
+    assert distance.mean() < 0.02
+    assert np.quantile(distance, 0.9) < 0.06
 
 
 @pytest.mark.slow

@@ -214,10 +214,10 @@ def test_every_source_is_used() -> None:
 
 
 def test_derived_quantities() -> None:
-    mine = Material("mine", 2.0, 1000.0, 800.0)
-    assert mine.volumetric_heat_capacity == 8e5
-    assert mine.diffusivity == 2.5e-6
-    assert mine.effusivity == pytest.approx(math.sqrt(1.6e6))
+    first = Material("mine", 2.0, 1000.0, 800.0)
+    assert first.volumetric_heat_capacity == 8e5
+    assert first.diffusivity == 2.5e-6
+    assert first.effusivity == pytest.approx(math.sqrt(1.6e6))
 
 
 def test_a_material_is_a_frozen_value() -> None:
@@ -264,13 +264,13 @@ def test_zero_is_refused_except_as_a_poisson_ratio() -> None:
 
 
 def test_a_users_table_is_read(write) -> None:
-    mine = load_materials(write(GOOD))
-    assert list(mine) == ["mine", "other"]
-    assert mine["mine"].family == "polymer"
-    assert mine["mine"].roughness == 1e-6
-    assert mine["mine"].youngs_modulus is None
-    assert mine["mine"].sources["density"] == "Measured in our laboratory, 2024"
-    assert type(mine["mine"].density) is float
+    catalogue = load_materials(write(GOOD))
+    assert list(catalogue) == ["mine", "other"]
+    assert catalogue["mine"].family == "polymer"
+    assert catalogue["mine"].roughness == 1e-6
+    assert catalogue["mine"].youngs_modulus is None
+    assert catalogue["mine"].sources["density"] == "Measured in our laboratory, 2024"
+    assert type(catalogue["mine"].density) is float
     assert "mine" not in materials()
 
 

@@ -66,10 +66,10 @@ def test_fingertips_of_arrays_wear_one_row_by_row() -> None:
     size = (0.04, 0.03, 0.02)
     tips = array_fingertips("aluminium", skin=SILICONE, object_size=size, **words)  # pyright: ignore[reportArgumentType]
     force = np.array([[2.0], [10.0], [0.0]])
-    felt = tips.conductance(force)
+    conductance = tips.conductance(force)
     state, volts = tips.start(3), np.zeros((0, 3))
     for _ in range(40):
-        state, voltage, _ = tips.step(state, felt)
+        state, voltage, _ = tips.step(state, conductance)
         volts = np.vstack((volts, voltage[:, 0]))
     alone, one = tips.start(1), np.zeros(0)
     for _ in range(40):
@@ -80,7 +80,7 @@ def test_fingertips_of_arrays_wear_one_row_by_row() -> None:
     pressed = press(
         "aluminium",
         skin=SILICONE,
-        conductance=float(felt[1, 0]) / area,
+        conductance=float(conductance[1, 0]) / area,
         object_size=size,
         seconds=2.0,
         dt=0.05,
@@ -131,8 +131,8 @@ def test_layers_and_capacity_are_those_of_sensor_and_skin() -> None:
     bare, made = sensor("seed"), SILICONE.made_of
     worn = SILICONE.over(bare)
     assert worn.layers[:-1] == bare.layers and worn.sensed == bare.sensed
-    own = bare.face_area * SILICONE.thickness * made.volumetric_heat_capacity
-    assert worn.heat_capacity == pytest.approx(bare.heat_capacity + own)
+    heat_capacity = bare.face_area * SILICONE.thickness * made.volumetric_heat_capacity
+    assert worn.heat_capacity == pytest.approx(bare.heat_capacity + heat_capacity)
     heated = heated_stack("heated_thermistor")
     assert SILICONE.over(heated).layers == (*heated.layers, SILICONE.layer)
     assert SILICONE.over(heated).readout == heated.readout

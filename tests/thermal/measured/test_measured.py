@@ -59,8 +59,8 @@ def test_later_runs_and_cold_wood_which_nothing_was_fitted_to(
     later = shipped.only(~early)
     rows = {r.label: r for r in compare(later, predicted.curves[~early], np.random.default_rng(0))}
     for label in ("metal", "wood"):
-        apart = drawn_apart(shipped.only(early), later, label, np.random.default_rng(0))
-        assert rows[label].mean_rms < apart
+        difference = drawn_apart(shipped.only(early), later, label, np.random.default_rng(0))
+        assert rows[label].mean_rms < difference
     for half in (early, ~early):
         cold = half & (shipped.label == "cold_wood")
         error = shipped.only(cold).drops - drops_of(shipped, predicted.curves)[cold]

@@ -89,11 +89,11 @@ def test_heat_goes_from_finger_to_object_air_and_contents_to_round_off():
     system = made.filled(500.0 * 6 * (SIDE - 2 * WALL) ** 2, 0.02).system((0,))
     tables, state = heat_tables([system], [5.0], 0.01), np.zeros((1, len(system.rates)))
     weight, difference = np.array([[0.5]]), np.array([[12.0]])
-    state, told = advance_heat(tables, np.zeros(1, int), state, weight, difference, np.ones(1, bool), 500)
+    state, heats = advance_heat(tables, np.zeros(1, int), state, weight, difference, np.ones(1, bool), 500)
     assert system.reservoir is not None
     contents = float(system.reservoir @ state[0])
-    passed = 0.01 * (told.flow.sum() - told.air_loss.sum())
-    assert contents > 0.05 and told.object_heat[0, -1] + contents == pytest.approx(passed, rel=1e-9)
+    passed = 0.01 * (heats.flow.sum() - heats.air_loss.sum())
+    assert contents > 0.05 and heats.object_heat[0, -1] + contents == pytest.approx(passed, rel=1e-9)
 
 
 def test_contents_are_part_of_what_an_added_patch_carries_over():

@@ -52,18 +52,18 @@ def test_a_cup_s_wall_is_a_layer_at_first_and_a_shell_later():
         (0, -0.027),
     ]
     cup = of(trimesh.creation.revolve(profile, sections=256), "glass")
-    felt = press_body(cup, SurfacePatch((radius, 0, 0), (1, 0, 0)), tolerance=0.025, cache=False)
+    press = press_body(cup, SurfacePatch((radius, 0, 0), (1, 0, 0)), tolerance=0.025, cache=False)
     layer, plate = (
         thermal.press("glass", object_size=(0.06, 0.06, wall), rung=rung)
         for rung in ("layered", "semi_analytic")
     )
-    first = thermal.material("glass").diffusivity * felt.t / 81e-6 < 1e-3
-    first &= felt.t >= 0.05
+    first = thermal.material("glass").diffusivity * press.t / 81e-6 < 1e-3
+    first &= press.t >= 0.05
     assert first.sum() > 3
-    assert np.abs(felt.temperature_drop - layer.temperature_drop)[first].max() < 0.05
-    late = felt.t >= 0.05
-    assert np.abs(felt.temperature_drop - plate.temperature_drop)[late].max() < 0.05  # 1 %, and it is curved
-    assert np.abs(felt.temperature_drop - layer.temperature_drop)[late].max() > 0.3
+    assert np.abs(press.temperature_drop - layer.temperature_drop)[first].max() < 0.05
+    late = press.t >= 0.05
+    assert np.abs(press.temperature_drop - plate.temperature_drop)[late].max() < 0.05  # 1 %, and it is curved
+    assert np.abs(press.temperature_drop - layer.temperature_drop)[late].max() > 0.3
 
 
 def layered_drop(t: np.ndarray, layers) -> np.ndarray:
@@ -74,8 +74,8 @@ def layered_drop(t: np.ndarray, layers) -> np.ndarray:
         admittance = np.zeros_like(s)
         for depth, material in reversed(layers):
             root = np.sqrt(s / material.diffusivity)
-            own, along = material.conductivity * root, np.tanh(root * depth)
-            admittance = own * (admittance + own * along) / (own + admittance * along)
+            effusive, along = material.conductivity * root, np.tanh(root * depth)
+            admittance = effusive * (admittance + effusive * along) / (effusive + admittance * along)
         return 1 / admittance
 
     contact = 1 / (1e4 * 81e-6)
@@ -90,16 +90,16 @@ def test_a_steel_core_in_a_sleeve_of_rubber_is_layered_at_first(sleeve):
     rubber, steel = thermal.material("rubber"), thermal.material("stainless_steel")
     outer, inner = (trimesh.creation.box(np.array(CUBE) - 2 * depth) for depth in (0.0, sleeve))
     parts = SolidPart(outer.vertices, outer.faces, rubber), SolidPart(inner.vertices, inner.faces, steel)
-    felt = press_body(Solid(parts), TOP, tolerance=0.025, cache=False, seconds=4.0)
+    press = press_body(Solid(parts), TOP, tolerance=0.025, cache=False, seconds=4.0)
     layers = [(sleeve, rubber), (CUBE[2] - 2 * sleeve, steel), (sleeve, rubber)]
-    first = (felt.t >= 0.05) & (rubber.diffusivity * felt.t < 81e-6 / 4000)
+    first = (press.t >= 0.05) & (rubber.diffusivity * press.t < 81e-6 / 4000)
     assert first.sum() > 10
-    assert np.abs(felt.temperature_drop[first] - layered_drop(felt.t[first], layers)).max() < 0.03
+    assert np.abs(press.temperature_drop[first] - layered_drop(press.t[first], layers)).max() < 0.03
     plain = [press_body(of(outer, name), TOP, tolerance=0.025, cache=False, seconds=4.0) for name in NAMES]
-    between = felt.t > 1.0
+    between = press.t > 1.0
     rubbery, steely = (curve.temperature_drop[between] for curve in plain)
-    assert np.all(felt.temperature_drop[between] > rubbery) and np.all(
-        felt.temperature_drop[between] < steely
+    assert np.all(press.temperature_drop[between] > rubbery) and np.all(
+        press.temperature_drop[between] < steely
     )
 
 
@@ -149,8 +149,8 @@ def test_hot_objects_are_as_well_known_as_cold_ones(cold):
     )
     assert cold.temperature_drop.max() > 1.0
     for press, sign in ((cold, 1.0), (hot, -1.0)):
-        apart = np.abs(sign * press.temperature_drop - box.temperature_drop)[1:]
-        assert apart.max() < press.rung.error <= 0.03
+        difference = np.abs(sign * press.temperature_drop - box.temperature_drop)[1:]
+        assert difference.max() < press.rung.error <= 0.03
     assert np.abs(hot.temperature_drop + cold.temperature_drop).max() < 1e-9
 
 
@@ -158,12 +158,12 @@ def test_what_is_told_of_the_error_was_measured(cold):
     """The network's part is how far its drop is from that of all the grid's states, not what was asked for."""
     coarse = pressed_block(24.0, 0.3)
     assert cold.rung.error < coarse.rung.error < 0.3 / 2
-    for press, asked in ((cold, 0.03), (coarse, 0.3)):
+    for press, tolerance in ((cold, 0.03), (coarse, 0.3)):
         network = press.rung.error - 1e-3 * 12
-        assert 0 < network < asked / 2 and abs(network - asked / 2) > 1e-3 * asked
+        assert 0 < network < tolerance / 2 and abs(network - tolerance / 2) > 1e-3 * tolerance
         assert f"measured {network:.2g} K off" in press.rung.reason
-    apart = np.abs(coarse.temperature_drop - cold.temperature_drop)[1:].max()
-    assert apart < coarse.rung.error + cold.rung.error
+    difference = np.abs(coarse.temperature_drop - cold.temperature_drop)[1:].max()
+    assert difference < coarse.rung.error + cold.rung.error
 
 
 def test_what_a_press_in_air_leaves_unmeasured_is_told(monkeypatch):

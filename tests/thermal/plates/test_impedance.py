@@ -39,8 +39,8 @@ SECTIONS = [
 def assert_same(z: np.ndarray, summed: np.ndarray, patch) -> None:
     """To 3e-4 of the largest pattern: the narrowest ones need more wave numbers than the sum has; they hold little
     heat, so that the uniform pattern agrees to 1e-6."""
-    apart = np.abs(z - summed).max(axis=(1, 2))
-    assert np.all(apart < 3e-4 * np.abs(summed).max(axis=(1, 2)))
+    difference = np.abs(z - summed).max(axis=(1, 2))
+    assert np.all(difference < 3e-4 * np.abs(summed).max(axis=(1, 2)))
     mean = np.einsum("c,scd,d->s", patch.uniform, summed, patch.uniform)
     np.testing.assert_allclose(np.einsum("c,scd,d->s", patch.uniform, z, patch.uniform), mean, rtol=1e-6)
 

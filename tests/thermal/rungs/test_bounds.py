@@ -25,24 +25,24 @@ def test_a_box_of_new_size_keeps_what_it_says(
     size: tuple[float, float, float], area: float, sensor_temperature: float
 ) -> None:
     """Hot or cold, beside the solution without a grid."""
-    asked = {"object_size": size, "area": area, "sensor_temperature": sensor_temperature, "cache": False}
-    fast = press("glass", conductance=2e4, seconds=10.0, dt=0.1, rung="network", **asked)
-    exact = press("glass", conductance=2e4, seconds=10.0, dt=0.1, rung="semi_analytic", **asked)
+    keywords = {"object_size": size, "area": area, "sensor_temperature": sensor_temperature, "cache": False}
+    fast = press("glass", conductance=2e4, seconds=10.0, dt=0.1, rung="network", **keywords)
+    exact = press("glass", conductance=2e4, seconds=10.0, dt=0.1, rung="semi_analytic", **keywords)
     error = np.max(np.abs(fast.temperature_drop - exact.temperature_drop)[1:])
     assert error <= fast.rung.error <= 0.05
 
 
 def test_a_second_fingertip_of_another_conductance_is_within_the_bound() -> None:
     """A network that is demanded for the first conductance alone was off by three times what it said."""
-    asked = {"mode": "O", "conductance": 1e2, "opposite": 1e5, "seconds": 10.0, "dt": 0.1, "cache": False}
-    found = press("aluminium", tolerance=0.02, **asked)
-    finest = press("aluminium", rung="network:4/0/20/20", **asked)
+    keywords = {"mode": "O", "conductance": 1e2, "opposite": 1e5, "seconds": 10.0, "dt": 0.1, "cache": False}
+    found = press("aluminium", tolerance=0.02, **keywords)
+    finest = press("aluminium", rung="network:4/0/20/20", **keywords)
     assert np.max(np.abs(found.temperature_drop - finest.temperature_drop)[1:]) <= found.rung.error
 
 
 def test_auto_goes_up_where_no_network_is_fine_enough() -> None:
-    asked = {"sensor_temperature": 64.0, "seconds": 2.0, "dt": 0.1, "cache": False}
-    found = press("glass", tolerance=0.0045, **asked)
+    keywords = {"sensor_temperature": 64.0, "seconds": 2.0, "dt": 0.1, "cache": False}
+    found = press("glass", tolerance=0.0045, **keywords)
     assert found.rung.name == "semi_analytic"
     assert found.rung.error <= 0.0045
 
@@ -94,11 +94,11 @@ def test_what_the_mean_temperature_costs_in_air_is_bounded(mode: Mode) -> None:
 @pytest.mark.parametrize("mode", ["T", "O"])
 def test_a_network_in_air_counts_the_air_in_its_error(mode: Mode) -> None:
     """In this cube of glass it said .005 K and was .034 K off."""
-    asked = {"mode": mode, "object_size": (0.04, 0.04, 0.04), "air": 20.0, "seconds": 60.0, "dt": 0.1}
+    keywords = {"mode": mode, "object_size": (0.04, 0.04, 0.04), "air": 20.0, "seconds": 60.0, "dt": 0.1}
     for more in ({"rung": "network"}, {"opposite": 1e3}):
         with pytest.raises(InvalidValueError, match=r"air of 20 W/\(m2 K\).*mean temperature"):
-            press("glass", tolerance=0.005, **more, **asked)
-    metal = press("aluminium", tolerance=0.005, rung="network", **asked)
+            press("glass", tolerance=0.005, **more, **keywords)
+    metal = press("aluminium", tolerance=0.005, rung="network", **keywords)
     assert metal.rung.error <= 0.005
 
 
@@ -127,9 +127,9 @@ def test_the_finest_grid_is_not_solved_where_it_would_not_serve(monkeypatch: pyt
         return replace(curves, temperature_drop=curves.temperature_drop + 16 / 15 / resolution**2)
 
     monkeypatch.setattr(grid_3d, "solve", grid)
-    asked = {"air": 10.0, "sensor_temperature": 55.0, "seconds": 10.0, "dt": 1.0, "cache": False}
+    keywords = {"air": 10.0, "sensor_temperature": 55.0, "seconds": 10.0, "dt": 1.0, "cache": False}
     with pytest.raises(InvalidValueError, match="no network keeps"):
-        press("glass", tolerance=0.01, **asked)
+        press("glass", tolerance=0.01, **keywords)
     assert solved == [1, 2]
 
 

@@ -347,8 +347,8 @@ def test_touch_release_touch_follows_the_jumps():
     curves = grid_axisymmetric.solve(problem, t, resolution=1)
     fine = grid_axisymmetric.solve(problem, np.linspace(0, 2, 1001), resolution=1)
     assert np.abs(curves.temperature_drop - fine.temperature_drop[::25]).max() < 0.01
-    apart = (t > 0.531) & (t < 0.999)
-    assert np.all(curves.heat_flow[apart] == 0.0)
+    released = (t > 0.531) & (t < 0.999)
+    assert np.all(curves.heat_flow[released] == 0.0)
 
 
 def test_apart_nothing_happens():

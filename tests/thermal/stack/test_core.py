@@ -77,9 +77,9 @@ def test_a_heater_inside_the_stack_and_a_readout_behind_it() -> None:
 
 def test_a_constant_power_keeps_a_leaking_sensor_where_it_is_until_it_touches() -> None:
     leaky = replace(PLAIN, backing=LEAKY, law=ConstantPower())
-    apart = pressed(leaky, conductance=0.0).reading
-    assert apart is not None
-    assert apart == pytest.approx(WARM, abs=1e-6)
+    untouched = pressed(leaky, conductance=0.0).reading
+    assert untouched is not None
+    assert untouched == pytest.approx(WARM, abs=1e-6)
     off = replace(leaky, law=Off())
     assert pressed(off, **ONE_DIMENSION).reading == pytest.approx(marched(off), abs=0.03)
 

@@ -98,11 +98,11 @@ def test_the_grid_converges_at_second_order(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_a_sensor_that_warms_goes_on_as_before_until_the_cut() -> None:
     stack = pad(law=CutAtContact(2.0), backing=Backing(capacity=1e4))
-    apart = replace(touches(warming=0.1), force=np.zeros((1, len(T))))
-    rise = touch_curves(stack, [WOOD], apart, warm_up=60.0).reading[0]
+    untouched = replace(touches(warming=0.1), force=np.zeros((1, len(T))))
+    rise = touch_curves(stack, [WOOD], untouched, warm_up=60.0).reading[0]
     assert rise[-1] - rise[0] == pytest.approx(0.1 * T[-1], rel=0.02)
-    met = np.where(T < 1.0, 0.0, 4.0)[None]
-    found = touch_curves(stack, [WOOD], replace(apart, force=met), warm_up=60.0)
+    force = np.where(T < 1.0, 0.0, 4.0)[None]
+    found = touch_curves(stack, [WOOD], replace(untouched, force=force), warm_up=60.0)
     assert (found.power[0, T[:-1] < 1.0] > 0).all()
     assert (found.power[0, T[:-1] >= 1.0] == 0).all()
 
@@ -136,8 +136,8 @@ def test_the_place_of_the_readout_orders_what_is_read() -> None:
 
 def test_the_network_is_passive_and_steps_as_the_stack_does() -> None:
     stack, area = pad(law=ConstantPower(500.0), backing=Backing(capacity=2e3)), 1e-4
-    apart = replace(touches(), force=np.zeros((1, len(T))))
-    fine = touch_curves(stack, [WOOD], apart).reading[0] - 30
+    untouched = replace(touches(), force=np.zeros((1, len(T))))
+    fine = touch_curves(stack, [WOOD], untouched).reading[0] - 30
     network = stack_network(stack, area)
     assert (network.rates >= 0).all() and network.rates[0] == 0
     for used, tolerance in ((network, 2e-3), (stack_network(stack, area, order=5), 0.02)):
