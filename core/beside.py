@@ -40,11 +40,11 @@ def turn(folder: str, number: int, wait: bool = True) -> Iterator[bool]:
         yield False
         return
     until = time.monotonic() + (_PATIENCE if wait else 0.0)
-    own = False
-    while not own:
+    taken = False
+    while not taken:
         try:
             fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, number)
-            own = True
+            taken = True
         except (BlockingIOError, PermissionError):  # another process's turn
             if time.monotonic() >= until:
                 break
@@ -52,9 +52,9 @@ def turn(folder: str, number: int, wait: bool = True) -> Iterator[bool]:
         except OSError:  # a network drive without locks
             break
     try:
-        yield own
+        yield taken
     finally:
-        if own:
+        if taken:
             with suppress(OSError):
                 fcntl.lockf(handle, fcntl.LOCK_UN, 1, number)
 

@@ -43,10 +43,10 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.notice import notice
 
 _LOG = logging.getLogger(__name__)
-_TOLD: list[str] = []
+_REPORTED: list[str] = []
 """The first function that this process has compiled."""
 
-_OWN = {"fastmath": False, "error_model": "python", "forceinline": False}
+_FIXED_OPTIONS = {"fastmath": False, "error_model": "python", "forceinline": False}
 """Options that a function would otherwise take from the caller for which it is first compiled, and keep for all."""
 
 _ENVIRONMENT = "_ZN08NumbaEnv"
@@ -80,7 +80,7 @@ def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callabl
     def compiled(function: Callable[..., Any]) -> Any:
         entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
         entries["pipeline_class"] = _InnerCompiler if inner else _OuterCompiler
-        dispatcher: Any = numba.njit(**{**_OWN, **options, **entries})(function)
+        dispatcher: Any = numba.njit(**{**_FIXED_OPTIONS, **options, **entries})(function)
         if cache:
             dispatcher._cache = _Cache(dispatcher, inner)
         dispatcher.compile = _quickly(dispatcher)
@@ -375,8 +375,8 @@ class _Cache(FunctionCache):
 
 def _tell(name: str) -> None:
     """Says once that this process compiles, and logs what."""
-    if not _TOLD:
-        _TOLD.append(name)
+    if not _REPORTED:
+        _REPORTED.append(name)
         notice("compiling for this processor, once: `thermograsp warmup` does it ahead ...")
     _LOG.info("compiling %s", name)
 

@@ -19,7 +19,7 @@ FORMAT = 2
 """Version of the manifest's layout. One of format 1 lacks keywords and sources, and is read all the same."""
 
 _DECISIVE = ("mujoco", "numba", "numpy", "scipy")
-_OWN = ("material", "mode", "num_envs", "render_mode", "plant")  # keywords that are not a plan's to give
+_RESERVED = ("material", "mode", "num_envs", "render_mode", "plant")  # keywords that are not a plan's to give
 _MOST = 2**63 - 1  # seeds are a column of int64
 
 
@@ -73,7 +73,7 @@ class Plan:
     def __post_init__(self) -> None:
         kept = {name: decoded(encoded(value, name)) for name, value in self.keywords.items()}
         object.__setattr__(self, "keywords", kept)
-        for name in _OWN:
+        for name in _RESERVED:
             if name in kept:
                 raise InvalidValueError(f"{name} is an argument of its own, not one of the keywords")
         for name, least in (("episodes", 1), ("seed", 0), ("shard_size", 1)):

@@ -59,10 +59,10 @@ def ways(arguments: argparse.Namespace, packages: set[str]) -> tuple[dict[str, C
     }
 
     def called(step: Callable[..., Any], like: Any, move: Callable[[np.ndarray], Any]) -> Callable[[], Any]:
-        own = thermal.array_tables(tables, like)
+        tables_like = thermal.array_tables(tables, like)
         rows = [move(values.astype(arguments.dtype)) for values in (state, conductance, difference)]
         which = 0 if arguments.one_network else move(network)
-        return lambda: step(own, which, *rows)
+        return lambda: step(tables_like, which, *rows)
 
     if arguments.device == "cpu":
         found["numpy"] = called(thermal.array_step, np.zeros(0, arguments.dtype), np.asarray)

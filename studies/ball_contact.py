@@ -181,10 +181,10 @@ def contact_of(
     fine = np.linspace(0, disc, 40_001)
     p = np.interp(fine, places, pressure, right=0.0)
     p[fine > edge] = 0.0
-    apart = AIR.conductivity / float(gas_conductance(pair, 0.0))
+    mean_gap = AIR.conductivity / float(gas_conductance(pair, 0.0))
     far = (fine**2 - places[-1] ** 2) / (2 * RADIUS) + gap[-1]  # the ball's own shape beyond the nodes
     g = np.where(fine <= places[-1], np.interp(fine, places, gap), far)
-    h = np.where(p > 0, np.asarray(contact_conductance(pair, p)), AIR.conductivity / (apart + g))
+    h = np.where(p > 0, np.asarray(contact_conductance(pair, p)), AIR.conductivity / (mean_gap + g))
     within = float(loads[places <= disc].sum())
     total = float(np.trapezoid(2 * np.pi * fine * h, fine))
     return Contact(
@@ -247,23 +247,25 @@ def cases() -> dict[str, tuple[Layer, Joint, np.void]]:
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="A ball's contact by finite elements beside the package's.")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
-    asked = parser.parse_args(arguments)
-    told = {}
+    options = parser.parse_args(arguments)
+    results = {}
     for name, (layer, pair, law) in cases().items():
         flexible = compliance(layer, 120)
         rows = [
             (contact_of(*flexible, pair, force), ours(law, force, name != "bare"))
             for force in (1.0, 10.0, 30.0)
         ]
-        told[name] = [{"finite elements": asdict(fem), "package": asdict(own)} for fem, own in rows]
-        if not asked.json:
+        results[name] = [
+            {"finite elements": asdict(fem), "package": asdict(package)} for fem, package in rows
+        ]
+        if not options.json:
             print(f"{name}\n     N   radius, mm    peak, MPa      W/K")
-            for fem, own in rows:
-                pairs = ((fem.radius * 1e3, own.radius * 1e3), (fem.peak / 1e6, own.peak / 1e6))
-                pairs += ((fem.conductance, own.conductance),)
+            for fem, package in rows:
+                pairs = ((fem.radius * 1e3, package.radius * 1e3), (fem.peak / 1e6, package.peak / 1e6))
+                pairs += ((fem.conductance, package.conductance),)
                 print(f"{fem.force:6g}  " + "  ".join(f"{a:.4g} ({b:.4g})".ljust(16) for a, b in pairs))
-    if asked.json:
-        json.dump(told, sys.stdout, indent=1)
+    if options.json:
+        json.dump(results, sys.stdout, indent=1)
     return 0
 
 

@@ -83,18 +83,18 @@ def joined(first: np.ndarray, second: np.ndarray, watts: np.ndarray, count: int)
 
 def drops(tip: Disc, body: Disc, sensed: int, conductances: np.ndarray) -> np.ndarray:
     """K at TIMES. conductances: W/(m2 K) of the tip's rings."""
-    count, own = tip.capacity.size + body.capacity.size, tip.capacity.size
+    count, in_tip = tip.capacity.size + body.capacity.size, tip.capacity.size
     capacity = np.concatenate((tip.capacity, body.capacity))
     rings = len(tip.face)
     watts = tip.face / (1 / np.maximum(conductances, 1e-12) + tip.half + body.half)
     behind = np.zeros(count)
-    behind[own - rings : own] = tip.face * 2 * tip.conducts[-1] / tip.thick[-1]
-    matrix = joined(np.arange(rings), own + np.arange(rings), watts, count) + diags(behind)
+    behind[in_tip - rings : in_tip] = tip.face * 2 * tip.conducts[-1] / tip.thick[-1]
+    matrix = joined(np.arange(rings), in_tip + np.arange(rings), watts, count) + diags(behind)
     inside = coo_matrix(tip.matrix), coo_matrix(body.matrix)
-    for part, shift in zip(inside, (0, own), strict=True):
+    for part, shift in zip(inside, (0, in_tip), strict=True):
         matrix = matrix + coo_matrix((part.data, (part.row + shift, part.col + shift)), shape=(count, count))
-    state = np.concatenate((np.full(own, DIFFERENCE), np.zeros(count - own)))
-    every, told, drive = [0.0], [0.0], behind * DIFFERENCE
+    state = np.concatenate((np.full(in_tip, DIFFERENCE), np.zeros(count - in_tip)))
+    every, drops, drive = [0.0], [0.0], behind * DIFFERENCE
     for step, times in _STEPS:
         solve = splu((diags(capacity) + _GAMMA * step * matrix).tocsc()).solve
         for _ in range(times):
@@ -102,13 +102,13 @@ def drops(tip: Disc, body: Disc, sensed: int, conductances: np.ndarray) -> np.nd
             second = solve(drive - matrix @ (state + (1 - _GAMMA) * step * first))
             state = state + step * ((1 - _GAMMA) * first + _GAMMA * second)
             every.append(every[-1] + step)
-            told.append(_drop(tip, sensed, state[:own]))
-    return np.interp(TIMES, every, told)
+            drops.append(_drop(tip, sensed, state[:in_tip]))
+    return np.interp(TIMES, every, drops)
 
 
 def _drop(tip: Disc, sensed: int, state: np.ndarray) -> float:
     mean = state.reshape(-1, len(tip.face)) @ tip.face / tip.face.sum()
-    own = np.flatnonzero(tip.layer == sensed)
+    layer = np.flatnonzero(tip.layer == sensed)
     between = tip.conducts / tip.thick
 
     def at(cell: int) -> float:
@@ -116,7 +116,7 @@ def _drop(tip: Disc, sensed: int, state: np.ndarray) -> float:
         a, b = between[cell], between[cell + 1]
         return float((a * mean[cell] + b * mean[cell + 1]) / (a + b))
 
-    return at(int(own[-1])) - at(int(own[0]) - 1)
+    return at(int(layer[-1])) - at(int(layer[0]) - 1)
 
 
 def compared(name: str, radius: float, force: float) -> dict[str, object]:
@@ -159,9 +159,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("materials", nargs="*", default=["steel", "copper", "glass", "plastic", "wood"])
     parser.add_argument("--json", action="store_true", help="print one JSON object")
-    asked = parser.parse_args(arguments)
-    rows = [compared(name, radius, force) for name in asked.materials for radius, force in CASES]
-    if asked.json:
+    options = parser.parse_args(arguments)
+    rows = [compared(name, radius, force) for name in options.materials for radius, force in CASES]
+    if options.json:
         json.dump(rows, sys.stdout, indent=1)
         return 0
     print(

@@ -107,18 +107,18 @@ def _lines(case: Case, refine: float) -> tuple[np.ndarray, ...]:
     x = toward(0.0, HALF, cells(9), last)
     ends = 0.0 if case.reach[0] > -HALF else None
     y = both(-HALF, HALF, 8) if ends is None else joined(both(-HALF, ends, 5), both(ends, HALF, 5))
-    own_x = joined(x, toward(0.02, HALF, cells(6), last)[::-1])
+    x_lines = joined(x, toward(0.02, HALF, cells(6), last)[::-1])
     beyond = toward(case.reach[1], HALF, cells(6), last)[::-1]
     if ends is None:
-        own_y = joined(toward(case.reach[0], -HALF, cells(6), last), y, beyond)
+        y_lines = joined(toward(case.reach[0], -HALF, cells(6), last), y, beyond)
     else:
-        own_y = joined(y[y >= ends - 1e-12], beyond)
-    return x, y, own_x, own_y
+        y_lines = joined(y[y >= ends - 1e-12], beyond)
+    return x, y, x_lines, y_lines
 
 
 def solved(case: Case, refine: float) -> Faces:
     """By finite elements on one mesh."""
-    x, y, own_x, own_y = _lines(case, refine)
+    x, y, x_lines, y_lines = _lines(case, refine)
     layers = STACK.layers[::-1]
     heights = np.concatenate(([0.0], np.cumsum([layer.thickness for layer in layers])))
     count = max(round(3 * refine), 2)
@@ -135,8 +135,8 @@ def solved(case: Case, refine: float) -> Faces:
     body = material(case.material)
     depth = 0.01
     lower = Block(
-        own_x,
-        own_y,
+        x_lines,
+        y_lines,
         toward(-depth, 0.0, max(round(6 * refine), 3), 0.05e-3),
         [-depth, 0.0],
         [body.conductivity],

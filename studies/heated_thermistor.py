@@ -182,9 +182,9 @@ def show(name: str, fit: StackFit, found: dict[str, Any]) -> None:
         )
     for half in ("fitted", "others"):
         for label, row in found[half].items():
-            apart = f", halves apart {row['drawn_apart']:.3f}" if "drawn_apart" in row else ""
+            halves = f", halves apart {row['drawn_apart']:.3f}" if "drawn_apart" in row else ""
             print(
-                f"  {half} {label}: mean {row['mean_rms']:.3f} K (drawn {row['drawn']:.3f}{apart}), touches "
+                f"  {half} {label}: mean {row['mean_rms']:.3f} K (drawn {row['drawn']:.3f}{halves}), touches "
                 f"{row['touch_rms']:.3f} K, {row['ratio']:.2f} of their scatter",
                 flush=True,
             )

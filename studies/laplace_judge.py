@@ -138,7 +138,7 @@ def axis(length: float, biot: float, strips: list[np.ndarray], accuracy: Accurac
 
 
 @njit(cache=True, error_model="numpy")
-def _box_lines(s, conductivity, diffusivity, depth, film, x_squared, y_squared, own, across):
+def _box_lines(s, conductivity, diffusivity, depth, film, x_squared, y_squared, lines, across):
     """Fills (2, M, M) real and imaginary m2 K/W: a plate's impedance of each eigenfunction at one face and to the
     other, from a plate's even and odd halves."""
     for m in range(len(x_squared)):
@@ -149,12 +149,12 @@ def _box_lines(s, conductivity, diffusivity, depth, film, x_squared, y_squared, 
             even = 1 / (film + conductivity * g * slope)
             odd = 1 / (film + conductivity * g / slope)
             one, other = (even + odd) / 2, (even - odd) / 2
-            own[0, m, n], own[1, m, n] = one.real, one.imag
+            lines[0, m, n], lines[1, m, n] = one.real, one.imag
             across[0, m, n], across[1, m, n] = other.real, other.imag
 
 
 @njit(cache=True, error_model="numpy")
-def _element_lines(s, thickness, conductivity, capacity, x_squared, y_squared, own):
+def _element_lines(s, thickness, conductivity, capacity, x_squared, y_squared, lines):
     """Fills (2, M, M) real and imaginary m2 K/W: layers from a thermostat to the face."""
     for m in range(len(x_squared)):
         for n in range(len(y_squared)):
@@ -165,7 +165,7 @@ def _element_lines(s, thickness, conductivity, capacity, x_squared, y_squared, o
                 slope = (1 - decay) / (1 + decay)
                 step = slope / (conductivity[i] * g)
                 line = (line + step) / (1 + line * conductivity[i] * g * slope)
-            own[0, m, n], own[1, m, n] = line.real, line.imag
+            lines[0, m, n], lines[1, m, n] = line.real, line.imag
 
 
 def _between(lines: np.ndarray, x: list[np.ndarray], y: list[np.ndarray]) -> np.ndarray:
@@ -230,7 +230,7 @@ class Contour:
     def drops(self, s: complex) -> np.ndarray:
         """(F,) K s per K of first difference."""
         scene, touches = self.scene, self.scene.touches
-        made, (own, across) = scene.material, self.room
+        made, (alone, across) = scene.material, self.room
         first, second = self.box
         capacity = made.volumetric_heat_capacity
         _box_lines(
@@ -241,13 +241,13 @@ class Contour:
             scene.film,
             first.squared,
             second.squared,
-            own,
+            alone,
             across,
         )
         blocks = [
             [
                 _between(
-                    own if one.face == other.face else across,
+                    alone if one.face == other.face else across,
                     [first.means[f], first.means[o]],
                     [second.means[f], second.means[o]],
                 )
@@ -259,12 +259,12 @@ class Contour:
         # under the touches no air: what the film takes there is put back
         whole = np.linalg.solve(np.eye(len(areas)) - whole * (scene.film * areas), whole)
         start = 0
-        for touch, (x, y), own_areas in zip(touches, self.elements, self.areas, strict=True):
+        for touch, (x, y), cell_areas in zip(touches, self.elements, self.areas, strict=True):
             lines = np.empty((2, len(x.squared), len(y.squared)))
             _element_lines(s, *self.layers, x.squared, y.squared, lines)
-            end = start + len(own_areas)
+            end = start + len(cell_areas)
             whole[start:end, start:end] += _between(lines, x.means * 2, y.means * 2)
-            whole[start:end, start:end] += np.diag(1 / (touch.conductance * own_areas))
+            whole[start:end, start:end] += np.diag(1 / (touch.conductance * cell_areas))
             start = end
         flow = np.linalg.solve(whole, np.full(len(areas), 1 / s))
         ends = np.cumsum([0, *map(len, self.areas)])
@@ -321,8 +321,8 @@ def networks(scene: Scene, level: Resolution | Detail, times: np.ndarray = TIMES
         behind = prints[::-1] if len(prints) == 2 else [None]
         known = made.conductivity, made.volumetric_heat_capacity
         spots = [
-            Spot(*known, (sides[0], sides[1]), depth, own, other)
-            for own, other in zip(prints, behind, strict=True)
+            Spot(*known, (sides[0], sides[1]), depth, near, other)
+            for near, other in zip(prints, behind, strict=True)
         ]
         if level == FIXED_LEVEL:  # as the environments do
             spots = [spot.alike(scene.stack.width) for spot in spots]

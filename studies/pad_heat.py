@@ -101,9 +101,9 @@ def drops(name: str, padded: bool, conductance: float = 1e4, refine: float = 1.0
         for basis in (lower, upper)
     )
     even: Any = _weighted.assemble(top, value=DiscreteField(np.full(np.shape(top.dx), conductance)))
-    mine, other = _ordered(lower, top), _ordered(upper, bottom)
-    both = np.concatenate([mine, lower.N + other])
-    link = even[mine][:, mine]
+    ordered, other = _ordered(lower, top), _ordered(upper, bottom)
+    both = np.concatenate([ordered, lower.N + other])
+    link = even[ordered][:, ordered]
     join = sparse.bmat([[link, -link], [-link, link]]).tocoo()
     size = lower.N + upper.N
     joined = sparse.csr_matrix((join.data, (both[join.row], both[join.col])), (size, size))
@@ -115,7 +115,7 @@ def drops(name: str, padded: bool, conductance: float = 1e4, refine: float = 1.0
     a, b = whole[free][:, free].tocsc(), heat[free][:, free].tocsc()
     load = -whole[free][:, plate] @ u[plate]
     face = [_mean(lower, height) for height in heights[1:3]]
-    gamma, told, t = 1 - np.sqrt(0.5), [], 0.0
+    gamma, drops, t = 1 - np.sqrt(0.5), [], 0.0
     for end, step in zip(TIMES, (0.01, 0.02, 0.05, 0.1, 0.1), strict=True):
         solver = splu(b + gamma * step * a)
         for _ in range(round((end - t) / step)):
@@ -123,8 +123,8 @@ def drops(name: str, padded: bool, conductance: float = 1e4, refine: float = 1.0
             second = solver.solve(load - a @ (u[free] + (1 - gamma) * step * first))
             u[free] += step * ((1 - gamma) * first + gamma * second)
         t = end
-        told.append(float((face[0] - face[1]) @ u[: lower.N]))
-    return np.array(told)
+        drops.append(float((face[0] - face[1]) @ u[: lower.N]))
+    return np.array(drops)
 
 
 def _ordered(basis: Basis, facets: FacetBasis) -> np.ndarray:
@@ -150,13 +150,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description="What the pad around the sensor does to the temperature drop."
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
-    asked = parser.parse_args(arguments)
-    told = {name: [drops(name, padded).tolist() for padded in (False, True)] for name in MATERIALS}
-    if asked.json:
-        json.dump(told, sys.stdout, indent=1)
+    options = parser.parse_args(arguments)
+    curves = {name: [drops(name, padded).tolist() for padded in (False, True)] for name in MATERIALS}
+    if options.json:
+        json.dump(curves, sys.stdout, indent=1)
         return 0
     print("drop without a pad, and what the pad changes, K, at " + ", ".join(f"{t:g}" for t in TIMES) + " s")
-    for name, (alone, padded) in told.items():
+    for name, (alone, padded) in curves.items():
         changes = (f"{a:6.3f} {b - a:+.3f}" for a, b in zip(alone, padded, strict=True))
         print(f"{name:16}" + "   ".join(changes))
     return 0

@@ -34,7 +34,7 @@ BAR = (0.010, 0.072, 0.024)
 """m, thickness, length and height; touched in the middle of its length and of its height, then HALF * 2 along it."""
 WARM, COOL = 36.0, 24.0
 """°C of the thermostat and of the bar at first."""
-WARMING, APART, AGAIN = 5.0, 2.0, 3.0
+WARMING, RELEASED, AGAIN = 5.0, 2.0, 3.0
 STEP = 0.02
 """s, of samples."""
 FORCE = 10.0
@@ -63,7 +63,7 @@ def by_networks(name: str, tolerance: float, anywhere: bool = True) -> np.ndarra
         return np.array([heat.advance(force, place).drop[0, -1, 0] for _ in range(round(seconds / STEP))])
 
     pressed(WARMING, first)
-    pressed(APART, None)
+    pressed(RELEASED, None)
     return pressed(AGAIN, beside)
 
 
@@ -80,9 +80,9 @@ def by_elements(name: str, refine: float) -> tuple[np.ndarray, int]:
     half_face = toward(0.0, HALF, cells(6), last)
     face_y = joined(-half_face[::-1], half_face)
     x = half_face
-    own_x = joined(x, toward(BAR[2] / 2, HALF, cells(4), last)[::-1])
+    x_lines = joined(x, toward(BAR[2] / 2, HALF, cells(4), last)[::-1])
     far = BAR[1] / 2
-    own_y = joined(
+    y_lines = joined(
         toward(-far, -HALF, cells(5), last),
         face_y,
         face_y + 2 * HALF,
@@ -103,8 +103,8 @@ def by_elements(name: str, refine: float) -> tuple[np.ndarray, int]:
     )
     body = material(name)
     lower = Block(
-        own_x,
-        own_y,
+        x_lines,
+        y_lines,
         toward(-BAR[0], 0.0, cells(6), 0.05e-3),
         [-BAR[0], 0.0],
         [body.conductivity],
@@ -143,7 +143,7 @@ def by_elements(name: str, refine: float) -> tuple[np.ndarray, int]:
         mean = np.asarray(weighted.assemble(level, value=value).sum(axis=0)).ravel()
         drop[:offset] += sign * mean / mean.sum()
     read = []
-    for seconds, stiffness in ((WARMING, touched(0.0)), (APART, plain), (AGAIN, touched(2 * HALF))):
+    for seconds, stiffness in ((WARMING, touched(0.0)), (RELEASED, plain), (AGAIN, touched(2 * HALF))):
         load = -(stiffness @ fixed)[kept]
         inner = stiffness[kept][:, kept].tocsc()
         now, read = 0.0, []

@@ -135,12 +135,12 @@ def element(half_y: np.ndarray, half_z: np.ndarray, refine: float) -> Grid:
     pieces, k, c, at = [np.zeros(1)], [], [], 0.0
     for number, layer in enumerate(STACK.layers[::-1]):
         count = round(4 * refine)
-        own = (
+        edges = (
             lines(0.0, layer.thickness, count, min(3e-5 / refine, layer.thickness / count))
             if number == 0
             else np.linspace(0.0, layer.thickness, count + 1)
         )
-        pieces.append(at + own[1:])
+        pieces.append(at + edges[1:])
         at += layer.thickness
         k += [layer.conductivity] * count
         c += [layer.volumetric_heat_capacity] * count
@@ -212,15 +212,15 @@ def by_volumes(
     # pairs of cells, their half cells' resistance K/W, and their shares of the contact's area
     pairs, resistance, shares, owner = [], [], [], []
     for number, joint in enumerate(joints):
-        tip, thing = tips[joint.fingertip], objects[joint.target]
+        tip, target = tips[joint.fingertip], objects[joint.target]
         cells = tip.grid.shape[1:]
         width = np.diff(tip.grid.edges[1])[:, None] * np.diff(tip.grid.edges[2])[None]
         inside = np.broadcast_to((tip.grid.edges[1][1:] <= joint.reach + 1e-9)[:, None], cells)
         above = np.arange(np.prod(cells)).reshape(cells)
-        end = len(thing.grid.k) - 1 if joint.last else 0
-        below = np.arange(np.prod(thing.grid.shape)).reshape(thing.grid.shape)[end, : cells[0], : cells[1]]
+        end = len(target.grid.k) - 1 if joint.last else 0
+        below = np.arange(np.prod(target.grid.shape)).reshape(target.grid.shape)[end, : cells[0], : cells[1]]
         half = [
-            np.diff(each.grid.edges[0])[at] / (2 * each.grid.k[at]) for each, at in ((tip, 0), (thing, end))
+            np.diff(each.grid.edges[0])[at] / (2 * each.grid.k[at]) for each, at in ((tip, 0), (target, end))
         ]
         area = width[inside]
         start = first[len(tips) + joint.target]
@@ -236,7 +236,7 @@ def by_volumes(
         (np.r_[ones, -ones], (np.r_[numbers, numbers], np.r_[pair[0], pair[1]])), shape=(count, total)
     )
     reached = solver.solve(jump.T.toarray())
-    felt = jump @ reached
+    compliance = jump @ reached
     drops = np.zeros((len(tips), total))
     for number, tip in enumerate(tips):
         drops[number, first[number] : first[number + 1]] = _drop(tip.grid)
@@ -250,11 +250,11 @@ def by_volumes(
         active = np.flatnonzero(each)
         if not len(active):
             return alone
-        matrix = weight * felt[np.ix_(active, active)] + np.diag(1 / each[active])
+        matrix = weight * compliance[np.ix_(active, active)] + np.diag(1 / each[active])
         return alone - weight * reached[:, active] @ np.linalg.solve(matrix, (jump @ alone)[active])
 
-    for number, own in enumerate(through, 1):
-        conducts = own[owner_of] / 4 * share
+    for number, conductances in enumerate(through, 1):
+        conducts = conductances[owner_of] / 4 * share
         each = np.zeros(count)
         on = conducts > 0
         each[on] = 1 / (1 / conducts[on] + resist[on])
@@ -418,8 +418,8 @@ def _on_can(run: Run, made_of: str, sector: float, refine: float) -> np.ndarray:
          lines(reach, HALF, round(8 * refine), reach / (30 * refine))[1:])
     )  # fmt: skip
     tip = body(element(half, face(refine), refine))
-    thing = body(can(made_of, RADIUS, LENGTH / 2, sector, half, refine))
-    return by_volumes([tip], [thing], [Joint(0, 0, True, reach)], through, refine)
+    cup = body(can(made_of, RADIUS, LENGTH / 2, sector, half, refine))
+    return by_volumes([tip], [cup], [Joint(0, 0, True, reach)], through, refine)
 
 
 def on_blocks(
@@ -441,8 +441,8 @@ def on_blocks(
     names = [name for name, _, _ in fingers]
     run = heard(_world(blocks, fingers), made_of, names, contacts, drive, seconds, tolerance)
     tip = body(element(face(refine), face(refine), refine))
-    things = [body(block(one, size, refine, 7)) for one, _, size in objects.values()]
-    return run, by_volumes([tip] * len(fingers), things, joints, run.through, refine)
+    bodies = [body(block(one, size, refine, 7)) for one, _, size in objects.values()]
+    return run, by_volumes([tip] * len(fingers), bodies, joints, run.through, refine)
 
 
 BLOCK, PLATE = (0.03, 0.05, 0.05), (0.003, 0.06, 0.06)
@@ -483,11 +483,11 @@ MATERIALS = ("aluminium", "glass", "wood")
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """error: K, the touch's largest difference from the volumes with their grid's error taken off. own: K, the largest
-    that was taken off the finer grid. largest: K, the drop's. changes: samples in which a contact came or went."""
+    """error: K, the touch's largest difference from the volumes with their grid's error taken off. grid_error: K, the
+    largest that was taken off the finer grid. largest: K, the drop's. changes: samples in which a contact came or went."""
 
     error: float
-    own: float
+    grid_error: float
     largest: float
     changes: int
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from thermograsp.cli import main
-from thermograsp.cli.shared.versions import OWN_WORK
+from thermograsp.cli.shared.versions import DEVELOPMENT
 from thermograsp.errors import MissingDependencyError
 
 ROOT = Path(__file__).parents[1]
@@ -227,7 +227,7 @@ def test_every_optional_import_is_among_the_cases() -> None:
 
 
 def test_every_extra_is_named_by_a_case() -> None:
-    extras = set(SETUP["options.extras_require"]) - OWN_WORK - NEVER_NAMED
+    extras = set(SETUP["options.extras_require"]) - DEVELOPMENT - NEVER_NAMED
     assert {case.extra for case in CASES if case.extra} == extras
     modules = set[str]().union(*(brought(extra) for extra in extras))
     assert {case.module for case in CASES if case.extra} == modules

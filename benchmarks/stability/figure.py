@@ -54,11 +54,11 @@ def _panel(axes: Axes, each: Record, presses: Record, first: bool) -> None:
     axes.set(xscale="log", yscale="log", xlim=x[[0, -1]], ylim=y[[0, -1]])
     axes.minorticks_off()
     axes.spines[["top", "right"]].set_visible(True)
-    is_own = each["scheme"].startswith("ours")
-    if is_own:
+    package_scheme = each["scheme"].startswith("ours")
+    if package_scheme:
         for spine in axes.spines.values():
             spine.set(color="#1d4f91", linewidth=1.8)
-    axes.set_title(each["title"], pad=29, color="#1d4f91" if is_own else INK)
+    axes.set_title(each["title"], pad=29, color="#1d4f91" if package_scheme else INK)
     axes.text(
         0, 1.025, each["note"], transform=axes.transAxes, size=8, color=INK, va="bottom", linespacing=1.15
     )

@@ -83,8 +83,8 @@ class WorldsHeat:
         chosen[worlds] = True
         _write(self.state, self._fixed.reset(self.state, chosen))
         self._held[worlds] = False
-        for own in self.reading[1:]:
-            own[worlds] = 0
+        for field in self.reading[1:]:
+            field[worlds] = 0
         self.reading.touching[worlds] = -1
         self.reading.object_temperature[worlds] = self._fixed.ambient
 

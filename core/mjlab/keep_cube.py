@@ -20,7 +20,7 @@ from mjlab.managers.reward_manager import RewardTermCfg
 from mjlab.managers.scene_entity_config import SceneEntityCfg
 from mjlab.tasks.manipulation.config.yam.env_cfgs import yam_lift_cube_env_cfg
 
-from .sort_cubes import FINGERTIPS, MATERIALS, SENSOR, asked_material
+from .sort_cubes import FINGERTIPS, MATERIALS, SENSOR, requested_material
 from .terms import voltage
 
 COMMAND = "keep"
@@ -43,24 +43,24 @@ class KeepCommand(CommandTerm):
         self._pads, _ = self._robot.find_bodies([name.split("/")[1] for name in FINGERTIPS.values()])
         self._fingers, _ = self._robot.find_joints((_FINGER, "right_finger"), preserve_order=True)
         self._hand, _ = self._robot.find_sites("grasp_site")
-        self.asked = torch.zeros(self.num_envs, dtype=torch.long, device=self.device)
+        self.requested = torch.zeros(self.num_envs, dtype=torch.long, device=self.device)
 
     @property
     def command(self) -> torch.Tensor:
-        """(worlds,) the same as `asked`."""
-        return self.asked
+        """(worlds,) the same as `requested`."""
+        return self.requested
 
     @property
     def right(self) -> torch.Tensor:
         """(worlds,) whether the hand has the cube if it is of that material, and else has not."""
         hand = self._robot.data.site_pos_w[:, self._hand[0]]
         held = (self._cube.data.root_link_pos_w - hand).norm(dim=-1) < _LOST
-        return held == (self._touch.material[:, 0] == self.asked)
+        return held == (self._touch.material[:, 0] == self.requested)
 
     def _resample_command(self, env_ids: torch.Tensor) -> None:
         count, several = len(env_ids), len(MATERIALS)
         self._touch.set_material("cube/cube", torch.randint(several, (count,), device=self.device), env_ids)
-        self.asked[env_ids] = torch.randint(several, (count,), device=self.device)
+        self.requested[env_ids] = torch.randint(several, (count,), device=self.device)
         robot = self._robot
         joints = robot.data.default_joint_pos[env_ids].clone()
         joints[:, self._fingers] = torch.tensor((_TOUCHING, -_TOUCHING), device=self.device)
@@ -137,7 +137,7 @@ def keep_cube_cfg(play: bool = False) -> Any:
         group.terms = {name: group.terms[name] for name in ("joint_pos", "ee_to_cube")}
         group.terms["joint_pos"].params["asset_cfg"] = SceneEntityCfg("robot", joint_names=(_FINGER,))
         group.terms["asked"] = ObservationTermCfg(
-            func=asked_material, params=command | {"materials": len(MATERIALS)}
+            func=requested_material, params=command | {"materials": len(MATERIALS)}
         )
         group.terms["voltage"] = ObservationTermCfg(func=voltage, params={"sensor_name": SENSOR})
     cfg.observations["actor"].enable_corruption = not play

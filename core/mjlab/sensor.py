@@ -95,7 +95,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
             raise unknown_name("signal chain", cfg.chain, SIGNAL_CHAINS)
         self.cfg = cfg
         self._chain = SIGNAL_CHAINS[cfg.chain] if isinstance(cfg.chain, str) else cfg.chain
-        self._materials = {name: _several(name, told) for name, told in cfg.objects.items()}
+        self._materials = {name: _several(name, names) for name, names in cfg.objects.items()}
         if not self._materials:
             raise InvalidValueError(
                 'objects: none given; say what may be touched, such as {"cube/cube": "wood"}'
@@ -200,8 +200,8 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
         data, at, record = self._mj_data, self._count, self._record
         for g, sensor in enumerate(self._sensors):
             sensor.update(dt)
-            told = sensor.data
-            record.force[:, at, :, g, 0], record.place[:, at, :, g, 0] = told.force, told.pos
+            contact = sensor.data
+            record.force[:, at, :, g, 0], record.place[:, at, :, g, 0] = contact.force, contact.pos
         bodies_, geoms = self._fixed.bodies, self._fixed.geoms
         record.tip_position[:, at], record.tip_turn[:, at] = data.xpos[:, bodies_], data.xmat[:, bodies_]
         record.geom_position[:, at] = data.geom_xpos[:, geoms]
@@ -254,19 +254,19 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
 
     def _bearer(self, model: mujoco.MjModel, label: str) -> tuple[str, str]:
         """How a contact sensor names a fingertip: by its geom, or by the body that carries it."""
-        told = self.cfg.fingertips[label]
-        name = told.name if isinstance(told, Fingertip) else told
+        fingertip = self.cfg.fingertips[label]
+        name = fingertip.name if isinstance(fingertip, Fingertip) else fingertip
         kind, number = find(model, name, ("geom", "site", "body"), f"fingertip {label!r}")
         return ("geom", name) if kind == "geom" else ("body", _body_name(model, kind, number))
 
     def _shapes(self, model: mujoco.MjModel) -> tuple[BodyShape, ...]:
         """The objects, of their first materials; those that the MJCF itself names are left out."""
-        told = {name: several[0] for name, several in self._materials.items()}
-        return tuple(shape for shape in bodies(model, told, self.cfg.ambient) if shape.name in told)
+        first = {name: several[0] for name, several in self._materials.items()}
+        return tuple(shape for shape in bodies(model, first, self.cfg.ambient) if shape.name in first)
 
 
-def _several(name: str, told: str | Material | Sequence[str | Material]) -> tuple[Material, ...]:
-    found = (told,) if isinstance(told, str | Material) else tuple(told)
+def _several(name: str, names: str | Material | Sequence[str | Material]) -> tuple[Material, ...]:
+    found = (names,) if isinstance(names, str | Material) else tuple(names)
     if not found:
         raise InvalidValueError(f"object {name!r}: give a material, or several, got none")
     return tuple(map(named_material, found))

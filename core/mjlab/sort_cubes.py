@@ -38,14 +38,14 @@ class SortCommand(MultiCubeLiftingCommand):
     def __init__(self, cfg: SortCommandCfg, env: Any) -> None:
         super().__init__(cfg, env)
         self._touch = env.scene[cfg.sensor_name]
-        self.asked = torch.zeros_like(self.target_selection)
+        self.requested = torch.zeros_like(self.target_selection)
 
     def _resample_command(self, env_ids: torch.Tensor) -> None:
         super()._resample_command(env_ids)
         order = torch.rand(len(env_ids), len(self.cubes), device=self.device).argsort(-1)
         for number, name in enumerate(self.cfg.entity_names):
             self._touch.set_material(f"{name}/cube", order[:, number], env_ids)
-        self.asked[env_ids] = order.gather(-1, self.target_selection[env_ids, None])[:, 0]
+        self.requested[env_ids] = order.gather(-1, self.target_selection[env_ids, None])[:, 0]
 
 
 @dataclass(kw_only=True)
@@ -58,13 +58,13 @@ class SortCommandCfg(MultiCubeLiftingCommandCfg):
         return SortCommand(self, env)
 
 
-def asked_material(env: Any, command_name: str, materials: int) -> torch.Tensor:
+def requested_material(env: Any, command_name: str, materials: int) -> torch.Tensor:
     """(worlds, materials) 1 for the one that a SortCommand asks for, 0 for the others, for an ObservationTermCfg."""
-    asked = env.command_manager.get_term(command_name).asked
-    return torch.nn.functional.one_hot(asked, materials).float()
+    requested = env.command_manager.get_term(command_name).requested
+    return torch.nn.functional.one_hot(requested, materials).float()
 
 
-def asked_cube(env: Any, command_name: str) -> torch.Tensor:
+def requested_cube(env: Any, command_name: str) -> torch.Tensor:
     """(worlds, cubes) 1 for the cube to lift, which only a critic may know."""
     command = env.command_manager.get_term(command_name)
     return torch.nn.functional.one_hot(command.target_selection, len(command.cubes)).float()
@@ -99,11 +99,11 @@ def sort_cubes_cfg(play: bool = False) -> Any:
             func=mdp.target_position, params=hand | {"command_name": COMMAND}
         )
         group.terms["asked"] = ObservationTermCfg(
-            func=asked_material, params={"command_name": COMMAND, "materials": len(MATERIALS)}
+            func=requested_material, params={"command_name": COMMAND, "materials": len(MATERIALS)}
         )
         group.terms["voltage"] = ObservationTermCfg(func=voltage, params={"sensor_name": SENSOR})
     cfg.observations["critic"].terms["cube"] = ObservationTermCfg(
-        func=asked_cube, params={"command_name": COMMAND}
+        func=requested_cube, params={"command_name": COMMAND}
     )
     return cfg
 

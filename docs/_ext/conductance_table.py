@@ -38,15 +38,17 @@ def _row(name: str) -> str:
     plain = joint(LAPPED_ALUMINA, face)
     spots = float(covered_share(plain, 1.0)) / area  # per N
     known, full = _range(plain) / spots, 1 / spots
-    told = [_told(plain, force / area) for force in FORCES]
+    conductances = [_conductance(plain, force / area) for force in FORCES]
     beyond = full < FORCES[-1]
-    capped = _told(joint(LAPPED_ALUMINA, face, full_contact=True), 10 / area) if beyond else ""
-    crowned = _told(joint(LAPPED_ALUMINA, face, flatness=FLATNESS), 10 / area)
+    capped = _conductance(joint(LAPPED_ALUMINA, face, full_contact=True), 10 / area) if beyond else ""
+    crowned = _conductance(joint(LAPPED_ALUMINA, face, flatness=FLATNESS), 10 / area)
     worn = joint(Surface.of(SKIN.made_of), face, full_contact=True)
     through = 1 / (SKIN.resistance + 1 / float(contact_conductance(worn, 10 / area)))
     ends = [_newton(known) if known < FORCES[-1] else "", _newton(full) if beyond else ""]
     return (
-        "| " + " | ".join([name.replace("_", " "), *told, *ends, capped, crowned, _digits(through)]) + " |\n"
+        "| "
+        + " | ".join([name.replace("_", " "), *conductances, *ends, capped, crowned, _digits(through)])
+        + " |\n"
     )
 
 
@@ -55,7 +57,7 @@ def _range(pair: Joint) -> float:
     return _PLASTIC_MOST ** (1 - pair.elastic_share) * _ELASTIC_MOST**pair.elastic_share
 
 
-def _told(pair: Joint, pressure: float) -> str:
+def _conductance(pair: Joint, pressure: float) -> str:
     """W/(m2 K)."""
     return _digits(float(contact_conductance(pair, pressure)))
 

@@ -84,6 +84,6 @@ def _prepared(goal: Goal, config: dict[str, Any]) -> dict[str, Any]:
         raise InvalidValueError(
             f"plant {plant!r}: Sort-v0 needs to know which object is right, and a lateral axis; give 'simulated'"
         )
-    asked = 1 if goal == "hotter" else len(SimulationConfig(material=config.get("material")).choices)
-    observer = partial(SortObserver, goals=asked)
+    goals = 1 if goal == "hotter" else len(SimulationConfig(material=config.get("material")).choices)
+    observer = partial(SortObserver, goals=goals)
     return {**config, "plant": "simulated-pair", "goal": goal, "observer": observer}

@@ -69,12 +69,12 @@ class Observer:
         for (_, part, shape), value in zip(_PARTS[1:], arrays, strict=True):
             values[:, part].reshape(rows, *shape)[:] = value
         # Rounding to float32 keeps the bounds: those of the space are rounded alike.
-        told = np.minimum(np.maximum(values, _LOW), _HIGH).astype(np.float32)
+        clipped = np.minimum(np.maximum(values, _LOW), _HIGH).astype(np.float32)
         if not seen.all():
             kept = ~seen
-            history[kept], told[kept] = self.history[kept], self.last[0][kept]
-        self.history, self.last = history, (told.copy(), *self.last[1:])
-        return {name: told[:, part].reshape(rows, *shape) for name, part, shape in _PARTS}
+            history[kept], clipped[kept] = self.history[kept], self.last[0][kept]
+        self.history, self.last = history, (clipped.copy(), *self.last[1:])
+        return {name: clipped[:, part].reshape(rows, *shape) for name, part, shape in _PARTS}
 
 
 _SHAPES = {"gripper": (4,), "force": (2, 3), "voltage": (2, HISTORY), "thermostat": (2,)}

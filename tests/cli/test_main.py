@@ -22,7 +22,7 @@ import thermograsp
 from thermograsp import cli
 from thermograsp.cli import main
 from thermograsp.cli.shared import Output, described
-from thermograsp.cli.shared.versions import OWN_WORK, versions
+from thermograsp.cli.shared.versions import DEVELOPMENT, versions
 from thermograsp.errors import ThermograspError
 
 
@@ -62,7 +62,7 @@ def test_versions_of_what_it_runs_on(argv: list[str], capsys: pytest.CaptureFixt
     )
     needed = {extra: names(text) for extra, text in setup["options.extras_require"].items()}
     assert {extra: set(found) for extra, found in versions["extras"].items()} == {
-        extra: found for extra, found in needed.items() if extra not in OWN_WORK
+        extra: found for extra, found in needed.items() if extra not in DEVELOPMENT
     }
 
 

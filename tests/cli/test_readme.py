@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from thermograsp.cli import COMMANDS, main
-from thermograsp.cli.shared.versions import OWN_WORK
+from thermograsp.cli.shared.versions import DEVELOPMENT
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -41,7 +41,7 @@ def test_extras_are_those_of_setup_cfg() -> None:
     parser = configparser.ConfigParser()
     parser.read(ROOT / "setup.cfg", encoding="utf-8")
     named = set(re.findall(r"pip install '\.\[(\w+)\]'", README))
-    assert named == set(parser["options.extras_require"]) - OWN_WORK
+    assert named == set(parser["options.extras_require"]) - DEVELOPMENT
 
 
 def test_the_picture_is_small() -> None:

@@ -36,8 +36,8 @@ def test_each_reset_draws_the_material_and_what_is_asked_for(env: Any) -> None:
     drawn = set()
     for _ in range(4):
         observation, _ = env.reset()
-        drawn |= set(zip(command.asked.tolist(), touch.material[:, 0].tolist(), strict=True))
-        goal = torch.nn.functional.one_hot(command.asked, 2).float()
+        drawn |= set(zip(command.requested.tolist(), touch.material[:, 0].tolist(), strict=True))
+        goal = torch.nn.functional.one_hot(command.requested, 2).float()
         assert torch.equal(observation["actor"][:, 4:6], goal)
         assert torch.equal(observation["actor"][:, 6:], touch.data.voltage.flatten(1))
     assert len(drawn) == 4
@@ -46,7 +46,7 @@ def test_each_reset_draws_the_material_and_what_is_asked_for(env: Any) -> None:
 def test_it_holds_the_cube_and_feels_it_whatever_it_is_told_first(env: Any) -> None:
     env.reset()
     touch = env.scene["touch"]
-    matches = touch.material[:, 0] == env.command_manager.get_term("keep").asked
+    matches = touch.material[:, 0] == env.command_manager.get_term("keep").requested
     action = torch.ones(WORLDS, 1)
     action[::2] = -1.0
     _, reward, *_ = env.step(action)
@@ -61,7 +61,7 @@ def test_it_holds_the_cube_and_feels_it_whatever_it_is_told_first(env: Any) -> N
 def test_then_it_keeps_the_cube_or_lets_it_go_and_is_paid_for_what_was_asked(env: Any) -> None:
     env.reset()
     command, touch = env.command_manager.get_term("keep"), env.scene["touch"]
-    matches = touch.material[:, 0] == command.asked
+    matches = touch.material[:, 0] == command.requested
     action = torch.ones(WORLDS, 1)
     env.step(action)
     action[::2] = -1.0

@@ -243,8 +243,8 @@ def test_an_object_that_is_grasped_another_way_keeps_its_mean_temperature() -> N
     _, wanted = fixed.advance(even, pressed(np.pi / 2, 10.0))
     heat.advance(pressed(np.pi / 2, 10.0), glass, 0.0)
     assert heat.state.material.item() == 1
-    for own, right in zip(heat.reading, wanted, strict=True):
-        assert torch.equal(own, right)
+    for field, right in zip(heat.reading, wanted, strict=True):
+        assert torch.equal(field, right)
     heat.reset(slice(None))
     fresh = WorldsHeat(model, fixed, shapes, ways=ways, like=like)
     for one in (heat, fresh):
@@ -348,6 +348,6 @@ def test_what_cannot_be_is_refused(held: Held) -> None:
     ],
 )
 def test_names_are_checked_in_the_scene(held: Held, words: dict[str, Any], match: str) -> None:
-    told = {"fingertips": FINGERTIPS, "objects": {"cube/cube": "wood"}} | words
+    keywords = {"fingertips": FINGERTIPS, "objects": {"cube/cube": "wood"}} | words
     with pytest.raises((InvalidValueError, UnknownNameError), match=match):
-        ThermalTouchCfg("touch", **told).build().edit_spec(held.env.scene.spec, {})
+        ThermalTouchCfg("touch", **keywords).build().edit_spec(held.env.scene.spec, {})

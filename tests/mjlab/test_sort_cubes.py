@@ -46,10 +46,10 @@ def test_each_reset_draws_which_cube_is_of_what_and_what_is_asked_for(env: Any) 
         observation, _ = env.reset()
         assert (touch.material.sort(-1).values == torch.arange(2)).all()  # one of each
         rows = torch.arange(WORLDS)
-        assert torch.equal(command.asked, touch.material[rows, command.target_selection])
-        drawn |= set(zip(command.asked.tolist(), command.target_selection.tolist(), strict=True))
+        assert torch.equal(command.requested, touch.material[rows, command.target_selection])
+        drawn |= set(zip(command.requested.tolist(), command.target_selection.tolist(), strict=True))
     assert len(drawn) == 4
-    one_hot = torch.nn.functional.one_hot(command.asked, 2).float()
+    one_hot = torch.nn.functional.one_hot(command.requested, 2).float()
     assert torch.equal(observation["actor"][:, -34:-32], one_hot)
     cube = torch.nn.functional.one_hot(command.target_selection, 2).float()
     assert torch.equal(observation["critic"][:, -2:], cube)

@@ -50,6 +50,6 @@ def test_an_evenly_touched_element_ends_where_a_chain_of_resistances_does(study:
 def test_a_scene_keeps_what_the_docs_tell(study: ModuleType, scene: str, made_of: str, bound: float) -> None:
     """K."""
     found = study.judged(scene, made_of)
-    assert found.own < 0.1
+    assert found.grid_error < 0.1
     assert found.error < bound
     assert found.changes >= 1

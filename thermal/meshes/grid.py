@@ -21,7 +21,7 @@ from thermograsp.errors import MeshError
 
 from ..numerics import graded_cells
 from .cut import Edges, cut_mesh, in_planes
-from .nesting import own_volumes
+from .nesting import net_volumes
 from .place import ALONG, PlacedPatch
 from .solid import Solid, SurfacePatch
 
@@ -228,7 +228,7 @@ def mesh_grid(solid: Solid, frame: np.ndarray, axes: tuple[GridAxis, GridAxis, G
         neighbours[b, 2 * axis], links[b, 2 * axis] = a, link
     held = [share[solid_cells] for share in shares]
     if solid.hosts is not None:  # corners that were moved into planes take up to 1e-5 of the volume along
-        whole = own_volumes([np.array(part.volume) for part in solid.parts], solid.hosts)
+        whole = net_volumes([np.array(part.volume) for part in solid.parts], solid.hosts)
         held = [s * max(float(v), 0.0) / s.sum() if s.any() else s for s, v in zip(held, whole, strict=True)]
     capacity = np.sum([c * s for c, s in zip(capacities, held, strict=True)], axis=0)
     grid = MeshGrid(frame, axes, index, capacity, neighbours, links, along[solid_cells], filled[solid_cells])
@@ -286,7 +286,7 @@ def _visible(
     """Each part's volume in the cells less what later parts take of it, by the part that each lies in. Without that,
     parts that overlap anywhere are taken as overlapping as much as they can in a cell, others as side by side."""
     if within is not None:
-        return [np.maximum(volume, 0.0) for volume in own_volumes(volumes, within)]
+        return [np.maximum(volume, 0.0) for volume in net_volumes(volumes, within)]
     shares = []
     for n, volume in enumerate(volumes):
         left = volume.copy()

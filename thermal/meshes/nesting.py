@@ -48,7 +48,7 @@ def hosts(within: np.ndarray) -> tuple[int | None, ...] | None:
     return tuple(found)
 
 
-def own_volumes(volumes: Sequence[np.ndarray], within: Sequence[int | None]) -> list[np.ndarray]:
+def net_volumes(volumes: Sequence[np.ndarray], within: Sequence[int | None]) -> list[np.ndarray]:
     """What each surface encloses less what lies in it. volumes: of each, numbers or arrays of one shape. within: hosts
     of these."""
     remaining = [np.array(volume, float) for volume in volumes]

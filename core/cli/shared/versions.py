@@ -13,7 +13,7 @@ import thermograsp
 from thermograsp.cli.shared.output import Output
 
 _NEED = re.compile(r"([\w.-]+)(\[.*?\])?.*?(?:; extra == [\"']([\w-]+)[\"'])?$")
-OWN_WORK = {"test", "grippers", "docs", "release", "dev"}
+DEVELOPMENT = {"test", "grippers", "docs", "release", "dev"}
 """Extras for work on the package itself."""
 
 
@@ -38,7 +38,7 @@ def versions() -> dict[str, Any]:
     packages: dict[str, str | None] = {}
     extras: dict[str, dict[str, str | None]] = {}
     for name, extra in _needs():
-        if extra not in OWN_WORK:
+        if extra not in DEVELOPMENT:
             (extras.setdefault(extra, {}) if extra else packages)[name] = _installed(name)
     return {
         "thermograsp": thermograsp.__version__,

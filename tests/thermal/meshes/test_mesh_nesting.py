@@ -6,7 +6,7 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.errors import MeshError
-from thermograsp.thermal.meshes.nesting import hosts, own_volumes, shares_within
+from thermograsp.thermal.meshes.nesting import hosts, net_volumes, shares_within
 from thermograsp.thermal.meshes.network import body_network
 from thermograsp.thermal.meshes.solid import Solid, SolidPart, SurfacePatch
 
@@ -49,8 +49,8 @@ def test_what_lies_in_what_is_found(turn):
 
 def test_own_volumes_sum_to_the_whole():
     within = (None, 0, 1, 0, None)
-    volumes_alone = own_volumes([np.array(v) for v in (10.0, 6.0, 2.0, 1.0, 4.0)], within)
-    assert [float(v) for v in volumes_alone] == [3.0, 4.0, 2.0, 1.0, 4.0]
+    net = net_volumes([np.array(v) for v in (10.0, 6.0, 2.0, 1.0, 4.0)], within)
+    assert [float(v) for v in net] == [3.0, 4.0, 2.0, 1.0, 4.0]
 
 
 @pytest.mark.parametrize("turned", [False, True])
