@@ -484,7 +484,8 @@ MATERIALS = ("aluminium", "glass", "wood")
 @dataclass(frozen=True, slots=True)
 class Judged:
     """error: K, the touch's largest difference from the volumes with their grid's error taken off. grid_error: K, the
-    largest that was taken off the finer grid. largest: K, the drop's. changes: samples in which a contact came or went."""
+    largest that was taken off the finer grid. largest: K, the drop's. changes: samples in which a contact came or
+    went."""
 
     error: float
     grid_error: float
