@@ -52,6 +52,9 @@ LOOKING = 0.6  # least cosine between the pad's normal and the contact's
 
 _AXES, _HALF, _WIDTH, _PAD = 3, 12, 14, 15
 """Where a pad's axes, half sides m and its sensor's width m stand behind its position m in the frame of its body."""
+_KNOWN, _FRAME = 12, 13
+"""Of a pad in the world: its middle m, normal, y and z, and behind them whether these are of this substep."""
+_SPOT = 7  # numbers of a contact under way: a place and two axes of the pad
 
 
 class ContactReader:
@@ -87,6 +90,7 @@ class ContactReader:
         self._every: list[np.ndarray] = []
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(met), 3))
+        self._frames, self._spot = np.zeros((count, _FRAME)), np.zeros(_SPOT)
         self._poses = tuple(np.zeros((many, size)) for many in (model.nbody, model.ngeom) for size in (3, 9))
         self._places: SensorPlaces | None = None
         self._sensed = np.zeros(0, np.int64)
@@ -131,6 +135,7 @@ class ContactReader:
         arrays = (
             *(self._role, self._pads, self._met, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._own_laws, self._own_curved, self._tables),
+            *(self._frames, self._spot),
         )
         self._places = None
         pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
@@ -164,7 +169,7 @@ class ContactReader:
         own = places.pairs, places.poses, places.geoms, places.turns, places.offsets
         arrays = *own, self._pads, self._met, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
-        sums = self.touches, self.beside, self.broken, self._curved, self._tables
+        sums = self.touches, self.beside, self.broken, self._curved, self._tables, self._frames, self._spot
         sizes = len(self.beside), places.size, *map(len, own[:3]), *self._pushed.shape[:2]
         return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables)))
 
@@ -208,9 +213,9 @@ def read_contacts(count, substeps, memory_at, own_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table, and own_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite."""
-    memory, own = carray(words(memory_at), TABLE), carray(words(own_at), 17)
-    tips, targets, things, pyramidal = own[12], own[13], own[14], own[15]
-    role = carray(words(own[0]), own[11])
+    memory, own = carray(words(memory_at), TABLE), carray(words(own_at), 19)
+    tips, targets, things, pyramidal = own[14], own[15], own[16], own[17]
+    role = carray(words(own[0]), own[13])
     pads = carray(floats(own[1]), (tips, _PAD))
     met = carray(words(own[2]), (things, 3))
     bend = carray(floats(own[3]), (tips, BEND))
@@ -220,7 +225,8 @@ def read_contacts(count, substeps, memory_at, own_at):
     beside = carray(floats(own[7]), tips)
     law = carray(laws(own[8]), (tips, things, 3))
     curved = carray(words(own[9]), (tips, things, 3))
-    tables = carray(floats(own[10]), (own[16], CURVED_TABLE))
+    tables = carray(floats(own[10]), (own[18], CURVED_TABLE))
+    frames, spot = carray(floats(own[11]), (tips, _FRAME)), carray(floats(own[12]), _SPOT)
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -233,7 +239,7 @@ def read_contacts(count, substeps, memory_at, own_at):
     pos, frame = numbers[:, memory[POS] :], numbers[:, memory[FRAME] :]
     geom, dim, address = whole[:, memory[GEOM] :], whole[:, memory[DIM]], whole[:, memory[EFC]]
     weight = float(substeps)
-    any_met, frames = False, pads  # frames: made once something has met
+    any_met = False
     for c in range(count):
         first, second = role[geom[c, 0]], role[geom[c, 1]]
         if first < 0 or second < 0 or address[c] < 0 or first == second:
@@ -252,16 +258,13 @@ def read_contacts(count, substeps, memory_at, own_at):
         if force <= 0.0:
             continue
         if not any_met:
-            for f in range(tips):
-                for g in range(things):
-                    pushed[f, g, 0] = 0.0
-                    pushed[f, g, 1] = 0.0
-                    pushed[f, g, 2] = 0.0
-            frames = _frames(pads, met, xpos, xmat)
+            _begin(pushed, frames)
             any_met = True
         thing = second - tips if second >= tips else things - tips + second
+        _frame(pads, met, xpos, xmat, frames, first)
         on, y, z = _lies(pads[first], frames[first], pos[c], frame[c], sign)
         if second < tips:
+            _frame(pads, met, xpos, xmat, frames, second)
             on_other, _, _ = _lies(pads[second], frames[second], pos[c], frame[c], -sign)
             if not on_other:
                 beside[second] += weight * force
@@ -275,7 +278,7 @@ def read_contacts(count, substeps, memory_at, own_at):
     if any_met:
         _feel(
             xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law, curved, tables, bend, curve, pushed, touches,
-            weight,
+            weight, spot,
         )  # fmt: skip
     return 1
 
@@ -284,9 +287,9 @@ def read_contacts(count, substeps, memory_at, own_at):
 def sense_contacts(record_at, substeps, first, last, own_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; own_at: that of ContactReader's `_sensing`."""
-    own = carray(words(own_at), 30)
-    worlds, size, pairs, poses, geoms = own[21], own[22], own[23], own[24], own[25]
-    tips, things, targets = own[26], own[27], own[28]
+    own = carray(words(own_at), 32)
+    worlds, size, pairs, poses, geoms = own[23], own[24], own[25], own[26], own[27]
+    tips, things, targets = own[28], own[29], own[30]
     record = carray(floats(record_at), (worlds, substeps, size))
     pair, pose, placed = (
         carray(words(own[0]), (pairs, 3)),
@@ -299,7 +302,8 @@ def sense_contacts(record_at, substeps, first, last, own_at):
     kinds = which.max() + 1
     law = carray(laws(own[7]), (kinds, tips, things, 3))
     curved = carray(words(own[19]), (kinds, tips, things, 3))
-    tables = carray(floats(own[20]), (own[29], CURVED_TABLE))
+    tables = carray(floats(own[20]), (own[31], CURVED_TABLE))
+    frames, spot = carray(floats(own[21]), (tips, _FRAME)), carray(floats(own[22]), _SPOT)
     bend = carray(floats(own[9]), (tips, BEND))
     curve = carray(floats(own[10]), (things, 3, CURVES))
     pushed = carray(floats(own[11]), (tips, things, 3))  # room for forces and moments
@@ -316,16 +320,16 @@ def sense_contacts(record_at, substeps, first, last, own_at):
             for p in range(pairs):
                 at = pair[p, 2]
                 total += (
-                    (abs(data[at + PLACE_AT]) + abs(data[at + PLACE_AT + 1]))
-                    + (abs(data[at + PLACE_AT + 2]) + abs(data[at + FORCE_AT]))
-                    + (abs(data[at + FORCE_AT + 1]) + abs(data[at + FORCE_AT + 2]))
-                    + abs(data[at])
+                    (data[at + PLACE_AT] + data[at + PLACE_AT + 1])
+                    + (data[at + PLACE_AT + 2] + data[at + FORCE_AT])
+                    + (data[at + FORCE_AT + 1] + data[at + FORCE_AT + 2])
+                    + data[at]
                 )
                 any_met = any_met or data[at] > 0
             for p in range(poses):
                 at, quat = pose[p, 1], pose[p, 2]
-                total += abs(data[at]) + abs(data[at + 1]) + abs(data[at + 2])
-                total += (abs(data[quat]) + abs(data[quat + 1])) + (abs(data[quat + 2]) + abs(data[quat + 3]))
+                total += data[at] + data[at + 1] + data[at + 2]
+                total += (data[quat] + data[quat + 1]) + (data[quat + 2] + data[quat + 3])
             if not math.isfinite(total):
                 broken[w] = True
                 break
@@ -348,44 +352,52 @@ def sense_contacts(record_at, substeps, first, last, own_at):
             for g in range(geoms):
                 geom, body = placed[g, 0], placed[g, 1]
                 for i in range(3):
-                    geom_xpos[geom, i] = xpos[body, i]
+                    x, y, z = xmat[body, 3 * i], xmat[body, 3 * i + 1], xmat[body, 3 * i + 2]
+                    geom_xpos[geom, i] = xpos[body, i] + (
+                        x * offsets[g, 0] + y * offsets[g, 1] + z * offsets[g, 2]
+                    )
                     for k in range(3):
-                        geom_xpos[geom, i] += xmat[body, 3 * i + k] * offsets[g, k]
-                        geom_xmat[geom, 3 * i + k] = 0.0
-                        for j in range(3):
-                            geom_xmat[geom, 3 * i + k] += xmat[body, 3 * i + j] * turns[g, 3 * j + k]
-            for i in range(tips):
-                for g in range(things):
-                    pushed[i, g, 0] = 0.0
-                    pushed[i, g, 1] = 0.0
-                    pushed[i, g, 2] = 0.0
-            frames = _frames(pads, met, xpos, xmat)
+                        geom_xmat[geom, 3 * i + k] = (
+                            x * turns[g, k] + y * turns[g, 3 + k] + z * turns[g, 6 + k]
+                        )
+            _begin(pushed, frames)
             for p in range(pairs):
                 if data[pair[p, 2]] > 0:
-                    _press(data, pair[p, 2], pads, frames, pair[p, 0], pair[p, 1], things, pushed, beside[w])
+                    first_tip, thing = pair[p, 0], pair[p, 1]
+                    _frame(pads, met, xpos, xmat, frames, first_tip)
+                    if thing >= things - tips:
+                        _frame(pads, met, xpos, xmat, frames, thing - (things - tips))
+                    _press(data, pair[p, 2], pads, frames, first_tip, thing, things, pushed, beside[w])
             _feel(
                 xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law[which[w]], curved[which[w]], tables, bend,
-                curve, pushed, touches[w], 1.0,
+                curve, pushed, touches[w], 1.0, spot,
             )  # fmt: skip
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def _begin(pushed, frames):
+    """Forces, moments and frames of a substep start anew."""
+    for f in range(len(frames)):
+        frames[f, _KNOWN] = 0.0
+        for g in range(pushed.shape[1]):
+            pushed[f, g, 0] = 0.0
+            pushed[f, g, 1] = 0.0
+            pushed[f, g, 2] = 0.0
+
+
 @njit(cache=True, inner=True, error_model="numpy")
-def _frames(pads, met, xpos, xmat):
-    """(F, 12) where the pads are in the world: the middle m, then the normal, y and z."""
-    tips = len(pads)
-    frames = np.empty((tips, 12))
-    for f in range(tips):
-        body = met[len(met) - tips + f, 2]
-        for k in range(3):
-            frames[f, k] = xpos[body, k]
-            for i in range(3):
-                frames[f, 3 + 3 * i + k] = 0.0
-            for j in range(3):
-                turn = xmat[body, 3 * k + j]
-                frames[f, k] += turn * pads[f, j]
-                for i in range(3):
-                    frames[f, 3 + 3 * i + k] += turn * pads[f, _AXES + 3 * j + i]
-    return frames
+def _frame(pads, met, xpos, xmat, frames, f):
+    """Fills frames[f] with where pad f is in the world, unless it is known in this substep."""
+    if frames[f, _KNOWN] > 0.0:
+        return
+    frames[f, _KNOWN] = 1.0
+    body = met[len(met) - len(pads) + f, 2]
+    for k in range(3):
+        x, y, z = xmat[body, 3 * k], xmat[body, 3 * k + 1], xmat[body, 3 * k + 2]
+        frames[f, k] = xpos[body, k] + (x * pads[f, 0] + y * pads[f, 1] + z * pads[f, 2])
+        for i in range(3):
+            at = _AXES + i
+            frames[f, 3 + 3 * i + k] = x * pads[f, at] + y * pads[f, at + 3] + z * pads[f, at + 6]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -443,13 +455,15 @@ def _within(pad, x, y, z):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _feel(
-    xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, curved, tables, bend, curve, pushed, touches, weight,
+    xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, curved, tables, bend, curve, pushed, touches, weight, spot,
 ):  # fmt: skip
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)
-    place, sides = np.empty(3), np.empty(4)
+    place, sides = spot[:3], spot[3:]
     for f in range(tips):
-        middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:]
+        if frames[f, _KNOWN] == 0.0:
+            continue  # nothing has met it
+        middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:12]
         last = -1  # target that was touched; an object's geoms follow one another
         for g in range(things):
             force = pushed[f, g, 0]
@@ -459,13 +473,17 @@ def _feel(
             axis = 0
             if geom >= 0:
                 most = 0.0
+                x, y, z = (
+                    middle[0] - geom_xpos[geom, 0],
+                    middle[1] - geom_xpos[geom, 1],
+                    middle[2] - geom_xpos[geom, 2],
+                )
                 for i in range(3):
-                    looking, place[i] = 0.0, 0.0
-                    for k in range(3):
-                        looking += geom_xmat[geom, 3 * k + i] * normal[k]
-                        place[i] += geom_xmat[geom, 3 * k + i] * (middle[k] - geom_xpos[geom, k])
-                    if abs(looking) > most:
-                        most, axis = abs(looking), i
+                    one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
+                    place[i] = one * x + two * y + three * z
+                    looking = abs(one * normal[0] + two * normal[1] + three * normal[2])
+                    if looking > most:
+                        most, axis = looking, i
             else:
                 # another fingertip: how far the pads' middles are apart along this one's sides
                 other = g - (things - tips)
@@ -513,11 +531,11 @@ def _feel(
                     touch[CLOSED] += weight
                     last = target
             touch[FORCE] += weight * force
+            x, y, z = middle[0] - xpos[body, 0], middle[1] - xpos[body, 1], middle[2] - xpos[body, 2]
             for i in range(3):
-                touch[PLACE + i], touch[NORMAL + i] = 0.0, 0.0
-                for k in range(3):
-                    touch[PLACE + i] += xmat[body, 3 * k + i] * (middle[k] - xpos[body, k])
-                    touch[NORMAL + i] += xmat[body, 3 * k + i] * normal[k]
+                one, two, three = xmat[body, i], xmat[body, 3 + i], xmat[body, 6 + i]
+                touch[PLACE + i] = one * x + two * y + three * z
+                touch[NORMAL + i] = one * normal[0] + two * normal[1] + three * normal[2]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
