@@ -455,7 +455,8 @@ def _within(pad, x, y, z):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _feel(
-    xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, curved, tables, bend, curve, pushed, touches, weight, spot,
+    xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, curved, tables, bend, curve, pushed, touches, weight,
+    spot,
 ):  # fmt: skip
     """Adds what presses on the pads to the touches."""
     tips, things = len(pads), len(met)
