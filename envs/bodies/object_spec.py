@@ -95,7 +95,8 @@ class ObjectSpec:
                 "along x, which no pad meets then; swap its width and depth in place of the turn, or use mode T"
             )
         for value in self.position:
-            within("position", finite("position", value), -LONGEST, LONGEST, "m")
+            if not -LONGEST <= finite("position", value) <= LONGEST:
+                within("position", value, -LONGEST, LONGEST, "m")
         set_ = object.__setattr__
         extents = self.geometry.extents if self.mesh else self.size
         set_(self, "size", checked_size(self.shape, extents))

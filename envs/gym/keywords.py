@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
-from dataclasses import fields
 from typing import Any
 
 from thermograsp.errors import unknown_keyword
 
-from ..plant import SimulationConfig
+from ..plant import simulation_keywords
 
 _OF_THE_BATCH = {"plant", "observer"}
 
 
 def keywords_of(environment: type) -> set[str]:
     """Names of all that its class, those above it and a simulated plant take."""
-    names = {field.name for field in fields(SimulationConfig)}
+    names = simulation_keywords()
     for each in environment.__mro__:
         if each.__module__.partition(".")[0] not in ("gymnasium", "builtins") and "__init__" in vars(each):
             names |= set(inspect.signature(each.__init__).parameters)
