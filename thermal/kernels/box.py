@@ -135,8 +135,8 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
     room = np.empty(len(nodes))
     table = np.empty((len(nodes), len(nodes)))
     half_done = np.empty((functions, len(nodes)))
-    between = np.empty((len(taus), 3, count, functions, count, functions))
-    everywhere = np.ones((len(taus), 3, count, functions))
+    between = np.zeros((3, count, functions, count, functions, len(taus)))
+    everywhere = np.ones((3, count, functions, len(taus)))
     # by axis: whether it lies in a patch, and which of the patch's two it is
     orders, which = np.ones((3, count), np.int64), np.zeros((3, count), np.int64)
     alike = np.empty(count, np.int64)
@@ -162,8 +162,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                 places[n, k] = centre[n, w] + half[n, w] * nodes[k]
             for m in range(n):
                 if order[m] == 1 and alike[n] == n:
-                    same = jumps[n, w] == jumps[m, which[axis, m]]
-                    if same.all() and (places[n] == places[m]).all():
+                    same = True
+                    for k in range(len(nodes)):
+                        same &= places[n, k] == places[m, k]
+                        for f in range(functions):
+                            same &= jumps[n, w, f, k] == jumps[m, which[axis, m], f, k]
+                    if same:
                         alike[n] = m
             if alike[n] == n:
                 overlaps(places[n], jumps[n, w], 1, length, waves, room, told[axis, n])
@@ -174,74 +178,64 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
         for t in range(len(taus)):
             tau = taus[t]
             late = tau > SWITCH * length * length
-            now = between[t, axis]
+            now, all_over = between[axis], everywhere[axis]
             for n in range(count):
-                mine = functions if order[n] == 1 else 1
-                a = places[n] if order[n] == 1 else places[n, :1]
+                across = order[n] == 1
+                mine = functions if across else 1
+                a = places[n] if across else places[n, :1]
+                by = jumps[n, which[axis, n]] if across else point
                 for m in range(min(n + 1, asked)):
                     others = functions if order[m] == 1 else 1
                     if _unseen(size, face, n, m, tau):
-                        now[n, :, m, :] = 0.0
                         continue
                     if (alike[n] < n or alike[m] < m) and not _unseen(size, face, alike[n], alike[m], tau):
                         # opposite fingertips often differ along one axis only
                         for f in range(mine):
                             for g in range(others):
                                 if alike[m] <= alike[n]:
-                                    now[n, f, m, g] = now[alike[n], f, alike[m], g]
+                                    now[n, f, m, g, t] = now[alike[n], f, alike[m], g, t]
                                 else:
-                                    now[n, f, m, g] = now[alike[m], g, alike[n], f]
+                                    now[n, f, m, g, t] = now[alike[m], g, alike[n], f, t]
                         continue
                     if late:
-                        for f in range(mine):
-                            for g in range(others):
-                                now[n, f, m, g] = 0.0
                         for w in range(MODES):
                             decay = np.exp(-waves[w] * waves[w] * tau)
                             if decay < 1e-17:
                                 break
                             for f in range(mine):
                                 for g in range(others):
-                                    now[n, f, m, g] += decay * told[axis, n, f, w] * told[axis, m, g, w]
+                                    now[n, f, m, g, t] += decay * told[axis, n, f, w] * told[axis, m, g, w]
                         continue
                     b = places[m] if order[m] == 1 else places[m, :1]
+                    beside = jumps[m, which[axis, m]] if order[m] == 1 else point
                     images(a, order[n], b, order[m], n == m, length, film, tau, table)
                     for f in range(mine):
                         for q in range(len(b)):
-                            value = 0.0
-                            for k in range(len(a)):
-                                value += (jumps[n, which[axis, n], f, k] if order[n] == 1 else 1.0) * table[
-                                    k, q
-                                ]
-                            half_done[f, q] = value
-                    for f in range(mine):
-                        for g in range(others):
-                            value = 0.0
+                            half_done[f, q] = 0.0
+                        for k in range(len(a)):
                             for q in range(len(b)):
-                                value += (
-                                    jumps[m, which[axis, m], g, q] if order[m] == 1 else 1.0
-                                ) * half_done[f, q]
-                            now[n, f, m, g] = value
+                                half_done[f, q] += by[f, k] * table[k, q]
+                        for g in range(others):
+                            for q in range(len(b)):
+                                now[n, f, m, g, t] += beside[g, q] * half_done[f, q]
                 if film > 0.0:
-                    if alike[n] < n:
-                        everywhere[t, axis, n] = everywhere[t, axis, alike[n]]
-                        continue
-                    if not late:
+                    if alike[n] == n and not late:
                         images(a, order[n], ends, 1, False, length, film, tau, table)
                     for f in range(mine):
                         value = 0.0
-                        if late:
+                        if alike[n] < n:
+                            value = all_over[alike[n], f, t]
+                        elif late:
                             for w in range(MODES):
-                                value += (
-                                    np.exp(-waves[w] * waves[w] * tau) * told[axis, n, f, w] * inside[0, w]
-                                )
+                                decay = np.exp(-waves[w] * waves[w] * tau)
+                                value += decay * told[axis, n, f, w] * inside[0, w]
                         else:
                             for k in range(len(a)):
-                                factor = jumps[n, which[axis, n], f, k] if order[n] == 1 else 1.0
-                                value += factor * (table[k, 1] - table[k, 0])
-                        everywhere[t, axis, n, f] = value
+                                value += by[f, k] * (table[k, 1] - table[k, 0])
+                        all_over[n, f, t] = value
     own = asked * patterns
     kernel, whole, port = np.zeros((len(taus), own, total)), np.zeros((len(taus), total)), np.zeros(total)
+    sums = np.empty(len(taus))
     for n in range(count):
         for i in range(patterns):
             at = n * patterns + i
@@ -251,19 +245,24 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                 f0, f1, f2 = _functions(terms[i, x], orders, which, n)
                 port[at] += told[0, n, f0, 0] * told[1, n, f1, 0] * told[2, n, f2, 0]
                 for t in range(len(taus)):
-                    all_over = everywhere[t]
-                    whole[t, at] += all_over[0, n, f0] * all_over[1, n, f1] * all_over[2, n, f2]
-                for m in range(min(n + 1, asked)):
-                    for j in range(patterns):
+                    air = everywhere[0, n, f0, t] * everywhere[1, n, f1, t]
+                    whole[t, at] += air * everywhere[2, n, f2, t]
+            for m in range(min(n + 1, asked)):
+                for j in range(patterns):
+                    for t in range(len(taus)):
+                        sums[t] = 0.0
+                    for x in range(terms.shape[1]):
                         for y in range(terms.shape[1]):
-                            if terms[j, y, 0] < 0:
+                            if terms[i, x, 0] < 0 or terms[j, y, 0] < 0:
                                 continue
+                            f0, f1, f2 = _functions(terms[i, x], orders, which, n)
                             g0, g1, g2 = _functions(terms[j, y], orders, which, m)
+                            first, second = between[0, n, f0, m, g0], between[1, n, f1, m, g1]
+                            third = between[2, n, f2, m, g2]
                             for t in range(len(taus)):
-                                now = between[t]
-                                kernel[t, m * patterns + j, at] += (
-                                    now[0, n, f0, m, g0] * now[1, n, f1, m, g1] * now[2, n, f2, m, g2]
-                                )
+                                sums[t] += first[t] * second[t] * third[t]
+                    for t in range(len(taus)):
+                        kernel[t, m * patterns + j, at] = sums[t]
     # from integrals over patterns to means, and without the slowest eigenfunction, which is even where no film is
     slowest = slowest if film > 0.0 else 0.0
     held *= np.sqrt(heat_capacity)
