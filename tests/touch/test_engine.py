@@ -112,6 +112,44 @@ def test_its_voltages_are_those_of_thermal_touch(told: dict) -> None:
 
 
 @NEEDS_SPECS
+@pytest.mark.parametrize(
+    ("name", "skin", "seed"),
+    [
+        ("rubber", None, 12),  # where round-off decided how networks are fitted, 2.4e-5 K apart
+        *(
+            pytest.param(name, skin, seed, marks=TIER)
+            for seed in (13, 14)
+            for name in ("rubber", "cotton", "wood", "glass", "copper")
+            for skin in (None, "filled_silicone")
+        ),
+    ],
+)
+def test_after_long_slides_its_voltages_are_still_those_of_thermal_touch(
+    name: str, skin: str | None, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    words = {
+        "fingertips": {finger: Fingertip(pad, skin=skin) for finger, pad in PADS.items()},
+        "objects": {"can": ThermalBody(name, 5.0), "ball": "glass"},
+    }
+    model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    seebeck, places = np.array([pad.stack.seebeck for pad in touch._pads]), set()
+    for number in range(14):
+        force, x, z = ORDERS[rng.integers(len(ORDERS))]
+        aside = rng.uniform(-0.004, 0.004, 2)
+        order(data, force * rng.uniform(0.5, 1.5), x + aside[0], z + aside[1], hand.FINGERS[: 2 + number % 2])
+        for n in range(150):
+            mujoco.mj_step(model, data)
+            reading = touch.update(data)
+            if n % 10 == 9:
+                drop = voltages(model, data) / seebeck
+                assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
+        places.update(place for field in touch._heat._fields[0] for place in field.places)
+    assert len(places) > len(PADS) + 2
+
+
+@NEEDS_SPECS
 def test_fingertips_on_one_another_and_other_shapes() -> None:
     """Two pads that meet, a ball, a turned box, pyramidal cones."""
     spec = mujoco.MjSpec.from_string("""

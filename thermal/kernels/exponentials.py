@@ -36,8 +36,9 @@ def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: 
 
 def states(found: np.ndarray, rates: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the sum's states. least: K/W, resistance of a state that is left
-    out."""
+    out. Larger ones fade as they come near it, so that round-off decides nothing."""
     values, vectors = np.linalg.eigh(found)
-    ports = (vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]).transpose(0, 2, 1)
-    kept = values / rates[:, None] > least
+    kept = values > least * rates[:, None]
+    left = np.where(kept, values - (least * rates[:, None]) ** 2 / np.where(kept, values, 1.0), 0.0)
+    ports = (vectors * np.sqrt(left)[:, None, :]).transpose(0, 2, 1)
     return np.broadcast_to(rates[:, None], values.shape)[kept], ports[kept]

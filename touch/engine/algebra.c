@@ -6,6 +6,7 @@
 #include "heat.h"
 
 #define TINY 1e-300 /* beside a zero */
+#define ROUND_OFF 1e-24 /* squares off the diagonal that may be left, beside those on it */
 
 static void rotate(int count, double* restrict first, double* restrict second, const double* cosine, const double* sine) {
   for (int k = 0; k < count; k++) {
@@ -29,9 +30,8 @@ static void angle(int count, double* first, double* second, double* between, dou
 }
 
 /* Turns `count` symmetric matrices (N, N, count) at once into their eigenvalues, and adds the rotations to the rows of
-turn; of the matrices the lower halves count. least: squares off the diagonal that may be left, beside those on it. The
-order and the thresholds are those of thermal/numerics/passive_residues.py, whose steps end where they leave off. */
-void heat_diagonalise(int n, int count, double* matrix, double* turn, double least) {
+turn; of the matrices the lower halves count. As thermal/numerics/passive_residues.py does. */
+void heat_diagonalise(int n, int count, double* matrix, double* turn) {
   double off[count], on[count], cosine[count], sine[count];
 #define AT(what, i, j) (what + ((size_t)(i) * n + (j)) * count)
   for (int sweep = 0; sweep < 30; sweep++) {
@@ -44,8 +44,8 @@ void heat_diagonalise(int n, int count, double* matrix, double* turn, double lea
     }
     bool done = true;
     for (int k = 0; k < count; k++) {
-      done = done && off[k] <= least * on[k];
-      on[k] *= least / (n * n);
+      done = done && off[k] <= ROUND_OFF * on[k];
+      on[k] *= ROUND_OFF / (n * n);
     }
     if (done) return;
     for (int q = 1; q < n; q++) {

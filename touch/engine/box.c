@@ -13,9 +13,6 @@ enum { MODES = 24, STEPS = 20 };
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
 #define RIDGE 1e-4    /* of the first guess, without constraint */
 #define RELAXED 1.6
-#define ON_THE_WAY 1e-8 /* squares off the diagonal that all steps but the last may leave, beside those on it */
-#define AT_LAST 1e-20
-#define LAST_OF_ALL 1e-24
 static const double pi = 3.14159265358979323846;
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. told: with eigenfunctions. */
@@ -232,7 +229,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
       for (int j = 0; j <= i; j++)
         for (int m = 0; m < wide; m++)
           for (int k = 0; k < rates; k++) AT(moved, i, j)[k] += AT(turn, i, m)[k] * AT(half, j, m)[k];
-    heat_diagonalise(wide, rates, moved, turn, step < STEPS - 1 ? ON_THE_WAY : AT_LAST);
+    heat_diagonalise(wide, rates, moved, turn);
     for (int m = 0; m < wide; m++)
       for (int i = 0; i < wide; i++)
         for (int k = 0; k < rates; k++) AT(half, m, i)[k] = fmax(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];
@@ -297,13 +294,13 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
     for (int k = 0; k < rates; k++) {
       double* own = found + k * square;
       for (int i = 0; i < wide * wide; i++) turn[i] = i % (wide + 1) == 0;
-      heat_diagonalise(wide, 1, own, turn, LAST_OF_ALL);
+      heat_diagonalise(wide, 1, own, turn);
       for (int m = 0; m < wide; m++) {
-        double value = own[m * wide + m];
-        if (!(value / numbers->decay[k] > least)) continue;
+        double value = own[m * wide + m], left = value - pow(least * numbers->decay[k], 2) / value;
+        if (!(value > 0 && left > 0)) continue;
         network->rates[network->n] = numbers->decay[k];
         for (int j = 0; j < wide; j++)
-          network->ports[(size_t)j * numbers->states + network->n] = turn[m * wide + j] * sqrt(value);
+          network->ports[(size_t)j * numbers->states + network->n] = turn[m * wide + j] * sqrt(left);
         network->n++;
       }
     }

@@ -112,7 +112,7 @@ size_t heat_network_room(const Numbers* numbers);
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room);
 size_t heat_carry_room(const Numbers* numbers);
 
-void heat_diagonalise(int n, int count, double* matrix, double* turn, double least);
+void heat_diagonalise(int n, int count, double* matrix, double* turn);
 void heat_inverse(int n, double* matrix, double* inverse);
 
 #endif

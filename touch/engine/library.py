@@ -22,8 +22,7 @@ from thermograsp.notice import busy
 
 _FOLDER = Path(__file__).parent
 _OPTIONS = ("-std=c11", "-O3", "-fPIC", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra")
-# Sums keep their order, as networks are fitted by steps that end at thresholds: another order may end elsewhere, 2e-8 K
-# off. Nothing is fused, which processors would differ in.
+# Sums keep their order and nothing is fused, in which compilers and processors would differ.
 _SUMS = ("-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-ffp-contract=off")
 _LOCK = threading.Lock()
 

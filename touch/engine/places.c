@@ -7,9 +7,10 @@ and how an object's field survives a new place. */
 
 #include "heat.h"
 
-#define NEAR 0.25     /* of the sensor's width: a pad that is as near to a known place is on it */
+#define NEAR 0.250001 /* of the sensor's width: a pad that is as near to a known place is on it */
 #define GRID 0.125    /* of the sensor's width, on which places stand */
-#define LEAST 1e-3    /* singular values below that share of the largest are left out */
+#define LEAST 7e-4    /* singular values below that share of the largest are left out */
+#define TIE 1e-6      /* round-off does not decide where a pad is in the middle, between faces or points of the grid */
 #define ANOTHER 0.1   /* by which another face of the box must look more at the pad than the one in use */
 enum { IDLE = 2 };    /* places that an object remembers besides those in use */
 
@@ -139,9 +140,10 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
         size += column[r] * column[r];
         met += column[r] * wanted[r];
       }
+      double left = size - LEAST * LEAST * largest;
       if (pass == 0) largest = fmax(largest, size);
-      else if (size > LEAST * LEAST * largest)
-        for (int i = 0; i < columns; i++) x[i + 1] += column[rows + i] * met / size;
+      else if (left > 0)
+        for (int i = 0; i < columns; i++) x[i + 1] += column[rows + i] * met * left / (size * size);
     }
   }
 }
@@ -197,7 +199,7 @@ static bool moved(const Numbers* numbers, const State* state, int f, int o, int*
       position[i] += box[TURN + 3 * k + i] * (touch[PLACE + k] - box[CENTRE + k]);
     }
     position[i] *= box[i] / box[EXTENT + i];
-    if (fabs(looking[i]) > fabs(looking[most])) most = i;
+    if (fabs(looking[i]) > fabs(looking[most]) + TIE) most = i;
   }
   if (current >= 0) {
     known = (int)place[FACE];
@@ -230,7 +232,8 @@ void heat_settle(const Numbers* numbers, Work* work, State* state) {
     for (int axis = 0, j = 0; axis < 3; axis++) {
       if (axis == faces[i] / 2) continue;
       double size = numbers->boxes[o * BOX + axis], room = fmax(size - width, 0) / 2, spacing = GRID * width;
-      place[MIDDLE + j] = size / 2 + fmin(fmax(rint((middles[i][j] - size / 2) / spacing) * spacing, -room), room);
+      double steps = rint((middles[i][j] - size / 2) / spacing * (1 - TIE));
+      place[MIDDLE + j] = size / 2 + fmin(fmax(steps * spacing, -room), room);
       j++;
     }
     for (int n = 0; n < (int)state->used[o] && at < 0; n++) {

@@ -18,13 +18,15 @@ from ...thermal import Material
 from ...thermal.kernels import Patches, Resolution, Side, Tip, box_side, glued_element, tip
 from ..scene import BodyShape, PadPlace
 
-NEAR = 0.25  # of the sensor's width: a pad that is as near to a known place is on it
+NEAR = 0.25 + 1e-6
+"""Of the sensor's width: a pad that is as near to a known place is on it. A little more than two steps of the grid
+(march.py), so that round-off does not decide between places that are two steps apart."""
 MOST_PLACES = 2
 """Of an object that are remembered besides those in use."""
 
 _LEVELS = ((0.04, Resolution(8, 3)), (0.015, Resolution(12, 4)), (0.0, Resolution(18, 5)))
 AFTERWARDS = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
-_LEAST = 1e-3  # singular values below that share of the largest are left out
+_LEAST = 7e-4  # singular values below that share of the largest are left out
 
 
 def resolution(tolerance: float) -> Resolution:
@@ -137,14 +139,18 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     """(n after, n before): the field on the states of a network with other places.
 
     The field on the new states is the one that the places of both will see alike from then on, left alone: their
-    temperatures at AFTERWARDS, by least squares. Heat stays the same: it is all in the mean temperature's state."""
+    temperatures at AFTERWARDS, by least squares. Heat stays the same: it is all in the mean temperature's state.
+    Singular values count the less the nearer they are to those that are left out: round-off decides nothing."""
     matrix = np.zeros((len(after.rates), len(before.rates)))
     matrix[0, 0] = 1.0
     common = [place for place in before.places if place in after.places]
     if not common:
         return matrix
     source, target = (_future(field, common, patterns) for field in (before, after))
-    matrix[1:, 1:] = np.linalg.pinv(target, rcond=_LEAST) @ source
+    left, values, right = np.linalg.svd(target, full_matrices=False)
+    kept = values > _LEAST * values[0]
+    share = (1 - (_LEAST * values[0] / values[kept]) ** 2) / values[kept]
+    matrix[1:, 1:] = (right[kept].T * share) @ (left[:, kept].T @ source)
     return matrix
 
 

@@ -32,6 +32,9 @@ GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks 
 TABLE = 46
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
+_TIE = 1e-6
+"""By how much a face must look more at the pad than the axis before, and a place must be nearer to the next point of
+the grid than to the one before: round-off does not decide where a pad is in the middle."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -70,7 +73,7 @@ def settle(
                         position[i] += axis * (touch[PLACE + k] - box[6 + k])
                     position[i] *= box[i] / box[3 + i]
                 for i in range(1, 3):
-                    if abs(looking[i]) > abs(looking[most]):
+                    if abs(looking[i]) > abs(looking[most]) + _TIE:
                         most = i
                 known = faces[w, f, t]
                 if known >= 0 and abs(looking[known // 2]) > abs(looking[most]) - TURN:
@@ -82,7 +85,8 @@ def settle(
                         continue
                     room = max(box[i] - widths[f], 0.0) / 2
                     at, spacing = box[i] / 2 + min(max(position[i], -room), room), GRID * widths[f]
-                    off = min(max(np.rint((at - box[i] / 2) / spacing) * spacing, -room), room)
+                    steps = np.rint((at - box[i] / 2) / spacing * (1 - _TIE))
+                    off = min(max(steps * spacing, -room), room)
                     new_middles[w, f, t, j] = box[i] / 2 + off
                     apart = max(apart, abs(at - middles[w, f, t, j]))
                     j += 1
