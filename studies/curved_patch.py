@@ -138,7 +138,7 @@ def compared(name: str, radius: float, force: float) -> dict[str, object]:
     at = (rings[1:] + rings[:-1]) / 2
     x = np.maximum(at / touched, 1.0)
     gap = touched**2 / np.pi / radius * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
-    beside = np.where(at < radius, float(law["gas"]) / (float(law["apart"]) + gap), 0.0)
+    beside = np.where(at < radius, float(law["gas"]) / (float(law["mean_gap"]) + gap), 0.0)
     placed = np.where(at < touched, conductance(law, load / area), beside)
     covered = np.clip((patch / np.pi - rings[:-1] ** 2) / np.diff(rings**2), 0.0, 1.0)
     sensed = len(layers) - 1 - stack.sensed

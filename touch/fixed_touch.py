@@ -90,7 +90,7 @@ class FixedTouch:
 
     fingertips, objects: names. materials: those that each object may be of; a world's number counts along them.
     bodies (F,) that carry the pads and geoms (G,) of the objects, integers: their numbers in the model. origin: the
-    states of the ThermalTouch's worlds, or of one of them. ambient: °C. own: (O, K), 1 at the states of each
+    states of the ThermalTouch's worlds, or of one of them. ambient: °C. states_of: (O, K), 1 at the states of each
     object, and mean: (O, K), 1 at the one of its mean temperature."""
 
     dt: float
@@ -109,7 +109,7 @@ class FixedTouch:
     narrow: ArrayNarrow
     held: Array
     mean: Array
-    own: Array
+    states_of: Array
     owner: Array
     of_object: Array
     reads: ArrayContacts
@@ -155,7 +155,7 @@ class FixedTouch:
         first = state.first if temperature is None else self._first(temperature, state)
         excess = first - self.ambient
         held = [self.held[o][made_of[:, o]] for o in range(len(self.objects))]
-        heat = sum((excess[:, o] * own)[:, None] * self.mean[o] for o, own in enumerate(held))
+        heat = sum((excess[:, o] * each)[:, None] * self.mean[o] for o, each in enumerate(held))
         none = 0.0 * self.seebeck + as_like(np.zeros((count, 1)), state.heat)
         resting = SignalState(none, none)
         _, volts = measure_sample(self.chain, resting, none, self.seebeck, self.dt)
@@ -234,7 +234,7 @@ class FixedTouch:
         if given not in ((), expected):
             raise InvalidValueError(f"noise must be a number or have the shape {expected}, got {given}")
         material, worlds = state.material, state.heat.shape[0]
-        found = self.reads.felt(contacts, material[:, self.owner], self.of_object)
+        found = self.reads.of_step(contacts, material[:, self.owner], self.of_object)
         pairs = (worlds, len(self.fingertips) * len(self.objects))
         conducts, area, length = (
             each.reshape(pairs) for each in (found.conductance, found.area, found.length)
@@ -268,8 +268,8 @@ class FixedTouch:
     def _numbers(self, material: Array) -> tuple[Array | int, Array]:
         """The networks (B,) and the narrow contacts' kinds (B, N) of worlds with those materials."""
         network, most = 0, max(map(len, self.materials))
-        for o, own in enumerate(self.materials):
-            network = network * len(own) + material[:, o]
+        for o, choices in enumerate(self.materials):
+            network = network * len(choices) + material[:, o]
         pairs = namespace_of(material).concatenate([material] * len(self.fingertips), -1)
         first = as_integers(as_like(np.arange(pairs.shape[-1]) * most, self.difference))
         return (network if len(self.tables.decay) > 1 else 0), pairs + first
@@ -308,7 +308,7 @@ class FixedTouch:
         if tuple(np.shape(material)) != shape:
             raise InvalidValueError(f"material must have the shape {shape}, got {tuple(np.shape(material))}")
         if isinstance(material, np.ndarray):  # tensors are not looked into
-            counts = np.array([len(own) for own in self.materials])
+            counts = np.array([len(choices) for choices in self.materials])
             if material.dtype.kind not in "iu" or not ((material >= 0) & (material < counts)).all():
                 raise InvalidValueError(
                     f"material must be whole numbers, of {dict(zip(self.objects, counts.tolist(), strict=True))} "
@@ -365,7 +365,7 @@ def fixed_touch(
     of = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
     begin, at = networks.begin, np.arange(len(networks.state))
     mean = (at == begin[:-1, None]).astype(float)
-    own = ((at >= begin[:-1, None]) & (at < begin[1:, None])).astype(float)
+    states_of = ((at >= begin[:-1, None]) & (at < begin[1:, None])).astype(float)
 
     def array(values: np.ndarray | Sequence[float]) -> Array:
         return as_like(np.asarray(values, float), like)
@@ -400,7 +400,7 @@ def fixed_touch(
         array_narrow(networks.narrow, networks.width, networks.decay, networks.dt, like),
         array(networks.held),
         array(mean),
-        array(own),
+        array(states_of),
         integers([o for o, _ in of]),
         array(np.eye(len(objects))[[o for o, _ in of]]),
         array_contacts(model, pads, kinds, like),
@@ -408,7 +408,7 @@ def fixed_touch(
     )
     if now is None:
         return replace(made, origin=made.reset(origin))
-    filtered, last, voltage = (array(own[None]) for own in now)
+    filtered, last, voltage = (array(each[None]) for each in now)
     return replace(made, origin=origin._replace(signal=SignalState(filtered, last), voltage=voltage))
 
 
@@ -434,7 +434,7 @@ def grasp_touch(
     sensors and glued elements, and for more combinations than MOST_NETWORKS."""
     cubes = all(np.ptp(shape.size) <= _SAME * shape.size.max() for shape in shapes)
     ways = 1 if cubes else 3
-    combinations = math.prod(len(own) * ways for own in materials)
+    combinations = math.prod(len(choices) * ways for choices in materials)
     if combinations > MOST_NETWORKS:
         raise InvalidValueError(
             f"objects: their materials and the sides that they may be grasped across combine in {combinations} ways, "
@@ -448,13 +448,13 @@ def grasp_touch(
     for o, shape in enumerate(shapes):
         poses[:, :, o, :3] = shape.centre
         poses[:, :, o, 3:] = side[:, None] * shape.axes.T[:ways, None]
-    first = [replace(shape, material=own[0]) for shape, own in zip(shapes, materials, strict=True)]
+    first = [replace(shape, material=choices[0]) for shape, choices in zip(shapes, materials, strict=True)]
     heat = JoinedHeat(pads, (), first, worlds=1, dt=dt, tolerance=tolerance, film=air, ambient=ambient)
     most = max(map(len, materials))
     kinds = [
         tuple(
-            replace(shape, material=own[min(v, len(own) - 1)])
-            for shape, own in zip(shapes, materials, strict=True)
+            replace(shape, material=choices[min(v, len(choices) - 1)])
+            for shape, choices in zip(shapes, materials, strict=True)
         )
         for v in range(most)
         for _ in range(ways)
@@ -464,7 +464,7 @@ def grasp_touch(
         pads,
         shapes,
         kinds,
-        [[one for one in own for _ in range(ways)] for own in materials],
+        [[one for one in choices for _ in range(ways)] for choices in materials],
         heat.fixed_networks(0, materials, poses),
         substeps=substeps,
         ambient=ambient,
@@ -519,6 +519,6 @@ def pad_poses(
         turn = now.xmat[pad.body].reshape(3, 3)
         middle, normal = now.xpos[pad.body] + turn @ pad.position, turn @ pad.axes[:, 0]
         for o, shape in enumerate(shapes):
-            own = now.xmat[shape.body].reshape(3, 3)
-            poses[f, o] = *((middle - now.xpos[shape.body]) @ own), *(normal @ own)
+            turn = now.xmat[shape.body].reshape(3, 3)
+            poses[f, o] = *((middle - now.xpos[shape.body]) @ turn), *(normal @ turn)
     return poses

@@ -47,27 +47,30 @@ def _functions() -> tuple[int, int, int]:
 @njit(cache=True, error_model="numpy")
 def hear(at):
     """To be called after a step. at: a Hearing's address."""
-    own = carray(words(at), _LENGTH)
+    entries = carray(words(at), _LENGTH)
     last, step, now = (
-        carray(floats(own[_LAST]), 1),
-        carray(floats(own[_STEP]), 2),
-        carray(floats(own[_NOW]), 1),
+        carray(floats(entries[_LAST]), 1),
+        carray(floats(entries[_STEP]), 2),
+        carray(floats(entries[_NOW]), 1),
     )
     if not abs(now[0] - last[0] - step[0]) <= step[1]:
         return ELSEWHERE
     last[0] = now[0]
-    substeps, taken = carray(words(own[_SUBSTEPS]), 1), carray(words(own[_TAKEN]), 1)
+    substeps, taken = carray(words(entries[_SUBSTEPS]), 1), carray(words(entries[_TAKEN]), 1)
     substeps[0] += 1
-    contacts = carray(integers(own[_CONTACTS]), 1)[0]
-    if contacts > 0 and called(own[_READ], contacts, 1, own[_MEMORY], own[_READER]) == 0:
+    contacts = carray(integers(entries[_CONTACTS]), 1)[0]
+    if contacts > 0 and called(entries[_READ], contacts, 1, entries[_MEMORY], entries[_READER]) == 0:
         return BROKEN
-    if substeps[0] < own[_OF_SAMPLE]:
+    if substeps[0] < entries[_OF_SAMPLE]:
         return NOTHING
-    if own[_HEAT] == 0 or called(own[_ADVANCE], own[_HEAT], own[_TOUCHES], substeps[0], 0) != 0:
+    if (
+        entries[_HEAT] == 0
+        or called(entries[_ADVANCE], entries[_HEAT], entries[_TOUCHES], substeps[0], 0) != 0
+    ):
         return FULL
     substeps[0] = 0
     taken[0] += 1
     due = 0
-    if taken[0] == own[_OF_READING]:
+    if taken[0] == entries[_OF_READING]:
         due, taken[0] = 1, 0
-    return DUE * due + SPENT * called_two(own[_CLOSE], own[_ELECTRONICS], due)
+    return DUE * due + SPENT * called_two(entries[_CLOSE], entries[_ELECTRONICS], due)

@@ -73,8 +73,8 @@ class TouchReading:
         return TouchReading, (self.time, self.failed, self._numbers, self._layout)
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name}={getattr(self, name)!r}" for name in _TOLD)
-        return f"TouchReading({told})"
+        fields = ", ".join(f"{name}={getattr(self, name)!r}" for name in _SHOWN)
+        return f"TouchReading({fields})"
 
     @property
     def voltage(self) -> np.ndarray:
@@ -112,8 +112,8 @@ class TouchReading:
     def object_temperature(self) -> Mapping[str, float | np.ndarray]:
         """°C by object, its mean."""
         found = self._rows(*self._layout.starts[3:5])
-        own = found.T if self._layout.many else found.tolist()
-        return dict(zip(self._layout.names, own, strict=False))
+        columns = found.T if self._layout.many else found.tolist()
+        return dict(zip(self._layout.names, columns, strict=False))
 
     @property
     def touching(self) -> tuple[str, ...] | tuple[tuple[str, ...], ...]:
@@ -121,7 +121,7 @@ class TouchReading:
         none."""
         names = self._layout.names
         worlds = self._numbers[:, self._layout.starts[4] :].astype(int).tolist()
-        found = tuple([tuple([names[t] for t in own]) for own in worlds])
+        found = tuple([tuple([names[t] for t in world]) for world in worlds])
         return found if self._layout.many else found[0]
 
     def _volts(self) -> np.ndarray:
@@ -133,7 +133,7 @@ class TouchReading:
         return found if self._layout.many else found[0]
 
 
-_TOLD = (
+_SHOWN = (
     *("time", "voltage", "temperature_drop", "force", "beside", "touching", "object_temperature", "failed"),
     *("element_voltage", "element_drop"),
 )
@@ -214,7 +214,7 @@ class Electronics:
         ambient: float,
     ) -> None:
         self.noise, self._layout, self._chains = noise, layout, chain_rows
-        self._felt = touches, beside, sent, drop, warmth
+        self._sources = touches, beside, sent, drop, warmth
         worlds, tips, targets = touches.shape[:3]
         rows = worlds * layout.sensors
         self.filtered, self.last = np.zeros((rows, 1)), np.zeros((rows, 1))
@@ -234,7 +234,7 @@ class Electronics:
         """Says where all arrays are."""
         layout = self._layout
         arrays = (
-            *(*self._felt, self.pressed, self.off, self._chains, self.filtered, self.last),
+            *(*self._sources, self.pressed, self.off, self._chains, self.filtered, self.last),
             *(self.noise.ahead, self.noise.at, self._drawn, self._sampled, self.voltage),
             *(self._numbers, self._means),
         )
@@ -245,13 +245,13 @@ class Electronics:
     def rest(self, w: int, sent: np.ndarray) -> None:
         """A world's electronics as if at rest for as long as a reading reaches back. sent: (S,) what they take."""
         sensors = self._layout.sensors
-        own = slice(w * sensors, (w + 1) * sensors)
-        self.filtered[own], self.last[own] = sent[:, None], sent[:, None]
+        sensors_of = slice(w * sensors, (w + 1) * sensors)
+        self.filtered[sensors_of], self.last[sensors_of] = sent[:, None], sent[:, None]
         volts = np.zeros((sensors, SAMPLES, 1))
         measure_rows(
-            self._chains[own],
-            self.filtered[own],
-            self.last[own],
+            self._chains[sensors_of],
+            self.filtered[sensors_of],
+            self.last[sensors_of],
             np.zeros((sensors, 0, 1)),
             np.repeat(sent[:, None], SAMPLES, axis=1)[:, :, None],
             np.ascontiguousarray(self.noise.take(w, SAMPLES).T[:, :, None]),
@@ -273,13 +273,13 @@ class Electronics:
     def start_anew(self, rows: Sequence[int]) -> None:
         """Those worlds' sums, and what a reading that is made now tells of them."""
         self.pressed[rows], self.off[rows] = 0.0, 0.0
-        _, _, _, drop, warmth = self._felt
+        _, _, _, drop, warmth = self._sources
         drops, forces, _, temperatures, touching, _ = self._layout.starts
         for w in rows:
-            own = self._numbers[w]
-            own[:drops], own[drops:forces] = self.voltage[w].ravel(), drop[w]
-            own[forces:temperatures], own[touching:] = 0.0, -1.0
-            own[temperatures:touching] = self._means[1] + warmth[w]
+            numbers = self._numbers[w]
+            numbers[:drops], numbers[drops:forces] = self.voltage[w].ravel(), drop[w]
+            numbers[forces:temperatures], numbers[touching:] = 0.0, -1.0
+            numbers[temperatures:touching] = self._means[1] + warmth[w]
 
     def reading(self, time: np.ndarray, broken: np.ndarray) -> TouchReading:
         """The last one. time: (W,) s."""
@@ -291,22 +291,28 @@ class Electronics:
 
 
 @njit(cache=True, error_model="numpy")
-def close_sample(own_at, due):
+def close_sample(entries_at, due):
     """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages. due: 1
-    makes the reading too. own_at: the address of Electronics' table. Returns 1 where noise has run out, else 0."""
-    own = carray(words(own_at), 22)
-    worlds, tips, targets, sensors, objects = own[17], own[18], own[19], own[20], own[21]
+    makes the reading too. entries_at: the address of Electronics' table. Returns 1 where noise has run out, else 0."""
+    entries = carray(words(entries_at), 22)
+    worlds, tips, targets, sensors, objects = entries[17], entries[18], entries[19], entries[20], entries[21]
     rows = worlds * sensors
-    touches = carray(floats(own[0]), (worlds, tips, targets, COLUMNS))
-    beside = carray(floats(own[1]), (worlds, tips))
-    sent, drop = carray(floats(own[2]), (rows, 1, 1)), carray(floats(own[3]), (worlds, sensors))
-    warmth = carray(floats(own[4]), (worlds, objects))
-    pressed, off = carray(floats(own[5]), (worlds, tips, targets)), carray(floats(own[6]), (worlds, tips))
-    filtered, last = carray(floats(own[8]), (rows, 1)), carray(floats(own[9]), (rows, 1))
-    ahead, at = carray(floats(own[10]), (worlds, NOISE_BLOCK, sensors)), carray(words(own[11]), worlds)
-    drawn, sampled = carray(floats(own[12]), (rows, 1, 1)), carray(floats(own[13]), (rows, 1, 1))
-    voltage = carray(floats(own[14]), (worlds, sensors, SAMPLES))
-    means = carray(floats(own[16]), 2)
+    touches = carray(floats(entries[0]), (worlds, tips, targets, COLUMNS))
+    beside = carray(floats(entries[1]), (worlds, tips))
+    sent, drop = carray(floats(entries[2]), (rows, 1, 1)), carray(floats(entries[3]), (worlds, sensors))
+    warmth = carray(floats(entries[4]), (worlds, objects))
+    pressed, off = (
+        carray(floats(entries[5]), (worlds, tips, targets)),
+        carray(floats(entries[6]), (worlds, tips)),
+    )
+    filtered, last = carray(floats(entries[8]), (rows, 1)), carray(floats(entries[9]), (rows, 1))
+    ahead, at = (
+        carray(floats(entries[10]), (worlds, NOISE_BLOCK, sensors)),
+        carray(words(entries[11]), worlds),
+    )
+    drawn, sampled = carray(floats(entries[12]), (rows, 1, 1)), carray(floats(entries[13]), (rows, 1, 1))
+    voltage = carray(floats(entries[14]), (worlds, sensors, SAMPLES))
+    means = carray(floats(entries[16]), 2)
     spent = 0
     for w in range(worlds):
         for f in range(tips):
@@ -321,9 +327,9 @@ def close_sample(own_at, due):
         at[w] += 1
         if at[w] == NOISE_BLOCK:
             spent = 1
-    chain = carray(chains(own[7]), rows)
+    chain = carray(chains(entries[7]), rows)
     # voltages under way: none
-    measure_rows(chain, filtered, last, carray(floats(own[8]), (rows, 0, 1)), sent, drawn, sampled)
+    measure_rows(chain, filtered, last, carray(floats(entries[8]), (rows, 0, 1)), sent, drawn, sampled)
     for w in range(worlds):
         for s in range(sensors):
             for k in range(SAMPLES - 1):
@@ -331,7 +337,7 @@ def close_sample(own_at, due):
             voltage[w, s, SAMPLES - 1] = sampled[w * sensors + s, 0, 0]
     if due == 1:
         size = sensors * (SAMPLES + 1) + 3 * tips + objects
-        _tell(voltage, drop, warmth, pressed, off, means, carray(floats(own[15]), (worlds, size)))
+        _tell(voltage, drop, warmth, pressed, off, means, carray(floats(entries[15]), (worlds, size)))
     return spent
 
 
@@ -351,12 +357,12 @@ def _tell(voltage, drop, warmth, pressed, off, means, numbers):
         for f in range(tips):
             force, most, largest = 0.0, -1, 0.0
             for t in range(targets):
-                own = pressed[w, f, t]
+                pair_force = pressed[w, f, t]
                 if t >= objects:
-                    own += pressed[w, t - objects, objects + f]
-                force += own / means[0]
-                if own > largest:
-                    largest, most = own, t
+                    pair_force += pressed[w, t - objects, objects + f]
+                force += pair_force / means[0]
+                if pair_force > largest:
+                    largest, most = pair_force, t
             numbers[w, forces + f] = force
             numbers[w, forces + tips + f] = off[w, f] / means[0]
             numbers[w, forces + 2 * tips + objects + f] = most

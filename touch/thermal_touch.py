@@ -201,11 +201,11 @@ class ThermalTouch:
         time it changes nothing. Raises InvalidValueError for data of another model or of an earlier time, and
         SimulationError for forces that are not finite; of many worlds, those `failed` until they are reset."""
         if data is self._near:
-            told = hear(self._near_at)
-            if told == NOTHING:
+            heard = hear(self._near_at)
+            if heard == NOTHING:
                 return self._reading
-            if told != ELSEWHERE:
-                return self._told(told)
+            if heard != ELSEWHERE:
+                return self._finish(heard)
         if self._sensors is not None:
             return self._hear(data)
         passed, reader = self._passed(data), self._reader
@@ -245,8 +245,8 @@ class ThermalTouch:
         names = self.objects
         made_of, warm = materials_by_world(objects or {}, self._shapes, len(rows), self._ambient)
         first = self._first[rows]
-        for name, own in warm.items():
-            first[:, names.index(name)] = own
+        for name, warmth in warm.items():
+            first[:, names.index(name)] = warmth
         for name, value in (temperatures or {}).items():
             if name not in names:
                 raise unknown_name("object", name, names)
@@ -259,16 +259,16 @@ class ThermalTouch:
             first[:, names.index(name)] = value
         if seed is not None:
             try:
-                told = np.array(seed if isinstance(seed, int | np.integer) else list(seed))
+                numbers = np.array(seed if isinstance(seed, int | np.integer) else list(seed))
             except TypeError:
-                told = np.array("")
-            if told.dtype.kind not in "iu" or told.ndim > 1 or told.size == 0 or told.min() < 0:
+                numbers = np.array("")
+            if numbers.dtype.kind not in "iu" or numbers.ndim > 1 or numbers.size == 0 or numbers.min() < 0:
                 raise InvalidValueError(f"seed must be whole numbers from 0 on, got {seed!r}")
-            seeds = [int(told) + w for w in rows] if told.ndim == 0 else told.tolist()
+            seeds = [int(numbers) + w for w in rows] if numbers.ndim == 0 else numbers.tolist()
             if len(seeds) != len(rows):
                 raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
-            for w, own in zip(rows, seeds, strict=True):
-                self._electronics.noise.seed(w, own)
+            for w, number in zip(rows, seeds, strict=True):
+                self._electronics.noise.seed(w, number)
         # a grasp that simply goes on has been heard since before it sank in
         goes_on = data is not None and data is self._heard and data.time == self._time.item()
         self._fresh, self._near = self._fresh or not goes_on, _NOBODY
@@ -315,40 +315,42 @@ class ThermalTouch:
         finite power, heated sensors and glued elements."""
         (row,) = self._rows([world])
         given = {
-            name: (own,) if isinstance(own, str | Material) else own
-            for name, own in (materials or {}).items()
+            name: (choices,) if isinstance(choices, str | Material) else choices
+            for name, choices in (materials or {}).items()
         }
-        of = {name: tuple(map(named_material, own)) for name, own in given.items()}
+        of = {name: tuple(map(named_material, choices)) for name, choices in given.items()}
         for name in of:
             if name not in self.objects:
                 raise unknown_name("object", name, self.objects)
         every = [
-            tuple(dict.fromkeys((*of.get(name, ()), *(own[o] for own in self._materials))))
+            tuple(dict.fromkeys((*of.get(name, ()), *(choices[o] for choices in self._materials))))
             for o, name in enumerate(self.objects)
         ]
         most = max(map(len, every))
         kinds = [
             tuple(
-                replace(shape, material=own[min(v, len(own) - 1)])
-                for shape, own in zip(self._shapes, every, strict=True)
+                replace(shape, material=choices[min(v, len(choices) - 1)])
+                for shape, choices in zip(self._shapes, every, strict=True)
             )
             for v in range(most)
         ]
         fresh = not self._heat.touched
         rows = range(len(self._time)) if fresh else [row]
-        numbers = [[own.index(m) for own, m in zip(every, self._materials[w], strict=True)] for w in rows]
+        numbers = [
+            [choices.index(m) for choices, m in zip(every, self._materials[w], strict=True)] for w in rows
+        ]
         places = None
         if hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
             with suppress(InvalidValueError):  # a model that touch.prepare has not made
                 places = sensor_places(self._model, self._pads, self._shapes)
         tips, electronics = len(self._pads), self._electronics
-        own = slice(row * electronics.voltage.shape[1], None)
+        sensors = slice(row * electronics.voltage.shape[1], None)
         now = (
             None
             if fresh
             else (
-                electronics.filtered[own][:tips, 0],
-                electronics.last[own][:tips, 0],
+                electronics.filtered[sensors][:tips, 0],
+                electronics.last[sensors][:tips, 0],
                 electronics.voltage[row, :tips],
             )
         )
@@ -413,8 +415,8 @@ class ThermalTouch:
         reader.touches[:], reader.beside[:], reader.broken[:], reader.substeps = state.sums
         electronics.filtered[:], electronics.last[:], electronics.voltage[:] = state.signal
         electronics.pressed[:], electronics.off[:], self._taken[0] = state.period
-        for w, own in enumerate(state.generators):
-            electronics.noise.set_state(w, own)
+        for w, saved in enumerate(state.generators):
+            electronics.noise.set_state(w, saved)
 
     def _make(
         self, rows: Sequence[int], materials: dict[str, list[Material]], temperatures: dict[str, np.ndarray]
@@ -423,8 +425,8 @@ class ThermalTouch:
         if not materials:
             return
         names = self.objects
-        for name, own in temperatures.items():
-            self._first[rows, names.index(name)] = own
+        for name, value in temperatures.items():
+            self._first[rows, names.index(name)] = value
         for i, w in enumerate(rows):
             self._materials[w] = tuple(
                 materials[name][i] if name in materials else known
@@ -446,14 +448,14 @@ class ThermalTouch:
         count = len(self._time)
         if worlds is None:
             return list(range(count))
-        told = np.asarray(worlds)
-        if told.dtype == bool and told.shape == (count,):
-            return np.flatnonzero(told).tolist()
-        if told.size and (
-            told.ndim != 1 or told.dtype.kind not in "iu" or told.min() < 0 or told.max() >= count
+        given = np.asarray(worlds)
+        if given.dtype == bool and given.shape == (count,):
+            return np.flatnonzero(given).tolist()
+        if given.size and (
+            given.ndim != 1 or given.dtype.kind not in "iu" or given.min() < 0 or given.max() >= count
         ):
             raise InvalidValueError(f"worlds must be numbers from 0 to {count - 1} or ({count},) booleans")
-        return sorted(set(told.tolist()))
+        return sorted(set(given.tolist()))
 
     def _hear(self, record: mujoco.MjData | np.ndarray) -> TouchReading:
         assert self._sensors is not None
@@ -498,9 +500,9 @@ class ThermalTouch:
             self._fresh = False
         if not self._started:
             self._time[0], self._started = now - self._step, True
-        apart = (now - self._time.item()) / self._step
-        passed = round(apart)
-        if passed < 0 or abs(apart - passed) > _ON_TIME * max(passed, 1):
+        elapsed = (now - self._time.item()) / self._step
+        passed = round(elapsed)
+        if passed < 0 or abs(elapsed - passed) > _ON_TIME * max(passed, 1):
             raise InvalidValueError(
                 f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, steps of {self._step:g} s: "
                 "call touch.reset(data) after the simulation was reset, or touch.set_state for a saved one"
@@ -550,17 +552,17 @@ class ThermalTouch:
         )
         self._near, self._near_at = data, self._hearing.address
 
-    def _told(self, told: int) -> TouchReading:
-        """What is left to do where `hear` has told of anything."""
-        if told == BROKEN:
+    def _finish(self, heard: int) -> TouchReading:
+        """What is left to do where `hear` found something to do."""
+        if heard == BROKEN:
             raise broke_down(self._time.item())
-        if told == FULL:
+        if heard == FULL:
             self._sample()
             self._listen()
             return self._reading
-        if told & SPENT:
+        if heard & SPENT:
             self._electronics.noise.refill()
-        if told & DUE:
+        if heard & DUE:
             self._reading = self._read()
         return self._reading
 

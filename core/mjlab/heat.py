@@ -59,7 +59,7 @@ class WorldsHeat:
         self._boxes = as_like(np.array(boxes), like)  # (G, 3, 3), the box's axes in the geom's frame
         self._of_object = fixed.of_object
         self._uneven = (
-            fixed.own - fixed.mean
+            fixed.states_of - fixed.mean
         )  # (O, K), 1 at the states of an object beside its mean temperature's
         self._held = self.state.material < 0
         self._way = 0 * self.state.material

@@ -34,9 +34,9 @@ from ...thermal.contact import (
     bared,
     cylinder_footprint,
     even_patch,
+    face_joint,
     flat_footprint,
     footprint,
-    met,
     skinned,
     sphere_footprint,
     table_footprint,
@@ -117,7 +117,11 @@ class GraspBody:
     def joint(self) -> Joint:
         """The opening contact's faces: the lapped element or its skin on the object (T), or the element on the
         thermostat (O)."""
-        return joint(LAPPED_ALUMINA, THERMOSTAT_FACE) if self.mode == "O" else met(self.skin, self._surface)
+        return (
+            joint(LAPPED_ALUMINA, THERMOSTAT_FACE)
+            if self.mode == "O"
+            else face_joint(self.skin, self._surface)
+        )
 
     @cached_property
     def _surface(self) -> Surface:

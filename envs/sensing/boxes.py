@@ -135,11 +135,11 @@ class BoxHeat:
         if self._stack is None:
             return []
         count = strayed(self._rows, force, place, self._tips, self._stack.width, self._strayed)
-        asked: dict[tuple[int, int], list[int]] = {}
+        begun_at: dict[tuple[int, int], list[int]] = {}
         for row, fingertip in self._strayed[:count].tolist():
             begun = int((force[row, :, fingertip] > 0).argmax())
-            asked.setdefault((begun * samples // force.shape[1], row), []).append(fingertip)
-        return [(sample, row, fingertips) for (sample, row), fingertips in asked.items()]
+            begun_at.setdefault((begun * samples // force.shape[1], row), []).append(fingertip)
+        return [(sample, row, fingertips) for (sample, row), fingertips in begun_at.items()]
 
     def settle(
         self, strayed: Sequence[tuple[int, Sequence[int]]], middles: np.ndarray, state: np.ndarray
@@ -207,10 +207,10 @@ class BoxHeat:
 
     def carry(self, source: int, target: int, fingertip: int, state: np.ndarray) -> None:
         """The fingertip's field in state (B, n) goes from one row to another, with all its heat."""
-        own = self.fingertip(fingertip)
-        state[target, own] = state[source, own]
+        tip_states = self.fingertip(fingertip)
+        state[target, tip_states] = state[source, tip_states]
         elements = (self._element(row, fingertip) for row in (source, target))
-        self._keep_heat(state[target, own], *(fixed_tip_heat(self.tables, each) for each in elements))
+        self._keep_heat(state[target, tip_states], *(fixed_tip_heat(self.tables, each) for each in elements))
 
     def touched(self, row: int) -> Touched:
         """For set_touched."""
@@ -263,12 +263,12 @@ class BoxHeat:
 
     def _make(self, touched: Mapping[int, Touched]) -> None:
         """The tables of the rows' boxes and elements are those of these places."""
-        tables, asked = self.tables, {}
+        tables, box_touches = self.tables, {}
         for row, now in touched.items():
             if now != self._touched[row]:
                 self._prints[row] = self._pressed(row, now)
-                asked[row] = self._asked(row, now)
-        for row, found in zip(asked, _networks(list(asked.values())), strict=True):
+                box_touches[row] = self._box_touch(row, now)
+        for row, found in zip(box_touches, _networks(list(box_touches.values())), strict=True):
             set_body(tables, row, found, touched[row].numbers())
         for row, now in touched.items():
             self._set_contacts(row, now)
@@ -288,12 +288,12 @@ class BoxHeat:
             found.append(each or _print(body.material, size, place, behind, stack, shared))
         return tuple(found)
 
-    def _asked(self, row: int, touched: Touched) -> _Asked:
+    def _box_touch(self, row: int, touched: Touched) -> _BoxTouch:
         """The row's box as it is touched there."""
         body, film = self._bodies[row]
         prints = tuple(self._prints[row][number] for number in touched.numbers())
         under = sum(number >= 0 for number in touched.contacts)
-        return _Asked(body.material, body.spec.size, film, prints, under)
+        return _BoxTouch(body.material, body.spec.size, film, prints, under)
 
     def _set_contacts(self, row: int, touched: Touched) -> None:
         """The row's fingertips are on those places."""
@@ -384,7 +384,7 @@ def _element(one: Tip) -> np.ndarray:
     return tip_residues(one.side)
 
 
-class _Asked(NamedTuple):
+class _BoxTouch(NamedTuple):
     """A box of that size, in air of W/(m2 K), on whose first `touched` prints fingertips are."""
 
     material: Material
@@ -414,11 +414,11 @@ _made: dict[tuple, BodyResidues] = {}
 _making = Lock()
 
 
-def _networks(asked: Sequence[_Asked]) -> list[BodyResidues]:
+def _networks(box_touches: Sequence[_BoxTouch]) -> list[BodyResidues]:
     """Of each; the _KEPT that were made last are known."""
-    keys = [each.key() for each in asked]
+    keys = [each.key() for each in box_touches]
     found = {key: _made.get(key) for key in keys}
-    new = {key: each.box() for key, each in zip(keys, asked, strict=True) if found[key] is None}
+    new = {key: each.box() for key, each in zip(keys, box_touches, strict=True) if found[key] is None}
     if new:
         made = dict(zip(new, touched_boxes(list(new.values()), FIXED_LEVEL), strict=True))
         found.update(made)

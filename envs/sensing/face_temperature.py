@@ -74,14 +74,14 @@ class FaceTemperature:
         self._state = FaceTemperatureState(
             fields, surface, contact, np.zeros(each, bool), np.zeros(each, int)
         )
-        self._things: list[tuple[GraspBody, ...]] = [()] * num_envs
+        self._bodies: list[tuple[GraspBody, ...]] = [()] * num_envs
         self._fields: dict[tuple[int, int], FaceField] = {}  # by row and object, once it is touched
 
     def reset(self, rows: Sequence[int], scenes: Sequence[Sequence[GraspBody]]) -> None:
         """The rows start with new objects, every face as warm as its thermostat."""
-        for row, things in zip(rows, scenes, strict=True):
-            self._things[row] = tuple(things)
-            for number in range(len(things)):
+        for row, bodies in zip(rows, scenes, strict=True):
+            self._bodies[row] = tuple(bodies)
+            for number in range(len(bodies)):
                 self._fields.pop((row, number), None)
             state = self._state
             state.fields[row] = state.surface[row] = state.owner[row] = 0
@@ -105,7 +105,7 @@ class FaceTemperature:
         state.begun[:], state.owner[:] = begun, owners
         for row, tip in np.argwhere(begun).tolist():
             number = owners[row, tip]
-            body = self._things[row][number]
+            body = self._bodies[row][number]
             field = self._fields.get((row, number))
             if field is None:
                 field = self._fields[row, number] = self._field(body)
@@ -183,10 +183,10 @@ def _advance(law, pressure, on_face, flux, fields, surface, contact, rows, colum
             touches = cells[i, j] > _LEAST_PRESSURE * highest
             cells[i, j] = conductance(law, cells[i, j]) if touches else 0.0
     pressed = cells.copy()
-    if law.apart > 0.0:
+    if law.mean_gap > 0.0:
         _add_gas(law, pressure, cells)
     step_face(field, cells, flux, fields, surface, contact)
-    if law.apart > 0.0 and cells.max() > 0.0:
+    if law.mean_gap > 0.0 and cells.max() > 0.0:
         if law.modulus > 0.0 or pressed.max() == 0.0:
             contact[:] = cells
         else:
@@ -221,7 +221,7 @@ def _add_gas(law, pressure, cells):
                 continue
             off_y, off_z = (j + 0.5) * side - half - y, (i + 0.5) * side - half - z
             if line:
-                gas = beside_strip(square, law.apart, law.radius, side / 2, off_y) / side
+                gas = beside_strip(square, law.mean_gap, law.radius, side / 2, off_y) / side
             else:
-                gas = beside_ball(square, law.apart, law.radius, side / 2, off_y, off_z) / (side * side)
+                gas = beside_ball(square, law.mean_gap, law.radius, side / 2, off_y, off_z) / (side * side)
             cells[i, j] = share * cells[i, j] + law.gas * gas

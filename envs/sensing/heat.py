@@ -39,12 +39,12 @@ LEAST_DIFFERENCE = 12.0  # K for which the tolerance is meant at least
 @dataclass(frozen=True, slots=True)
 class HeatState:
     """Everything that the heat of some environments remembers; picklable. rows: their HEAT_ROW records. state (n, K).
-    things: each environment's object. places: where a box has been touched; the patches of another one that is touched
+    bodies: each environment's object. places: where a box has been touched; the patches of another one that is touched
     anywhere, and each fingertip's; None for a plate."""
 
     rows: np.ndarray
     state: np.ndarray
-    things: tuple[GraspBody, ...]
+    bodies: tuple[GraspBody, ...]
     places: tuple[Touched | tuple[tuple[SurfacePatch, ...], tuple[int, ...]] | None, ...]
 
 
@@ -97,7 +97,7 @@ class GraspHeat:
         self._boxes = BoxHeat(num_envs, tolerance, dt)
         self._fingertips = 2
         # By row, once it has been reset.
-        self._things: dict[int, GraspBody] = {}
+        self._bodies: dict[int, GraspBody] = {}
         self._demands: dict[int, Demand] = {}
         self._films: dict[int, float] = {}
         self._touches: dict[int, Touches] = {}
@@ -110,7 +110,7 @@ class GraspHeat:
     def reset(
         self,
         rows: Sequence[int],
-        things: Sequence[GraspBody],
+        bodies: Sequence[GraspBody],
         sensor_temperatures: np.ndarray | None = None,
         *,
         waiting: Collection[int] = (),
@@ -121,7 +121,7 @@ class GraspHeat:
         temperatures = np.broadcast_to(self._sensor_temperature, (len(rows), 2))
         if sensor_temperatures is not None:
             temperatures = sensor_temperatures
-        for row, body, temperature in zip(rows, things, temperatures, strict=True):
+        for row, body, temperature in zip(rows, bodies, temperatures, strict=True):
             self._place(row, body, temperature)
             fresh = self._rows[row]
             fresh["sensor_temperature"] = temperature
@@ -196,16 +196,16 @@ class GraspHeat:
         change = celsius - self._rows["sensor_temperature"] - self._rows["offset"]
         self._rows["offset"] += change
         tips, boxed = self._fingertips, self._rows["boxed"] > 0
-        own = np.flatnonzero(~boxed)
-        if len(own) and self._networks.systems:
+        plates = np.flatnonzero(~boxed)
+        if len(plates) and self._networks.systems:
             shifted, _ = shift_thermostats(
                 self._networks.tables(tips),
-                self._rows["network"][own],
-                self._state[own, : self._networks.states],
-                self._rows["difference"][own, :tips],
-                change[own, :tips],
+                self._rows["network"][plates],
+                self._state[plates, : self._networks.states],
+                self._rows["difference"][plates, :tips],
+                change[plates, :tips],
             )
-            self._state[own, : self._networks.states] = shifted
+            self._state[plates, : self._networks.states] = shifted
         if boxed.any():
             self._boxes.shift(np.flatnonzero(boxed), self._state, change)
         self._rows["difference"][:, :tips] += change[:, :tips]
@@ -244,9 +244,9 @@ class GraspHeat:
     def state(self, rows: Sequence[int]) -> HeatState:
         """A copy of what the rows remember."""
         chosen = list(rows)
-        things = tuple(self._things[row] for row in chosen)
+        bodies = tuple(self._bodies[row] for row in chosen)
         places = tuple(self._places(row) for row in chosen)
-        return HeatState(self._rows[chosen], self._state[chosen], things, places)
+        return HeatState(self._rows[chosen], self._state[chosen], bodies, places)
 
     def _places(self, row: int) -> Touched | tuple[tuple[SurfacePatch, ...], tuple[int, ...]] | None:
         if self._rows["boxed"][row]:
@@ -258,7 +258,7 @@ class GraspHeat:
         """Puts the rows into a state taken by `state`."""
         touched: dict[int, Touched] = {}
         for k, row in enumerate(rows):
-            self._place(row, state.things[k], state.rows["sensor_temperature"][k])
+            self._place(row, state.bodies[k], state.rows["sensor_temperature"][k])
             self._build(row)
             places = state.places[k]
             if isinstance(places, Touched):
@@ -280,7 +280,7 @@ class GraspHeat:
         return self._rows["sensor_temperature"]
 
     def _place(self, row: int, body: GraspBody, sensor_temperature: np.ndarray) -> None:
-        self._things[row] = body
+        self._bodies[row] = body
         self._laws[row] = body.law
         self._touches.pop(row, None)
         inside = body.spec.reservoir
@@ -309,12 +309,12 @@ class GraspHeat:
         """Makes the row's network, all at its first temperature."""
         self._waiting.discard(row)
         self._state[row] = 0.0
-        self._fingertips = self._things[row].fingertips
+        self._fingertips = self._bodies[row].fingertips
         if self._rows["boxed"][row]:
             self._box(row)
             return
         self._boxes.stop(row)
-        body, demand = self._things[row], self._demands[row]
+        body, demand = self._bodies[row], self._demands[row]
         geometry, capacity = body.geometry, body.heat_capacity
         touches = None
         if body.solid is not None:
@@ -338,7 +338,7 @@ class GraspHeat:
 
     def _box(self, row: int) -> None:
         """The row is a box, all at its first temperature and touched nowhere yet."""
-        body, record = self._things[row], self._rows[row]
+        body, record = self._bodies[row], self._rows[row]
         self._boxes.start(row, body, self._air)
         record["lasting"], record["fed"], record["network"] = body.anywhere, 0, 0
         record["capacity"] = body.box_capacity
@@ -348,7 +348,7 @@ class GraspHeat:
         """Number of the row's network."""
         film, touches = self._films[row], self._touches.get(row)
         if touches is None:
-            number = self._networks.of_plate(self._things[row].geometry, self._demands[row], film)
+            number = self._networks.of_plate(self._bodies[row].geometry, self._demands[row], film)
         else:
             number = self._networks.of_touches(touches, film, float(self._rows["air"][row]))
         self._make_room()
@@ -375,9 +375,9 @@ class GraspHeat:
         away = np.sqrt(((place[rows] - record["anchor"]) ** 2).sum(axis=2))
         elsewhere = (away > record["reach"][:, None]) | (record["known"] == 0)
         pressed = force[rows] > 0
-        asked = elsewhere & pressed.any(axis=1)
+        settling = elsewhere & pressed.any(axis=1)
         sample = pressed.argmax(axis=1) * self._samples // force.shape[1]
-        tips = np.argwhere(asked[:, : self._fingertips]).tolist()
+        tips = np.argwhere(settling[:, : self._fingertips]).tolist()
         return [(int(sample[k, tip]), int(rows[k]), tip) for k, tip in tips]
 
     def _touch(self, row: int, touches: Touches) -> None:

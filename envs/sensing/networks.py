@@ -65,7 +65,7 @@ class HeatNetworks:
                 orders = replace(system.orders, sensor=self._least_sensor_states)
                 system = network_of(geometry, orders, cache=self._cache)
             self._add(key, system, film, f"network:{system.orders}")
-        return self._asked(key)
+        return self._mark_used(key)
 
     def of_touches(self, touches: Touches, film: float, air: float) -> int:
         """Number of that of an object that is touched anywhere. air: W/K, of one whose contents feed its walls."""
@@ -76,7 +76,7 @@ class HeatNetworks:
             number = self._add(key, system, film, f"body:{system.orders}")
             if filled is not None:
                 self._turns[number] = filled.turn
-        return self._asked(key)
+        return self._mark_used(key)
 
     def field_carried(self, old: int, new: int, field: np.ndarray) -> np.ndarray:
         """Matrix that takes an object's field from one network to another, and what fills it along. field: the same of
@@ -107,7 +107,7 @@ class HeatNetworks:
             )
         return self._carries[old, new]
 
-    def _asked(self, key: object) -> int:
+    def _mark_used(self, key: object) -> int:
         """Its number; it is now the one that was asked for last."""
         number = self._numbers[key] = self._numbers.pop(key)
         return number

@@ -77,12 +77,12 @@ def opposite(place: Place, places: Sequence[Place], width: float) -> Place | Non
     """The one on the face behind that a sensor of that width at the place is most nearly over; None for none."""
     behind = [other for other in places if other.face == (place.face ^ 1)]
 
-    def apart(other: Place) -> float:
+    def distance(other: Place) -> float:
         return max(abs(a - b) for a, b in zip(place.middle, other.middle, strict=True))
 
     # of two as near, the same one in whatever order they come
-    nearest = min(behind, key=lambda other: (apart(other), other.middle), default=None)
-    return nearest if nearest is not None and apart(nearest) < width else None
+    nearest = min(behind, key=lambda other: (distance(other), other.middle), default=None)
+    return nearest if nearest is not None and distance(nearest) < width else None
 
 
 @dataclass(frozen=True, slots=True)

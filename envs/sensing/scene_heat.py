@@ -64,13 +64,13 @@ class SceneHeat:
     ) -> None:
         """The rows start with new objects, O each. sensor_temperatures: (n, F) °C of the thermostats. waiting: networks
         of all but the first are made when they are touched."""
-        things = [thing for scene in scenes for thing in scene]
+        bodies = [body for scene in scenes for body in scene]
         every = self._of(rows)
         later = [row for row in every if waiting and row % self._objects]
         temperatures = np.repeat(sensor_temperatures, self._objects, axis=0)
-        self._rows.reset(every, things, temperatures, waiting=later)
+        self._rows.reset(every, bodies, temperatures, waiting=later)
         self._owner[list(rows)] = 0
-        self._tips = things[0].fingertips
+        self._tips = bodies[0].fingertips
 
     def rung(self, row: int) -> tuple[str, ...]:
         """The model that computes each object's heat."""
@@ -85,11 +85,11 @@ class SceneHeat:
         begins, ends = np.arange(substeps), np.arange(substeps) + 1
         begins, ends = begins * self._samples // substeps, (ends * self._samples - 1) // substeps
         number = np.arange(count)[:, None, None]
-        own = (owners[:, None, begins] == number) & (owners[:, None, ends] == number)
+        owned = (owners[:, None, begins] == number) & (owners[:, None, ends] == number)
         self._owner = owners[:, -1]
         total = count * len(force)
         step = self._rows.advance(
-            np.where(own, force, 0.0).reshape(total, *force.shape[2:]),
+            np.where(owned, force, 0.0).reshape(total, *force.shape[2:]),
             place.reshape(total, *place.shape[2:]),
             carried,
         )
@@ -124,7 +124,7 @@ class SceneHeat:
         """Puts the rows into a state taken by `state`."""
         self._rows.set_state(self._of(rows), state.rows)
         self._owner[list(rows)] = state.owner
-        self._tips = state.rows.things[0].fingertips
+        self._tips = state.rows.bodies[0].fingertips
 
     @property
     def sensor_temperatures(self) -> np.ndarray:

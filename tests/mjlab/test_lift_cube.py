@@ -172,9 +172,9 @@ def test_it_is_the_heat_of_the_cpu_environments(held: Held) -> None:
     )
     material = np.arange(WORLDS)[:, None] % 2
     for contacts, drop in zip(held.contacts, held.drop, strict=True):
-        felt = fixed.reads.felt(contacts, material, fixed.of_object)
-        touches[:, :, :1, CONDUCTANCE], touches[:, :, :1, AREA] = felt.conductance, felt.area
-        touches[:, :, :1, LENGTH], touches[:, :, :1, CLOSED] = felt.area * felt.length, felt.area > 0
+        step = fixed.reads.of_step(contacts, material, fixed.of_object)
+        touches[:, :, :1, CONDUCTANCE], touches[:, :, :1, AREA] = step.conductance, step.area
+        touches[:, :, :1, LENGTH], touches[:, :, :1, CLOSED] = step.area * step.length, step.area > 0
         heat.advance(touches, 1)
         np.testing.assert_allclose(drop, heat.drop, rtol=0, atol=1e-4)
 
@@ -237,7 +237,7 @@ def test_an_object_that_is_grasped_another_way_keeps_its_mean_temperature() -> N
         heat.advance(pressed(0.0, 10.0), glass, 0.0)
     assert heat.state.material.item() == 0
     heat.advance(pressed(0.0, 0.0), glass, 0.0)
-    uneven = (fixed.own - fixed.mean)[0]
+    uneven = (fixed.states_of - fixed.mean)[0]
     assert (heat.state.heat * uneven).abs().max() > 0.01
     even = heat.state._replace(heat=heat.state.heat * (1 - uneven), material=glass + 1)
     _, wanted = fixed.advance(even, pressed(np.pi / 2, 10.0))

@@ -45,12 +45,14 @@ class TipRows:
 def carry_matrix(source: TipRows, target: TipRows) -> np.ndarray:
     """(s of target, s of source): a fingertip's states on the target's basis from those on the source's. The element's
     stored heat stays the same to round-off."""
-    heat, own_heat = source.heat, target.heat
+    heat, target_heat = source.heat, target.heat
     # The least field with that heat, and what may be added to it without changing the heat.
-    least = np.outer(own_heat, heat) / (own_heat @ own_heat)
-    free = np.linalg.svd(own_heat[None])[2][1:].T
-    own_future = target.future
-    added = np.linalg.lstsq(own_future @ free, source.future - own_future @ least, rcond=_LEAST_WEIGHT)[0]
+    least = np.outer(target_heat, heat) / (target_heat @ target_heat)
+    free = np.linalg.svd(target_heat[None])[2][1:].T
+    target_future = target.future
+    added = np.linalg.lstsq(target_future @ free, source.future - target_future @ least, rcond=_LEAST_WEIGHT)[
+        0
+    ]
     return least + free @ added
 
 
@@ -66,11 +68,11 @@ def carry_steps(systems: Sequence[ContactSystem], states: int) -> tuple[np.ndarr
     if shared == 0:
         return leave, enter
     for i, system in enumerate(systems):
-        own, first = system.orders.sensor, len(system.rates) - fingertips * system.orders.sensor
-        here, there = tip_rows(system), tip_rows(between)
-        out, back = carry_matrix(here, there), carry_matrix(there, here)
+        sensor_states, first = system.orders.sensor, len(system.rates) - fingertips * system.orders.sensor
+        here, there_rows = tip_rows(system), tip_rows(between)
+        out, back = carry_matrix(here, there_rows), carry_matrix(there_rows, here)
         for f in range(fingertips):
-            of_tip = slice(first + f * own, first + (f + 1) * own)
+            of_tip = slice(first + f * sensor_states, first + (f + 1) * sensor_states)
             of_body = slice(f * shared, (f + 1) * shared)
             leave[i, of_tip, of_body], enter[i, of_body, of_tip] = out.T, back.T
     return leave, enter
@@ -82,7 +84,10 @@ def tip_rows(system: ContactSystem) -> TipRows:
     if states == 0:
         raise InvalidValueError("in O mode the elements stay on their objects: there is nothing to carry")
     first = system.orders.even + (system.orders.odd or 0)
-    own = slice(first, first + states)
+    tip_states = slice(first, first + states)
     return TipRows(
-        system.rates[own], system.element_heat[0, own], system.drop[0, own], system.sensor_surface[0, own]
+        system.rates[tip_states],
+        system.element_heat[0, tip_states],
+        system.drop[0, tip_states],
+        system.sensor_surface[0, tip_states],
     )

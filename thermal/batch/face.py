@@ -44,14 +44,14 @@ _RESIDUAL = 1e-6  # of the flux
 class FaceField(NamedTuple):
     """The two sides of a face for steps of one length: first the element, then the object. waves: (P, N) means over the
     cells of the cosines, of mean square 1. decay, gain: (2, P, P, K) of the states over a step, and their K per W/m2 of
-    flux during it. at_once: (2, P, P) K m2/W, what the flux of a step has done at its end. own: K m2/W, of a cell's
-    flux on its own temperature, both sides together, the mean over the cells."""
+    flux during it. at_once: (2, P, P) K m2/W, what the flux of a step has done at its end. self_impedance: K m2/W, of a
+    cell's flux on its own temperature, both sides together, the mean over the cells."""
 
     waves: np.ndarray
     decay: np.ndarray
     gain: np.ndarray
     at_once: np.ndarray
-    own: float
+    self_impedance: float
 
 
 class FaceState(NamedTuple):
@@ -75,8 +75,8 @@ def face_field(stack: SensorStack, behind: Layer, dt: float) -> FaceField:
     at_once = gain.sum(axis=-1) + direct
     waves = cosine_means(CELLS)
     squares = waves**2
-    own = float((squares.T @ at_once.sum(axis=0) @ squares).mean()) / CELLS**2
-    return FaceField(waves, decay, gain, at_once, own)
+    self_impedance = float((squares.T @ at_once.sum(axis=0) @ squares).mean()) / CELLS**2
+    return FaceField(waves, decay, gain, at_once, self_impedance)
 
 
 def face_state() -> FaceState:
@@ -130,7 +130,7 @@ def _reduced(layers: tuple[Layer, ...], far: Far, kappa2: float) -> tuple[np.nda
 def step_face(field, conductance, flux, fields, surface, contact):
     """One step of a face, in place in a FaceState's arrays. conductance: (N, N) W/(m2 K) of the cells, 0 where apart.
     flux: W/m2 out of the face, its mean over the face and the step."""
-    waves, decay, gain, at_once, own = field
+    waves, decay, gain, at_once, self_impedance = field
     cosines, cells = waves.shape
     through = np.zeros((cells, cells))
     difference = np.zeros((cosines, cosines))
@@ -150,8 +150,8 @@ def step_face(field, conductance, flux, fields, surface, contact):
         drive = np.zeros((cells, cells))
         _back(waves, waves, difference, drive)
         one, other = np.zeros((cells, cells)), np.zeros((cells, cells))
-        _flux_of(conductance, waves, at_once, own, np.ones((cells, cells)), one)
-        _flux_of(conductance, waves, at_once, own, drive, other)
+        _flux_of(conductance, waves, at_once, self_impedance, np.ones((cells, cells)), one)
+        _flux_of(conductance, waves, at_once, self_impedance, drive, other)
         of_one, of_other = one.sum(), other.sum()
         share = (flux * cells * cells - of_other) / of_one
         for i in range(cells):
@@ -189,7 +189,7 @@ def face_means(waves, surface, contact, rows, columns):
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _flux_of(conductance, waves, at_once, own, drive, flux):
+def _flux_of(conductance, waves, at_once, self_impedance, drive, flux):
     """Solves flux / conductance + (what flux does at once) = drive in the cells that touch, by conjugate gradients."""
     cells = len(drive)
     cosine_flux = np.zeros(at_once.shape[1:])
@@ -200,7 +200,7 @@ def _flux_of(conductance, waves, at_once, own, drive, flux):
         for j in range(cells):
             if conductance[i, j] > 0.0:
                 residual[i, j] = drive[i, j]
-                along[i, j] = drive[i, j] / (1 / conductance[i, j] + own)
+                along[i, j] = drive[i, j] / (1 / conductance[i, j] + self_impedance)
                 size += residual[i, j] * along[i, j]
     first = size
     for _ in range(_ITERATIONS):
@@ -224,12 +224,14 @@ def _flux_of(conductance, waves, at_once, own, drive, flux):
                 if conductance[i, j] > 0.0:
                     flux[i, j] += length * along[i, j]
                     residual[i, j] -= length * warmed[i, j]
-                    size += residual[i, j] ** 2 / (1 / conductance[i, j] + own)
+                    size += residual[i, j] ** 2 / (1 / conductance[i, j] + self_impedance)
         turn = size / before
         for i in range(cells):
             for j in range(cells):
                 if conductance[i, j] > 0.0:
-                    along[i, j] = residual[i, j] / (1 / conductance[i, j] + own) + turn * along[i, j]
+                    along[i, j] = (
+                        residual[i, j] / (1 / conductance[i, j] + self_impedance) + turn * along[i, j]
+                    )
 
 
 @njit(cache=True, inner=True, error_model="numpy")

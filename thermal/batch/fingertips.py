@@ -29,9 +29,9 @@ from ..contact import (
     Pad,
     Surface,
     contact_conductance,
+    face_joint,
     flat_contact,
     joint,
-    met,
     skinned,
     stack_joints,
 )
@@ -125,13 +125,13 @@ class ArrayFingertips:
         Above MOST_FORCE the law of spots that touch means nothing any more: a larger force counts as that one."""
         chosen = self._object(which, force.shape[0])
 
-        def own(table: Array) -> Array:
+        def converted(table: Array) -> Array:
             """An entry a row, with axes of length 1 behind the rows' for the force's others."""
             entry = table[chosen]
             return entry[(...,) + (None,) * (force.ndim - entry.ndim)]
 
-        law = Joint(**{name: own(getattr(self.contact, name)) for name in _LAW})
-        area, share = own(self.area), own(self.share)
+        law = Joint(**{name: converted(getattr(self.contact, name)) for name in _LAW})
+        area, share = converted(self.area), converted(self.share)
         xp = namespace_of(force)
         touching, known = force > 0, xp.isfinite(force)
         # A contact apart is evaluated at 1 N and masked: its gradient is 0, where that of the law is infinite.
@@ -283,4 +283,4 @@ def _contact(
     pad = skinned(Pad(face=stack.width), skin)
     if mode == "O":  # the thermostat meets the element that is glued to the object
         return joint(LAPPED_ALUMINA, THERMOSTAT_FACE), flat_contact(pad, 1.0, (stack.width, stack.width))
-    return met(skin, Surface.of(of)), flat_contact(pad, 1.0, size[:2])
+    return face_joint(skin, Surface.of(of)), flat_contact(pad, 1.0, size[:2])

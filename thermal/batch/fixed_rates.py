@@ -135,10 +135,10 @@ def fixed_heat(tables: FixedTables, row: int, state: np.ndarray) -> float:
     """J in the row's box above its first temperature; state (n,)."""
     count, ports = tables.rates.shape[1], tables.places * tables.patterns
     rows = tables.body[row, ports * ports :]
-    own = state[1 : 1 + count * (1 + ports)].reshape(1 + ports, count)
+    field = state[1 : 1 + count * (1 + ports)].reshape(1 + ports, count)
     if not tables.links[row, AIRED]:
         return float(tables.slow[row, HELD] * state[0])
-    total = tables.slow[row, HELD] * state[0] + (rows[-1] * own[0]).sum() + (rows[:-1] * own[1:]).sum()
+    total = tables.slow[row, HELD] * state[0] + (rows[-1] * field[0]).sum() + (rows[:-1] * field[1:]).sum()
     return float(total)
 
 
@@ -301,7 +301,7 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
     slope = -slow[0] * (x[0] - slow[HELD] * around)
     before = _held(slow, body, heats, still, x, used, aired) if aired else 0.0
 
-    met = 0
+    touching = 0
     for f in range(fingertips):
         reading.flow[b, k, f] = 0.0
         if conductance[f] <= 0.0:
@@ -310,32 +310,32 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
         tip = first_tip + f * of_tip
         for p in range(patterns):
             j = index[WHERE + f] * patterns + p
-            apart = 0.0
+            difference_left = 0.0
             for r in range(RATES):
-                moved[met, r] = -tips[element, square + patterns + p, r] * x[tip + lasting + r]
+                moved[touching, r] = -tips[element, square + patterns + p, r] * x[tip + lasting + r]
             if aired:
                 for r in range(RATES):
-                    moved[met, r] += body[heats + j, r] * (x[z + r] - around)
-                    apart += body[heats + j, r] * around
+                    moved[touching, r] += body[heats + j, r] * (x[z + r] - around)
+                    difference_left += body[heats + j, r] * around
             for other in range(used):
                 start = fields + other * count
                 for r in range(RATES):
-                    moved[met, r] += body[j * most + other, r] * x[start + r]
+                    moved[touching, r] += body[j * most + other, r] * x[start + r]
             for other in range(patterns):
                 start = tip + lasting + (1 + other) * count
                 for r in range(RATES):
-                    moved[met, r] -= tips[element, p * patterns + other, r] * x[start + r]
+                    moved[touching, r] -= tips[element, p * patterns + other, r] * x[start + r]
             for r in range(RATES):
-                apart += moved[met, r]
-                moved[met, r] *= -rates[0, r]
-            apart += slow[HELD + 1 + j] * x[0]
+                difference_left += moved[touching, r]
+                moved[touching, r] *= -rates[0, r]
+            difference_left += slow[HELD + 1 + j] * x[0]
             if p == 0:
-                apart -= difference[f]
+                difference_left -= difference[f]
                 for r in range(POLES_KEPT):
-                    apart -= poles[_PORT, r] * x[tip + r]
-            flow0[met] = -apart / dt
-            weight[met] = 1 / (dt * conductance[f])
-            met += 1
+                    difference_left -= poles[_PORT, r] * x[tip + r]
+            flow0[touching] = -difference_left / dt
+            weight[touching] = 1 / (dt * conductance[f])
+            touching += 1
 
     a = 0
     for f in range(fingertips):
@@ -367,7 +367,7 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
             for q in range(LANES):
                 matrix[a, a, 0, q] += weight[a]
             a += 1
-    _solve_symmetric(matrix, flows, factors, met)
+    _solve_symmetric(matrix, flows, factors, touching)
 
     for r in range(RATES):
         x[z + r] = around + rates[_FADING, r] * (x[z + r] - around)

@@ -150,9 +150,9 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
         raise InvalidValueError("systems of one batch must have the same number of fingertips")
     count, fingertips, pairs = len(systems), systems[0].geometry.fingertips, len(POLES)
     sizes = np.empty((count, 5), np.int64)
-    for own, s in zip(sizes, systems, strict=True):
+    for entry, s in zip(sizes, systems, strict=True):
         states, sensor_states = len(s.rates), s.orders.sensor
-        own[:] = states, states - fingertips * sensor_states, sensor_states, s.modes, s.mean
+        entry[:] = states, states - fingertips * sensor_states, sensor_states, s.modes, s.mean
     k, m = int(sizes[:, 0].max()), int(sizes[:, 3].max()) * fingertips
     rows = np.zeros((count, TIPPED + 4 * fingertips + 2 * pairs + m, k))
     tables = HeatTables(dt, sizes, rows, np.zeros((count, pairs, m, m), complex))

@@ -51,35 +51,41 @@ def array_tables(tables: HeatTables, like: Array) -> ArrayTables:
     return ArrayTables(*(as_like(np.stack(arrays), like) for arrays in zip(*networks, strict=True)))
 
 
-def _network(own: HeatTables, most: int) -> tuple[np.ndarray, ...]:
+def _network(network: HeatTables, most: int) -> tuple[np.ndarray, ...]:
     """The tables of one network, in the order of ArrayTables. most: modes of the largest network."""
-    fingertips, states = own.drop.shape
-    modes, pairs, dt = int(own.modes), len(POLES), own.dt
+    fingertips, states = network.drop.shape
+    modes, pairs, dt = int(network.modes), len(POLES), network.dt
     # a contact's ports begin at f P whatever the network's own number of modes
     place = np.concatenate([f * most + np.arange(modes) for f in range(fingertips)])
     count = fingertips * most
     ports = np.zeros((count, states))
-    ports[place] = own.ports[: fingertips * modes]
+    ports[place] = network.ports[: fingertips * modes]
     gram = np.zeros((pairs, count, count), complex)
-    gram[:, place[:, None], place] = own.gram[:, : fingertips * modes, : fingertips * modes]
-    scale = own.scale_real + 1j * own.scale_imag  # (Q, K)
+    gram[:, place[:, None], place] = network.gram[:, : fingertips * modes, : fingertips * modes]
+    scale = network.scale_real + 1j * network.scale_imag  # (Q, K)
     lags = WEIGHTS / POLES
 
     seen = np.einsum("q,qk,jk->kjq", POLES, scale, ports)
-    lost = own.air_loss * (1 + 2 * dt * own.rates * np.real(lags @ scale))
+    lost = network.air_loss * (1 + 2 * dt * network.rates * np.real(lags @ scale))
     hear = np.concatenate((_parts(seen, 1).reshape(states, -1), lost[:, None]), axis=1)
     moved = -2 * dt * np.einsum("q,qk,jk->jqk", WEIGHTS, scale, ports)
     first = np.zeros((fingertips, count))
     first[np.arange(fingertips), np.arange(fingertips) * most] = 1.0
     flow = -2 * np.einsum("q,fj->jqf", lags, first)
-    loss = -2 * dt * np.einsum("q,qk,jk,k->jq", lags, scale, ports, own.air_loss)[..., None]
+    loss = -2 * dt * np.einsum("q,qk,jk,k->jq", lags, scale, ports, network.air_loss)[..., None]
     pushed = np.concatenate((moved, flow, loss), axis=-1)
-    rows = (own.drop, own.element_heat, own.sensor_surface, own.object_surface, own.object_heat[None])
+    rows = (
+        network.drop,
+        network.element_heat,
+        network.sensor_surface,
+        network.object_surface,
+        network.object_heat[None],
+    )
     settled = np.ones(states)
-    settled[: own.object_states] = 0.0
-    settled[own.mean] = 1.0
+    settled[: network.object_states] = 0.0
+    settled[network.mean] = 1.0
     return (
-        2 * dt * own.rates * np.real(WEIGHTS @ scale),
+        2 * dt * network.rates * np.real(WEIGHTS @ scale),
         hear,
         dt * _parts(gram.transpose(1, 2, 0), 0),
         np.stack((np.real(pushed), -np.imag(pushed))),

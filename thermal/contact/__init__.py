@@ -13,7 +13,7 @@ from .curved_table import (
     curved_contact,
     curved_table,
 )
-from .fingertip import met, skinned, touching
+from .fingertip import face_joint, skinned, touching
 from .footprint import (
     FOOTPRINT_LAW,
     TABLE_FORCES,
@@ -108,7 +108,7 @@ __all__ = [
     "footprint",
     "gas_conduction",
     "joint",
-    "met",
+    "face_joint",
     "rigid_cylinder",
     "rigid_sphere",
     "skinned",

@@ -49,11 +49,11 @@ class ArrayLaws(NamedTuple):
 
 def array_laws(records: np.ndarray, like: Array) -> ArrayLaws:
     """CONTACT_LAW records in the kind, dtype and device of the array `like`, which holds floating-point numbers."""
-    own = {name: records[name] for name in ArrayLaws._fields if name in (records.dtype.names or ())}
-    own["select"] = np.eye(3)[records["across"]]
-    own["cylinder"] = (records["shape"] == CYLINDER).astype(float)
-    own["follows"] = (records["size"][..., 0] > 0).astype(float)
-    return ArrayLaws(*(as_like(own[name], like) for name in ArrayLaws._fields))
+    columns = {name: records[name] for name in ArrayLaws._fields if name in (records.dtype.names or ())}
+    columns["select"] = np.eye(3)[records["across"]]
+    columns["cylinder"] = (records["shape"] == CYLINDER).astype(float)
+    columns["follows"] = (records["size"][..., 0] > 0).astype(float)
+    return ArrayLaws(*(as_like(columns[name], like) for name in ArrayLaws._fields))
 
 
 def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, Array]:

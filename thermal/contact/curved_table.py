@@ -18,7 +18,7 @@ from thermograsp.compiled import njit
 from ..matter import Material, Skin
 from ..numerics import Array, as_integers, namespace_of
 from .area import Pad
-from .fingertip import met, skinned, touching
+from .fingertip import face_joint, skinned, touching
 from .footprint import bare_footprint, cylinder_footprint, sphere_footprint
 from .law import CYLINDER
 from .rough_faces import Surface
@@ -45,9 +45,9 @@ def curved_table(
     if skin is None:
         law = bare_footprint(pad, surface, radius, length)
     elif length is None:
-        law = sphere_footprint(skinned(pad, skin), met(skin, surface), radius)
+        law = sphere_footprint(skinned(pad, skin), face_joint(skin, surface), radius)
     else:
-        law = cylinder_footprint(skinned(pad, skin), met(skin, surface), radius, length)
+        law = cylinder_footprint(skinned(pad, skin), face_joint(skin, surface), radius, length)
     aside = _aside(pad)
     along = aside if length is None else _along(pad, length)
     table = np.empty(CURVED_TABLE)

@@ -14,8 +14,8 @@ def skinned(pad: Pad, skin: Skin | None) -> Pad:
     which is rigid. Without a skin the pad itself, whose springs are the same all over."""
     if skin is None:
         return pad
-    own = pad.foundation_modulus / pad.thickness
-    softer = skin.stiffness / (skin.stiffness + own)
+    pad_stiffness = pad.foundation_modulus / pad.thickness
+    softer = skin.stiffness / (skin.stiffness + pad_stiffness)
     return replace(pad, youngs_modulus=softer * pad.youngs_modulus, face_stiffness=skin.stiffness)
 
 
@@ -24,6 +24,6 @@ def touching(skin: Skin | None) -> Surface:
     return LAPPED_ALUMINA if skin is None else Surface.of(skin.made_of)
 
 
-def met(skin: Skin | None, other: Surface) -> Joint:
+def face_joint(skin: Skin | None, other: Surface) -> Joint:
     """The faces of a fingertip and of what it touches. Under a skin spots conduct no more than at full contact."""
     return joint(touching(skin), other, full_contact=skin is not None)

@@ -41,7 +41,7 @@ FOOTPRINT_LAW = np.dtype(
         ("length", "f8"),
         # of curved bodies: radius m, gap m of faces that touch without force, the temperature jump with it
         ("radius", "f8"),
-        ("apart", "f8"),
+        ("mean_gap", "f8"),
         # on a bare face: Hertz's modulus Pa, 0 on springs; m K/W, a disc's constriction times its radius
         ("modulus", "f8"),
         ("constriction", "f8"),
@@ -64,13 +64,13 @@ def flat_footprint(
 
 def cylinder_footprint(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
     """The law of a cylinder along z of that radius and length m; see area.cylinder_contact."""
-    beside = {"radius": radius, "apart": _apart(joint)}
+    beside = {"radius": radius, "mean_gap": _mean_gap(joint)}
     return _followed(cylinder_law(pad, joint, radius, length), length=length, **beside)
 
 
 def sphere_footprint(pad: Pad, joint: Joint, radius: float) -> np.void:
     """The law of a sphere of that radius m; see area.sphere_contact."""
-    return _followed(sphere_law(pad, joint, radius), radius=radius, apart=_apart(joint))
+    return _followed(sphere_law(pad, joint, radius), radius=radius, mean_gap=_mean_gap(joint))
 
 
 def bare_footprint(
@@ -111,7 +111,7 @@ def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:
     return law
 
 
-def _apart(joint: Joint) -> float:
+def _mean_gap(joint: Joint) -> float:
     """m of gas between faces that touch without force, the temperature jump with it; 0 in vacuum."""
     if not joint.gas_conductivity:
         return 0.0
@@ -142,14 +142,14 @@ def conduction(law, force, place):
     """(area m2 on the face, W/K that it conducts, gas beside it with it) at a normal force N > 0 on the pad; see
     footprint. Gas conducts where nothing on the face touches, too."""
     area, load, square = _touched(law, force, place)
-    gas = _beside(law, square, place) if law.apart > 0.0 else 0.0
+    gas = _beside(law, square, place) if law.mean_gap > 0.0 else 0.0
     return area, solid_conduction(law, area, load) + gas
 
 
 @njit(cache=True, error_model="numpy")
 def gas_conduction(law, force, place):
     """W/K of the gas beside the contact; see conduction."""
-    if law.apart == 0.0:
+    if law.mean_gap == 0.0:
         return 0.0
     return _beside(law, _touched(law, force, place)[2], place)
 
@@ -159,15 +159,15 @@ def _beside(law, square, place):
     """W/K of the gas beside a curved contact, whose half width has that square m2; 0 beside others."""
     off = math.sqrt(place[0] * place[0] + place[1] * place[1])
     if law.shape == SPHERE:
-        wedge = beside_ball(square, law.apart, law.radius, law.half_face, off, place[2])
+        wedge = beside_ball(square, law.mean_gap, law.radius, law.half_face, off, place[2])
         if law.modulus > 0.0 and square > 0.0:
             on_face, _ = disc_on_face(square, law.half_face, off, place[2])
-            more = _WEDGE * math.log1p(square / (2 * law.radius * law.apart))
+            more = _WEDGE * math.log1p(square / (2 * law.radius * law.mean_gap))
             wedge += 2 * math.pi * law.radius * on_face * more
         return law.gas * wedge
     if law.shape == CYLINDER:
         along = _common(law.half_face, law.length / 2, place[2])
-        return law.gas * along * beside_strip(square, law.apart, law.radius, law.half_face, off)
+        return law.gas * along * beside_strip(square, law.mean_gap, law.radius, law.half_face, off)
     return 0.0
 
 

@@ -23,27 +23,27 @@ _NODES, _WEIGHTS = (_PLACES + 1) / 2, _SHARES / 2
 
 
 @njit(cache=True, error_model="numpy")
-def beside_ball(square, apart, radius, half, y, z):
+def beside_ball(square, mean_gap, radius, half, y, z):
     """m, over a square of half width `half` m whose middle is y, z from the crown: times k/1, W/K.
 
-    square: m2, s. apart: m, d. radius: m."""
+    square: m2, s. mean_gap: m, d. radius: m."""
     total = 0.0
     for i in range(2):
         for j in range(2):
             v, w = (y + half if i else half - y), (z + half if j else half - z)
             sign = (1.0 if v > 0 else -1.0) * (1.0 if w > 0 else -1.0)
             angle = math.atan2(abs(w), abs(v))
-            corner = _fan(abs(v), angle, square, apart, radius)
-            corner += _fan(abs(w), math.pi / 2 - angle, square, apart, radius)
+            corner = _fan(abs(v), angle, square, mean_gap, radius)
+            corner += _fan(abs(w), math.pi / 2 - angle, square, mean_gap, radius)
             total += sign * corner
     return 2 * radius * max(total, 0.0)
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _fan(side, angle, square, apart, radius):
+def _fan(side, angle, square, mean_gap, radius):
     """The integral of 1/(c + r^2) over a triangle with the crown in a corner, of that angle, whose far side is `side`
     away, without what is in contact."""
-    total, touching = 0.0, 2 * radius * apart
+    total, touching = 0.0, 2 * radius * mean_gap
     for k in range(len(_NODES)):
         across = side / math.cos(angle * _NODES[k])
         beyond = min(across * across, radius * radius) - square
@@ -53,14 +53,14 @@ def _fan(side, angle, square, apart, radius):
 
 
 @njit(cache=True, error_model="numpy")
-def beside_strip(square, apart, radius, half, x):
+def beside_strip(square, mean_gap, radius, half, x):
     """m per m of a cylinder, over a width of 2 half whose middle is x m from its line; see beside_ball."""
     near = math.sqrt(square)
     total = 0.0
     for way in (1.0, -1.0):
         start, end = max(-half - way * x, near), min(half - way * x, radius)
         if end > start:
-            total += _strip(2 * radius * apart - square, start, end)
+            total += _strip(2 * radius * mean_gap - square, start, end)
     return 2 * radius * total
 
 

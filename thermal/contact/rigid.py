@@ -65,9 +65,9 @@ def rigid_sphere(
     reach = min(positive("width (m)", width) / math.sqrt(math.pi), positive("radius (m)", radius))
     touching = (3 * load * radius / (4 * _modulus(face, body))) ** (1 / 3)
     _require_small(touching, reach)
-    apart, conducting = _gap(face, body, gas)
-    at, weights = _places(touching, reach, math.sqrt(2 * radius * apart))
-    around = conducting * float(weights @ (2 * math.pi * at / (apart + _ball_gap(at, touching, radius))))
+    mean_gap, conducting = _gap(face, body, gas)
+    at, weights = _places(touching, reach, math.sqrt(2 * radius * mean_gap))
+    around = conducting * float(weights @ (2 * math.pi * at / (mean_gap + _ball_gap(at, touching, radius))))
     if load == 0:
         return RigidContact(0.0, 0.0, 0.0, 0.0, around)
     area = math.pi * touching**2
@@ -93,9 +93,9 @@ def rigid_cylinder(
     along = min(positive("length (m)", length), width)
     touching = math.sqrt(4 * load * radius / (math.pi * _modulus(face, body) * along))
     _require_small(touching, reach)
-    apart, conducting = _gap(face, body, gas)
-    at, weights = _places(touching, reach, math.sqrt(2 * radius * apart))
-    around = conducting * float(weights @ (2 * along / (apart + _cylinder_gap(at, touching, radius))))
+    mean_gap, conducting = _gap(face, body, gas)
+    at, weights = _places(touching, reach, math.sqrt(2 * radius * mean_gap))
+    around = conducting * float(weights @ (2 * along / (mean_gap + _cylinder_gap(at, touching, radius))))
     if load == 0:
         return RigidContact(0.0, 0.0, 0.0, 0.0, around)
     area = 2 * touching * along
@@ -142,8 +142,8 @@ def _modulus(face: Surface, body: Surface) -> float:
 def _gap(face: Surface, body: Surface, gas: Gas | None) -> tuple[float, float]:
     """m between faces that touch without force, the temperature jump with it, and W/(m K) of the gas."""
     pair = joint(face, body, AIR if gas is None else gas)
-    apart = float(pair.gas_conductivity) / float(gas_conductance(pair, 0.0))
-    return apart, 0.0 if gas is None else gas.conductivity
+    mean_gap = float(pair.gas_conductivity) / float(gas_conductance(pair, 0.0))
+    return mean_gap, 0.0 if gas is None else gas.conductivity
 
 
 def _spots(face: Surface, body: Surface, pressure: float, gas: Gas | None) -> float:

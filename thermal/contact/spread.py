@@ -37,7 +37,7 @@ def beneath(law: np.void, body: Material, face: Surface) -> tuple[np.void, float
     depth = min(float(np.sqrt(body.diffusivity * _SECONDS)), _DEEPEST)
     resistance = depth * (1 / face.conductivity + 1 / body.conductivity)
     slower = law.copy()
-    slower["apart"] += float(law["gas"]) * resistance
+    slower["mean_gap"] += float(law["gas"]) * resistance
     return slower, resistance
 
 

@@ -35,7 +35,7 @@ THIN = 0.5
 _MARGIN = 0.08  # of the sensor's width, between a contact and the near edge of others
 _GAPS, _BETWEEN = (0.0, 0.05, 0.15, 0.4, 1.0), (0.01, 0.09, 0.25, 0.6)
 """Of the sensor's width: from a contact to the face's end as `alike` has it; and where it goes from one to the next."""
-_APART = 0.02  # of the sensor's width, steps of an opposite contact's edges beyond one's own
+_OPPOSITE_STEP = 0.02  # of the sensor's width, steps of an opposite contact's edges beyond this one's
 _STEPS_OF_DEPTH = 5  # a decade, of depths up to the sensor's width
 _PROPERTIES = 2  # a decade, of conductivities and heat capacities
 _MATERIALS = ((237.0, 2.42e6), (16.2, 4.0e6), (1.0, 2.1e6), (0.15, 1.02e6))  # W/(m K), J/(m3 K)
@@ -60,38 +60,38 @@ class Spot:
     heat_capacity: float
     sides: tuple[float, float]
     depth: float
-    own: Footprint
+    contact: Footprint
     opposite: Footprint | None = None
 
     def alike(self, width: float) -> Spot:
         """One of few whose patterns serve this one as well, for a sensor of that width, m: what is near is nearly as
         near, the box as deep, the material as good a conductor. The same part of the sensor's face is covered."""
         centre, sides = [], []
-        for side, middle, half in zip(self.sides, self.own.centre, self.own.half, strict=True):
+        for side, middle, half in zip(self.sides, self.contact.centre, self.contact.half, strict=True):
             low, high = (_gap(gap, width) for gap in (middle - half, side - middle - half))
             centre.append(low + half)
             sides.append(low + high + 2 * half)
-        own = Footprint(self.own.covered, (centre[0], centre[1]), self.own.half)
+        contact = Footprint(self.contact.covered, (centre[0], centre[1]), self.contact.half)
         return Spot(
             _rounded(self.conductivity, _PROPERTIES),
             _rounded(self.heat_capacity, _PROPERTIES),
             (sides[0], sides[1]),
             _rounded(min(self.depth, width), _STEPS_OF_DEPTH),
-            own,
-            self._behind(own, sides, width) if self.depth < THIN * width else None,
+            contact,
+            self._behind(contact, sides, width) if self.depth < THIN * width else None,
         )
 
-    def _behind(self, own: Footprint, sides: Sequence[float], width: float) -> Footprint | None:
-        """The opposite one in steps from the own one, which has moved."""
+    def _behind(self, contact: Footprint, sides: Sequence[float], width: float) -> Footprint | None:
+        """The opposite one in steps from this one, which has moved."""
         if self.opposite is None:
             return None
-        step, found = _APART * width, []
+        step, found = _OPPOSITE_STEP * width, []
         for axis, side in enumerate(sides):
             ends = []
             for sign in (-1, 1):
-                off = sign * (self.opposite.half[axis] - self.own.half[axis])
-                off += self.opposite.centre[axis] - self.own.centre[axis]
-                end = own.centre[axis] + sign * own.half[axis] + step * round(off / step)
+                off = sign * (self.opposite.half[axis] - self.contact.half[axis])
+                off += self.opposite.centre[axis] - self.contact.centre[axis]
+                end = contact.centre[axis] + sign * contact.half[axis] + step * round(off / step)
                 ends.append(min(max(end, 0.0), side))
             low, high = ends[0], min(ends[1], ends[0] + width)
             if high - low < step:
@@ -122,22 +122,22 @@ def touch_patterns(
     """(P, M) of each of the contacts: orthonormal combinations of the patterns, the even one first. box: (S, N P, N P)
     K/W of it and elements: (S, P, P) K/W of each, at MOMENTS. areas: (N,) m2. shared: the same ones for all."""
     known, count = len(GRAM), len(elements)
-    told: list[list[np.ndarray]] = [[] for _ in elements]
+    flows_of: list[list[np.ndarray]] = [[] for _ in elements]
     for n, (across, area) in enumerate(zip(elements, areas, strict=True)):
-        own = slice(n * known, (n + 1) * known)
-        told[n] += _flows(box[_SHOWN, own, own] + across[_SHOWN], area)
+        pattern_rows = slice(n * known, (n + 1) * known)
+        flows_of[n] += _flows(box[_SHOWN, pattern_rows, pattern_rows] + across[_SHOWN], area)
     if count > 1:
         for conductance in CONDUCTANCES:
             both = box[_SHOWN].copy()
             for n, (across, area) in enumerate(zip(elements, areas, strict=True)):
-                own = slice(n * known, (n + 1) * known)
-                both[:, own, own] += across[_SHOWN] + GRAM / (conductance * area)
+                pattern_rows = slice(n * known, (n + 1) * known)
+                both[:, pattern_rows, pattern_rows] += across[_SHOWN] + GRAM / (conductance * area)
             flow = np.linalg.solve(both, np.tile(GRAM[0], count)[:, None])[..., 0]
             for n in range(count):
-                told[n].append(flow[:, n * known : (n + 1) * known])
+                flows_of[n].append(flow[:, n * known : (n + 1) * known])
     if shared:
-        return [_leading(np.concatenate([each for flows in told for each in flows]), kept)] * count
-    return [_leading(np.concatenate(flows), kept) for flows in told]
+        return [_leading(np.concatenate([each for flows in flows_of for each in flows]), kept)] * count
+    return [_leading(np.concatenate(flows), kept) for flows in flows_of]
 
 
 def _flows(both: np.ndarray, area: float) -> list[np.ndarray]:
@@ -174,12 +174,12 @@ def contact_patterns(stack: SensorStack, covered: Rectangle, kept: int) -> np.nd
 def spot_patterns(stack: SensorStack, spot: Spot, kept: int) -> np.ndarray:
     """(P, M) orthonormal combinations of the patterns, the even one first, of that place on that box. In a thin sheet
     they end where the opposite fingertip does."""
-    pair = (spot.own,)
+    pair = (spot.contact,)
     if spot.opposite is not None and spot.depth < THIN * stack.width:
         # one order for both of them, so that they are found together
-        pair = (min(spot.own, spot.opposite), max(spot.own, spot.opposite))
+        pair = (min(spot.contact, spot.opposite), max(spot.contact, spot.opposite))
     made = spot.conductivity, spot.heat_capacity
-    return _patterns_of(stack, made, (*spot.sides, spot.depth), pair, kept)[pair.index(spot.own)]
+    return _patterns_of(stack, made, (*spot.sides, spot.depth), pair, kept)[pair.index(spot.contact)]
 
 
 @lru_cache(maxsize=256)

@@ -30,8 +30,8 @@ def touched_residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarra
 
 def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:
     """Largest weighted error of the sum."""
-    told = np.tensordot(1 / (GRASP[:, None] + rates), found, axes=1)
-    return float(np.max(np.abs(told - impedance) * weight[:, None, None]))
+    fitted = np.tensordot(1 / (GRASP[:, None] + rates), found, axes=1)
+    return float(np.max(np.abs(fitted - impedance) * weight[:, None, None]))
 
 
 def states(found: np.ndarray, rates: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:

@@ -26,9 +26,9 @@ def states(
     """Rates (n,) 1/s and ports (n, N) sqrt(K/J), the slowest first, and their misfit. impedance, slope: (S, N, N) K/W
     and K s/W at MOMENTS. weight: (S,) W/K of the impedance's errors. moments: the indices of those that count."""
     s, value = MOMENTS[moments], impedance[moments]
-    apart = s[None, :] - s[:, None]
-    np.fill_diagonal(apart, 1.0)
-    gram = (value[:, None] - value[None, :]) / apart[:, :, None, None]
+    distance = s[None, :] - s[:, None]
+    np.fill_diagonal(distance, 1.0)
+    gram = (value[:, None] - value[None, :]) / distance[:, :, None, None]
     diagonal = np.arange(len(s))
     gram[diagonal, diagonal] = -slope[moments]
     pencil = (value[:, None] + value[None, :]) / 2 - (s[:, None] + s[None, :])[:, :, None, None] / 2 * gram
@@ -60,5 +60,5 @@ def _misfit(
 ) -> float:
     """Largest error of the network between those of MOMENTS at which it has none, weighted (S,) W/K."""
     seen = slice(moments[0], moments[-1] + 1)
-    told = ports.T @ (ports / (MOMENTS[seen, None, None] + rates[:, None]))
-    return float(np.max(np.abs(told - impedance[seen]) * weight[seen, None, None]))
+    reduced = ports.T @ (ports / (MOMENTS[seen, None, None] + rates[:, None]))
+    return float(np.max(np.abs(reduced - impedance[seen]) * weight[seen, None, None]))

@@ -111,9 +111,9 @@ def _shielded(
     assert box.heat is not None
     back = np.repeat([film * one.area for one in tips], len(tips[0].even))
     slow = 1 / (MOMENTS + box.rate)
-    own = np.outer(port, port)
-    value = rest.value + slow[:, None, None] * own
-    slope = rest.slope - (slow**2)[:, None, None] * own
+    slowest = np.outer(port, port)
+    value = rest.value + slow[:, None, None] * slowest
+    slope = rest.slope - (slow**2)[:, None, None] * slowest
     heat = box.heat @ turn + slow[:, None] * box.held * port
     # T = Z (q + back T)
     opened = np.linalg.inv(np.eye(len(back)) - value * back)
@@ -127,9 +127,9 @@ def _element_side(
     stack: SensorStack, whole: Sampled, even: np.ndarray, weight: np.ndarray, detail: Detail
 ) -> Side:
     known = element(stack)
-    own, slow = np.outer(even, even), 1 / (MOMENTS[:, None] + known.rates)
-    value = whole.value - (slow @ known.ports**2)[:, None, None] * own
-    slope = whole.slope + (slow**2 @ known.ports**2)[:, None, None] * own
+    slowest, slow = np.outer(even, even), 1 / (MOMENTS[:, None] + known.rates)
+    value = whole.value - (slow @ known.ports**2)[:, None, None] * slowest
+    slope = whole.slope + (slow**2 @ known.ports**2)[:, None, None] * slowest
     fast, ports, error = states(value, slope, weight, detail.indices)
     drop = output_row(MOMENTS, np.outer(known.drop_rest, even), fast, ports, weight)
     # all heat that goes in is in

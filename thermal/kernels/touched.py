@@ -142,17 +142,17 @@ def _at_moments(kernel, heat, port, alone, to_grasp, early):
     """Impedance (S, A M, N M) K/W of a kernel (T, A M, N M) K/J that falls as 1 / sqrt(t) before the first time: of a
     patch by itself as alone (A,) K/J says, of one that it overlaps all of it; and (S, N M) J/W of heat (T, N M) J/J.
     port (N M,): of the slowest eigenfunction, left out of the kernel. to_grasp, early: _transform's."""
-    count, own, ports = kernel.shape
-    patterns = own // len(alone)
-    found, warmed = np.zeros((len(early), own, ports)), np.zeros((len(early), ports))
+    count, rows, ports = kernel.shape
+    patterns = rows // len(alone)
+    found, warmed = np.zeros((len(early), rows, ports)), np.zeros((len(early), ports))
     for s in range(len(early)):
         for t in range(count):
-            for i in range(own):
+            for i in range(rows):
                 for j in range(ports):
                     found[s, i, j] += to_grasp[s, t] * kernel[t, i, j]
             for j in range(ports):
                 warmed[s, j] += to_grasp[s, t] * heat[t, j]
-        for i in range(own):
+        for i in range(rows):
             for j in range(ports):
                 falling = kernel[0, i, j] + port[i] * port[j]
                 if i // patterns == j // patterns:
@@ -166,11 +166,11 @@ def _shielded(moments, rest, heat, rate, port, held, back, weight):
     """Puts back into the samples rest (S, A M, N M) and heat (S, N M), in proportion to the temperature, what a film
     takes from under the fingertips, back (A,) W/K. Returns what an error of impedance counts (S,) W/K, beside weight
     (A, S) of the tips and the box as it was; and the slowest rate, as it is."""
-    own, ports = rest.shape[1:]
-    patterns = own // len(back)
-    counts, whole = np.empty(len(moments)), np.empty((own, ports))
-    square, lasting = np.empty((own, own)), rate
-    for i in range(own):
+    rows, ports = rest.shape[1:]
+    patterns = rows // len(back)
+    counts, whole = np.empty(len(moments)), np.empty((rows, ports))
+    square, lasting = np.empty((rows, rows)), rate
+    for i in range(rows):
         lasting -= back[i // patterns] * port[i] * port[i]
     lasting = max(lasting, 0.0)
     for s in range(len(moments)):
@@ -182,37 +182,37 @@ def _shielded(moments, rest, heat, rate, port, held, back, weight):
             counts[s] = min(counts[s], 1 / (1 / weight[n, s] + alone))
         if back[0] == 0.0:
             continue
-        for i in range(own):
+        for i in range(rows):
             for j in range(ports):
                 whole[i, j] = rest[s, i, j] + slow * port[i] * port[j]
-            for j in range(own):
+            for j in range(rows):
                 square[i, j] = (1.0 if i == j else 0.0) - whole[i, j] * back[j // patterns]
         # T = Z (q + back T): no pivot is small, as the film would be one of a passive body
-        for p in range(own):
-            for i in range(p + 1, own):
+        for p in range(rows):
+            for i in range(p + 1, rows):
                 factor = square[i, p] / square[p, p]
-                for j in range(p, own):
+                for j in range(p, rows):
                     square[i, j] -= factor * square[p, j]
                 for j in range(ports):
                     whole[i, j] -= factor * whole[p, j]
-        for p in range(own - 1, -1, -1):
-            for i in range(p + 1, own):
+        for p in range(rows - 1, -1, -1):
+            for i in range(p + 1, rows):
                 for j in range(ports):
                     whole[p, j] -= square[p, i] * whole[i, j]
             for j in range(ports):
                 whole[p, j] /= square[p, p]
         for j in range(ports):
             heat[s, j] += slow * held * port[j]
-        for i in range(own):
+        for i in range(rows):
             square[0, i] = heat[s, i] * back[i // patterns]
         now = 1 / (moments[s] + lasting)
         for j in range(ports):
-            for i in range(own):
+            for i in range(rows):
                 heat[s, j] += square[0, i] * whole[i, j]
             heat[s, j] -= now * held * port[j]
-        for i in range(own):
+        for i in range(rows):
             for j in range(ports):
-                both = whole[i, j] if j >= own else (whole[i, j] + whole[j, i]) / 2
+                both = whole[i, j] if j >= rows else (whole[i, j] + whole[j, i]) / 2
                 rest[s, i, j] = both - now * port[i] * port[j]
     return counts, lasting
 
@@ -236,7 +236,7 @@ def _warmed(found, heat, total, stored, seen, share):
     goes in is in. And (K,) J/K of what follows the air, and not the box's slowest state, whose sum is what is stored
     (J/K): a rate's share is what the touched ports tell, its heat row squared over its resistance, as in a state.
     found: (A M, N M, K). seen, share: _heat_fit's."""
-    rates, own = len(share), len(found)
+    rates, count = len(share), len(found)
     rows, still = np.zeros((len(total), rates)), np.zeros(rates)
     for j in range(len(total)):
         for s in range(len(heat)):
@@ -250,10 +250,10 @@ def _warmed(found, heat, total, stored, seen, share):
             for k in range(rates):
                 rows[j, k] += left * share[k]
     least, whole = 0.0, 0.0
-    for i in range(own):
+    for i in range(count):
         for k in range(rates):
             least = max(least, _SEEN_LEAST * found[i, i, k])
-    for i in range(own):
+    for i in range(count):
         for k in range(rates):
             still[k] += rows[i, k] * rows[i, k] / (found[i, i, k] + least)
     for k in range(rates):

@@ -34,7 +34,7 @@ def port_residues(columns, wanted):
     these themselves, which come first among the N, positive semidefinite; by flow through others, once, of any sign,
     but for a ridge that keeps them small."""
     samples, rates = columns.shape
-    own, ports = wanted.shape[1:]
+    rows, ports = wanted.shape[1:]
     scaled, size = np.empty((samples, rates)), np.zeros(rates)
     for s in range(samples):
         for k in range(rates):
@@ -47,28 +47,28 @@ def port_residues(columns, wanted):
         for k in range(rates):
             for m in range(rates):
                 normal[k, m] += scaled[s, k] * scaled[s, m]
-    seen, found = np.zeros((own, ports, rates)), np.zeros((own, ports, rates))
+    seen, found = np.zeros((rows, ports, rates)), np.zeros((rows, ports, rates))
     for s in range(samples):
-        for i in range(own):
+        for i in range(rows):
             for j in range(ports):
                 for k in range(rates):
                     seen[i, j, k] += wanted[s, i, j] * scaled[s, k]
-    square, inside = np.empty((own, own, rates)), np.zeros((own, own, rates))
+    square, inside = np.empty((rows, rows, rates)), np.zeros((rows, rows, rates))
     for which in range(3):  # one call of it compiles sooner than three
         _inverse(normal, (_RIDGE, _PENALTY, _FREE_RIDGE)[which], inverse[which])
-    for i in range(own):
-        for j in range(own):
+    for i in range(rows):
+        for j in range(rows):
             for k in range(rates):
                 square[i, j, k] = seen[i, j, k]
             for m in range(rates):
                 for k in range(rates):
                     inside[i, j, k] += seen[i, j, m] * inverse[0, m, k]
     _in_cone(inverse[1], square, inside)
-    for i in range(own):
+    for i in range(rows):
         for j in range(ports):
             for k in range(rates):
-                found[i, j, k] = inside[i, j, k] if j < own else 0.0
-            if j >= own:
+                found[i, j, k] = inside[i, j, k] if j < rows else 0.0
+            if j >= rows:
                 for m in range(rates):
                     for k in range(rates):
                         found[i, j, k] += seen[i, j, m] * inverse[2, m, k]
@@ -205,9 +205,9 @@ def _turn_diagonal(matrix, turn, room):
 def _angle(first, second, between, cosine, sine):
     """Cosines and sines of the rotations that make between (K,) 0, and the diagonal after them; all in place."""
     for k in range(len(between)):
-        twice, apart = 2 * between[k], second[k] - first[k]
-        size = abs(apart) + np.sqrt(apart * apart + twice * twice) + _TINY
-        tangent = math.copysign(twice / size, apart * twice)
+        twice, gap = 2 * between[k], second[k] - first[k]
+        size = abs(gap) + np.sqrt(gap * gap + twice * twice) + _TINY
+        tangent = math.copysign(twice / size, gap * twice)
         cosine[k] = 1 / np.sqrt(tangent * tangent + 1)
         sine[k] = tangent * cosine[k]
         first[k] -= tangent * between[k]

@@ -1,6 +1,6 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
-from .array_contacts import ArrayContacts, FeltContacts, TouchContacts, array_contacts
+from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_contacts
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .glued import GluedContacts
 from .laws import pair_laws, stacked
@@ -22,7 +22,7 @@ __all__ = [
     "PLACE",
     "PLACE_AT",
     "ContactReader",
-    "FeltContacts",
+    "StepContacts",
     "GluedContacts",
     "SensorPlaces",
     "TouchContacts",

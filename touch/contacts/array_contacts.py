@@ -45,7 +45,7 @@ class TouchContacts(NamedTuple):
     geom_turn: Array
 
 
-class FeltContacts(NamedTuple):
+class StepContacts(NamedTuple):
     """Of a step, (B, F, O) each: conductance W/K, its mean; area m2 and length m of the contact while there was one, 0
     without; force N on the pad, its mean. beside: (B, F) N off the pads, its mean."""
 
@@ -82,7 +82,7 @@ class ArrayContacts:
     units: Array
     across: Array
 
-    def felt(self, contacts: TouchContacts, material: Array, of_object: Array) -> FeltContacts:
+    def of_step(self, contacts: TouchContacts, material: Array, of_object: Array) -> StepContacts:
         """What `contacts` are to the heat of a step, each substep with its own places. material: (B, G) integers.
         of_object: (G, O), 1 where a geom is an object's. A world with a number that is not finite has no number that
         is."""
@@ -118,7 +118,7 @@ class ArrayContacts:
         closed = xp.where(areas > 0, 1.0 + 0.0 * areas, 0.0 * areas).sum(1)
         areas = areas.sum(1)
         broken = total[:, None, None]
-        return FeltContacts(
+        return StepContacts(
             summed(conducts).mean(1) + broken,
             areas / xp.where(closed > 0, closed, 1.0 + closed),
             summed(area * long).sum(1) / xp.where(areas > 0, areas, 1.0 + areas),
@@ -202,9 +202,9 @@ class ArrayContacts:
         )
         bulging = self.bulging[:, None, None] > 0
         zero = 0.0 * pressed
-        told = xp.where(touching, found[0], zero), xp.where(touching, found[1], zero), found[2] + zero
+        bulged = xp.where(touching, found[0], zero), xp.where(touching, found[1], zero), found[2] + zero
         area, share, kept = (
-            xp.where(bulging, new, old) for new, old in zip(told, (area, share, kept), strict=True)
+            xp.where(bulging, new, old) for new, old in zip(bulged, (area, share, kept), strict=True)
         )
         return area, share, kept, xp.where(bulging, found[3] + zero, 1.0 + zero)
 

@@ -22,20 +22,23 @@ def array_round_contact(
     middle, half = (first + second) / 2, (first - second) / 2
     square = half * half + both * both
     alike = square == 0
-    apart = xp.where(alike, 1.0 + 0.0 * square, square) ** 0.5
-    most = middle + xp.where(alike, 0.0 * apart, apart)
-    least = xp.maximum(middle - xp.where(alike, 0.0 * apart, apart), LEAST * most)
-    own = xp.where(alike, 1.0 + 0.0 * apart, (1 + half / apart) / 2).clip(0.0, 1.0)
-    along, aside = own**0.5, xp.where(both < 0, -1.0 + 0.0 * own, 1.0 + 0.0 * own) * (1 - own) ** 0.5
+    spread = xp.where(alike, 1.0 + 0.0 * square, square) ** 0.5
+    most = middle + xp.where(alike, 0.0 * spread, spread)
+    least = xp.maximum(middle - xp.where(alike, 0.0 * spread, spread), LEAST * most)
+    first_part = xp.where(alike, 1.0 + 0.0 * spread, (1 + half / spread) / 2).clip(0.0, 1.0)
+    along, aside = (
+        first_part**0.5,
+        xp.where(both < 0, -1.0 + 0.0 * first_part, 1.0 + 0.0 * first_part) * (1 - first_part) ** 0.5,
+    )
     other = ((along * y1 + aside * z1) ** 2).clip(None, 1.0)
 
     def blend(share: Array, one: Array, rest: Array) -> Array:
         return share * one + (1 - share) * rest
 
-    reach = xp.minimum(blend(own, bend[..., 3], bend[..., 4]), blend(other, half1, half2))
-    width = xp.minimum(blend(1 - own, bend[..., 3], bend[..., 4]), blend(1 - other, half1, half2))
-    face_reach = xp.minimum(blend(own, bend[..., 5], bend[..., 6]), reach)
-    face_width = xp.minimum(blend(1 - own, bend[..., 5], bend[..., 6]), width)
+    reach = xp.minimum(blend(first_part, bend[..., 3], bend[..., 4]), blend(other, half1, half2))
+    width = xp.minimum(blend(1 - first_part, bend[..., 3], bend[..., 4]), blend(1 - other, half1, half2))
+    face_reach = xp.minimum(blend(first_part, bend[..., 5], bend[..., 6]), reach)
+    face_width = xp.minimum(blend(1 - first_part, bend[..., 5], bend[..., 6]), width)
     depth = _depth(xp, force / bend[..., 2], most, least, reach, width)
     a, b = (2 * depth / most) ** 0.5, (2 * depth / least) ** 0.5
     area, load = _clipped(xp, (face_reach / a).clip(None, 1.0), (face_width / b).clip(None, 1.0))

@@ -46,40 +46,47 @@ class GluedContacts:
                 side = float(np.sqrt(tip.size.prod()))
                 pad = Pad(width=side, face=min(tip.stack.width, side))
                 self._laws[f, e] = flat_law(pad, faces, (width, width), (1, 2))
-        self._felt = np.zeros((worlds, sensors, objects + sensors, COLUMNS))
+        self._redirected = np.zeros((worlds, sensors, objects + sensors, COLUMNS))
 
-    def felt(self, touches: np.ndarray, substeps: int) -> np.ndarray:
+    def redirected(self, touches: np.ndarray, substeps: int) -> np.ndarray:
         """(W, S, O + S, COLUMNS) of all sensors, from the fingertips' (W, F, O + F, COLUMNS), sums over so many
         substeps: what a pad met of an object where an element lies it met of the element, and every element is on its
         object. A pad's conductance on an element is that of its mean force, where its last substep found it; on several
         elements it presses alike."""
         _redirect(
-            touches, substeps, self._places, self._laws, self._small, self._bends, self._curves, self._felt
+            touches,
+            substeps,
+            self._places,
+            self._laws,
+            self._small,
+            self._bends,
+            self._curves,
+            self._redirected,
         )
-        return self._felt
+        return self._redirected
 
 
 @njit(cache=True, error_model="numpy")
-def _redirect(touches, substeps, places, laws, small, bend, curve, felt):
+def _redirect(touches, substeps, places, laws, small, bend, curve, redirected):
     worlds, tips, targets = touches.shape[:3]
     place, sides = np.zeros(3), np.array([1.0, 0.0, 0.0, 1.0])
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):
-                felt[w, f, t] = touches[w, f, t]
+                redirected[w, f, t] = touches[w, f, t]
             for e in range(len(places)):
-                felt[w, f, targets + e, CONDUCTANCE] = 0.0
-                o, met = int(places[e, 0]), 0
+                redirected[w, f, targets + e, CONDUCTANCE] = 0.0
+                o, meeting = int(places[e, 0]), 0
                 if not _meets(touches[w, f, o], places[e], laws[f, e], place):
                     continue
                 # the element stands out: a pad that reaches it at all is on it, and not on the object beside it
-                felt[w, f, o, CONDUCTANCE] = 0.0
+                redirected[w, f, o, CONDUCTANCE] = 0.0
                 for other in range(len(places)):
                     if places[other, 0] == o:
-                        met += _meets(touches[w, f, o], places[other], laws[f, other], place)
+                        meeting += _meets(touches[w, f, o], places[other], laws[f, other], place)
                 _meets(touches[w, f, o], places[e], laws[f, e], place)
                 law, width = laws[f, e], places[e, 1]
-                pressed = touches[w, f, o, FORCE] / substeps / met
+                pressed = touches[w, f, o, FORCE] / substeps / meeting
                 if bend[f, 0] + bend[f, 1] > 0:
                     area, force, _, _ = round_contact(bend[f], curve[e], sides, pressed, 0.0, 0.0)
                 else:
@@ -87,9 +94,9 @@ def _redirect(touches, substeps, places, laws, small, bend, curve, felt):
                 if area > 0 and force > 0:
                     side = min(np.sqrt(area), width)
                     series = 1 / (conductance(law, force / area) * area) + small[e] * (1 / side - 1 / width)
-                    felt[w, f, targets + e, CONDUCTANCE] = substeps / series
+                    redirected[w, f, targets + e, CONDUCTANCE] = substeps / series
         for e in range(len(places)):
-            bond = felt[w, tips + e, int(places[e, 0])]
+            bond = redirected[w, tips + e, int(places[e, 0])]
             bond[CONDUCTANCE] = substeps * BOND * places[e, 1] * places[e, 1]
             for i in range(3):
                 bond[PLACE + i], bond[NORMAL + i] = places[e, 2 + i], places[e, 5 + 3 * i]

@@ -26,8 +26,8 @@ def entry(kernel: Any, arguments: int) -> int:
     """The address of a compiled function of two or four integers that returns one, for `called_two` and `called`."""
     kinds = (types.int64,) * arguments
     kernel.compile(kinds)
-    own = kernel.overloads[kinds]
-    return own.library.get_pointer_to_function(own.fndesc.mangled_name)
+    compiled = kernel.overloads[kinds]
+    return compiled.library.get_pointer_to_function(compiled.fndesc.mangled_name)
 
 
 def _floats(context, address):

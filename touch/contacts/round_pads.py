@@ -86,17 +86,21 @@ def round_contact(bend, curve, sides, force, y, z):
     first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2]
     both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3]
     second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3]
-    middle, apart = (first + second) / 2, math.hypot((first - second) / 2, both)
-    most, least = middle + apart, max(middle - apart, LEAST * (middle + apart))
+    middle, spread = (first + second) / 2, math.hypot((first - second) / 2, both)
+    most, least = middle + spread, max(middle - spread, LEAST * (middle + spread))
     # the direction of the larger curvature, and how much of the pad's and the other's first axes lies along it
-    own = (1 + (first - second) / 2 / apart) / 2 if apart > 0 else 1.0
-    own = min(max(own, 0.0), 1.0)
-    along, aside = math.sqrt(own), math.copysign(math.sqrt(1 - own), both)
+    first_share = (1 + (first - second) / 2 / spread) / 2 if spread > 0 else 1.0
+    first_share = min(max(first_share, 0.0), 1.0)
+    along, aside = math.sqrt(first_share), math.copysign(math.sqrt(1 - first_share), both)
     other = min((along * sides[0] + aside * sides[1]) ** 2, 1.0)
-    reach = min(own * bend[3] + (1 - own) * bend[4], other * curve[2] + (1 - other) * curve[3])
-    width = min((1 - own) * bend[3] + own * bend[4], (1 - other) * curve[2] + other * curve[3])
-    face_reach = min(own * bend[5] + (1 - own) * bend[6], reach)
-    face_width = min((1 - own) * bend[5] + own * bend[6], width)
+    reach = min(
+        first_share * bend[3] + (1 - first_share) * bend[4], other * curve[2] + (1 - other) * curve[3]
+    )
+    width = min(
+        (1 - first_share) * bend[3] + first_share * bend[4], (1 - other) * curve[2] + other * curve[3]
+    )
+    face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], reach)
+    face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
     depth = _depth(force / bend[2], most, least, reach, width)
     a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
     area, load = _clipped(min(face_reach / a, 1.0), min(face_width / b, 1.0))

@@ -121,9 +121,9 @@ def sensor_places(
         )
     tip_of = {geom: f for f, pad in enumerate(found) for geom in pad.geoms}
     of_objects = [geom for shape in shapes for geom in shape.geoms]
-    things = {geom: number for number, geom in enumerate(of_objects)}
-    things |= {geom: len(of_objects) + f for geom, f in tip_of.items()}
-    rows = [(tip_of[a], things[b], contacts[a, b]) for a, b in wanted]
+    number_of = {geom: number for number, geom in enumerate(of_objects)}
+    number_of |= {geom: len(of_objects) + f for geom, f in tip_of.items()}
+    rows = [(tip_of[a], number_of[b], contacts[a, b]) for a, b in wanted]
     return SensorPlaces(
         np.array(rows, np.int64),
         np.array(
@@ -144,9 +144,11 @@ def sensor_places(
 def _pairs(found: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> list[tuple[int, int]]:
     """Geoms that may meet: of a fingertip and of an object, or of two fingertips."""
     of_objects = [geom for shape in shapes for geom in shape.geoms]
-    pairs = [(own, geom) for pad in found for own in pad.geoms for geom in of_objects]
+    pairs = [(pad_geom, geom) for pad in found for pad_geom in pad.geoms for geom in of_objects]
     for f, pad in enumerate(found):
-        pairs += [(own, geom) for other in found[f + 1 :] for own in pad.geoms for geom in other.geoms]
+        pairs += [
+            (pad_geom, geom) for other in found[f + 1 :] for pad_geom in pad.geoms for geom in other.geoms
+        ]
     return pairs
 
 

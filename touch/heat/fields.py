@@ -88,8 +88,8 @@ class BodyField:
 
 def near(one: Place, other: Place, reach: float) -> bool:
     """Whether two places of one fingertip are the same to it. reach: m."""
-    apart = max(abs(a - b) for a, b in zip(one.middle, other.middle, strict=True))
-    return one.fingertip == other.fingertip and one.face == other.face and apart <= reach
+    distance = max(abs(a - b) for a, b in zip(one.middle, other.middle, strict=True))
+    return one.fingertip == other.fingertip and one.face == other.face and distance <= reach
 
 
 def untouched(shape: BodyShape, film: float) -> BodyField:

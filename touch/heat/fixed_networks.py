@@ -56,7 +56,7 @@ def fixed_networks(
     """fields: of the objects, by material. places: (F, O) each pair's among its object's. warm: (F,) K. narrow, width:
     by pair. states: of the objects, then of the fingertips."""
     objects, most = len(fields), max(map(len, fields))
-    lengths = [max(len(field.rates) for field in own) for own in fields] + [
+    lengths = [max(len(field.rates) for field in choices) for choices in fields] + [
         len(tip.side.rates) for tip in tips
     ]
     begin = np.cumsum([0, *lengths])
@@ -65,21 +65,21 @@ def fixed_networks(
     rates = np.zeros((int(np.prod(counts)), total))
     ports, drop = np.zeros((*rates.shape, pairs * patterns)), np.zeros((pairs, total))
     held = np.zeros((objects, most))
-    for o, own in enumerate(fields):
-        held[o] = [own[min(v, len(own) - 1)].heat[0] for v in range(most)]
+    for o, choices in enumerate(fields):
+        held[o] = [choices[min(v, len(choices) - 1)].heat[0] for v in range(most)]
     for n, (f, o) in enumerate(np.ndindex(len(tips), objects)):
         side, first = tips[f].side, begin[objects + f]
-        own = slice(first, first + len(side.rates))
-        rates[:, own], drop[n, own] = side.rates, side.outputs["drop"]
-        ports[:, own, n * patterns : (n + 1) * patterns] = -side.ports
+        part = slice(first, first + len(side.rates))
+        rates[:, part], drop[n, part] = side.rates, side.outputs["drop"]
+        ports[:, part, n * patterns : (n + 1) * patterns] = -side.ports
         for row, chosen in enumerate(np.ndindex(*counts)):
             field = fields[o][chosen[o]]
-            own = slice(begin[o], begin[o] + len(field.rates))
-            rates[row, own] = field.rates
-            ports[row, own, n * patterns : (n + 1) * patterns] = field.port(int(places[f, o]), patterns)
+            part = slice(begin[o], begin[o] + len(field.rates))
+            rates[row, part] = field.rates
+            ports[row, part, n * patterns : (n + 1) * patterns] = field.port(int(places[f, o]), patterns)
     state = np.zeros(total)
-    for first, own in zip(begin, states, strict=False):
-        state[first : first + len(own)] = own
+    for first, field_states in zip(begin, states, strict=False):
+        state[first : first + len(field_states)] = field_states
     return FixedNetworks(
         dt,
         rates,

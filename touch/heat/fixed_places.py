@@ -80,7 +80,7 @@ def network_tables(
     sqrt(K/J). drop: (N, K) of each pair's fingertip."""
     count, states = rates.shape
     none, still = np.zeros((3, states)), np.zeros((3 * len(drop), states))
-    made = [propagator(own, seen, dt) for own, seen in zip(rates, ports, strict=True)]
+    made = [propagator(decay, seen, dt) for decay, seen in zip(rates, ports, strict=True)]
     rows = [
         np.concatenate(
             (one.rates[None], none, drop, still, np.real(one.scale), np.imag(one.scale), one.ports.T)

@@ -119,7 +119,7 @@ class JoinedHeat:
         self._faces = np.full((worlds, count, objects), -1)
         self._middles = np.zeros((worlds, count, objects, 2))
         # the places for which these were found to do, and those for which one is to be found
-        self._asked_faces, self._asked_middles = self._faces.copy(), self._middles.copy()
+        self._sought_faces, self._sought_middles = self._faces.copy(), self._middles.copy()
         self._new_faces, self._new_middles = self._faces.copy(), self._middles.copy()
         self._closed = np.zeros((worlds, count, fields), bool)
         self._stale = np.zeros(worlds, bool)
@@ -163,7 +163,7 @@ class JoinedHeat:
             back.reset(rows)
             self._warm[rows, back.tip] = back.temperature[rows] - self._ambient
         self._current[rows], self._faces[rows], self._plan[rows] = -1, -1, -1
-        self._asked_faces[rows] = -1
+        self._sought_faces[rows] = -1
         self._closed[rows], self._stale[rows] = False, False
         self._narrow[rows] = 0.0
         self._given[rows], self._air[rows], self.drop[rows] = 0.0, 0.0, 0.0
@@ -172,13 +172,13 @@ class JoinedHeat:
 
     def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
         """What those worlds' objects are made of from now on; a reset of these worlds must follow."""
-        for w, own in zip(worlds, materials, strict=True):
-            self._materials[w] = own
+        for w, combination in zip(worlds, materials, strict=True):
+            self._materials[w] = combination
 
     def advance(self, touches: np.ndarray, substeps: int) -> None:
         """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps."""
         if self._glued is not None:
-            touches = self._glued.felt(touches, substeps)
+            touches = self._glued.redirected(touches, substeps)
         if touches is not self._touches:
             self._touches = np.ascontiguousarray(touches, float)
             self._touches_at = self._touches.ctypes.data
@@ -213,7 +213,7 @@ class JoinedHeat:
             pool = self._pool
             arrays = (
                 *(self._boxes, self._widths, self._reach, self._faces, self._middles),
-                *(self._asked_faces, self._asked_middles, self._new_faces, self._new_middles),
+                *(self._sought_faces, self._sought_middles, self._new_faces, self._new_middles),
                 *(self._closed, self._stale, self._warm, self._plan),
                 *(pool.starts, pool.integers, pool.numbers, pool.grams),
                 *(self._fade, self._held_by, self._rows, self._nets, self._level.decay, self._tables),
@@ -229,8 +229,8 @@ class JoinedHeat:
             )
             self._pointed = arrays  # which must live as long as their addresses are in use
             self._table = np.zeros(TABLE, np.int64)
-            own = table(arrays, sizes)
-            self._table[: len(own)] = own
+            entries = table(arrays, sizes)
+            self._table[: len(entries)] = entries
             self._table_at = self._table.ctypes.data
         return self._table_at
 
@@ -257,16 +257,16 @@ class JoinedHeat:
         flat = np.concatenate(rates)
         ports, drop = np.zeros((len(flat), patterns * len(pairs))), np.zeros((len(pairs), len(flat)))
         for n, (f, t) in enumerate(pairs):
-            own, first = slice(n * patterns, (n + 1) * patterns), begin[objects + f]
+            in_port, first = slice(n * patterns, (n + 1) * patterns), begin[objects + f]
             side = self._tips[f].side
-            ports[first : first + len(side.rates), own] = -side.ports
+            ports[first : first + len(side.rates), in_port] = -side.ports
             drop[n, first : first + len(side.rates)] = side.outputs["drop"]
             taking = (
                 self._fields[w][t].port(int(self._current[w, f, t]), patterns)
                 if t < objects
                 else self._tips[t - objects].side.ports
             )
-            ports[begin[t] : begin[t] + len(taking), own] = taking
+            ports[begin[t] : begin[t] + len(taking), in_port] = taking
         names = (*(shape.name for shape in self._shapes), *(pad.label for pad in self._pads))
         warm = np.append(np.zeros(objects), self._warm[w])
         return fixed_places(
@@ -284,7 +284,7 @@ class JoinedHeat:
         self, w: int, materials: Sequence[Sequence[Material]], poses: np.ndarray
     ) -> FixedNetworks:
         """World w's fingertips on the places that they have, or would have where they have not touched an object.
-        materials: that each object may be of, the world's own among them. poses: (ways, F, O, 6) the pads' PLACE and
+        materials: that each object may be of, the world's among them. poses: (ways, F, O, 6) the pads' PLACE and
         NORMAL on every object (contacts/columns.py), in each way of touching it; every material comes once a way, and
         the state is that of the first."""
         self._refuse_backs()
@@ -292,23 +292,25 @@ class JoinedHeat:
         pads, level = self._pads[:tips], self._level
         current = self._current[w].copy()
         places = [[list(field.places) for field in self._fields[w]] for _ in poses]
-        for own, expected in zip(places, map(self._expected, poses), strict=True):
+        for known, expected in zip(places, map(self._expected, poses), strict=True):
             for f, o in np.argwhere(self._current[w] < 0).tolist():
-                current[f, o] = len(own[o])
-                own[o].append(expected[f][o])
+                current[f, o] = len(known[o])
+                known[o].append(expected[f][o])
         after = [
-            [self._field(o, one, tuple(way[o])) for one in own for way in places]
-            for o, own in enumerate(materials)
+            [self._field(o, one, tuple(way[o])) for one in choices for way in places]
+            for o, choices in enumerate(materials)
         ]
         states = []
         for o, before in enumerate(self._fields[w]):
-            own = self._field(o, self._materials[w][o], tuple(places[0][o]))
+            field = self._field(o, self._materials[w][o], tuple(places[0][o]))
             held = self._x[w, o, : len(before.rates)]
-            states.append(held if own is before else carried(before, own, level.patterns) @ held)
+            states.append(held if field is before else carried(before, field, level.patterns) @ held)
         states += [self._x[w, objects + f, : len(tip.side.rates)] for f, tip in enumerate(self._tips)]
         most = max(map(len, materials))
-        kinds = [[own[min(v, len(own) - 1)] for v in range(most) for _ in poses] for own in materials]
-        tables = [narrow_of(pad, one, level) for pad in pads for own in kinds for one in own]
+        kinds = [
+            [choices[min(v, len(choices) - 1)] for v in range(most) for _ in poses] for choices in materials
+        ]
+        tables = [narrow_of(pad, one, level) for pad in pads for each in kinds for one in each]
         return fixed_networks(
             self._dt,
             level.patterns,
@@ -381,8 +383,8 @@ class JoinedHeat:
 
     def _passed(self, back: HeatedBack | ThermostatBack) -> np.ndarray:
         """(W,) J out of its face so far."""
-        own = len(self._shapes) + back.tip
-        return self._given[:, back.tip].sum(axis=1) - self._given[:, :, own].sum(axis=1)
+        target = len(self._shapes) + back.tip
+        return self._given[:, back.tip].sum(axis=1) - self._given[:, :, target].sum(axis=1)
 
     @property
     def object_temperature(self) -> np.ndarray:
@@ -424,17 +426,17 @@ class JoinedHeat:
     def set_state(self, state: HeatState) -> None:
         """Puts it into a state taken by `state`."""
         self._materials = list(state.materials)
-        for w, (own, materials) in enumerate(zip(state.fields, state.materials, strict=True)):
-            keys = [(o, materials[o], field.places) for o, field in enumerate(own)]
-            self._fields[w] = [self._known.setdefault(*known) for known in zip(keys, own, strict=True)]
+        for w, (saved, materials) in enumerate(zip(state.fields, state.materials, strict=True)):
+            keys = [(o, materials[o], field.places) for o, field in enumerate(saved)]
+            self._fields[w] = [self._known.setdefault(*known) for known in zip(keys, saved, strict=True)]
             self._held_by[w] = [field.heat[0] for field in self._fields[w]]
         self._current[:] = state.current
         self._x = state.states.copy()
         self._given[:], self._air[:], self._started[:] = state.given, state.air, state.started
         self._narrow[:] = state.narrow
         self.drop[:] = state.drop
-        for back, own in zip(self._backs, state.backs, strict=True):
-            back.set_state(own)
+        for back, saved in zip(self._backs, state.backs, strict=True):
+            back.set_state(saved)
             self._warm[:, back.tip] = back.temperature - self._ambient
         for w, f, o in np.ndindex(self._current.shape):
             self._place(w, f, o)
@@ -458,7 +460,7 @@ class JoinedHeat:
 
     def _bare(self, materials: tuple[Material, ...]) -> list[BodyField]:
         """Objects of those materials that nothing has touched."""
-        return [self._field(o, own, ()) for o, own in enumerate(materials)]
+        return [self._field(o, material, ()) for o, material in enumerate(materials)]
 
     def _field(self, o: int, material: Material, places: tuple[Place, ...]) -> BodyField:
         if (o, material, places) not in self._known:
@@ -530,7 +532,7 @@ class JoinedHeat:
         else:
             self._add(w, o, place)
         self._place(w, f, o)
-        self._asked_faces[w, f, o], self._asked_middles[w, f, o] = place.face, place.middle
+        self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.middle
         self._stale[w] = True
 
     def _wanted(self, f: int, face: int, middle: np.ndarray) -> Place:
@@ -539,7 +541,7 @@ class JoinedHeat:
 
     def _place(self, w: int, f: int, o: int) -> None:
         number = int(self._current[w, f, o])
-        self._asked_faces[w, f, o] = -1
+        self._sought_faces[w, f, o] = -1
         if number < 0:
             self._faces[w, f, o] = -1
             return
@@ -557,13 +559,13 @@ class JoinedHeat:
         if len(idle) > MOST_PLACES:
             kept.remove(idle[0])
         after = self._field(o, self._materials[w][o], (*(before.places[number] for number in kept), place))
-        own = carried(before, after, self._level.patterns) @ self._x[w, o, : len(before.rates)]
+        heat = carried(before, after, self._level.patterns) @ self._x[w, o, : len(before.rates)]
         current[:] = [kept.index(known) if known in kept else -1 for known in current.tolist()]
         current[place.fingertip] = len(after.places) - 1
         self._fields[w][o] = after
         self._renumber(w)
         self._x[w, o] = 0.0
-        self._x[w, o, : len(own)] = own
+        self._x[w, o, : len(heat)] = heat
         for f in range(len(self._pads)):
             self._place(w, f, o)
 
@@ -584,6 +586,6 @@ class JoinedHeat:
 def _padded(rows: Sequence[np.ndarray]) -> np.ndarray:
     """The rows behind one another, zeros behind the shorter ones."""
     table = np.zeros((len(rows), max(len(row) for row in rows)))
-    for own, row in zip(table, rows, strict=True):
-        own[: len(row)] = row
+    for target, row in zip(table, rows, strict=True):
+        target[: len(row)] = row
     return table

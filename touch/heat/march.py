@@ -25,7 +25,7 @@ from ..contacts import (
     words,
 )
 from .narrow import STEPS, spread
-from .systems import CONTACTS, FIELDS, FLOATS, GRAM, HEADER, OWN, PORTS, SHARED, STATES
+from .systems import ALONE, CONTACTS, FIELDS, FLOATS, GRAM, HEADER, PORTS, SHARED, STATES
 
 _PAIRS = len(POLES)
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
@@ -39,7 +39,7 @@ the grid than to the one before: round-off does not decide where a pad is in the
 
 @njit(cache=True, error_model="numpy")
 def settle(
-    touches, boxes, widths, reach, faces, middles, asked_faces, asked_middles, new_faces, new_middles,
+    touches, boxes, widths, reach, faces, middles, sought_faces, sought_middles, new_faces, new_middles,
     closed, stale,
 ):  # fmt: skip
     """Notes which contacts are closed, (W, F, T), and where; stale (W,) where that is no longer what it was.
@@ -79,7 +79,7 @@ def settle(
                 if known >= 0 and abs(looking[known // 2]) > abs(looking[most]) - TURN:
                     most = known // 2
                 face = 2 * most + (1 if looking[most] < 0 else 0)  # the pad looks inward
-                j, apart = 0, 0.0
+                j, distance = 0, 0.0
                 for i in range(3):
                     if i == most:
                         continue
@@ -88,12 +88,12 @@ def settle(
                     steps = np.rint((at - box[i] / 2) / spacing * (1 - _TIE))
                     off = min(max(steps * spacing, -room), room)
                     new_middles[w, f, t, j] = box[i] / 2 + off
-                    apart = max(apart, abs(at - middles[w, f, t, j]))
+                    distance = max(distance, abs(at - middles[w, f, t, j]))
                     j += 1
-                if face != known or apart > reach[f]:
-                    answered = face == asked_faces[w, f, t]
+                if face != known or distance > reach[f]:
+                    answered = face == sought_faces[w, f, t]
                     for j in range(2):
-                        answered = answered and new_middles[w, f, t, j] == asked_middles[w, f, t, j]
+                        answered = answered and new_middles[w, f, t, j] == sought_middles[w, f, t, j]
                     if not answered:
                         new_faces[w, f, t] = face
                         moved += 1
@@ -102,61 +102,61 @@ def settle(
 
 
 @njit(cache=True, error_model="numpy")
-def sample(own_at, touches_at, substeps, settled):
+def sample(entries_at, touches_at, substeps, settled):
     """One step of every world; first, unless it is settled, `settle`, and no step where contacts are not where they
-    were. own_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so many
-    substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
-    own = carray(words(own_at), TABLE)
-    worlds, tips, objects = own[32], own[33], own[34]
+    were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
+    many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
+    entries = carray(words(entries_at), TABLE)
+    worlds, tips, objects = entries[32], entries[33], entries[34]
     targets = tips + objects
     touches, widths = (
         carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
-        carray(floats(own[1]), tips),
+        carray(floats(entries[1]), tips),
     )
     if settled == 0:
         moved, stale = settle(
             touches,
-            carray(floats(own[0]), (objects, 18)),
+            carray(floats(entries[0]), (objects, 18)),
             widths,
-            carray(floats(own[2]), tips),
-            carray(words(own[3]), (worlds, tips, objects)),
-            carray(floats(own[4]), (worlds, tips, objects, 2)),
-            carray(words(own[5]), (worlds, tips, objects)),
-            carray(floats(own[6]), (worlds, tips, objects, 2)),
-            carray(words(own[7]), (worlds, tips, objects)),
-            carray(floats(own[8]), (worlds, tips, objects, 2)),
-            carray(flags(own[9]), (worlds, tips, targets)),
-            carray(flags(own[10]), worlds),
+            carray(floats(entries[2]), tips),
+            carray(words(entries[3]), (worlds, tips, objects)),
+            carray(floats(entries[4]), (worlds, tips, objects, 2)),
+            carray(words(entries[5]), (worlds, tips, objects)),
+            carray(floats(entries[6]), (worlds, tips, objects, 2)),
+            carray(words(entries[7]), (worlds, tips, objects)),
+            carray(floats(entries[8]), (worlds, tips, objects, 2)),
+            carray(flags(entries[9]), (worlds, tips, targets)),
+            carray(flags(entries[10]), worlds),
         )
         if moved or stale:
             return moved + stale
-    states, rates = own[42], own[45]
+    states, rates = entries[42], entries[45]
     _march(
-        carray(floats(own[31]), 1)[0],
+        carray(floats(entries[31]), 1)[0],
         substeps,
-        own[35],
+        entries[35],
         touches,
-        carray(floats(own[11]), (worlds, tips)),
-        carray(words(own[12]), (worlds, own[36])),
-        carray(words(own[13]), own[37]),
-        carray(words(own[14]), own[38]),
-        carray(floats(own[15]), own[39]),
-        carray(complexes(own[16]), own[40]),
-        carray(floats(own[17]), (own[41], states)),
-        carray(floats(own[18]), (worlds, objects)),
-        carray(floats(own[19]), (tips, own[43])),
-        carray(words(own[20]), (worlds, targets)),
-        carray(floats(own[21]), rates),
-        carray(floats(own[22]), (own[44], 2, STEPS, rates)),
-        carray(words(own[23]), (worlds, tips, targets)),
+        carray(floats(entries[11]), (worlds, tips)),
+        carray(words(entries[12]), (worlds, entries[36])),
+        carray(words(entries[13]), entries[37]),
+        carray(words(entries[14]), entries[38]),
+        carray(floats(entries[15]), entries[39]),
+        carray(complexes(entries[16]), entries[40]),
+        carray(floats(entries[17]), (entries[41], states)),
+        carray(floats(entries[18]), (worlds, objects)),
+        carray(floats(entries[19]), (tips, entries[43])),
+        carray(words(entries[20]), (worlds, targets)),
+        carray(floats(entries[21]), rates),
+        carray(floats(entries[22]), (entries[44], 2, STEPS, rates)),
+        carray(words(entries[23]), (worlds, tips, targets)),
         widths,
-        carray(floats(own[24]), (worlds, targets, states)),
-        carray(floats(own[25]), (worlds, tips, targets, rates)),
-        carray(floats(own[26]), (worlds, tips, targets)),
-        carray(floats(own[27]), worlds),
-        carray(floats(own[28]), (worlds, tips)),
-        carray(flags(own[29]), targets),
-        carray(floats(own[30]), (worlds, objects)),
+        carray(floats(entries[24]), (worlds, targets, states)),
+        carray(floats(entries[25]), (worlds, tips, targets, rates)),
+        carray(floats(entries[26]), (worlds, tips, targets)),
+        carray(floats(entries[27]), worlds),
+        carray(floats(entries[28]), (worlds, tips)),
+        carray(flags(entries[29]), targets),
+        carray(floats(entries[30]), (worlds, objects)),
     )
     return 0
 
@@ -217,7 +217,7 @@ def _march(
                 numbers[scales + _PAIRS * n : ports_at].reshape(_PAIRS, n),
                 grams[gram_at : gram_at + _PAIRS * m * m].reshape(_PAIRS, m, m),
                 integers[start + SHARED],
-                integers[start + OWN],
+                integers[start + ALONE],
                 patterns,
                 contacts,
                 numbers[first + n : first + 2 * n],

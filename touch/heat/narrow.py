@@ -58,9 +58,9 @@ def _table(
         for step in range(1, STEPS):
             p = width * 2.0 ** (-step / 2)
             q = width if strip else p
-            own = np.sum([_impedance(side, p, q) for side in sides], axis=0)
-            weight = 1 / (own + 1 / (_FINEST * p * q))
-            table[strip, step] = residues((own - whole)[:, None, None], level.decay, weight)[:, 0, 0]
+            series = np.sum([_impedance(side, p, q) for side in sides], axis=0)
+            weight = 1 / (series + 1 / (_FINEST * p * q))
+            table[strip, step] = residues((series - whole)[:, None, None], level.decay, weight)[:, 0, 0]
     return table
 
 

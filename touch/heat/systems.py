@@ -17,7 +17,7 @@ from ...thermal.kernels import Tip
 from ...thermal.network import propagator
 from .fields import BodyField
 
-STATES, PORTS, SHARED, OWN, FIELDS, CONTACTS, FLOATS, GRAM = range(8)
+STATES, PORTS, SHARED, ALONE, FIELDS, CONTACTS, FLOATS, GRAM = range(8)
 """Of a group's integers, the first: states, ports, states that all contacts see and those of each tip, how many fields
 and contacts, and where its numbers begin. Behind them: fields and sizes in turn, then the contacts' pairs."""
 HEADER = 8
@@ -29,16 +29,16 @@ def groups(pairs: Sequence[Pair], objects: int) -> list[tuple[Pair, ...]]:
     """The pairs in sets that share no field, each in its own order."""
     rest, found = list(pairs), []
     while rest:
-        reached, own = {objects + rest[0][0], rest[0][1]}, []
+        reached, members = {objects + rest[0][0], rest[0][1]}, []
         while True:
             more = [pair for pair in rest if objects + pair[0] in reached or pair[1] in reached]
             if not more:
                 break
-            own += more
+            members += more
             rest = [pair for pair in rest if pair not in more]
             for tip, target in more:
                 reached |= {objects + tip, target}
-        found.append(tuple(sorted(own)))
+        found.append(tuple(sorted(members)))
     return found
 
 
@@ -72,30 +72,30 @@ class SystemPool:
         tips = list(dict.fromkeys(tip for pair in pairs for tip in self._tips_of(pair)))
         members = [*fields, *(self._objects + tip for tip in tips)]
         rates = [fields[o].rates for o in fields] + [self._tips[tip].side.rates for tip in tips]
-        sizes = [len(own) for own in rates]
+        sizes = [len(part) for part in rates]
         begin = dict(zip(members, np.cumsum([0, *sizes]).tolist(), strict=False))
         total = sum(sizes)
         ports, watched = np.zeros((total, patterns * len(pairs))), np.zeros(total)
         for number, pair in enumerate(pairs):
-            own = slice(number * patterns, (number + 1) * patterns)
+            part = slice(number * patterns, (number + 1) * patterns)
             tip, target = pair
             given = self._tips[tip].side.ports
-            ports[begin[self._objects + tip] : begin[self._objects + tip] + len(given), own] = -given
+            ports[begin[self._objects + tip] : begin[self._objects + tip] + len(given), part] = -given
             taking = (
                 fields[target].port(current[pair], patterns)
                 if target < self._objects
                 else self._faces[target - self._objects]
             )
-            ports[begin[target] : begin[target] + len(taking), own] = taking
+            ports[begin[target] : begin[target] + len(taking), part] = taking
         for o, field in fields.items():
             watched[begin[o] : begin[o] + len(field.loss)] = field.loss
         # each tip by itself on what all share, where that is so
         of_objects = sum(sizes[: len(fields)])
         on_objects = all(target < self._objects for _, target in pairs)
-        apart = on_objects and len(tips) == len(pairs) and len(set(sizes[len(fields) :])) == 1
-        shared, own = (of_objects, sizes[-1]) if apart else (total, 0)
+        separate = on_objects and len(tips) == len(pairs) and len(set(sizes[len(fields) :])) == 1
+        shared, alone = (of_objects, sizes[-1]) if separate else (total, 0)
         steps = propagator(np.concatenate(rates), ports, self._dt)
-        header = [total, ports.shape[1], shared, own, len(members), len(pairs)]
+        header = [total, ports.shape[1], shared, alone, len(members), len(pairs)]
         header += [*self._used[2:]]
         listed = [n for member in zip(members, sizes, strict=True) for n in member]
         flat = [header, listed, [n for pair in pairs for n in pair]]

@@ -28,9 +28,9 @@ def glued_elements(
     object that is no single box, and for an element that does not lie on a face or lies over another."""
     found = []
     for number, shape in enumerate(objects):
-        own: list[PadPlace] = []
+        placed_here: list[PadPlace] = []
         for element in shape.elements:
-            label = f"{shape.name}:{len(own)}"
+            label = f"{shape.name}:{len(placed_here)}"
             _require_box(model, shape, label)
             stack = sensor_preset(element.sensor)
             outward = np.asarray(element.normal, float) / np.linalg.norm(element.normal)
@@ -39,10 +39,10 @@ def glued_elements(
             placed = PadPlace(
                 label, shape.body, (), position, frame(-outward), size, stack, ambient, glued=number
             )
-            for other in own:
-                _require_apart(placed, other)
-            own.append(placed)
-        found += own
+            for other in placed_here:
+                _require_distance(placed, other)
+            placed_here.append(placed)
+        found += placed_here
     return tuple(found)
 
 
@@ -87,7 +87,7 @@ def _on_face(
     return shape.centre + shape.axes @ at
 
 
-def _require_apart(one: PadPlace, other: PadPlace) -> None:
+def _require_distance(one: PadPlace, other: PadPlace) -> None:
     if one.axes[:, 0] @ other.axes[:, 0] < _ALONG:
         return
     between = np.abs(one.axes[:, 1:].T @ (one.position - other.position))

@@ -119,14 +119,14 @@ def _face_of(name: str, shape: np.ndarray, direction: np.ndarray, flat: float, u
     totals = np.bincount(which, weights=areas)
     best, most = None, 0.0
     for seed in np.argsort(-totals)[:_SEEDS]:
-        own = which == seed
-        normal = (areas[own, None] * normals[own]).sum(axis=0)
+        facet = which == seed
+        normal = (areas[facet, None] * normals[facet]).sum(axis=0)
         normal /= np.linalg.norm(normal)
-        offset = np.average(middles[own] @ normal, weights=areas[own])
-        own = (normals @ normal > flat) & (np.abs(middles @ normal - offset) < uneven)
-        score = areas[own].sum() * (normal @ direction)
+        offset = np.average(middles[facet] @ normal, weights=areas[facet])
+        facet = (normals @ normal > flat) & (np.abs(middles @ normal - offset) < uneven)
+        score = areas[facet].sum() * (normal @ direction)
         if score > most:
-            best, most = own, score
+            best, most = facet, score
     if best is None:
         return None
     weights, corners = areas[best], shape[best].reshape(-1, 3)

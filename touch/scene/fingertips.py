@@ -117,7 +117,7 @@ def pads(
         for label, one in given.items()
     }
     geoms = {label: geoms_of(model, *where) for label, where in found.items()}
-    _apart(model, geoms, objects)
+    _require_different_geoms(model, geoms, objects)
     middles = {label: _middle(model, data, where, geoms[label]) for label, where in found.items()}
     placed = []
     for label, one in given.items():
@@ -128,14 +128,16 @@ def pads(
     return tuple(placed)
 
 
-def _apart(model: mujoco.MjModel, geoms: Mapping[str, tuple[int, ...]], objects: Sequence[BodyShape]) -> None:
+def _require_different_geoms(
+    model: mujoco.MjModel, geoms: Mapping[str, tuple[int, ...]], objects: Sequence[BodyShape]
+) -> None:
     owner: dict[int, str] = {}
-    for label, own in geoms.items():
-        if not own:
+    for label, pad_geoms in geoms.items():
+        if not pad_geoms:
             raise InvalidValueError(
                 f"fingertip {label!r} has no geom that could touch anything; geoms: {', '.join(names(model, 'geom'))}"
             )
-        for geom in own:
+        for geom in pad_geoms:
             if geom in owner:
                 raise InvalidValueError(
                     f"fingertips {owner[geom]!r} and {label!r} are on one geom, {geom_label(model, geom)}: give each "
@@ -285,12 +287,12 @@ def _round(model: mujoco.MjModel, geom: int, direction: np.ndarray) -> _Bulge:
     straight."""
     kinds, kind = mujoco.mjtGeom, model.geom_type[geom]
     turn, size = rotation(model.geom_quat[geom]), model.geom_size[geom]
-    own, at = turn.T @ direction, model.geom_pos[geom]
+    outward, at = turn.T @ direction, model.geom_pos[geom]
     radius, half = float(size[0]), float(size[1])
-    side = float(np.hypot(own[0], own[1]))
+    side = float(np.hypot(outward[0], outward[1]))
     rod = kind == kinds.mjGEOM_CYLINDER or (kind == kinds.mjGEOM_CAPSULE and side > 0.5)
     if rod and side > 1e-6:
-        out = np.array([own[0], own[1], 0.0]) / side
+        out = np.array([outward[0], outward[1], 0.0]) / side
         # a short capsule is as straight along its length as the ellipsoid of its size
         short = kind == kinds.mjGEOM_CAPSULE and half < _WITHIN * radius
         straight = radius / (radius + half) ** 2 if short else 0.0
@@ -298,10 +300,10 @@ def _round(model: mujoco.MjModel, geom: int, direction: np.ndarray) -> _Bulge:
         wide = 2 * np.array([_WITHIN * radius, _WITHIN * radius if short else half])
         return at + turn @ (radius * out), axes, wide, (1 / radius, straight)
     if kind == kinds.mjGEOM_CAPSULE:
-        point = radius * own + [0.0, 0.0, math.copysign(half, own[2])]
+        point = radius * outward + [0.0, 0.0, math.copysign(half, outward[2])]
         return at + turn @ point, frame(direction), np.full(2, 2 * _WITHIN * radius), (1 / radius, 1 / radius)
     axes_of = size if kind == kinds.mjGEOM_ELLIPSOID else np.full(3, radius)
-    point = own / np.sqrt(np.sum((own / axes_of) ** 2))
+    point = outward / np.sqrt(np.sum((outward / axes_of) ** 2))
     steep = point / axes_of**2
     out = turn @ (steep / np.linalg.norm(steep))
     axes = frame(out)

@@ -38,7 +38,7 @@ class SteppedTouch:
         not served. Of steps that were taken otherwise, by a function imported by name or in a rollout, the last
         contacts stand for all."""
         _, data = self._simulation()
-        step, second, update = self._own = mujoco.mj_step, mujoco.mj_step2, self.touch.update
+        step, second, update = self._wrapped = mujoco.mj_step, mujoco.mj_step2, self.touch.update
         self._data, self._heard = data, None
 
         def heard_step(model: mujoco.MjModel, stepped: mujoco.MjData, nstep: int = 1) -> None:
@@ -58,6 +58,6 @@ class SteppedTouch:
         mujoco.mj_step, mujoco.mj_step2 = heard_step, heard_second
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        mujoco.mj_step, mujoco.mj_step2, update = self._own
+        mujoco.mj_step, mujoco.mj_step2, update = self._wrapped
         if kind is None and self._data.time != self._heard:  # else a call that would find nothing
             update(self._data)

@@ -336,7 +336,7 @@ def test_a_box_that_is_turned_is_touched_and_felt_by_its_other_sides():
         for _ in range(150):
             observation, *_, info = env.step(policy.action(observation))
             areas.append(info["contact_area"][0].max())
-        network = env.batch.plant.heat._rows._things[0].geometry  # pyright: ignore[reportAttributeAccessIssue]
+        network = env.batch.plant.heat._rows._bodies[0].geometry  # pyright: ignore[reportAttributeAccessIssue]
         changes.append((network.area, max(areas)))
     np.testing.assert_allclose(changes[0], changes[1], rtol=0.02)
 

@@ -12,7 +12,7 @@ from thermograsp.envs.bodies import library_object
 from thermograsp.envs.plant.pair import pair_config
 from thermograsp.errors import InvalidValueError, UnknownKeywordError, UnknownNameError
 from thermograsp.thermal import LAPPED_ALUMINA, SKINS, Skin, Surface, material, sensor
-from thermograsp.thermal.contact import contact_conductance, footprint, met, rigid_sphere
+from thermograsp.thermal.contact import contact_conductance, face_joint, footprint, rigid_sphere
 
 SILICONE = SKINS["filled_silicone"]
 ENDLESS = GraspTask(seconds=100.0)
@@ -72,7 +72,7 @@ def test_a_ball_meets_its_springs_its_surface_and_its_layer() -> None:
     face, load = footprint(body.law, force, np.zeros(3))
     steel = Surface.of(material("steel"))
     assert truth["conductance"][0, 0] == pytest.approx(
-        float(contact_conductance(met(SILICONE, steel), load / face)), rel=0.02
+        float(contact_conductance(face_joint(SILICONE, steel), load / face)), rel=0.02
     )
     imbalance, exchanged = truth["heat_imbalance"][0], truth["heat_exchanged"][0]
     assert exchanged > 0.1 and abs(imbalance) < 1e-9 * exchanged

@@ -40,7 +40,7 @@ def felt_conductances(batch: GraspBatch, steps: int) -> tuple[list, np.ndarray]:
     plant: Any = batch.plant
     seen = watched_contacts(plant.heat)
     readings = grasped(batch, steps)
-    return readings, sampled_conductance(seen, plant.heat._things[0])
+    return readings, sampled_conductance(seen, plant.heat._bodies[0])
 
 
 @pytest.mark.parametrize("mode", ["T", "O"])
@@ -54,7 +54,7 @@ def test_press_with_the_recorded_conductance_gives_the_same_drop(mode, name):
     assert np.all((area == 0) | np.isclose(area, 81e-6, rtol=1e-12))
     first = 2 * int(np.argmax(recorded[:, 0] > 0) // 2)  # the beginning of a step
     held = recorded[first:, 0]
-    thing = batch.plant.heat._things[0]  # pyright: ignore[reportAttributeAccessIssue]
+    thing = batch.plant.heat._bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
     press = thermal.press(
         name,
         mode=mode,
@@ -73,7 +73,7 @@ def test_two_fingertips_on_a_thick_poor_conductor_feel_what_one_would():
     batch = GraspBatch(1, task=ENDLESS, material="wood", air=0.0)
     readings, recorded = felt_conductances(batch, 200)
     drop = np.array([reading.truth["temperature_drop"][0] for reading in readings])
-    thing = batch.plant.heat._things[0]  # pyright: ignore[reportAttributeAccessIssue]
+    thing = batch.plant.heat._bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
     first = 2 * int(np.argmax(recorded.max(axis=1) > 0) // 2)
     for side in (0, 1):
         held = recorded[first:, side]

@@ -61,7 +61,7 @@ def test_it_loses_to_the_bodies_what_the_gas_loses_place_by_place() -> None:
     assert depth < 0.8e-3
     behind = depth * (1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity)
     at = (np.arange(200_000) + 0.5) / 200_000 * reach
-    alone = (float(law["apart"]) + at**2 / (2 * radius)) / AIR.conductivity
+    alone = (float(law["mean_gap"]) + at**2 / (2 * radius)) / AIR.conductivity
     placed = (2 * np.pi * at / (alone + behind)).mean() * reach
     assert area < FACE
     assert area / (area / total + behind) == pytest.approx(placed, rel=0.01)
