@@ -79,9 +79,9 @@ class ContactReader:
         geoms = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
         self._role[[geom for _, geom in geoms]] = count + np.arange(len(geoms))
         # of what a pad may meet: the target, the geom (-1 for a fingertip), its body; of fingertips too
-        met = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]
-        met += [(objects + f, -1, pad.body) for f, pad in enumerate(pads)]
-        self._met = np.array(met, np.int64)
+        parts = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]
+        parts += [(objects + f, -1, pad.body) for f, pad in enumerate(pads)]
+        self._parts = np.array(parts, np.int64)
         self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
         # of each combination of the objects' materials that there is, and which of them each world has
         self._known: dict[tuple[Material, ...], int] = {}
@@ -89,7 +89,7 @@ class ContactReader:
         self._curved = np.zeros((0, 0, 0, 3), np.int64)
         self._every: list[np.ndarray] = []
         self._which = np.zeros(worlds, np.int64)
-        self._pushed = np.zeros((count, len(met), 3))
+        self._pushed = np.zeros((count, len(parts), 3))
         self._frames, self._spot = np.zeros((count, _FRAME)), np.zeros(_SPOT)
         self._poses = tuple(np.zeros((many, size)) for many in (model.nbody, model.ngeom) for size in (3, 9))
         self._places: SensorPlaces | None = None
@@ -101,17 +101,17 @@ class ContactReader:
 
     def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
         """What those worlds' objects are made of from now on."""
-        for w, own in zip(worlds, materials, strict=True):
-            if own not in self._known:
-                self._known[own] = len(self._known)
-                shapes = [replace(s, material=m) for s, m in zip(self._shapes, own, strict=True)]
+        for w, combination in zip(worlds, materials, strict=True):
+            if combination not in self._known:
+                self._known[combination] = len(self._known)
+                shapes = [replace(s, material=m) for s, m in zip(self._shapes, combination, strict=True)]
                 laws, curved, tables = pair_laws(self._model, self._of_pads, shapes)
-                numbers = np.array([*map(self._number, tables), -1])  # the last of flat things
+                numbers = np.array([*map(self._number, tables), -1])  # the last of flat targets
                 first = len(self._known) == 1
                 self._laws = laws[None] if first else np.concatenate((self._laws, laws[None]))
                 curved = numbers[curved][None]
                 self._curved = curved if first else np.concatenate((self._curved, curved))
-            self._which[w] = self._known[own]
+            self._which[w] = self._known[combination]
         self._tables = stacked(self._every)
         self._point()
 
@@ -131,17 +131,17 @@ class ContactReader:
     def _point(self) -> None:
         """Says where the first world's arrays are, and whether the model's friction cones are pyramids now."""
         first = self._which[0]
-        self._own_laws, self._own_curved = self._laws[first], self._curved[first]
+        self._first_laws, self._first_curved = self._laws[first], self._curved[first]
         arrays = (
-            *(self._role, self._pads, self._met, self._bend, self._curve),
-            *(self._pushed, self.touches, self.beside, self._own_laws, self._own_curved, self._tables),
+            *(self._role, self._pads, self._parts, self._bend, self._curve),
+            *(self._pushed, self.touches, self.beside, self._first_laws, self._first_curved, self._tables),
             *(self._frames, self._spot),
         )
         self._places = None
         pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
-        sizes = len(self._role), *self.touches.shape[1:3], len(self._met), pyramidal, len(self._tables)
-        self._own = table(arrays, sizes)
-        self._own_address = self._own.ctypes.data
+        sizes = len(self._role), *self.touches.shape[1:3], len(self._parts), pyramidal, len(self._tables)
+        self._table = table(arrays, sizes)
+        self._table_address = self._table.ctypes.data
 
     def read(self, data: mujoco.MjData, weight: int = 1) -> None:
         """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
@@ -153,7 +153,7 @@ class ContactReader:
         memory = self.memory(data)
         if not memory.follows:
             memory.refresh()
-        if not read_contacts(count, weight, memory.address, self._own_address):
+        if not read_contacts(count, weight, memory.address, self._table_address):
             raise broke_down(data.time)
 
     def sense(self, record: np.ndarray, first: int, last: int, places: SensorPlaces) -> None:
@@ -166,11 +166,11 @@ class ContactReader:
 
     def _sensing(self, places: SensorPlaces) -> np.ndarray:
         """What `sense_contacts` takes of it: all addresses and sizes, until a call of set_materials."""
-        own = places.pairs, places.poses, places.geoms, places.turns, places.offsets
-        arrays = *own, self._pads, self._met, self._laws, self._which, self._bend, self._curve
+        sensed = places.pairs, places.poses, places.geoms, places.turns, places.offsets
+        arrays = *sensed, self._pads, self._parts, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
         sums = self.touches, self.beside, self.broken, self._curved, self._tables, self._frames, self._spot
-        sizes = len(self.beside), places.size, *map(len, own[:3]), *self._pushed.shape[:2]
+        sizes = len(self.beside), places.size, *map(len, sensed[:3]), *self._pushed.shape[:2]
         return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables)))
 
     def clear(self) -> None:
@@ -198,7 +198,7 @@ class ContactReader:
     @property
     def address(self) -> int:
         """Of what `read_contacts` takes of it, until a call of set_materials."""
-        return self._own_address
+        return self._table_address
 
 
 def broke_down(time: float) -> SimulationError:
@@ -209,24 +209,24 @@ def broke_down(time: float) -> SimulationError:
 
 
 @njit(cache=True, error_model="numpy")
-def read_contacts(count, substeps, memory_at, own_at):
-    """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table, and own_at: that of
-    addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
-    Returns 1, and 0 where a force is not finite."""
-    memory, own = carray(words(memory_at), TABLE), carray(words(own_at), 19)
-    tips, targets, things, pyramidal = own[14], own[15], own[16], own[17]
-    role = carray(words(own[0]), own[13])
-    pads = carray(floats(own[1]), (tips, _PAD))
-    met = carray(words(own[2]), (things, 3))
-    bend = carray(floats(own[3]), (tips, BEND))
-    curve = carray(floats(own[4]), (things, 3, CURVES))
-    pushed = carray(floats(own[5]), (tips, things, 3))  # room for forces and moments
-    touches = carray(floats(own[6]), (tips, targets, COLUMNS))
-    beside = carray(floats(own[7]), tips)
-    law = carray(laws(own[8]), (tips, things, 3))
-    curved = carray(words(own[9]), (tips, things, 3))
-    tables = carray(floats(own[10]), (own[18], CURVED_TABLE))
-    frames, spot = carray(floats(own[11]), (tips, _FRAME)), carray(floats(own[12]), _SPOT)
+def read_contacts(count, substeps, memory_at, entries_at):
+    """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table, and entries_at: that
+    of addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays
+    take. Returns 1, and 0 where a force is not finite."""
+    memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 19)
+    tips, targets, part_count, pyramidal = entries[14], entries[15], entries[16], entries[17]
+    role = carray(words(entries[0]), entries[13])
+    pads = carray(floats(entries[1]), (tips, _PAD))
+    parts = carray(words(entries[2]), (part_count, 3))
+    bend = carray(floats(entries[3]), (tips, BEND))
+    curve = carray(floats(entries[4]), (part_count, 3, CURVES))
+    pushed = carray(floats(entries[5]), (tips, part_count, 3))  # room for forces and moments
+    touches = carray(floats(entries[6]), (tips, targets, COLUMNS))
+    beside = carray(floats(entries[7]), tips)
+    law = carray(laws(entries[8]), (tips, part_count, 3))
+    curved = carray(words(entries[9]), (tips, part_count, 3))
+    tables = carray(floats(entries[10]), (entries[18], CURVED_TABLE))
+    frames, spot = carray(floats(entries[11]), (tips, _FRAME)), carray(floats(entries[12]), _SPOT)
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -239,7 +239,7 @@ def read_contacts(count, substeps, memory_at, own_at):
     pos, frame = numbers[:, memory[POS] :], numbers[:, memory[FRAME] :]
     geom, dim, address = whole[:, memory[GEOM] :], whole[:, memory[DIM]], whole[:, memory[EFC]]
     weight = float(substeps)
-    any_met = False
+    any_touch = False
     for c in range(count):
         first, second = role[geom[c, 0]], role[geom[c, 1]]
         if first < 0 or second < 0 or address[c] < 0 or first == second:
@@ -257,66 +257,66 @@ def read_contacts(count, substeps, memory_at, own_at):
             return 0
         if force <= 0.0:
             continue
-        if not any_met:
+        if not any_touch:
             _begin(pushed, frames)
-            any_met = True
-        thing = second - tips if second >= tips else things - tips + second
-        _frame(pads, met, xpos, xmat, frames, first)
+            any_touch = True
+        part = second - tips if second >= tips else part_count - tips + second
+        _frame(pads, parts, xpos, xmat, frames, first)
         on, y, z = _lies(pads[first], frames[first], pos[c], frame[c], sign)
         if second < tips:
-            _frame(pads, met, xpos, xmat, frames, second)
+            _frame(pads, parts, xpos, xmat, frames, second)
             on_other, _, _ = _lies(pads[second], frames[second], pos[c], frame[c], -sign)
             if not on_other:
                 beside[second] += weight * force
             on = on and on_other
         if on:
-            pushed[first, thing, 0] += force
-            pushed[first, thing, 1] += force * y
-            pushed[first, thing, 2] += force * z
+            pushed[first, part, 0] += force
+            pushed[first, part, 1] += force * y
+            pushed[first, part, 2] += force * z
         else:
             beside[first] += weight * force
-    if any_met:
+    if any_touch:
         _feel(
-            xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law, curved, tables, bend, curve, pushed, touches,
+            xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, bend, curve, pushed, touches,
             weight, spot,
         )  # fmt: skip
     return 1
 
 
 @njit(cache=True, error_model="numpy")
-def sense_contacts(record_at, substeps, first, last, own_at):
+def sense_contacts(record_at, substeps, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
-    sensordata), of which the substeps first to last - 1 are read; own_at: that of ContactReader's `_sensing`."""
-    own = carray(words(own_at), 32)
-    worlds, size, pairs, poses, geoms = own[23], own[24], own[25], own[26], own[27]
-    tips, things, targets = own[28], own[29], own[30]
+    sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `_sensing`."""
+    entries = carray(words(entries_at), 32)
+    worlds, size, pairs, poses, geoms = entries[23], entries[24], entries[25], entries[26], entries[27]
+    tips, part_count, targets = entries[28], entries[29], entries[30]
     record = carray(floats(record_at), (worlds, substeps, size))
     pair, pose, placed = (
-        carray(words(own[0]), (pairs, 3)),
-        carray(words(own[1]), (poses, 3)),
-        carray(words(own[2]), (geoms, 2)),
+        carray(words(entries[0]), (pairs, 3)),
+        carray(words(entries[1]), (poses, 3)),
+        carray(words(entries[2]), (geoms, 2)),
     )
-    turns, offsets = carray(floats(own[3]), (geoms, 9)), carray(floats(own[4]), (geoms, 3))
-    pads, met = carray(floats(own[5]), (tips, _PAD)), carray(words(own[6]), (things, 3))
-    which = carray(words(own[8]), worlds)
+    turns, offsets = carray(floats(entries[3]), (geoms, 9)), carray(floats(entries[4]), (geoms, 3))
+    pads, parts = carray(floats(entries[5]), (tips, _PAD)), carray(words(entries[6]), (part_count, 3))
+    which = carray(words(entries[8]), worlds)
     kinds = which.max() + 1
-    law = carray(laws(own[7]), (kinds, tips, things, 3))
-    curved = carray(words(own[19]), (kinds, tips, things, 3))
-    tables = carray(floats(own[20]), (own[31], CURVED_TABLE))
-    frames, spot = carray(floats(own[21]), (tips, _FRAME)), carray(floats(own[22]), _SPOT)
-    bend = carray(floats(own[9]), (tips, BEND))
-    curve = carray(floats(own[10]), (things, 3, CURVES))
-    pushed = carray(floats(own[11]), (tips, things, 3))  # room for forces and moments
+    law = carray(laws(entries[7]), (kinds, tips, part_count, 3))
+    curved = carray(words(entries[19]), (kinds, tips, part_count, 3))
+    tables = carray(floats(entries[20]), (entries[31], CURVED_TABLE))
+    frames, spot = carray(floats(entries[21]), (tips, _FRAME)), carray(floats(entries[22]), _SPOT)
+    bend = carray(floats(entries[9]), (tips, BEND))
+    curve = carray(floats(entries[10]), (part_count, 3, CURVES))
+    pushed = carray(floats(entries[11]), (tips, part_count, 3))  # room for forces and moments
     # room for the poses of the bodies and geoms, as many as the model has
-    xpos, xmat = carray(floats(own[12]), (1, 3)), carray(floats(own[13]), (1, 9))
-    geom_xpos, geom_xmat = carray(floats(own[14]), (1, 3)), carray(floats(own[15]), (1, 9))
-    touches = carray(floats(own[16]), (worlds, tips, targets, COLUMNS))
-    beside, broken = carray(floats(own[17]), (worlds, tips)), carray(flags(own[18]), worlds)
+    xpos, xmat = carray(floats(entries[12]), (1, 3)), carray(floats(entries[13]), (1, 9))
+    geom_xpos, geom_xmat = carray(floats(entries[14]), (1, 3)), carray(floats(entries[15]), (1, 9))
+    touches = carray(floats(entries[16]), (worlds, tips, targets, COLUMNS))
+    beside, broken = carray(floats(entries[17]), (worlds, tips)), carray(flags(entries[18]), worlds)
     for w in range(worlds):
         for n in range(first, last):
             if broken[w]:
                 break
-            data, total, any_met = record[w, n], 0.0, False
+            data, total, any_touch = record[w, n], 0.0, False
             for p in range(pairs):
                 at = pair[p, 2]
                 total += (
@@ -325,7 +325,7 @@ def sense_contacts(record_at, substeps, first, last, own_at):
                     + (data[at + FORCE_AT + 1] + data[at + FORCE_AT + 2])
                     + data[at]
                 )
-                any_met = any_met or data[at] > 0
+                any_touch = any_touch or data[at] > 0
             for p in range(poses):
                 at, quat = pose[p, 1], pose[p, 2]
                 total += data[at] + data[at + 1] + data[at + 2]
@@ -333,7 +333,7 @@ def sense_contacts(record_at, substeps, first, last, own_at):
             if not math.isfinite(total):
                 broken[w] = True
                 break
-            if not any_met:
+            if not any_touch:
                 continue
             for p in range(poses):
                 body, at, quat = pose[p, 0], pose[p, 1], pose[p, 2]
@@ -363,13 +363,13 @@ def sense_contacts(record_at, substeps, first, last, own_at):
             _begin(pushed, frames)
             for p in range(pairs):
                 if data[pair[p, 2]] > 0:
-                    first_tip, thing = pair[p, 0], pair[p, 1]
-                    _frame(pads, met, xpos, xmat, frames, first_tip)
-                    if thing >= things - tips:
-                        _frame(pads, met, xpos, xmat, frames, thing - (things - tips))
-                    _press(data, pair[p, 2], pads, frames, first_tip, thing, things, pushed, beside[w])
+                    first_tip, part = pair[p, 0], pair[p, 1]
+                    _frame(pads, parts, xpos, xmat, frames, first_tip)
+                    if part >= part_count - tips:
+                        _frame(pads, parts, xpos, xmat, frames, part - (part_count - tips))
+                    _press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside[w])
             _feel(
-                xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, law[which[w]], curved[which[w]], tables, bend,
+                xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law[which[w]], curved[which[w]], tables, bend,
                 curve, pushed, touches[w], 1.0, spot,
             )  # fmt: skip
 
@@ -386,12 +386,12 @@ def _begin(pushed, frames):
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _frame(pads, met, xpos, xmat, frames, f):
+def _frame(pads, parts, xpos, xmat, frames, f):
     """Fills frames[f] with where pad f is in the world, unless it is known in this substep."""
     if frames[f, _KNOWN] > 0.0:
         return
     frames[f, _KNOWN] = 1.0
-    body = met[len(met) - len(pads) + f, 2]
+    body = parts[len(parts) - len(pads) + f, 2]
     for k in range(3):
         x, y, z = xmat[body, 3 * k], xmat[body, 3 * k + 1], xmat[body, 3 * k + 2]
         frames[f, k] = xpos[body, k] + (x * pads[f, 0] + y * pads[f, 1] + z * pads[f, 2])
@@ -401,21 +401,21 @@ def _frame(pads, met, xpos, xmat, frames, f):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _press(data, at, pads, frames, f, thing, things, pushed, beside):
+def _press(data, at, pads, frames, f, part, part_count, pushed, beside):
     """A net force on a pad or beside it; of another fingertip only where it is on that one's pad too."""
     tips = len(pads)
     on, y, z, force = _bears(data, at, pads[f], frames[f], 1.0)
-    if thing >= things - tips:
-        other = thing - (things - tips)
+    if part >= part_count - tips:
+        other = part - (part_count - tips)
         on_other, _, _, back = _bears(data, at, pads[other], frames[other], -1.0)
         if not on_other and back > 0:
             beside[other] += back
         on = on and on_other
     if force > 0:
         if on:
-            pushed[f, thing, 0] += force
-            pushed[f, thing, 1] += force * y
-            pushed[f, thing, 2] += force * z
+            pushed[f, part, 0] += force
+            pushed[f, part, 1] += force * y
+            pushed[f, part, 2] += force * z
         else:
             beside[f] += force
 
@@ -429,9 +429,9 @@ def _bears(data, at, pad, frame, sign):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _lies(pad, own, place, vector, sign):
+def _lies(pad, frame, place, vector, sign):
     """Whether a contact is on a pad and looks at it, and where (m, along its y and z)."""
-    x, y, z, cosine = _from_pad(own, place, vector, sign)
+    x, y, z, cosine = _from_pad(frame, place, vector, sign)
     return cosine >= LOOKING and _within(pad, x, y, z), y, z
 
 
@@ -455,22 +455,22 @@ def _within(pad, x, y, z):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _feel(
-    xpos, xmat, geom_xpos, geom_xmat, pads, frames, met, laws, curved, tables, bend, curve, pushed, touches, weight,
+    xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, bend, curve, pushed, touches, weight,
     spot,
 ):  # fmt: skip
     """Adds what presses on the pads to the touches."""
-    tips, things = len(pads), len(met)
+    tips, part_count = len(pads), len(parts)
     place, sides = spot[:3], spot[3:]
     for f in range(tips):
         if frames[f, _KNOWN] == 0.0:
             continue  # nothing has met it
         middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:12]
         last = -1  # target that was touched; an object's geoms follow one another
-        for g in range(things):
+        for g in range(part_count):
             force = pushed[f, g, 0]
             if force <= 0:
                 continue
-            target, geom, body = met[g, 0], met[g, 1], met[g, 2]
+            target, geom, body = parts[g, 0], parts[g, 1], parts[g, 2]
             axis = 0
             if geom >= 0:
                 most = 0.0
@@ -487,7 +487,7 @@ def _feel(
                         most, axis = looking, i
             else:
                 # another fingertip: how far the pads' middles are apart along this one's sides
-                other = g - (things - tips)
+                other = g - (part_count - tips)
                 place[0], place[1], place[2] = 0.0, 0.0, 0.0
                 for k in range(3):
                     away = middle[k] - xpos[body, k]
@@ -514,7 +514,7 @@ def _feel(
                     first, second = across / length if length > 0 else 0.0, place[2]
                 conducts, area, long = curved_contact(tables[curved[f, g, axis]], force, first, second)
             elif bulging:
-                _sides(geom_xmat, frames, f, geom, g - (things - tips), axis, sides)
+                _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
                 area, share, kept, longer = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
