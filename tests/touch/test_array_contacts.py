@@ -76,8 +76,8 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
         mujoco.mj_step(model, data)
         force = np.zeros((2, 1, 2, 1, 1, 3))
         place = force.copy()
-        for f, thing, at in places.pairs:
-            if thing < 1:  # of the object, not of the other fingertip
+        for f, target, at in places.pairs:
+            if target < 1:  # of the object, not of the other fingertip
                 force[:, 0, f, 0, 0] = data.sensordata[at + 1 : at + 4]
                 place[:, 0, f, 0, 0] = data.sensordata[at + 4 : at + 7]
         poses = TouchContacts(
@@ -88,12 +88,12 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
             np.tile(data.geom_xpos[[geom]], (2, 1, 1, 1)),
             np.tile(data.geom_xmat[[geom]].reshape(1, 1, 1, 3, 3), (2, 1, 1, 1, 1)),
         )
-        felt = contacts.felt(poses, np.array([[0], [1]]), np.ones((1, 1)))
+        read = contacts.of_step(poses, np.array([[0], [1]]), np.ones((1, 1)))
         for world, reader in enumerate(readers):
             reader.clear()
             reader.sense(data.sensordata[None, None], 0, 1, places)
             read = reader.touches[0, :, 0]
-            for own, column in ((felt.force, FORCE), (felt.conductance, CONDUCTANCE), (felt.area, AREA)):
-                np.testing.assert_allclose(own[world, :, 0], read[:, column], rtol=1e-6)
-        touched += (felt.conductance > 0).all(axis=(0, 2)).sum() >= feeling
+            for values, column in ((read.force, FORCE), (read.conductance, CONDUCTANCE), (read.area, AREA)):
+                np.testing.assert_allclose(values[world, :, 0], read[:, column], rtol=1e-6)
+        touched += (read.conductance > 0).all(axis=(0, 2)).sum() >= feeling
     assert touched > 50

@@ -75,7 +75,7 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
 
 @NEEDS_SPECS
 @pytest.mark.parametrize(
-    "told",
+    "case",
     [
         {},
         {
@@ -86,12 +86,12 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     ],
     ids=["bare", "soft", "finer"],
 )
-def test_its_voltages_are_those_of_thermal_touch(told: dict) -> None:
-    words = {"fingertips": PADS, "objects": OBJECTS, **told}
+def test_its_voltages_are_those_of_thermal_touch(case: dict) -> None:
+    words = {"fingertips": PADS, "objects": OBJECTS, **case}
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
     seebeck = np.array([pad.stack.seebeck for pad in touch._pads])
-    felt, places = set(), 0
+    touching, places = set(), 0
     for number, (force, x, z) in enumerate(ORDERS):
         order(data, force, x, z, hand.FINGERS[: 2 + number % 2])
         for n in range(150):
@@ -101,14 +101,14 @@ def test_its_voltages_are_those_of_thermal_touch(told: dict) -> None:
                 n % 10 == 8
             ):  # a sample's sums, before they start anew: nothing is between these and the contacts
                 touches = touch._reader.touches[0]
-                own = data.plugin_state[1 : 1 + touches.size].reshape(touches.shape)
-                np.testing.assert_allclose(own, touches, rtol=1e-12, atol=1e-15)
+                plugin_touches = data.plugin_state[1 : 1 + touches.size].reshape(touches.shape)
+                np.testing.assert_allclose(plugin_touches, touches, rtol=1e-12, atol=1e-15)
             if n % 10 == 9:
                 drop = voltages(model, data) / seebeck
                 assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
-                felt.add(reading.touching)
+                touching.add(reading.touching)
         places = max(places, *(len(field.places) for field in touch._heat._fields[0]))
-    assert len(felt) > 2 and places == len(PADS) + 2  # places have gone again
+    assert len(touching) > 2 and places == len(PADS) + 2  # places have gone again
 
 
 @NEEDS_SPECS
@@ -190,8 +190,8 @@ def test_threads_of_rollout_do_as_one_does(model: mujoco.MjModel) -> None:
     starts, runs = np.tile(start, (4, 1)), []
     for threads in (1, 3):
         rooms = [mujoco.MjData(model) for _ in range(threads)]
-        ends, felt = map(np.asarray, mujoco.rollout.rollout(model, rooms, starts, controls))
-        runs.append((ends, felt))
+        ends, voltages_read = map(np.asarray, mujoco.rollout.rollout(model, rooms, starts, controls))
+        runs.append((ends, voltages_read))
     for one, other in zip(*runs, strict=True):
         assert np.array_equal(one, other)
     assert np.abs(runs[0][1][:, -1]).max() > 1e-4
@@ -205,13 +205,13 @@ def test_a_batch_does_as_steps_do(model: mujoco.MjModel) -> None:
     batch = pytest.importorskip("mujoco.batch", reason="mujoco.batch exists from MuJoCo 4.0 on")
     many = batch.Batch(model, nsim=3, nthread=2)
     data = mujoco.MjData(model)
-    controls, felt = np.asarray(many.bind("ctrl")), np.asarray(many.bind("sensordata"))
+    controls, voltages_read = np.asarray(many.bind("ctrl")), np.asarray(many.bind("sensordata"))
     for row in orders(40):
         controls[:], data.ctrl[:] = row, row
         many.step()
         mujoco.mj_step(model, data)
     assert np.abs(data.sensordata).max() > 1e-4
-    assert (felt == data.sensordata).all()
+    assert (voltages_read == data.sensordata).all()
 
 
 def test_a_state_that_comes_back_goes_on_alike(model: mujoco.MjModel) -> None:
@@ -333,11 +333,13 @@ def test_without_a_compiler_it_says_what_is_missing(tmp_path: Path) -> None:
         "import thermograsp\nfrom thermograsp.touch import load_plugin\n"
         "try:\n    load_plugin()\nexcept thermograsp.errors.MissingDependencyError as e:\n    print(e)"
     )
-    there = os.environ | {"CC": "no-such-compiler", "THERMOGRASP_CACHE": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", code], env=there, capture_output=True, text=True, check=True)
+    environment = os.environ | {"CC": "no-such-compiler", "THERMOGRASP_CACHE": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
     assert "there is no 'no-such-compiler'" in done.stdout
-    there["CC"] = "false"
-    done = subprocess.run([sys.executable, "-c", code], env=there, capture_output=True, text=True)
+    environment["CC"] = "false"
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
     assert "ThermograspError" in done.stderr and "failed" in done.stderr
     assert issubclass(MissingDependencyError, ThermograspError) and list(tmp_path.iterdir()) == []
 
@@ -367,19 +369,23 @@ assert plain.sensor("heat").data.any() and np.array_equal(plain.plugin_state, sh
 print("the same", flush=True)
 os._exit(0)  # without any plugin too the viewer's thread may crash as the process ends
 """
-    there = os.environ | {"MUJOCO_GL": "glfw"}
+    environment = os.environ | {"MUJOCO_GL": "glfw"}
     done = subprocess.run(
-        ["xvfb-run", "-a", sys.executable, "-c", code], env=there, capture_output=True, text=True, timeout=300
+        ["xvfb-run", "-a", sys.executable, "-c", code],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
     assert done.returncode == 0 and done.stdout.strip() == "the same", done.stderr
 
 
 @TIER
 def test_processes_that_build_at_once_load_the_same(tmp_path: Path) -> None:
-    there = os.environ | {"THERMOGRASP_CACHE": str(tmp_path)}
+    environment = os.environ | {"THERMOGRASP_CACHE": str(tmp_path)}
     code = "from thermograsp.touch import load_plugin; print(load_plugin())"
     both = [
-        subprocess.Popen([sys.executable, "-c", code], env=there, stdout=subprocess.PIPE, text=True)
+        subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, text=True)
         for _ in range(2)
     ]
     paths = {one.communicate()[0] for one in both}
@@ -401,12 +407,12 @@ library.library = lambda: path
 import pytest
 sys.exit(pytest.main(["-q", "-x", "-p", "no:cacheprovider", {__file__!r}]))
 """
-    there = os.environ | {
+    environment = os.environ | {
         "LD_PRELOAD": asan.stdout.strip(),
         "ASAN_OPTIONS": "detect_leaks=0:handle_segv=0",
     }
-    there.pop("THERMOGRASP_ENGINE")
-    done = subprocess.run([sys.executable, "-c", code], env=there, capture_output=True, text=True)
+    environment.pop("THERMOGRASP_ENGINE")
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 

@@ -56,8 +56,10 @@ def block() -> tuple[mujoco.MjModel, np.ndarray]:
 
 
 def worlds_of(model: mujoco.MjModel, **words: object) -> tuple[ThermalTouch, FixedTouch]:
-    own = [ThermalBody(name, 24.0 + 10 * w) for w, name in enumerate(MATERIALS)]
-    touch = ThermalTouch(model, fingertips=TIP, objects={"block": own}, chain="ideal", worlds=WORLDS, **words)  # pyright: ignore[reportArgumentType]
+    bodies_of = [ThermalBody(name, 24.0 + 10 * w) for w, name in enumerate(MATERIALS)]
+    touch = ThermalTouch(
+        model, fingertips=TIP, objects={"block": bodies_of}, chain="ideal", worlds=WORLDS, **words
+    )  # pyright: ignore[reportArgumentType]
     return touch, touch.fixed_touch(np.zeros(0))
 
 
@@ -102,10 +104,10 @@ HARD = """
 
 def test_pads_of_two_geoms_round_pads_and_objects_that_nothing_touches() -> None:
     flat = Fingertip("left", position=(0.004, 0, 0), normal=(1, 0, 0), size=(0.02, 0.02))
-    tips, things = {"left": flat, "right": "ball"}, {"can": "glass", "far": "steel"}
-    model = prepare(mujoco.MjSpec.from_string(HARD), tips, things)
+    tips, materials_of = {"left": flat, "right": "ball"}, {"can": "glass", "far": "steel"}
+    model = prepare(mujoco.MjSpec.from_string(HARD), tips, materials_of)
     data = mujoco.MjData(model)
-    touch = ThermalTouch(model, fingertips=tips, objects=things, worlds=1, chain="ideal")
+    touch = ThermalTouch(model, fingertips=tips, objects=materials_of, worlds=1, chain="ideal")
     data.qfrc_applied[:2] = 8.0
     touch.update(recorded(model, data, 100))
     fixed = touch.fixed_touch(np.zeros(0), materials={"can": "wood"})
@@ -185,8 +187,8 @@ def test_a_world_that_breaks_down_fails_alone() -> None:
         with np.errstate(invalid="ignore"):
             state, reading = fixed.advance(fixed.start(), contacts)
         assert np.isnan(reading.temperature_drop[1]).all() and reading.touching[1] == -1
-        for own, other in zip(_flat(state), _flat(good), strict=True):
-            np.testing.assert_array_equal(own[[0, 2]], other[[0, 2]])
+        for value, other in zip(_flat(state), _flat(good), strict=True):
+            np.testing.assert_array_equal(value[[0, 2]], other[[0, 2]])
     with np.errstate(invalid="ignore"):
         state, _ = fixed.advance(state, fixed.contacts(part))
     state = fixed.reset(state, np.array([False, True, False]))
@@ -207,18 +209,18 @@ def test_forces_and_places_may_come_from_elsewhere() -> None:
     record = recorded(model, data, 300)[:, -1:].repeat(SAMPLE, axis=1)
     force, place = np.zeros((1, SAMPLE, 1, 1, 4, 3)), np.zeros((1, SAMPLE, 1, 1, 4, 3))
     for n in range(data.ncon):
-        own = np.zeros(6)
-        mujoco.mj_contactForce(model, data, n, own)
+        share = np.zeros(6)
+        mujoco.mj_contactForce(model, data, n, share)
         along = data.contact.frame[n, :3] * (1 if data.contact.geom[n, 0] == model.geom("pad").id else -1)
-        force[..., n, :], place[..., n, :] = own[0] * along, data.contact.pos[n]
+        force[..., n, :], place[..., n, :] = share[0] * along, data.contact.pos[n]
     poses = (
         np.tile(each, (1, SAMPLE, 1, 1)) for each in (data.xpos, data.xmat, data.geom_xpos, data.geom_xmat)
     )
     _, reading = fixed.advance(start, fixed.posed(force, place, *poses))
     _, right = fixed.advance(start, fixed.contacts(record))
     assert data.ncon > 1 and right.force > 1.0
-    for own, other in zip(reading, right, strict=True):
-        np.testing.assert_allclose(own, other, rtol=1e-9)
+    for field, other in zip(reading, right, strict=True):
+        np.testing.assert_allclose(field, other, rtol=1e-9)
 
 
 def test_single_precision_is_near() -> None:

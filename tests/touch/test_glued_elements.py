@@ -31,10 +31,10 @@ TOP = SensorElement((0, 0, 0.005), (0, 0, 1))
 BARE = {"tip": Fingertip("tip", sensor=None)}
 
 
-def touching(thing: ThermalBody, fingertips: dict = BARE, x: float = 0.0, **words: object) -> ThermalTouch:
+def touching(body: ThermalBody, fingertips: dict = BARE, x: float = 0.0, **words: object) -> ThermalTouch:
     model = mujoco.MjModel.from_xml_string(SCENE.format(x=x))
     words = {"air": 0.0, "chain": "ideal", **words}
-    return ThermalTouch(model, fingertips=fingertips, objects={"block": thing}, **words)  # pyright: ignore
+    return ThermalTouch(model, fingertips=fingertips, objects={"block": body}, **words)  # pyright: ignore
 
 
 def run(touch: ThermalTouch, seconds: float, force: float = 10.0) -> tuple[np.ndarray, np.ndarray]:

@@ -61,9 +61,9 @@ def test_a_narrow_contact_has_the_impedance_of_a_patch_on_a_box(
         box = box_samples(size, made_of.conductivity, made_of.volumetric_heat_capacity, 0.0, patch).whole()
         return (element_samples(pad.stack, ends).value + box)[OF_GRASP, 0, 0]
 
-    own = impedance(p, q)
-    error = added(pad, made_of, p * q, q) - (own - impedance(width, width))
-    assert np.abs(error / (own + 1 / (3000 * p * q))).max() < 0.02
+    series = impedance(p, q)
+    error = added(pad, made_of, p * q, q) - (series - impedance(width, width))
+    assert np.abs(error / (series + 1 / (3000 * p * q))).max() < 0.02
 
 
 def test_a_small_square_ends_with_the_resistance_of_a_half_space(pad: PadPlace) -> None:
@@ -120,21 +120,21 @@ def test_what_has_spread_belongs_to_the_state() -> None:
     touch = ThermalTouch(model, fingertips={"thumb": "thumb_pad"}, objects={"can": "glass"}, chain="ideal")
     hand.press(data, 8.0)
 
-    def felt(steps: int) -> np.ndarray:
+    def drops_of(steps: int) -> np.ndarray:
         for _ in range(steps):
             mujoco.mj_step(model, data)
             touch.update(data)
         return touch.reading.temperature_drop.copy()
 
-    felt(200)
+    drops_of(200)
     kind = mujoco.mjtState.mjSTATE_INTEGRATION
     kept, then = touch.state(), np.zeros(mujoco.mj_stateSize(model, kind))
     mujoco.mj_getState(model, data, then, kind)
     assert np.abs(kept.heat.narrow).max() > 0
-    first = felt(100)
+    first = drops_of(100)
     mujoco.mj_setState(model, data, then, kind)
     touch.set_state(kept)
-    np.testing.assert_array_equal(felt(100), first)
+    np.testing.assert_array_equal(drops_of(100), first)
     touch.reset()
     assert not touch._heat.state().narrow.any()
 

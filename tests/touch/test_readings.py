@@ -58,12 +58,12 @@ def test_a_reading_and_a_copied_touch() -> None:
     for _ in range(102):
         mujoco.mj_step(model, data)
         touch.update(data)
-    first, told = touch.reading, pickle.dumps(touch.reading)
+    first, pickled = touch.reading, pickle.dumps(touch.reading)
     for _ in range(103):
         mujoco.mj_step(model, data)
         touch.update(data)
     assert first.time < touch.reading.time
-    again = pickle.loads(told)
+    again = pickle.loads(pickled)
     for name in ("voltage", "temperature_drop", "force", "beside", "element_voltage", "element_drop"):
         np.testing.assert_array_equal(getattr(first, name), getattr(again, name))
     assert (again.touching, again.object_temperature) == (first.touching, first.object_temperature)

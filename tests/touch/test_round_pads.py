@@ -139,15 +139,15 @@ OBJECTS = {
 }
 SCENE = """
 <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
-  <body name="object">{thing}</body>
+  <body name="object">{target}</body>
   <body name="finger" pos="0 0 {height}"><joint name="down" type="slide" axis="0 0 -1" damping="20"/>{tip}</body>
 </worldbody><actuator><motor joint="down"/></actuator></mujoco>"""
 
 
-def scene(tip: str, thing: str) -> str:
-    geom, top = OBJECTS[thing]
+def scene(tip: str, target: str) -> str:
+    geom, top = OBJECTS[target]
     height = top + (0.0225 if tip == "upright capsule" else 0.0125 if tip == "egg" else 0.0085)
-    return SCENE.format(tip=TIPS[tip], thing=geom, height=height)
+    return SCENE.format(tip=TIPS[tip], target=geom, height=height)
 
 
 @pytest.mark.parametrize(
@@ -179,8 +179,8 @@ def test_a_round_fingertip_s_pad_is_as_curved_as_it(
     assert flat.curvature == (0.0, 0.0)
 
 
-def dropped(tip: str | Fingertip, geometry: str, thing: str = "block") -> float:
-    model = mujoco.MjModel.from_xml_string(scene(geometry, thing))
+def dropped(tip: str | Fingertip, geometry: str, target: str = "block") -> float:
+    model = mujoco.MjModel.from_xml_string(scene(geometry, target))
     data = mujoco.MjData(model)
     touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"object": "aluminium"}, chain=IDEAL)
     data.ctrl[0], reading = 5.0, touch.reading
@@ -199,7 +199,7 @@ def test_a_round_fingertip_feels_less_than_a_flat_one_and_the_less_the_rounder_t
 
 def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> None:
     """Along either, 9 of its 24 mm press on the sensor's face, with 9/24 of the force; across, all of it does."""
-    on_block, along, across = (dropped("tip", "capsule", thing) for thing in ("block", "can along", "can"))
+    on_block, along, across = (dropped("tip", "capsule", target) for target in ("block", "can along", "can"))
     assert across > 1.2 * along
     assert across > on_block > along
     rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045])
@@ -213,10 +213,10 @@ def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> No
     not hasattr(mujoco.MjSpec, "activate_plugin"), reason="specs take plugins from MuJoCo 3.3.2 on"
 )
 @pytest.mark.parametrize("tip", TIPS)
-@pytest.mark.parametrize("thing", OBJECTS)
-def test_inside_mujoco_s_step_it_is_the_same(tip: str, thing: str) -> None:
+@pytest.mark.parametrize("target", OBJECTS)
+def test_inside_mujoco_s_step_it_is_the_same(tip: str, target: str) -> None:
     words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
-    model = install(mujoco.MjSpec.from_string(scene(tip, thing)), **words)
+    model = install(mujoco.MjSpec.from_string(scene(tip, target)), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
     data.ctrl[0], reading = 5.0, touch.reading
     for _ in range(100):
@@ -232,7 +232,7 @@ def test_inside_mujoco_s_step_it_is_the_same(tip: str, thing: str) -> None:
 def test_two_round_fingertips_feel_one_another() -> None:
     other = '<geom name="thing" type="capsule" size=".01 .02" euler="0 90 0"/>'
     other += '<geom name="far" type="box" size=".01 .01 .01" pos=".2 0 0"/>'
-    model = mujoco.MjModel.from_xml_string(SCENE.format(tip=TIPS["ball"], thing=other, height=0.0185))
+    model = mujoco.MjModel.from_xml_string(SCENE.format(tip=TIPS["ball"], target=other, height=0.0185))
     data = mujoco.MjData(model)
     fingers = {"tip": "tip", "other": Fingertip("thing", temperature=30.0)}
     touch = ThermalTouch(model, fingertips=fingers, objects={"far": "glass"}, chain=IDEAL)

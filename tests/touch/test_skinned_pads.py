@@ -14,7 +14,7 @@ from thermograsp.thermal.contact import (
     contact,
     curved_contact,
     cylinder_footprint,
-    met,
+    face_joint,
     skinned,
     sphere_footprint,
 )
@@ -44,16 +44,16 @@ def scene(skin: str | None):
 @pytest.mark.parametrize("force", [0.1, 1.0, 10.0, 40.0])
 def test_contacts_in_the_middle_are_those_of_the_environments_laws(force: float, skin: str | None) -> None:
     model, found, shapes = scene(skin)
-    own = SKINS[skin] if skin else None
+    skin_worn = SKINS[skin] if skin else None
     laws, curved, tables = pair_laws(model, found, shapes)
-    steel, sheet, middle = Surface.of(material("steel")), skinned(Pad(), own), np.zeros(3)
-    if own is None:
+    steel, sheet, middle = Surface.of(material("steel")), skinned(Pad(), skin_worn), np.zeros(3)
+    if skin_worn is None:
         ball, can = (bare_footprint(Pad(), steel, 0.02, length) for length in (None, 0.06))
     else:
-        pair = met(own, steel)
+        pair = face_joint(skin_worn, steel)
         ball, can = sphere_footprint(sheet, pair, 0.02), cylinder_footprint(sheet, pair, 0.02, 0.06)
-    for thing, law in ((0, ball), (1, can)):
-        conducts = curved_contact(tables[curved[0, thing, 0]], force, 0.0, 0.0)[0]
+    for target, law in ((0, ball), (1, can)):
+        conducts = curved_contact(tables[curved[0, target, 0]], force, 0.0, 0.0)[0]
         assert conducts == pytest.approx(conduction(law, force, middle)[1], rel=0.02)
     area, load = contact(laws[0, 2, 0], force, middle)
     known = flat_contact(sheet, force, (0.04, 0.04))
@@ -63,9 +63,9 @@ def test_contacts_in_the_middle_are_those_of_the_environments_laws(force: float,
 
 def test_a_bare_face_conducts_less_and_bears_less_of_a_flat_face_s_force_than_a_skin() -> None:
     bare, worn = (pair_laws(*scene(skin)) for skin in (None, "filled_silicone"))
-    for thing in (0, 1):
+    for target in (0, 1):
         through = [
-            curved_contact(each.tables[each.curved[0, thing, 0]], 10.0, 0.0, 0.0)[0] for each in (bare, worn)
+            curved_contact(each.tables[each.curved[0, target, 0]], 10.0, 0.0, 0.0)[0] for each in (bare, worn)
         ]
         assert 10 * through[0] < through[1]
     assert contact(bare.laws[0, 2, 0], 10.0, np.zeros(3))[1] == pytest.approx(10.0 * (9 / 20) ** 2)

@@ -24,7 +24,7 @@ from thermograsp.thermal import (
     material,
     press,
 )
-from thermograsp.thermal.contact import Pad, flat_contact, met, skinned
+from thermograsp.thermal.contact import Pad, face_joint, flat_contact, skinned
 from thermograsp.thermal.stack import heated_core, heated_stack
 from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch
 from thermograsp.touch.contacts import COLUMNS, CONDUCTANCE, NORMAL, PLACE
@@ -92,7 +92,7 @@ def test_one_fingertip_on_a_box_feels_what_a_press_does(name: str, cone: str, sk
     assert reading.force[0] == pytest.approx(10.0, rel=1e-3)
     worn = None if skin is None else SKINS[skin]
     pressure = float(flat_contact(skinned(Pad(), worn), 10.0).face_pressure)
-    h = float(contact_conductance(met(worn, Surface.of(material(name))), pressure))
+    h = float(contact_conductance(face_joint(worn, Surface.of(material(name))), pressure))
     size = (0.04, 0.04, 0.04)
     curves = press(name, skin=skin, conductance=h, object_size=size, seconds=4.0, dt=0.02, tolerance=0.01)
     # the touch began within the first reading, at some force that is still rising
@@ -598,10 +598,10 @@ def test_a_thermostat_of_finite_power_cools_as_in_a_press(name: str, mode: Liter
     )
     since = np.array(times) - times[0] + 0.02
     expected = np.interp(since, curves.t, curves.temperature_drop)
-    apart = np.abs(np.array(drops) - expected)[since > 0.3].max()
+    difference = np.abs(np.array(drops) - expected)[since > 0.3].max()
     # the ideal one would be far off, and what is left is that of the networks
     assert ideal.temperature_drop[-1] - expected[-1] > 0.3
-    assert apart < 0.07
+    assert difference < 0.07
     first = touch.reset()
     assert first.temperature_drop[0] == 0.0
 

@@ -24,7 +24,7 @@ _STEP = mujoco.mj_step
 PADS = {name: f"{name}_pad" for name in hand.FINGERS}
 
 
-class Theirs(gymnasium.Env):
+class OtherEnv(gymnasium.Env):
     """Ten substeps in one call, as gymnasium's own MuJoCo environments take them. anew: a new model at each reset."""
 
     def __init__(self, anew: bool = False) -> None:
@@ -50,7 +50,7 @@ class Theirs(gymnasium.Env):
 def test_every_substep_of_an_environment_is_heard(anew: bool) -> None:
     step = mujoco.mj_step
     env = thermograsp.wrappers.AddThermalObservation(
-        Theirs(anew), fingertips=PADS, objects={"can": "aluminium"}, chain="ideal"
+        OtherEnv(anew), fingertips=PADS, objects={"can": "aluminium"}, chain="ideal"
     )
     model, data = hand.hand()
     touch = thermograsp.ThermalTouch(model, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal")
@@ -70,7 +70,7 @@ def test_every_substep_of_an_environment_is_heard(anew: bool) -> None:
     assert mujoco.mj_step is step
 
 
-class ByName(Theirs):
+class ByName(OtherEnv):
     """Steps by a function that it has imported by name."""
 
     def step(self, action: Any) -> Any:
@@ -81,9 +81,9 @@ class ByName(Theirs):
 
 def test_steps_by_a_function_imported_by_name_are_felt() -> None:
     pressed = []
-    for theirs in (ByName(), Theirs()):
+    for other in (ByName(), OtherEnv()):
         env = thermograsp.wrappers.AddThermalObservation(
-            theirs, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal"
+            other, fingertips=PADS, objects={"can": "aluminium"}, chain="ideal"
         )
         env.reset(seed=0)
         for _ in range(30):

@@ -210,9 +210,9 @@ def broke_down(time: float) -> SimulationError:
 
 @njit(cache=True, error_model="numpy")
 def read_contacts(count, substeps, memory_at, entries_at):
-    """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table, and entries_at: that
-    of addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays
-    take. Returns 1, and 0 where a force is not finite."""
+    """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
+    addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
+    Returns 1, and 0 where a force is not finite."""
     memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 19)
     tips, targets, part_count, pyramidal = entries[14], entries[15], entries[16], entries[17]
     role = carray(words(entries[0]), entries[13])

@@ -31,13 +31,13 @@ CUBE = ObjectSpec(mass=0.1, friction=0.8)
 MIDDLES = CUBE.element_places
 
 
-def thing(spec: ObjectSpec = CUBE, name: str = "glass", **more) -> GraspBody:
+def grasp_body(spec: ObjectSpec = CUBE, name: str = "glass", **more) -> GraspBody:
     return GraspBody(spec, thermal.material(name), 24.0, "T", STACK, anywhere=True, **more)
 
 
-def heat_of(*things: GraspBody, **settings: float) -> GraspHeat:
-    heat = GraspHeat(len(things), **{**SETTINGS, **settings})
-    heat.reset(range(len(things)), things, np.full((len(things), 2), 36.0))
+def heat_of(*bodies: GraspBody, **settings: float) -> GraspHeat:
+    heat = GraspHeat(len(bodies), **{**SETTINGS, **settings})
+    heat.reset(range(len(bodies)), bodies, np.full((len(bodies), 2), 36.0))
     return heat
 
 
@@ -53,7 +53,7 @@ def press(heat: GraspHeat, seconds: float, *places: np.ndarray | None, newton: f
 @pytest.mark.parametrize("name", ["cotton", "wood", "glass", "stainless_steel", "aluminium"])
 def test_drops_are_those_of_the_searched_network_within_the_tolerance(name):
     """A cube that is pressed in the middle of its faces, one fingertip earlier than the other, and let go."""
-    heat = heat_of(thing(name=name))
+    heat = heat_of(grasp_body(name=name))
     geometry = thermal.Geometry(STACK, thermal.material(name), "T", 81e-6, "square", (0.04, 0.04, 0.04), 2)
     demand = thermal.Demand(0.005, 12.0)
     searched = thermal.network_for(geometry, demand).system
@@ -64,12 +64,12 @@ def test_drops_are_those_of_the_searched_network_within_the_tolerance(name):
     for k in range(400):
         force = np.zeros((1, 10, 2))
         force[0, :, 0], force[0, :, 1] = 10.0 * (k < 300), 10.0 * (20 <= k < 300)
-        told = heat.advance(force, MIDDLES[None])
-        felt = np.repeat(told.info["conductance"] * told.info["area"], searched.modes, axis=1)
+        reply = heat.advance(force, MIDDLES[None])
+        conductance = np.repeat(reply.info["conductance"] * reply.info["area"], searched.modes, axis=1)
         for _ in range(2):
-            x, _ = step(other, x, felt, difference)
+            x, _ = step(other, x, conductance, difference)
             expected.append(searched.drop @ x[0])
-        drops.append(told.drop[0])
+        drops.append(reply.drop[0])
     drops, expected = np.concatenate(drops), np.array(expected)
     # tolerances are promised from .05 s after a touch on
     late = np.ones(len(drops), bool)
@@ -82,7 +82,7 @@ def test_books_hold_whatever_a_fingertip_does():
     """It slides over faces and edges, leaves and comes back, in air, with more places than are remembered."""
     rng = np.random.default_rng(1)
     spec = ObjectSpec(size=(0.02, 0.03, 0.024), mass=0.1, friction=0.8)
-    warm = replace(thing(spec, "aluminium"), ambient=22.0)
+    warm = replace(grasp_body(spec, "aluminium"), ambient=22.0)
     heat = heat_of(warm, air=15.0)
     gone = exchanged = 0.0
     for k in range(60):
@@ -91,8 +91,8 @@ def test_books_hold_whatever_a_fingertip_does():
         )
         if k % 3:
             place[:, 1] += 0.001 * k % 0.004
-        for told in press(heat, 0.1, place if rng.random() < 0.8 else None):
-            row = told.info[0]
+        for reply in press(heat, 0.1, place if rng.random() < 0.8 else None):
+            row = reply.info[0]
             gone += STEP * (row["drawn"].sum() - row["air_loss"])
             assert abs(row["imbalance"]) < 1e-10 * max(row["exchanged"], 1.0)
             assert row["heat"].sum() == pytest.approx(gone, abs=1e-9)
@@ -104,15 +104,15 @@ def test_books_hold_whatever_a_fingertip_does():
 
 def test_a_field_that_slides_away_is_found_where_it_was():
     bar = ObjectSpec(size=(0.01, 0.07, 0.024), mass=0.1, friction=0.8)
-    heat = heat_of(*[thing(bar) for _ in range(4)])
+    heat = heat_of(*[grasp_body(bar) for _ in range(4)])
     left = np.array([[-0.005, 0.0, 0.0], [0.005, 0.0, 0.0]])
     press(heat, 5.0, left, left, left, left)
     press(heat, 1.0, None, left + [0, 0.02, 0], None, left + [0, 0.02, 0])
     press(heat, 2.0, None, None, None, None)
     for row in (2, 3):  # the last ones' objects are fresh once more, their fingertips as they are
         heat._state[row, : heat._of_tip(row, 0).start] = 0.0
-    told = press(heat, 0.5, left, left, left, left)
-    warm, slid, fresh, other = (told[-1].drop[row, -1, 0] for row in range(4))
+    reply = press(heat, 0.5, left, left, left, left)
+    warm, slid, fresh, other = (reply[-1].drop[row, -1, 0] for row in range(4))
     assert fresh - warm > 0.1 and other - slid > 0.1
 
 
@@ -134,43 +134,43 @@ def networks_of(name: str, size: tuple[float, float, float], along: list[float],
         shared=True,
     )
     element = tips[0].side
-    rates, own = np.concatenate((box.rates, element.rates)), len(box.rates)
-    drop = np.concatenate((np.zeros(own), element.outputs["drop"]))
+    rates, inner = np.concatenate((box.rates, element.rates)), len(box.rates)
+    drop = np.concatenate((np.zeros(inner), element.outputs["drop"]))
     x, found = np.zeros((1, len(rates))), []
     for seconds, place in plan:
-        ports, felt = np.zeros((len(rates), p)), np.zeros((1, p))
-        ports[own:] = -element.ports
+        ports, through = np.zeros((len(rates), p)), np.zeros((1, p))
+        ports[inner:] = -element.ports
         if place is not None:
-            ports[:own] = box.ports[:, place * p : (place + 1) * p]
-            felt[:] = conductance * STACK.face_area
+            ports[:inner] = box.ports[:, place * p : (place + 1) * p]
+            through[:] = conductance * STACK.face_area
         of_step = propagator(rates, ports, STEP / 2)
         for _ in range(round(2 * seconds / STEP)):
-            x, _flow = step(of_step, x, felt, np.array([[12.0, 0.0, 0.0]]))
+            x, _flow = step(of_step, x, through, np.array([[12.0, 0.0, 0.0]]))
             found.append(drop @ x[0])
     return np.array(found)
 
 
 def boxes_of(name: str, size: tuple[float, float, float], along: list[float], plan):
     """(the same by the environments' network, W/(m2 K) of the contact)."""
-    heat = heat_of(thing(ObjectSpec(size=size, mass=0.1, friction=0.8), name, fingertips=1))
-    found, felt = [], 0.0
+    heat = heat_of(grasp_body(ObjectSpec(size=size, mass=0.1, friction=0.8), name, fingertips=1))
+    found, largest = [], 0.0
     for seconds, place in plan:
         at = None if place is None else np.array([[-size[0] / 2, along[place] - size[1] / 2, 0.0], [9.0] * 3])
-        for told in press(heat, seconds, at):
-            found += told.drop[0, :, 0].tolist()
-            felt = max(felt, float(told.info["conductance"][0, 0]))
-    return np.array(found), felt
+        for reply in press(heat, seconds, at):
+            found += reply.drop[0, :, 0].tolist()
+            largest = max(largest, float(reply.info["conductance"][0, 0]))
+    return np.array(found), largest
 
 
 @pytest.mark.parametrize("name", ["glass", "wood"])
-@pytest.mark.parametrize("apart", [0.0011, 0.0043, 0.0091])
-def test_a_second_touch_beside_a_warm_place_is_right(name, apart):
+@pytest.mark.parametrize("distance", [0.0011, 0.0043, 0.0091])
+def test_a_second_touch_beside_a_warm_place_is_right(name, distance):
     """Neither place is on the lattice of fresh ones. A model that knew the mean temperature alone would be .08 K off at
     the least."""
-    size, along = (0.01, 0.06, 0.024), [0.0282, 0.0282 + apart]
+    size, along = (0.01, 0.06, 0.024), [0.0282, 0.0282 + distance]
     plan = [(4.0, 0), (1.0, None), (1.5, 1)]
-    found, felt = boxes_of(name, size, along, plan)
-    expected = networks_of(name, size, along, plan, felt)
+    found, conductance = boxes_of(name, size, along, plan)
+    expected = networks_of(name, size, along, plan, conductance)
     fresh = boxes_of(name, size, along[1:], [(1.5, 0)])[0]
     again = slice(-140, None)
     assert np.abs(found - expected)[again].max() < 0.03
@@ -180,8 +180,8 @@ def test_a_second_touch_beside_a_warm_place_is_right(name, apart):
 def test_heat_stays_where_a_fingertip_slides_over_more_places_than_are_remembered():
     size, along = (0.01, 0.06, 0.024), (0.0255 + 0.00101 * np.arange(8)).tolist()
     plan = [(2.0, 0), *((0.1, place) for place in range(1, 8)), (1.0, None), (1.0, 0)]
-    found, felt = boxes_of("glass", size, along, plan)
-    expected = networks_of("glass", size, along, plan, felt)
+    found, conductance = boxes_of("glass", size, along, plan)
+    expected = networks_of("glass", size, along, plan, conductance)
     back = slice(-90, None)
     assert np.abs(found - expected)[back].max() < 0.05
     fresh = boxes_of("glass", size, along[:1], [(1.0, 0)])[0]
@@ -205,8 +205,8 @@ def test_the_place_given_up_is_the_one_nearest_to_its_heir_by_warmth():
 def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
     spec = ObjectSpec(size=(0.03, 0.024, 0.018), mass=0.1, friction=0.8)
     course = [MIDDLES, MIDDLES + [0, 0.011, 0], None, MIDDLES + [0, 0.011, 0.008], MIDDLES]
-    together = heat_of(thing(spec), thing(spec, "aluminium"), thing(), air=5.0)
-    alone, states, seen = heat_of(thing(spec), air=5.0), [], []
+    together = heat_of(grasp_body(spec), grasp_body(spec, "aluminium"), grasp_body(), air=5.0)
+    alone, states, seen = heat_of(grasp_body(spec), air=5.0), [], []
     for k, place in enumerate(course):
         states.append(alone.state([0]))
         seen.append([])
@@ -214,11 +214,11 @@ def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
         for a, b in zip(press(alone, 0.2, place), many, strict=True):
             assert np.array_equal(a.drop[0], b.drop[0]) and a.info[0].tobytes() == b.info[0].tobytes()
             seen[-1].append(a.info[0].tobytes())
-    other = heat_of(thing(name="cork"), air=5.0)
+    other = heat_of(grasp_body(name="cork"), air=5.0)
     for heat in (other, alone):
         heat.set_state([0], states[2])
-        for place, told in zip(course[2:], seen[2:], strict=True):
-            assert [step.info[0].tobytes() for step in press(heat, 0.2, place)] == told
+        for place, reply in zip(course[2:], seen[2:], strict=True):
+            assert [step.info[0].tobytes() for step in press(heat, 0.2, place)] == reply
 
 
 def test_drawn_sizes_vector_and_single_agree_bit_for_bit():
@@ -244,10 +244,10 @@ def test_a_box_of_any_size_is_touched_in_the_middle_as_one_whose_network_is_sear
     assert heat.rung(0).startswith("kernels") and heat.rung(1).startswith("network")
     middles, found, events = spec.element_places, [], []
     for seconds, at in ((2.0, middles), (0.5, None), (2.0, middles + [0, 0.008, 0])):
-        told = press(heat, seconds, at, at)
-        found += [each.drop for each in told]
-        events.append([row["events"].tolist() for row in told[0].info])
-        for each in told:
+        reply = press(heat, seconds, at, at)
+        found += [each.drop for each in reply]
+        events.append([row["events"].tolist() for row in reply[0].info])
+        for each in reply:
             kernels = each.info[0]
             assert abs(kernels["imbalance"]) < 1e-10 * max(kernels["exchanged"], 1.0)
     assert all(kernels == network for kernels, network in events)
@@ -276,11 +276,11 @@ def test_everything_drawn_searches_nothing_and_keeps_nothing(monkeypatch: pytest
 
 def test_however_many_sizes_and_places_are_drawn_what_is_kept_stays_the_same():
     boxes_module._made.clear()
-    heat, rng, kept = heat_of(thing(), thing()), np.random.default_rng(0), []
+    heat, rng, kept = heat_of(grasp_body(), grasp_body()), np.random.default_rng(0), []
     for episode in range(40):
         size = tuple(rng.uniform(0.01, 0.05, 3))
         spec = ObjectSpec(size=size, mass=0.1, friction=0.8)
-        heat.reset([episode % 2], [thing(spec)], np.full((1, 2), 36.0))
+        heat.reset([episode % 2], [grasp_body(spec)], np.full((1, 2), 36.0))
         places = spec.element_places + [0, *rng.uniform(-0.5, 0.5, 2) * size[1:]]
         press(heat, 0.04, *([places] * 2))
         kept.append([array.nbytes for array in heat._boxes.tables if isinstance(array, np.ndarray)])
@@ -291,7 +291,7 @@ def test_however_many_sizes_and_places_are_drawn_what_is_kept_stays_the_same():
 
 def test_a_face_that_covers_a_part_of_the_sensor_s_is_taken_by_its_rectangle():
     """Half on the face is not the same as a contact of half the area in the middle."""
-    heat = heat_of(thing(name="aluminium"))
+    heat = heat_of(grasp_body(name="aluminium"))
     press(heat, 0.02, MIDDLES + [0, 0, 0.0195])
     touched = heat._boxes.touched(0)
     covered = touched.places[touched.contacts[0]].covered(CUBE.size, STACK.width)

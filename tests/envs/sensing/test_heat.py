@@ -35,7 +35,7 @@ def grasped(batch: GraspBatch, steps: int) -> list:
     return readings
 
 
-def felt_conductances(batch: GraspBatch, steps: int) -> tuple[list, np.ndarray]:
+def sampled_conductances(batch: GraspBatch, steps: int) -> tuple[list, np.ndarray]:
     """The readings of a grasp, and what each heat sample felt: sampled_conductance."""
     plant: Any = batch.plant
     seen = watched_contacts(plant.heat)
@@ -48,18 +48,18 @@ def felt_conductances(batch: GraspBatch, steps: int) -> tuple[list, np.ndarray]:
 def test_press_with_the_recorded_conductance_gives_the_same_drop(mode, name):
     """One fingertip, same rung and steps, no air: the coupling of the environment adds nothing of its own."""
     batch = GraspBatch(1, task=ENDLESS, material=name, mode=mode, fingertips=1, air=0.0)
-    readings, recorded = felt_conductances(batch, 200)
+    readings, recorded = sampled_conductances(batch, 200)
     area = np.array([reading.truth["contact_area"][0, 0] for reading in readings])
     drop = np.array([reading.truth["temperature_drop"][0, 0] for reading in readings])
     assert np.all((area == 0) | np.isclose(area, 81e-6, rtol=1e-12))
     first = 2 * int(np.argmax(recorded[:, 0] > 0) // 2)  # the beginning of a step
     held = recorded[first:, 0]
-    thing = batch.plant.heat._bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
+    body = batch.plant.heat._bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
     press = thermal.press(
         name,
         mode=mode,
         conductance=lambda t: float(held[min(int(t / SAMPLE), len(held) - 1)]),
-        object_size=thing.plate,
+        object_size=body.plate,
         seconds=len(held) * SAMPLE,
         dt=SAMPLE,
         rung=readings[-1].truth["rung"][0],
@@ -71,16 +71,16 @@ def test_press_with_the_recorded_conductance_gives_the_same_drop(mode, name):
 def test_two_fingertips_on_a_thick_poor_conductor_feel_what_one_would():
     """Through 40 mm of wood nothing arrives within seconds, so each fingertip is a press of its own."""
     batch = GraspBatch(1, task=ENDLESS, material="wood", air=0.0)
-    readings, recorded = felt_conductances(batch, 200)
+    readings, recorded = sampled_conductances(batch, 200)
     drop = np.array([reading.truth["temperature_drop"][0] for reading in readings])
-    thing = batch.plant.heat._bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
+    body = batch.plant.heat._bodies[0]  # pyright: ignore[reportAttributeAccessIssue]
     first = 2 * int(np.argmax(recorded.max(axis=1) > 0) // 2)
     for side in (0, 1):
         held = recorded[first:, side]
         press = thermal.press(
             "wood",
             conductance=lambda t, held=held: float(held[min(int(t / SAMPLE), len(held) - 1)]),
-            object_size=thing.plate,
+            object_size=body.plate,
             seconds=len(held) * SAMPLE,
             dt=SAMPLE,
             rung=readings[-1].truth["rung"][0],
@@ -263,13 +263,13 @@ def test_a_pad_that_hangs_over_an_edge_feels_by_what_lies_under_it(lift):
 
 def test_a_box_that_lies_across_is_held_by_its_other_sides():
     """A sheet of 30 x 10 mm, 6 mm thick, turned by 90 degrees is one of 6 x 10 mm, 30 mm thick."""
-    felt = []
+    conductances = []
     for spec in (ObjectSpec(size=(0.03, 0.006, 0.01)), ObjectSpec(size=(0.006, 0.03, 0.01), yaw=np.pi / 2)):
         batch = GraspBatch(1, task=ENDLESS, material="glass", objects=spec, placement=(0.0, 0.0))
         truth = grasped(batch, 100)[-1].truth
-        felt.append((truth["contact_area"][0], truth["temperature_drop"][0]))
-    assert felt[0][0] == pytest.approx(felt[1][0], rel=1e-3)
-    assert felt[0][1] == pytest.approx(felt[1][1], rel=1e-3)
+        conductances.append((truth["contact_area"][0], truth["temperature_drop"][0]))
+    assert conductances[0][0] == pytest.approx(conductances[1][0], rel=1e-3)
+    assert conductances[0][1] == pytest.approx(conductances[1][1], rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["Grasp", pytest.param("Sort", marks=pytest.mark.slow)])
@@ -283,15 +283,15 @@ def test_networks_stay_few_however_many_are_drawn(monkeypatch, name):
         batch = kind(2, objects=narrow, randomize=[Size(factors=(0.8, 1.0, 1.1))], signal="ideal")
         rngs = [np.random.default_rng(row) for row in range(2)]
         batch.reset([0, 1], rngs)
-        told = []
+        reported = []
         for _ in range(8):
             batch.reset([0], rngs[:1])
             for _ in range(25):
                 action = np.tile([-1.0, 0.0, 0.0, 0.0][: batch.action_space.shape[0]], (2, 1))
-                told.append(batch.step(action).reading.truth["temperature_drops"])
+                reported.append(batch.step(action).reading.truth["temperature_drops"])
         heat: Any = batch.plant.heat  # pyright: ignore[reportAttributeAccessIssue]
         networks = (heat if name == "Grasp" else heat._rows)._networks
         assert len(networks._numbers) == len(networks.systems) == len(networks.rungs)
         assert (len(networks.systems) <= 3 + 4) == (most == 3)
-        drops.append(np.array(told))
+        drops.append(np.array(reported))
     assert np.array_equal(*drops) and (name == "Sort" or drops[0].any())

@@ -29,7 +29,7 @@ AIR = 10.0  # W/(m2 K)
 SETTINGS = {"tolerance": 0.05, "dt": STEP / 2, "samples": 2, "sensor_temperature": 36.0}
 
 
-def thing(
+def grasp_body(
     name: str = "aluminium",
     celsius: float = 24.0,
     *,
@@ -45,45 +45,45 @@ def thing(
 class Run:
     """One object's heat, pressed by both fingertips at will, and sums of what was told."""
 
-    def __init__(self, thing: GraspBody, air: float = AIR, celsius: float = 36.0) -> None:
-        self.thing, self.heat = thing, GraspHeat(1, **SETTINGS, air=air)
-        self.heat.reset([0], [thing], np.full((1, 2), celsius))
+    def __init__(self, body: GraspBody, air: float = AIR, celsius: float = 36.0) -> None:
+        self.body, self.heat = body, GraspHeat(1, **SETTINGS, air=air)
+        self.heat.reset([0], [body], np.full((1, 2), celsius))
         self.drawn = self.air = self.supplied = 0.0
 
     def step(self, newton: float = 0.0):
-        told = self.heat.advance(np.full((1, 10, 2), newton), self.thing.spec.element_places[None]).info[0]
-        self.drawn += STEP * told["drawn"].sum()
-        self.air += STEP * told["air_loss"]
-        self.supplied += STEP * told["reservoir_flow"]
-        scale = abs(told["heat"]).sum() + told["exchanged"] + 1e-9
-        assert abs(told["imbalance"]) < 1e-10 * scale
-        assert abs(told["heat"].sum() + self.air - self.drawn - self.supplied) < 1e-9 * scale
-        return told
+        report = self.heat.advance(np.full((1, 10, 2), newton), self.body.spec.element_places[None]).info[0]
+        self.drawn += STEP * report["drawn"].sum()
+        self.air += STEP * report["air_loss"]
+        self.supplied += STEP * report["reservoir_flow"]
+        scale = abs(report["heat"]).sum() + report["exchanged"] + 1e-9
+        assert abs(report["imbalance"]) < 1e-10 * scale
+        assert abs(report["heat"].sum() + self.air - self.drawn - self.supplied) < 1e-9 * scale
+        return report
 
     def steps(self, count: int, newton: float = 0.0):
         """What the last of them told."""
         return [self.step(newton) for _ in range(count)][-1]
 
 
-def film(thing: GraspBody, air: float = AIR) -> float:
+def film(grasp_body: GraspBody, air: float = AIR) -> float:
     """W/K to the air."""
-    return air * thermal.free_area(thing.geometry)
+    return air * thermal.free_area(grasp_body.geometry)
 
 
 @pytest.mark.parametrize("mode", ["T", "O"])
 @pytest.mark.parametrize("celsius", [80.0, 2.0])
 def test_before_the_touch_an_object_cools_towards_the_room_as_a_lumped_body(mode: Mode, celsius: float):
-    body = thing(celsius=celsius, mode=mode, ambient=20.0)
+    body = grasp_body(celsius=celsius, mode=mode, ambient=20.0)
     capacity = body.heat_capacity + (2 * STACK.heat_capacity if mode == "O" else 0.0)
     run = Run(body)
-    told = run.steps(1000)
+    report = run.steps(1000)
     expected = 20.0 + (celsius - 20.0) * math.exp(-1000 * STEP * film(body) / capacity)
-    assert told["object_temperature"] == pytest.approx(expected, abs=1e-5 if mode == "T" else 5e-3)
-    assert not told["flow"].any()
+    assert report["object_temperature"] == pytest.approx(expected, abs=1e-5 if mode == "T" else 5e-3)
+    assert not report["flow"].any()
 
 
 def test_in_the_room_it_started_from_an_object_costs_nothing_until_it_is_touched():
-    run = Run(thing(ambient=24.0))
+    run = Run(grasp_body(ambient=24.0))
     for _ in range(3):
         run.step()
     assert not run.heat._state.any() and not run.heat._rows["begun"][0]
@@ -92,8 +92,8 @@ def test_in_the_room_it_started_from_an_object_costs_nothing_until_it_is_touched
 def test_the_room_s_temperature_is_a_shift_of_all_three():
     """Sensor, object and room 10 K warmer: the same drops to round-off, another network's demand aside."""
     plain, warmer = (
-        Run(thing("glass", 40.0, ambient=30.0)),
-        Run(thing("glass", 50.0, ambient=40.0), celsius=46.0),
+        Run(grasp_body("glass", 40.0, ambient=30.0)),
+        Run(grasp_body("glass", 50.0, ambient=40.0), celsius=46.0),
     )
     for newton in [0.0] * 20 + [10.0] * 50 + [0.0] * 20:
         low, high = plain.step(newton), warmer.step(newton)
@@ -104,78 +104,78 @@ def test_the_room_s_temperature_is_a_shift_of_all_three():
 @pytest.mark.parametrize("mode", ["T", "O"])
 def test_a_held_reservoir_warms_an_object_as_a_lumped_body(mode: Mode):
     inside = Reservoir(np.inf, 2.0, 90.0)
-    body = thing(mode=mode, reservoir=inside)
+    body = grasp_body(mode=mode, reservoir=inside)
     capacity = body.heat_capacity + (2 * STACK.heat_capacity if mode == "O" else 0.0)
     run, total = Run(body), film(body) + 2.0
-    told = run.steps(1500)
+    report = run.steps(1500)
     final = (2.0 * 90.0 + film(body) * 24.0) / total
     expected = final + (24.0 - final) * math.exp(-1500 * STEP * total / capacity)
-    assert told["object_temperature"] == pytest.approx(expected, abs=1e-4 if mode == "T" else 0.05)
-    assert told["reservoir_temperature"] == 90.0
+    assert report["object_temperature"] == pytest.approx(expected, abs=1e-4 if mode == "T" else 0.05)
+    assert report["reservoir_temperature"] == 90.0
 
 
 def test_water_and_wall_come_to_the_temperature_of_their_mixture():
     inside = water(0.05, 20.0, 90.0)
-    run = Run(thing(reservoir=inside), air=0.0)
-    told = run.steps(4000)
-    wall = run.thing.heat_capacity
+    run = Run(grasp_body(reservoir=inside), air=0.0)
+    report = run.steps(4000)
+    wall = run.body.heat_capacity
     mixed = (wall * 24.0 + inside.heat_capacity * 90.0) / (wall + inside.heat_capacity)
-    assert told["object_temperature"] == pytest.approx(mixed, abs=1e-3)
-    assert told["reservoir_temperature"] == pytest.approx(mixed, abs=1e-3)
-    gone = inside.heat_capacity * (90.0 - told["reservoir_temperature"])
+    assert report["object_temperature"] == pytest.approx(mixed, abs=1e-3)
+    assert report["reservoir_temperature"] == pytest.approx(mixed, abs=1e-3)
+    gone = inside.heat_capacity * (90.0 - report["reservoir_temperature"])
     assert run.supplied == pytest.approx(gone, rel=1e-9)
 
 
 def test_ice_stays_at_its_melting_point_until_its_latent_heat_is_used():
     inside = ice(0.0002, 2.0)
-    run = Run(thing(celsius=0.0, ambient=24.0, reservoir=inside))
+    run = Run(grasp_body(celsius=0.0, ambient=24.0, reservoir=inside))
     melted = None
-    told = run.step(10.0)
+    report = run.step(10.0)
     for k in range(3000):
-        told = run.step(10.0)
+        report = run.step(10.0)
         taken = -run.supplied
         if taken < inside.latent_heat * (1 - 1e-9):
-            assert told["reservoir_temperature"] == pytest.approx(0.0, abs=1e-12)
+            assert report["reservoir_temperature"] == pytest.approx(0.0, abs=1e-12)
         else:
             melted = k if melted is None else melted
             above = (taken - inside.latent_heat) / inside.heat_capacity
-            assert told["reservoir_temperature"] == pytest.approx(above, abs=1e-6)
+            assert report["reservoir_temperature"] == pytest.approx(above, abs=1e-6)
     assert melted is not None and 100 < melted < 2900
-    assert told["reservoir_temperature"] > 1.0
+    assert report["reservoir_temperature"] > 1.0
 
 
 def test_a_heater_of_given_power_gives_it_and_one_with_a_setpoint_holds_it():
-    powered = Run(thing(reservoir=Reservoir(20.0, 5.0, power=8.0)), air=0.0)
-    told = powered.steps(500)
-    stored = 20.0 * (told["reservoir_temperature"] - 24.0)
-    assert stored + told["heat"][2] == pytest.approx(8.0 * 500 * STEP, rel=1e-9)
+    powered = Run(grasp_body(reservoir=Reservoir(20.0, 5.0, power=8.0)), air=0.0)
+    report = powered.steps(500)
+    stored = 20.0 * (report["reservoir_temperature"] - 24.0)
+    assert stored + report["heat"][2] == pytest.approx(8.0 * 500 * STEP, rel=1e-9)
 
-    held = Run(thing(reservoir=Reservoir(20.0, 5.0, power=200.0, setpoint=60.0)))
-    told = [held.step() for _ in range(3000)]
-    celsius = np.array([each["reservoir_temperature"] for each in told])
+    held = Run(grasp_body(reservoir=Reservoir(20.0, 5.0, power=200.0, setpoint=60.0)))
+    report = [held.step() for _ in range(3000)]
+    celsius = np.array([each["reservoir_temperature"] for each in report])
     assert celsius.max() < 60.0 + 1e-9 and celsius[-1] == pytest.approx(60.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("inside", [None, water(0.2, 6.0)])
 def test_hot_objects_are_felt_as_such_and_water_keeps_them_hot(inside):
     """The drop turns its sign, and a wall with water behind it gives more heat than the wall alone."""
-    body = thing("glass", 70.0, ambient=22.0, reservoir=inside)
-    alone, heat = Run(thing("glass", 70.0, ambient=22.0)), Run(body)
-    bare, told = alone.step(), heat.step()
+    body = grasp_body("glass", 70.0, ambient=22.0, reservoir=inside)
+    alone, heat = Run(grasp_body("glass", 70.0, ambient=22.0)), Run(body)
+    bare, report = alone.step(), heat.step()
     for newton in [0.0] * 50 + [10.0] * 250:
-        bare, told = alone.step(newton), heat.step(newton)
+        bare, report = alone.step(newton), heat.step(newton)
         for name in ("sensor_surface", "object_surface", "object_temperature"):
-            assert np.all(told[name] < 70.05) and np.all(told[name] > 22.0)
-    assert np.all(told["flow"] < -0.1)
-    assert (told["flow"].sum() < 1.002 * bare["flow"].sum()) == (inside is not None)
+            assert np.all(report[name] < 70.05) and np.all(report[name] > 22.0)
+    assert np.all(report["flow"] < -0.1)
+    assert (report["flow"].sum() < 1.002 * bare["flow"].sum()) == (inside is not None)
 
 
 def test_a_state_in_the_middle_goes_on_bit_for_bit():
-    body = thing("glass", 5.0, ambient=22.0, reservoir=ice(0.001, 1.0))
+    body = grasp_body("glass", 5.0, ambient=22.0, reservoir=ice(0.001, 1.0))
     first = Run(body)
     for newton in [0.0] * 10 + [8.0] * 30:
         first.step(newton)
-    other = Run(thing())
+    other = Run(grasp_body())
     other.heat.set_state([0], first.heat.state([0]))
     for newton in [8.0] * 10 + [0.0] * 10:
         place = body.spec.element_places[None]
@@ -216,9 +216,9 @@ def test_objects_of_one_list_may_differ_in_temperature_and_the_room_stays():
     cold, hot = ObjectSpec(temperature=4.0), ObjectSpec(temperature=60.0)
     batch = GraspBatch(8, objects=[cold, hot], material="glass", object_temperature=22.0, task=ENDLESS)
     batch.reset(range(8), [np.random.default_rng(i) for i in range(8)])
-    things = batch.plant.bodies  # pyright: ignore[reportAttributeAccessIssue]
-    assert {thing.temperature for thing in things} == {4.0, 60.0}
-    assert {thing.ambient for thing in things} == {22.0}
+    scene_bodies = batch.plant.bodies  # pyright: ignore[reportAttributeAccessIssue]
+    assert {each.temperature for each in scene_bodies} == {4.0, 60.0}
+    assert {each.ambient for each in scene_bodies} == {22.0}
 
 
 def test_too_hot_a_thermostat_puts_both_heaters_off_until_the_next_reset():

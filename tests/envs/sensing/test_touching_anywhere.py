@@ -43,15 +43,15 @@ BAR = ObjectSpec(size=(0.01, 0.07, 0.024), mass=0.1, friction=0.8)
 LEFT = np.array([-0.005, 0.0, 0.0])
 
 
-def thing(
+def grasp_body(
     spec: ObjectSpec = BAR, name: str = "glass", *, fingertips: Literal[1, 2] = 1, anywhere: bool = True
 ) -> GraspBody:
     return GraspBody(spec, thermal.material(name), 24.0, "T", STACK, fingertips, anywhere=anywhere)
 
 
-def heat_of(*things: GraspBody, **settings: float) -> GraspHeat:
-    heat = GraspHeat(len(things), **{**SETTINGS, **settings})
-    heat.reset(range(len(things)), things, np.full((len(things), 2), 36.0))
+def heat_of(*grasp_bodies: GraspBody, **settings: float) -> GraspHeat:
+    heat = GraspHeat(len(grasp_bodies), **{**SETTINGS, **settings})
+    heat.reset(range(len(grasp_bodies)), grasp_bodies, np.full((len(grasp_bodies), 2), 36.0))
     return heat
 
 
@@ -85,20 +85,20 @@ def test_a_cube_s_mesh_is_felt_as_the_box_is(name, meshes):
     """To the shipped tolerance of .05 K."""
     box = ObjectSpec(mass=0.1, friction=0.8)
     mesh = ObjectSpec(shape="mesh", mesh=meshes["cube"], mass=0.1, friction=0.8)
-    told = []
-    for each in (thing(box, name, fingertips=2, anywhere=False), thing(mesh, name, fingertips=2)):
+    report = []
+    for each in (grasp_body(box, name, fingertips=2, anywhere=False), grasp_body(mesh, name, fingertips=2)):
         heat = heat_of(each, tolerance=0.05)
         place, force = box.element_places[None], np.full((1, 10, 2), 10.0)
-        told.append(np.array([heat.advance(force, place).drop[0, -1] for _ in range(400)]))
-        told[-1] = told[-1][2:]
-    assert np.abs(told[0] - told[1]).max() < 0.05
+        report.append(np.array([heat.advance(force, place).drop[0, -1] for _ in range(400)]))
+        report[-1] = report[-1][2:]
+    assert np.abs(report[0] - report[1]).max() < 0.05
     assert heat.rung(0).startswith("body:")
 
 
 @pytest.mark.slow
 def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
     """The wall of 2.5 mm warms through within seconds and gives way; what is full goes on taking heat."""
-    felt = {}
+    drops = {}
     for name in ("cup", "full"):
         spec = ObjectSpec(shape="mesh", mesh=meshes[name], mass=0.05, friction=0.8)
         batch = GraspBatch(
@@ -107,11 +107,11 @@ def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
         batch.reset([0], [np.random.default_rng(0)])
         steps = [batch.step(grasp_action(batch)) for _ in range(350)]
         info = steps[-1].info(0)
-        felt[name] = info["temperature_drop"], steps[-1].reading.voltage[0, -1]
+        drops[name] = info["temperature_drop"], steps[-1].reading.voltage[0, -1]
         truth = steps[-1].reading.truth
         assert np.all(abs(truth["heat_imbalance"]) < 1e-9 * truth["heat_exchanged"])
-    assert np.all(felt["full"][0] - felt["cup"][0] > 0.2)
-    assert np.all(felt["full"][1] - felt["cup"][1] > 0.2e-3)
+    assert np.all(drops["full"][0] - drops["cup"][0] > 0.2)
+    assert np.all(drops["full"][1] - drops["cup"][1] > 0.2e-3)
 
 
 @pytest.mark.slow
@@ -123,19 +123,19 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
     for inside in (None, water(0.03, 3.0), ice(2e-4, 3.0)):
         celsius = 0.0 if inside and inside.latent_heat else 60.0
         spec = ObjectSpec(shape="mesh", mesh=meshes["thin"], mass=0.05, friction=0.8, reservoir=inside)
-        heat = heat_of(replace(thing(spec, "plastic"), temperature=celsius, ambient=celsius), air=5.0)
+        heat = heat_of(replace(grasp_body(spec, "plastic"), temperature=celsius, ambient=celsius), air=5.0)
         places = [np.array([-0.02, 0.0, 0.0])] + [np.array([0.0, -0.02, 0.004])] * moves
         taken = supplied = lost = gained = 0.0
         for place in places:
             for step in press(heat, 4.0, place):
-                told = step.info[0]
-                taken += STEP * told["flow"].sum()
-                supplied += STEP * told["reservoir_flow"]
-                lost += STEP * told["air_loss"]
-                assert abs(told["imbalance"]) < 1e-8 * (1 + told["exchanged"])
+                report = step.info[0]
+                taken += STEP * report["flow"].sum()
+                supplied += STEP * report["reservoir_flow"]
+                lost += STEP * report["air_loss"]
+                assert abs(report["imbalance"]) < 1e-8 * (1 + report["exchanged"])
                 if inside and inside.latent_heat:
-                    assert told["reservoir_temperature"] == pytest.approx(0.0, abs=1e-3)
-                gained = told["heat"][2]
+                    assert report["reservoir_temperature"] == pytest.approx(0.0, abs=1e-3)
+                gained = report["heat"][2]
         assert gained == pytest.approx(taken + supplied - lost, abs=1e-7)
         flows[celsius, inside is not None] = taken
     assert flows[60.0, True] < 1.1 * flows[60.0, False] < 0 < flows[0.0, True]
@@ -145,7 +145,7 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
 def test_heat_taken_is_the_rise_times_the_heat_capacity(name, meshes):
     """Also after a touch elsewhere; the capacity is that of the mesh's own volume, as its grid has it."""
     spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8)
-    heat = heat_of(thing(spec, name))
+    heat = heat_of(grasp_body(spec, name))
     solid = trimesh.load_mesh(meshes["cup"])
     capacity = heat._touches[0].body.geometry.whole_capacity
     assert capacity == pytest.approx(solid.volume * thermal.material(name).volumetric_heat_capacity, rel=1e-4)
@@ -161,26 +161,26 @@ def test_heat_taken_is_the_rise_times_the_heat_capacity(name, meshes):
 
 def test_a_second_touch_finds_the_warm_spot_and_one_well_away_does_not():
     first, away = LEFT, LEFT + [0, 0.024, 0]  # the whole pad on the bar
-    heat = heat_of(*(thing() for _ in range(4)))
+    heat = heat_of(*(grasp_body() for _ in range(4)))
     press(heat, 5.0, first, first, first, first)
     press(heat, 5.0, None, None, None, None)
     # The last one's object is fresh once more, its fingertip as it is.
     heat._state[3, : heat._of_tip(3, 0).start] = 0.0
     near = first + [0, 0.0084, 0]
-    told = press(heat, 1.0, first, away, near, first)
-    drop = np.array([step.drop[:, -1, 0] for step in told])[10:]
+    report = press(heat, 1.0, first, away, near, first)
+    drop = np.array([step.drop[:, -1, 0] for step in report])[10:]
     warm, elsewhere, beside, fresh = drop.T
     assert np.all(fresh - warm > 0.1)
     assert np.abs(elsewhere - fresh).max() < 0.01
     assert np.all(fresh - beside > 0.02) and np.all(beside - warm > 0.05)
-    kinds = [[kind for step in told for kind, _ in step.events[row]] for row in range(3)]
+    kinds = [[kind for step in report for kind, _ in step.events[row]] for row in range(3)]
     assert kinds == [["touch"], ["touch", "new patch"], ["touch", "new patch"]]
 
 
 def test_what_an_added_patch_changes_is_within_tolerance_of_having_had_it_from_the_start():
     """The field that a touch left, told at another place through the carried states, is what the network of both places
     from the start has there."""
-    alone = first_touches(thing(), thermal.Demand(0.1, 12.0), cache=False)
+    alone = first_touches(grasp_body(), thermal.Demand(0.1, 12.0), cache=False)
     assert alone is not None
     both = alone.moved(0, LEFT + [0, 0.0084, 0])
     assert len(both.body.patches) == 2
@@ -203,24 +203,24 @@ def test_two_fingers_warm_a_small_block_as_the_two_port_network_says():
     rise = {}
     tips: Literal[1, 2]
     for tips in (1, 2):
-        heat = heat_of(thing(spec, "aluminium", fingertips=tips))
+        heat = heat_of(grasp_body(spec, "aluminium", fingertips=tips))
         place, force = spec.element_places[None], np.full((1, 10, 2), 10.0)
-        told = [heat.advance(force, place).info[0] for _ in range(250)][-1]
-        rise[tips] = told["object_temperature"] - 24.0
+        report = [heat.advance(force, place).info[0] for _ in range(250)][-1]
+        rise[tips] = report["object_temperature"] - 24.0
         level = FIXED_LEVEL
         sensor = tip(STACK, ((0.0, 0.009), (0.0, 0.009)), level)
         patches = Patches(np.arange(tips), np.full((tips, 2), 0.01), np.full((tips, 2), 0.0045))
         size = (0.02, 0.02, 0.02)
         body = box_side(thermal.material("aluminium"), size, 0.0, patches, (sensor,) * tips, level)
-        film = told["conductance"] * told["area"]
+        film = report["conductance"] * report["area"]
         blocks = [(body.rates, body.ports)] + [(sensor.side.rates, -sensor.side.ports)] * tips
         rates = np.concatenate([block[0] for block in blocks])
         ports = np.zeros((len(rates), tips * level.patterns))
         count, order = len(body.rates), len(sensor.side.rates)
         ports[:count] = body.ports
         for number in range(tips):
-            own = slice(count + number * order, count + (number + 1) * order)
-            ports[own, number * level.patterns : (number + 1) * level.patterns] = -sensor.side.ports
+            tip_states = slice(count + number * order, count + (number + 1) * order)
+            ports[tip_states, number * level.patterns : (number + 1) * level.patterns] = -sensor.side.ports
         weights = np.repeat(film[:tips], level.patterns)
         matrix = np.diag(rates) + (ports * weights) @ ports.T
         drive = (ports * weights)[:, :: level.patterns].sum(axis=1) * 12.0
@@ -235,9 +235,11 @@ def test_two_fingers_warm_a_small_block_as_the_two_port_network_says():
 def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
     course = [LEFT, None, beside := LEFT + [0, 0.0084, 0], None, beside, LEFT]
     together = heat_of(
-        thing(), thing(BAR, "aluminium"), thing(ObjectSpec(mass=0.1, friction=0.8), anywhere=False)
+        grasp_body(),
+        grasp_body(BAR, "aluminium"),
+        grasp_body(ObjectSpec(mass=0.1, friction=0.8), anywhere=False),
     )
-    alone = heat_of(thing())
+    alone = heat_of(grasp_body())
     seen = []
     for k, place in enumerate(course):
         one = press(alone, 0.1, place)
@@ -245,7 +247,7 @@ def test_a_row_does_not_depend_on_the_others_and_a_state_goes_on_bit_for_bit():
         for a, b in zip(one, all_of_them, strict=True):
             assert np.array_equal(a.drop[0], b.drop[0]) and a.info[0].tobytes() == b.info[0].tobytes()
         seen.append(alone.state([0]))
-    other = heat_of(thing(BAR, "cork"))
+    other = heat_of(grasp_body(BAR, "cork"))
     other.set_state([0], seen[3])
     alone.set_state([0], seen[3])
     for place in course[4:]:
@@ -298,9 +300,9 @@ def test_anywhere_is_off_by_default_and_boxes_and_cylinders_take_it_where_asked(
     round_one = ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05))
     box = GraspBatch(1, material="glass", task=ENDLESS)
     plain = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one)
-    asked = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one, anywhere=True, tolerance=0.1)
+    requested = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one, anywhere=True, tolerance=0.1)
     cube = GraspBatch(1, material="glass", task=ENDLESS, anywhere=True, tolerance=0.05)
-    for batch, rung in ((box, "network:"), (cube, "kernels:"), (plain, "network:"), (asked, "body:")):
+    for batch, rung in ((box, "network:"), (cube, "kernels:"), (plain, "network:"), (requested, "body:")):
         batch.reset([0], [np.random.default_rng(0)])
         step = batch.step(action_of(0.085, 10.0, 0.0)[None])
         assert step.info(0)["rung"].startswith(rung)

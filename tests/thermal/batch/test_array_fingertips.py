@@ -65,13 +65,13 @@ def test_is_law_heat_and_electronics(mode: Mode) -> None:
         state, voltage, reading = fingertips.step(state, fingertips.conductance(force, which), which, noise)
 
         contact = flat_contact(Pad(), force, face)
-        felt = np.array(
+        conductances = np.array(
             [
                 contact_conductance(faces[k], p) * a
                 for k, p, a in zip(which, contact.face_pressure, contact.face, strict=True)
             ]
         )
-        heat, expected = advance_heat(tables, which, heat, felt, difference, np.ones(rows, bool), 1)
+        heat, expected = advance_heat(tables, which, heat, conductances, difference, np.ones(rows, bool), 1)
         drop = expected.drop[:, 0].reshape(-1, 1)
         signal, volts = measure(ADS1115, signal, drop, stack.seebeck, DT, noise.reshape(-1, 1))
         np.testing.assert_allclose(reading.drop, expected.drop[:, 0], rtol=0, atol=1e-11)
@@ -96,13 +96,13 @@ def test_what_is_not_finite_spoils_its_own_row() -> None:
     which = np.array([0, 1, 2, 0])
     force = np.full((4, 2), 5.0)
     force[1, 0], force[2, 1], good = np.nan, np.inf, np.array([True, False, False, True])
-    felt = fingertips.conductance(force, which)
-    assert np.isnan(felt).tolist() == [[False, False], [True, False], [False, True], [False, False]]
-    state, voltage, _ = fingertips.step(fingertips.start(4), felt, which)
+    conductances = fingertips.conductance(force, which)
+    assert np.isnan(conductances).tolist() == [[False, False], [True, False], [False, True], [False, False]]
+    state, voltage, _ = fingertips.step(fingertips.start(4), conductances, which)
     still = fingertips.conductance(np.full((4, 2), 5.0), which)
     state, voltage, reading = fingertips.step(state, still, which[::-1])
     alone = fingertips.start(2)
-    alone, _, _ = fingertips.step(alone, felt[good], which[good])
+    alone, _, _ = fingertips.step(alone, conductances[good], which[good])
     alone, expected, _ = fingertips.step(alone, still[good], which[::-1][good])
     assert np.array_equal(voltage[good], expected) and np.isfinite(voltage[good]).all()
     assert np.isnan(reading.drop[~good]).all()
@@ -112,17 +112,17 @@ def test_what_is_not_finite_spoils_its_own_row() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_an_absurd_force_counts_as_the_largest_that_the_law_takes(name: str) -> None:
-    felt = tips(name).conductance(np.array([[1.0, 500.0], [MOST_FORCE, 1e6]]))
-    assert np.all(np.diff(felt.ravel())[:2] > 0) and felt[1, 0] == felt[1, 1]
+    conductances = tips(name).conductance(np.array([[1.0, 500.0], [MOST_FORCE, 1e6]]))
+    assert np.all(np.diff(conductances.ravel())[:2] > 0) and conductances[1, 0] == conductances[1, 1]
 
 
-@pytest.mark.parametrize("there", NAMES)
+@pytest.mark.parametrize("elsewhere", NAMES)
 @pytest.mark.parametrize("here", NAMES)
-def test_a_fingertip_takes_its_warmth_to_another_object(here: str, there: str) -> None:
+def test_a_fingertip_takes_its_warmth_to_another_object(here: str, elsewhere: str) -> None:
     """It shows what it would have shown beside the first one, to the tolerance, with the same heat; the second object
     is at its first temperature."""
     fingertips = tips()
-    at, to = NAMES.index(here), NAMES.index(there)
+    at, to = NAMES.index(here), NAMES.index(elsewhere)
     held = fingertips.conductance(np.array([[10.0, 5.0]]), at)
     state = fingertips.start(1)
     for _ in range(100):
@@ -135,7 +135,7 @@ def test_a_fingertip_takes_its_warmth_to_another_object(here: str, there: str) -
     )  # what has left within 20 ms differs a little
     for _ in range(100):
         assert np.abs(one.drop - other.drop).max() < 0.2
-        assert abs(other.object_heat[0]) < 1e-9 or here == there
+        assert abs(other.object_heat[0]) < 1e-9 or here == elsewhere
         kept, _, one = fingertips.step(kept, 0 * held, at)
         gone, _, other = fingertips.step(gone, 0 * held, to)
 

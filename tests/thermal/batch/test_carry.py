@@ -26,40 +26,40 @@ def system(name: str, mode: thermal.Mode = "T") -> thermal.ContactSystem:
     return chosen
 
 
-def own(tables: HeatTables, network: int) -> slice:
+def tip_states(tables: HeatTables, network: int) -> slice:
     """The left fingertip's states."""
     first = tables.object_states[network]
     return slice(first, first + tables.sensor_states[network])
 
 
-def touched(tables: HeatTables, seconds: float, apart: float) -> tuple[np.ndarray, np.ndarray]:
+def touched(tables: HeatTables, seconds: float, released: float) -> tuple[np.ndarray, np.ndarray]:
     """State (K,) after the left fingertip touched network 0's object and was apart again, and the flow (n,) W."""
     state, flow = np.zeros((1, tables.rates.shape[1])), []
-    for conductance, duration in ((0.4, seconds), (0.0, apart)):
+    for conductance, duration in ((0.4, seconds), (0.0, released)):
         if duration:
-            state, told = thermal.advance_heat(
+            state, heats = thermal.advance_heat(
                 *(tables, np.zeros(1, int), state, np.array([[conductance, 0.0]]), np.full((1, 2), 12.0)),
                 *(np.ones(1, bool), round(duration / DT)),
             )
-            flow.append(told.flow[0, :, 0])
+            flow.append(heats.flow[0, :, 0])
     return state[0], np.concatenate(flow)
 
 
 PAIRS = [("copper", "glass"), ("glass", "copper"), ("aluminium", "cotton"), ("cotton", "stainless_steel")]
 
 
-@pytest.mark.parametrize("apart", [0.0, 0.5])
+@pytest.mark.parametrize("released", [0.0, 0.5])
 @pytest.mark.parametrize(("first", "second"), PAIRS)
-def test_it_shows_what_it_would_have_shown_and_keeps_its_heat(first, second, apart):
+def test_it_shows_what_it_would_have_shown_and_keeps_its_heat(first, second, released):
     systems = [system(first), system(second)]
     tables = thermal.heat_tables(systems, [0.0, 0.0], DT)
-    state, _ = touched(tables, 1.5, apart)
-    before = state[own(tables, 0)]
+    state, _ = touched(tables, 1.5, released)
+    before = state[tip_states(tables, 0)]
     after = carry_matrix(*map(tip_rows, systems)) @ before
 
     def seen(row: np.ndarray, network: int, states: np.ndarray, seconds: float) -> float:
-        mine = own(tables, network)
-        return float(row[network, 0, mine] @ (states * np.exp(-tables.rates[network, mine] * seconds)))
+        in_tip = tip_states(tables, network)
+        return float(row[network, 0, in_tip] @ (states * np.exp(-tables.rates[network, in_tip] * seconds)))
 
     heat = tables.element_heat
     assert seen(heat, 1, after, 0.0) == pytest.approx(seen(heat, 0, before, 0.0), rel=1e-12)
@@ -74,15 +74,15 @@ def test_it_is_the_field_that_the_same_heat_flow_leaves_in_the_other_network(fir
     systems = [system(first), system(second)]
     tables = thermal.heat_tables(systems, [0.0, 0.0], DT)
     state, flow = touched(tables, 1.5, 0.2)
-    carried = carry_matrix(*map(tip_rows, systems)) @ state[own(tables, 0)]
-    mine = own(tables, 1)
-    rates, port = systems[1].rates[mine], systems[1].ports[mine, 0]
+    carried = carry_matrix(*map(tip_rows, systems)) @ state[tip_states(tables, 0)]
+    in_tip = tip_states(tables, 1)
+    rates, port = systems[1].rates[in_tip], systems[1].ports[in_tip, 0]
     decay, driven = np.exp(-rates * DT), np.zeros(len(rates))
     for watts in flow:
         driven = decay * driven + (1 - decay) / rates * port * watts
     for row in (systems[1].drop, systems[1].sensor_surface):
-        assert row[0, mine] @ carried == pytest.approx(row[0, mine] @ driven, abs=0.02)
-    heat = systems[1].element_heat[0, mine]
+        assert row[0, in_tip] @ carried == pytest.approx(row[0, in_tip] @ driven, abs=0.02)
+    heat = systems[1].element_heat[0, in_tip]
     assert heat @ carried == pytest.approx(heat @ driven, rel=2e-3)
 
 
@@ -90,7 +90,7 @@ def test_there_and_back_is_where_it_was():
     systems = [system("copper"), system("glass")]
     tables = thermal.heat_tables(systems, [0.0, 0.0], DT)
     state, _ = touched(tables, 1.0, 0.3)
-    before = state[own(tables, 0)]
+    before = state[tip_states(tables, 0)]
     rows = [tip_rows(each) for each in systems]
     after = carry_matrix(*rows[::-1]) @ carry_matrix(*rows) @ before
     assert np.linalg.norm(after - before) < 1e-2 * np.linalg.norm(before)

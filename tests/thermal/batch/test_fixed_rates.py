@@ -68,27 +68,27 @@ def whole_state(tables: FixedTables, x: np.ndarray, conductance, difference, aro
     residues = tables.body[0, : ports * ports].reshape(ports, ports, RATES)[: f * p, : f * p]
     heat, slow = tables.body[0, ports * ports :][: f * p], tables.slow[0]
     at = 1 + RATES
-    own = x[at : at + f * p * RATES].reshape(f * p, RATES)
+    field = x[at : at + f * p * RATES].reshape(f * p, RATES)
     air = x[1:at]
-    warm = np.einsum("ijk,jk->i", residues, own) + heat @ air + slow[HELD + 1 :][: f * p] * x[0]
+    warm = np.einsum("ijk,jk->i", residues, field) + heat @ air + slow[HELD + 1 :][: f * p] * x[0]
     change, first = np.zeros(len(x)), 1 + RATES * (1 + ports)
     flow = np.zeros((f, p))
     for number in range(f):
         element = tables.tips[tables.links[0, WHERE + f + number]]
         start = first + number * tables.of_tip
-        poles, mine = x[start : start + 8], x[start + 8 : start + tables.of_tip].reshape(1 + p, RATES)
+        poles, body_field = x[start : start + 8], x[start + 8 : start + tables.of_tip].reshape(1 + p, RATES)
         square = element[: p * p].reshape(p, p, RATES)
-        surface = np.einsum("ijk,jk->i", square, mine[1:]) + element[p * p + p :][:p] @ mine[0]
+        surface = np.einsum("ijk,jk->i", square, body_field[1:]) + element[p * p + p :][:p] @ body_field[0]
         surface[0] += tables.poles[14] @ poles
         drive = np.zeros(p)
         drive[0] = difference[number]
         flow[number] = conductance[number] * (drive - warm[number * p : (number + 1) * p] + surface)
         rest = change[start + 8 : start + tables.of_tip].reshape(1 + p, RATES)
-        rest[:] = -rates * mine
+        rest[:] = -rates * body_field
         rest[1:] -= flow[number][:, None]
         change[start : start + 8] = -tables.poles[0] * poles - tables.poles[14] * flow[number, 0]
     fields = change[at : at + f * p * RATES].reshape(f * p, RATES)
-    fields[:] = -rates * own
+    fields[:] = -rates * field
     fields += flow.reshape(-1)[:, None]
     change[1:at] = rates * (around - air)
     change[0] = -slow[0] * (x[0] - slow[HELD] * around) + slow[HELD + 1 :][: f * p] @ flow.reshape(-1)
@@ -133,10 +133,10 @@ def test_residues_are_the_network_and_keep_its_heat():
     box = box_side(material("glass"), SIZE, 0.0, patches, (tips,), LEVEL)
     [found] = touched_boxes([TouchedBox(material("glass"), SIZE, 0.0, patches, (tips,), 1)], LEVEL)
     s = np.geomspace(0.03, 100, 30)[:, None]
-    told = np.einsum("sk,ijk->sij", 1 / (s + SHARED), found.residues)
+    fitted = np.einsum("sk,ijk->sij", 1 / (s + SHARED), found.residues)
     exact = np.einsum("sn,ni,nj->sij", 1 / (s + box.rates[1:]), box.ports[1:], box.ports[1:])
     # a box under fingertips is told at fewer times
-    assert np.abs(told - exact).max() < 1e-4 * exact.max()
+    assert np.abs(fitted - exact).max() < 1e-4 * exact.max()
     assert min(np.linalg.eigvalsh(each).min() for each in found.residues.transpose(2, 0, 1)) > -1e-12
     side, rows = tips.side, tip_residues(tips.side)
     slow = int(np.argmax(side.ports[:, 1] != 0))

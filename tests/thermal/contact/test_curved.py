@@ -43,11 +43,14 @@ STEEL = Surface.of(material("steel"))
 def laws(name: str, radius: float = 0.02, length: float = LONG) -> dict[str, tuple[np.void, np.void]]:
     """(a ball's, a cylinder's) on the pad, on a bare face and on a skin."""
     body = Surface.of(material(name))
-    pair, met = joint(LAPPED_ALUMINA, body), joint(SILICONE, body, full_contact=True)
+    pair, worn_pair = joint(LAPPED_ALUMINA, body), joint(SILICONE, body, full_contact=True)
     return {
         "pad": (sphere_footprint(PAD, pair, radius), cylinder_footprint(PAD, pair, radius, length)),
         "bare": (bare_footprint(PAD, body, radius), bare_footprint(PAD, body, radius, length)),
-        "skin": (sphere_footprint(SKINNED, met, radius), cylinder_footprint(SKINNED, met, radius, length)),
+        "skin": (
+            sphere_footprint(SKINNED, worn_pair, radius),
+            cylinder_footprint(SKINNED, worn_pair, radius, length),
+        ),
     }
 
 
@@ -56,12 +59,12 @@ def laws(name: str, radius: float = 0.02, length: float = LONG) -> dict[str, tup
 def test_gas_beside_a_ball_is_an_integral_over_the_face(
     half_width: float, place: tuple[float, float]
 ) -> None:
-    radius, apart = 0.02, 2e-6
+    radius, mean_gap = 0.02, 2e-6
     s, (y, z) = half_width**2, place
 
     def along(v: float) -> float:
         """The integral over w: what of it is beside the disc, in closed form."""
-        n = np.sqrt(2 * radius * apart - s + v * v + 0j)
+        n = np.sqrt(2 * radius * mean_gap - s + v * v + 0j)
         near = np.sqrt(max(s - v * v, 0.0))
         pieces = [(max(z - HALF, near), z + HALF), (z - HALF, min(z + HALF, -near))]
         if near == 0:
@@ -70,21 +73,21 @@ def test_gas_beside_a_ball_is_an_integral_over_the_face(
 
     breaks = sorted({y - HALF, y + HALF, *(p for p in (-half_width, 0.0, half_width) if abs(p - y) < HALF)})
     expected = sum(quad(along, a, b, limit=400)[0] for a, b in pairwise(breaks))
-    assert beside_ball(s, apart, radius, HALF, y, z) == pytest.approx(2 * radius * expected, rel=0.04)
+    assert beside_ball(s, mean_gap, radius, HALF, y, z) == pytest.approx(2 * radius * expected, rel=0.04)
 
 
 @pytest.mark.parametrize("x", [0.0, 0.003, 0.0046, 0.009])
 @pytest.mark.parametrize("half_width", [0.0, 1e-4, 2.83e-4, 2e-3])
 def test_gas_beside_a_strip_is_an_integral_over_the_face(half_width: float, x: float) -> None:
-    radius, apart = 0.02, 2e-6
+    radius, mean_gap = 0.02, 2e-6
     expected = 0.0
     for low, high in ((half_width, x + HALF), (x - HALF, -half_width)):
         start, end = max(low, x - HALF), min(high, x + HALF)
         if end > start:
-            gap = lambda at: 1 / (apart + (at * at - half_width**2) / (2 * radius))  # noqa: E731
+            gap = lambda at: 1 / (mean_gap + (at * at - half_width**2) / (2 * radius))  # noqa: E731
             near = [p for p in (half_width + 1e-4, -half_width - 1e-4, 0.0) if start < p < end]
             expected += quad(gap, start, end, points=near or None, limit=400)[0]
-    assert beside_strip(half_width**2, apart, radius, HALF, x) == pytest.approx(expected, rel=1e-6)
+    assert beside_strip(half_width**2, mean_gap, radius, HALF, x) == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("force", [0.1, 1.0, 10.0, 30.0])
@@ -121,13 +124,13 @@ def test_a_steel_ball_at_10_newtons_against_a_quadrature_of_its_own() -> None:
         * (1.5 * force / (np.pi * a * a) * np.sqrt(1 - (r / a) ** 2) / hardness) ** 0.95, 0, a,
     )[0]  # fmt: skip
     solid = 1 / (1 / spots + (1 / LAPPED_ALUMINA.conductivity + 1 / STEEL.conductivity) / (4 * a))
-    apart = 4.75 * sigma + AIR.jump
+    mean_gap = 4.75 * sigma + AIR.jump
 
     def gap(r: float) -> float:
         x = max(r / a, 1.0)
         return a * a / (np.pi * radius) * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
 
-    flow = lambda y, x: AIR.conductivity / (apart + gap(float(np.hypot(x, y)))) * (np.hypot(x, y) > a)  # noqa: E731
+    flow = lambda y, x: AIR.conductivity / (mean_gap + gap(float(np.hypot(x, y)))) * (np.hypot(x, y) > a)  # noqa: E731
     gas = 4 * sum(
         dblquad(flow, *x, *y, epsrel=1e-3, epsabs=1e-7)[0]
         for x in ((0.0, 5e-4), (5e-4, HALF)) for y in ((0.0, 5e-4), (5e-4, HALF))
@@ -171,8 +174,8 @@ def test_nothing_jumps_where_a_body_slides_over_the_face_and_off_it(kind: str, s
             places = np.linspace(0.0, 0.0095, steps + 1)
             answers = [conduction(law, 10.0, np.array([0.0, *(at * np.array(way))])) for at in places]
             assert np.isfinite(answers).all() and np.min(answers) >= 0
-            felt = [watts for _, watts in answers]
-            largest.append(abs(np.diff(felt)).max())
+            conductances = [watts for _, watts in answers]
+            largest.append(abs(np.diff(conductances)).max())
         assert largest[1] <= 0.65 * largest[0] + 1e-12 and largest[2] <= 0.65 * largest[1] + 1e-12
 
 
@@ -185,8 +188,8 @@ def test_the_pressures_add_up_to_the_force(pad: Pad, place: tuple[float, float])
     whole = Pad(face=pad.width, face_stiffness=pad.face_stiffness)
     for force in np.geomspace(0.01, 100, 9):
         assert sphere_contact(whole, force, 0.02, place).face_force == pytest.approx(force, rel=1e-6)
-        felt = sphere_contact(pad, force, 0.02, place)
-        assert 0 <= felt.face_force <= force * (1 + 1e-9)
+        conductances = sphere_contact(pad, force, 0.02, place)
+        assert 0 <= conductances.face_force <= force * (1 + 1e-9)
 
 
 def test_places_under_a_curved_body_conduct_as_their_mean_pressure_does() -> None:

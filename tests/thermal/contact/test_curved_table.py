@@ -17,8 +17,8 @@ from thermograsp.thermal.contact import (
     curved_table,
     cylinder_footprint,
     even_patch,
+    face_joint,
     flat_footprint,
-    met,
     rigid_cylinder,
     rigid_sphere,
     skinned,
@@ -35,7 +35,7 @@ def law(skin, name: str, radius: float, length: float | None) -> np.void:
     surface = Surface.of(material(name))
     if skin is None:
         return bare_footprint(PAD, surface, radius, length)
-    pad, pair = skinned(PAD, skin), met(skin, surface)
+    pad, pair = skinned(PAD, skin), face_joint(skin, surface)
     return (
         sphere_footprint(pad, pair, radius)
         if length is None
@@ -48,19 +48,23 @@ def law(skin, name: str, radius: float, length: float | None) -> np.void:
 def test_it_is_the_law_in_the_middle_and_on_the_whole_off_it(skin, name: str, body: str) -> None:
     """Nearer where the places of the table are; worst within a tenth of a millimetre of the face's edge, and at the
     force at which a skin's spots come to full contact."""
-    table, own = curved_table(PAD, skin, material(name), *BODIES[body]), law(skin, name, *BODIES[body])
+    table, closed_form = (
+        curved_table(PAD, skin, material(name), *BODIES[body]),
+        law(skin, name, *BODIES[body]),
+    )
     rng, off = np.random.default_rng(0), []
     for _ in range(1000):
         force, place = (
             float(np.exp(rng.uniform(np.log(0.05), np.log(50)))),
             np.append(0, rng.uniform(0, 0.01, 2)),
         )
-        middle = conduction(own, force, np.zeros(3))[1]
+        middle = conduction(closed_form, force, np.zeros(3))[1]
         assert curved_contact(table, force, 0.0, 0.0)[0] == pytest.approx(
             middle, rel=0.02 if skin is None else 0.1
         )
         off.append(
-            (curved_contact(table, force, place[1], place[2])[0] - conduction(own, force, place)[1]) / middle
+            (curved_contact(table, force, place[1], place[2])[0] - conduction(closed_form, force, place)[1])
+            / middle
         )
     assert np.sqrt(np.mean(np.square(off))) < 0.03
     assert np.quantile(np.abs(off), 0.9) < 0.05
@@ -80,10 +84,10 @@ def test_a_bare_ball_and_a_bare_rod_are_quadratures_over_hertzs_gap() -> None:
 
 def test_the_patch_is_the_even_one() -> None:
     body = material("steel")
-    table, own = curved_table(PAD, None, body, 0.02), law(None, "steel", 0.02, None)
+    table, closed_form = curved_table(PAD, None, body, 0.02), law(None, "steel", 0.02, None)
     for force in FORCES:
         _, area, long = curved_contact(table, force, 0.0, 0.0)
-        assert area == pytest.approx(even_patch(own, body, force), rel=0.05)
+        assert area == pytest.approx(even_patch(closed_form, body, force), rel=0.05)
         assert long**2 == pytest.approx(area, rel=0.05)
     _, area, long = curved_contact(curved_table(PAD, None, body, 0.02, 0.006), 5.0, 0.0, 0.0)
     assert long == pytest.approx(0.006)
@@ -93,7 +97,7 @@ def test_the_patch_is_the_even_one() -> None:
 @pytest.mark.parametrize(("skin", "name"), KINDS)
 def test_a_ball_less_than_a_rod_less_than_a_flat_face_and_more_force_more_heat(skin, name: str) -> None:
     pad = skinned(PAD, skin)
-    flat = flat_footprint(pad, met(skin, Surface.of(material(name))), (0.04, 0.04))
+    flat = flat_footprint(pad, face_joint(skin, Surface.of(material(name))), (0.04, 0.04))
     before = (0.0, 0.0)
     for force in np.geomspace(0.01, 100.0, 60):
         ball, rod = (
@@ -142,9 +146,9 @@ def test_arrays_hold_what_the_compiled_function_finds() -> None:
             )
         ]
     )
-    for own, other in zip(found, expected.T, strict=True):
-        np.testing.assert_allclose(own[pressed], other, rtol=1e-12, atol=0)
-        assert not own[~pressed].any()
+    for table_value, other in zip(found, expected.T, strict=True):
+        np.testing.assert_allclose(table_value[pressed], other, rtol=1e-12, atol=0)
+        assert not table_value[~pressed].any()
 
 
 @pytest.mark.parametrize("size", [(0.0, None), (-1.0, None), (np.nan, None), (0.02, 0.0), (0.02, np.nan)])
@@ -163,7 +167,7 @@ def off_the_middle(name: str, radius: float, force: float, place: tuple[float, f
     spots = float(contact_conductance(pair, force / (np.pi * spot**2))) * np.pi * spot**2
     both = 1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity
     solid = 1 / (1 / spots + both / 4 * (1 / spot - np.sqrt(np.pi) / PAD.face))
-    apart = gas / (
+    smallest_gap = gas / (
         float(contact_conductance(pair, 1e-9))
         - float(contact_conductance(replace(pair, gas_conductivity=0.0), 1e-9))
     )
@@ -172,19 +176,19 @@ def off_the_middle(name: str, radius: float, force: float, place: tuple[float, f
         np.where(turned > 0, half - at, half + at) / np.maximum(np.abs(turned), 1e-12)
         for turned, at in zip((np.cos(angle), np.sin(angle)), place, strict=True)
     ]
-    end, scale = np.minimum(np.minimum(*ends), radius), np.sqrt(2 * radius * apart)
+    end, scale = np.minimum(np.minimum(*ends), radius), np.sqrt(2 * radius * smallest_gap)
     low, high = np.arcsinh(spot / scale), np.arcsinh(end / scale)
     at = low + (high - low)[:, None] * (np.arange(500) + 0.5) / 500
     x = np.maximum(scale * np.sinh(at) / spot, 1.0)
     gap = spot**2 / (np.pi * radius) * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
-    around = (gas / (apart + gap) * scale**2 * np.sinh(at) * np.cosh(at)).mean(axis=1) * (high - low)
+    around = (gas / (smallest_gap + gap) * scale**2 * np.sinh(at) * np.cosh(at)).mean(axis=1) * (high - low)
     return solid + float(around.mean()) * 2 * np.pi
 
 
 @pytest.mark.parametrize("name", ["steel", "copper", "glass"])
 @pytest.mark.parametrize("radius", [0.005, 0.02, 0.05])
 def test_a_bare_ball_off_the_middle_is_a_sum_over_hertzs_gap(name: str, radius: float) -> None:
-    table, own = curved_table(PAD, None, material(name), radius), law(None, name, radius, None)
+    table, closed_form = curved_table(PAD, None, material(name), radius), law(None, name, radius, None)
     for force in (1.0, 10.0):
         for place in (
             (0.0, 0.0),
@@ -195,5 +199,7 @@ def test_a_bare_ball_off_the_middle_is_a_sum_over_hertzs_gap(name: str, radius: 
             (0.0042, 0.0042),
         ):
             expected = off_the_middle(name, radius, force, place)
-            assert conduction(own, force, np.array([0.0, *place]))[1] == pytest.approx(expected, rel=0.03)
+            assert conduction(closed_form, force, np.array([0.0, *place]))[1] == pytest.approx(
+                expected, rel=0.03
+            )
             assert curved_contact(table, force, *place)[0] == pytest.approx(expected, rel=0.03)

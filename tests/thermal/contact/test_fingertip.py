@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermograsp.thermal import LAPPED_ALUMINA, SKINS, Pad, Skin, Surface, material
-from thermograsp.thermal.contact import cylinder_contact, flat_contact, met, skinned, sphere_contact
+from thermograsp.thermal.contact import cylinder_contact, face_joint, flat_contact, skinned, sphere_contact
 
 PAD, SKIN = Pad(), SKINS["filled_silicone"]
 SPRINGS = PAD.foundation_modulus / PAD.thickness
@@ -47,8 +47,8 @@ def test_a_softer_or_thicker_sheet_touches_more() -> None:
 
 def test_a_skin_s_surface_replaces_the_alumina() -> None:
     steel = Surface.of(material("steel"))
-    assert met(None, steel).conductivity == pytest.approx(
+    assert face_joint(None, steel).conductivity == pytest.approx(
         2 / (1 / LAPPED_ALUMINA.conductivity + 1 / steel.conductivity)
     )
-    pair = met(SKIN, steel)
+    pair = face_joint(SKIN, steel)
     assert pair.conductivity < 2 * SKIN.made_of.conductivity and np.isfinite(pair.solid_most)

@@ -121,16 +121,16 @@ def test_nothing_jumps_where_a_body_slides_over_an_edge(name: str, pad: Pad) -> 
     for way in ((0.0, 1.0), (1.0, 0.0), (0.6, 0.8)):
         largest = []
         for steps in (200, 400, 800):
-            felt = []
+            conductances = []
             for at in np.linspace(0.0, 0.016, steps + 1):
                 area, load = footprint(law, 10.0, np.array([0.0, *(at * np.array(way))]))
-                felt.append(area * conductance(law, load / area) if area > 0 else 0.0)
-            largest.append(abs(np.diff(felt)).max())
+                conductances.append(area * conductance(law, load / area) if area > 0 else 0.0)
+            largest.append(abs(np.diff(conductances)).max())
         # where the last of a curved face slips off, its pressure falls as its area does: by more than in proportion
         assert largest[1] <= 0.6 * largest[0] + 1e-12 and largest[2] <= 0.6 * largest[1] + 1e-12
 
 
-def felt(law: np.void, force: float) -> float:
+def conductance_of(law: np.void, force: float) -> float:
     area, load = footprint(law, force, np.zeros(3))
     return area * conductance(law, load / area)
 
@@ -139,7 +139,7 @@ def test_on_a_stiff_face_balls_feel_less_than_cylinders_and_these_less_than_flat
     """The springs on the face take the force of each, over the less area the rounder it is."""
     forces = np.geomspace(0.05, 40.0, 12)
     flat, line, ball = (
-        np.array([felt(law, force) for force in forces])
+        np.array([conductance_of(law, force) for force in forces])
         for law in (
             flat_footprint(SKINNED, STEEL, (0.04, 0.04)),
             cylinder_footprint(SKINNED, STEEL, 0.02, 0.04),
@@ -152,7 +152,7 @@ def test_on_a_stiff_face_balls_feel_less_than_cylinders_and_these_less_than_flat
 @pytest.mark.parametrize("pad", [PAD, SKINNED], ids=["pad", "skinned"])
 @pytest.mark.parametrize("name", SHAPES)
 def test_more_force_more_heat(name: str, pad: Pad) -> None:
-    heat = [felt(SHAPES[name](pad), force) for force in np.geomspace(0.05, 40.0, 12)]
+    heat = [conductance_of(SHAPES[name](pad), force) for force in np.geomspace(0.05, 40.0, 12)]
     assert (np.diff(heat) > 0).all()
 
 

@@ -29,7 +29,7 @@ def modulus(name: str) -> float:
     return 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in faces)
 
 
-def apart(name: str) -> float:
+def gap_of(name: str) -> float:
     """m of gas between faces that touch without force, the jump with it."""
     return AIR.conductivity / float(gas_conductance(joint(LAPPED_ALUMINA, Surface.of(material(name))), 0.0))
 
@@ -62,7 +62,7 @@ def elastic_ball(name: str, force: float) -> tuple[float, np.ndarray, np.ndarray
 
 @pytest.mark.parametrize("name", STIFF)
 def test_gas_without_force_is_that_under_a_parabola(name: str) -> None:
-    d, square = apart(name), WIDTH**2 / np.pi
+    d, square = gap_of(name), WIDTH**2 / np.pi
     expected = 2 * np.pi * AIR.conductivity * RADIUS * np.log1p(square / (2 * RADIUS * d))
     assert ball(name, 0.0).gas == pytest.approx(expected, rel=1e-9)
     expected = 2 * AIR.conductivity * WIDTH * np.sqrt(2 * RADIUS / d)
@@ -78,7 +78,7 @@ def test_gas_beside_a_strip_is_that_of_a_quadrature(name: str, force: float) -> 
     x = found.half_width + (WIDTH / 2 - found.half_width) * np.linspace(0, 1, 200_001) ** 3
     slope = np.sqrt(np.maximum(x**2 - found.half_width**2, 0.0)) / RADIUS
     gap = cumulative_trapezoid(slope, x, initial=0.0)
-    expected = 2 * WIDTH * AIR.conductivity * trapezoid(1 / (gap + apart(name)), x)
+    expected = 2 * WIDTH * AIR.conductivity * trapezoid(1 / (gap + gap_of(name)), x)
     assert found.gas == pytest.approx(expected, rel=1e-3)
 
 
@@ -86,7 +86,7 @@ def test_gas_over_a_square_face_is_that_over_a_disc_of_its_area() -> None:
     x, weight = np.polynomial.legendre.leggauss(400)
     grade = (x + 1) / 2
     along, weights = WIDTH / 2 * grade**3, weight / 2 * WIDTH / 2 * 3 * grade**2
-    gap = (along[:, None] ** 2 + along**2) / (2 * RADIUS) + apart("steel")
+    gap = (along[:, None] ** 2 + along**2) / (2 * RADIUS) + gap_of("steel")
     square = 4 * AIR.conductivity * weights @ (1 / gap) @ weights
     assert ball("steel", 0.0).gas == pytest.approx(square, rel=0.01)
 
@@ -99,7 +99,7 @@ def test_contact_and_gap_are_those_of_an_elastic_solution(name: str, force: floa
     assert found.pressure == pytest.approx(force / (np.pi * half**2), rel=0.04)
     rings = 2 * np.pi * distance * (distance[1] - distance[0])
     beside = distance > half
-    elastic = AIR.conductivity * (rings / (gap + apart(name)))[beside].sum()
+    elastic = AIR.conductivity * (rings / (gap + gap_of(name)))[beside].sum()
     edge = (distance[-1] + (distance[1] - distance[0]) / 2) * np.sqrt(np.pi)
     near = rigid_sphere(LAPPED_ALUMINA, Surface.of(material(name)), force, RADIUS, edge).gas
     assert near == pytest.approx(elastic, rel=0.03)

@@ -49,11 +49,11 @@ def drop(sides: tuple[Side, Side], patterns: int, conductance: float, times: np.
     box, element_side = sides
     rates = np.concatenate((box.rates, element_side.rates))
     ports = np.concatenate((box.ports, -element_side.ports))
-    told = np.concatenate((np.zeros(len(box.rates)), element_side.outputs["drop"]))
+    read_out = np.concatenate((np.zeros(len(box.rates)), element_side.outputs["drop"]))
     decay, turn = np.linalg.eigh(np.diag(rates) + conductance * ports @ ports.T)
     product = np.outer(times, np.maximum(decay, 1e-15))
     grown = -np.expm1(-product) / np.maximum(decay, 1e-15)
-    return grown @ ((turn.T @ ports[:, 0]) * conductance * (turn.T @ told))
+    return grown @ ((turn.T @ ports[:, 0]) * conductance * (turn.T @ read_out))
 
 
 def axis_kernel(tau: float, length: float, film: float, late: bool) -> np.ndarray:
@@ -104,9 +104,9 @@ def test_a_box_is_the_plate_of_other_code(name: str) -> None:
     ]
     both = placed([4, 5], [(0.02, 0.02)] * 2, [(WIDTH / 2, WIDTH / 2)] * 2)
     box = box_samples((0.04, 0.04, 0.01), made.conductivity, made.volumetric_heat_capacity, 0.0, both)
-    own, across = box.impedance[:, 0, 0], box.impedance[:, 0, len(box.port) // 2]
-    np.testing.assert_allclose(own, (half[0] + half[1]) / 2, rtol=1e-4)
-    np.testing.assert_allclose(across, (half[0] - half[1]) / 2, rtol=2e-3, atol=1e-6 * own.max())
+    alone, across = box.impedance[:, 0, 0], box.impedance[:, 0, len(box.port) // 2]
+    np.testing.assert_allclose(alone, (half[0] + half[1]) / 2, rtol=1e-4)
+    np.testing.assert_allclose(across, (half[0] - half[1]) / 2, rtol=2e-3, atol=1e-6 * alone.max())
     assert box.rate == 0
     assert box.port[0] * box.held == pytest.approx(1, abs=1e-12)
 
@@ -148,9 +148,9 @@ def test_few_patterns_are_combinations_of_all(film: float) -> None:
     every = box_samples((0.04, 0.03, 0.01), 1.0, 2e6, film, patches)
     few = box_samples((0.04, 0.03, 0.01), 1.0, 2e6, film, patches, bases)
     turn = block_diag(*bases)
-    for told, wanted in ((few.impedance, every.impedance), (few.slope, every.slope)):
+    for found_values, wanted in ((few.impedance, every.impedance), (few.slope, every.slope)):
         np.testing.assert_allclose(
-            told, turn.T @ wanted @ turn, rtol=0, atol=1e-11 * float(np.abs(wanted).max())
+            found_values, turn.T @ wanted @ turn, rtol=0, atol=1e-11 * float(np.abs(wanted).max())
         )
     np.testing.assert_allclose(few.port, every.port @ turn, rtol=0, atol=1e-11 * float(every.port.max()))
     if film > 0:
@@ -166,13 +166,13 @@ def test_a_spot_s_patterns_are_orthonormal_and_the_even_one_is_the_first() -> No
     half, part = WIDTH / 2, ((0.0, 0.006), (0.0, WIDTH))
     whole = Footprint(FULL, (half, half), (half, half))
     beside = Footprint(part, (0.003, half), (0.003, half))
-    for sides, depth, own, other in (
+    for sides, depth, near, other in (
         ((WIDTH, WIDTH), 0.01, whole, None),
         ((WIDTH, WIDTH), 0.01, whole, whole),
         ((0.04, 0.04), 2e-4, beside, whole),
         ((0.04, 0.04), 2e-4, whole, beside),
     ):
-        spot = Spot(1.0, 2.1e6, sides, depth, own, other)
+        spot = Spot(1.0, 2.1e6, sides, depth, near, other)
         for each in (spot, spot.alike(WIDTH)):
             touched = tip_at(SEED, each, Resolution(8, 4))
             np.testing.assert_allclose(touched.basis.T @ GRAM @ touched.basis, np.eye(4), atol=1e-9)
@@ -292,9 +292,9 @@ def test_a_network_of_one_touch_is_passive_and_exact_at_its_moments(made: str, f
     for f, one in enumerate(tips):
         turn[f * count : (f + 1) * count, 2 * f : 2 * f + 2] = one.basis
     for moment in detail.indices:
-        told = side.ports.T @ (side.ports / (MOMENTS[moment] + side.rates)[:, None])
+        fitted = side.ports.T @ (side.ports / (MOMENTS[moment] + side.rates)[:, None])
         wanted = turn.T @ box[moment] @ turn
-        assert np.max(np.abs(told - wanted)) < 2e-4 * np.max(np.abs(wanted))
+        assert np.max(np.abs(fitted - wanted)) < 2e-4 * np.max(np.abs(wanted))
 
 
 def test_places_that_are_alike_feel_alike() -> None:

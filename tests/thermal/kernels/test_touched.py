@@ -60,9 +60,9 @@ def test_what_flowed_elsewhere_is_told_as_the_kernels_have_it(name):
     exact = box_samples(
         SIZE, known.conductivity, known.volumetric_heat_capacity, 0.0, patches, [TIP.basis] * 4
     ).impedance[OF_GRASP, :6]
-    told = np.einsum("ijk,sk->sij", found.residues, 1 / (GRASP[:, None] + LEVEL.decay))
+    fitted = np.einsum("ijk,sk->sij", found.residues, 1 / (GRASP[:, None] + LEVEL.decay))
     whole = np.abs(exact[:, 0, 0] + found.ports[0] ** 2 / GRASP + TIP.impedance)[:, None, None]
-    assert (np.abs(told - exact) / whole).max() < 0.01
+    assert (np.abs(fitted - exact) / whole).max() < 0.01
     assert min(np.linalg.eigvalsh(each).min() for each in found.residues[:, :6].transpose(2, 0, 1)) > -1e-9
 
 
@@ -80,9 +80,9 @@ def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
     touched_module._transform.cache_clear()
     exact = many.impedance
     whole = np.abs(exact[:, 0, 0] + many.port[0] ** 2 / (GRASP + many.rate) + TIP.impedance)
-    apart = np.abs(few.impedance - exact) / whole[:, None, None]
-    assert apart[..., :6].max() < 5e-4
-    assert apart.max() < 1e-2  # of what flowed elsewhere once, at the fastest moments
+    difference = np.abs(few.impedance - exact) / whole[:, None, None]
+    assert difference[..., :6].max() < 5e-4
+    assert difference.max() < 1e-2  # of what flowed elsewhere once, at the fastest moments
     assert (np.abs(few.heat - many.heat) * GRASP[:, None]).max() < 1e-3
 
 
