@@ -88,12 +88,12 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
             np.tile(data.geom_xpos[[geom]], (2, 1, 1, 1)),
             np.tile(data.geom_xmat[[geom]].reshape(1, 1, 1, 3, 3), (2, 1, 1, 1, 1)),
         )
-        read = contacts.of_step(poses, np.array([[0], [1]]), np.ones((1, 1)))
+        step = contacts.of_step(poses, np.array([[0], [1]]), np.ones((1, 1)))
         for world, reader in enumerate(readers):
             reader.clear()
             reader.sense(data.sensordata[None, None], 0, 1, places)
             read = reader.touches[0, :, 0]
-            for values, column in ((read.force, FORCE), (read.conductance, CONDUCTANCE), (read.area, AREA)):
+            for values, column in ((step.force, FORCE), (step.conductance, CONDUCTANCE), (step.area, AREA)):
                 np.testing.assert_allclose(values[world, :, 0], read[:, column], rtol=1e-6)
-        touched += (read.conductance > 0).all(axis=(0, 2)).sum() >= feeling
+        touched += (step.conductance > 0).all(axis=(0, 2)).sum() >= feeling
     assert touched > 50
