@@ -81,8 +81,8 @@ def box_samples(
     slope = np.tensordot(TO_SLOPES, kernel, axes=1)
     early = before(diffusivity) / heat_capacity
     for n, area in enumerate(patches.areas):
-        own = slice(n * len(gram), (n + 1) * len(gram))
-        impedance[:, own, own] += early / area * gram
+        block = slice(n * len(gram), (n + 1) * len(gram))
+        impedance[:, block, block] += early / area * gram
     if whole is None:
         return BoxSamples(impedance, slope, rate, port, held, None)
     return BoxSamples(impedance, slope, rate, port, held, TO_MOMENTS @ whole)
@@ -96,12 +96,12 @@ def box_kernel(
     patches: Patches,
     jumps: np.ndarray,
     terms: np.ndarray,
-    asked: int,
+    wanted: int,
     times: np.ndarray,
 ) -> tuple[np.ndarray, float, np.ndarray, float, np.ndarray | None]:
-    """Kernel (T, asked P, N P) K/J at times (T,) s, of the temperatures of the first `asked` patches, less the slowest
-    eigenfunction's part; rate, port and held as in BoxSamples; kernel (T, N P) of the heat in the box, likewise without
-    it, None where no film takes any. jumps, terms: along_axes's."""
+    """Kernel (T, wanted P, N P) K/J at times (T,) s, of the temperatures of the first `wanted` patches, less the
+    slowest eigenfunction's part; rate, port and held as in BoxSamples; kernel (T, N P) of the heat in the box, likewise
+    without it, None where no film takes any. jumps, terms: along_axes's."""
     diffusivity = conductivity / heat_capacity
     kernel, slowest, port, held, whole = _kernel(
         np.asarray(size, float),
@@ -114,13 +114,13 @@ def box_kernel(
         NODES,
         jumps,
         terms,
-        asked,
+        wanted,
     )
     return kernel, float(slowest * diffusivity), port, float(held), whole if film > 0 else None
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, terms, asked):
+def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, terms, wanted):
     """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, N P) of the
     heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. jumps:
     (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one
@@ -131,7 +131,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
     places = np.empty((count, len(nodes)))
     ends, step, inside = np.empty(2), np.array([[-1.0, 1.0]]), np.empty((1, MODES))
     point = np.ones((1, 1))
-    told = np.zeros((3, count, functions, MODES))
+    overlap = np.zeros((3, count, functions, MODES))
     room = np.empty(len(nodes))
     table = np.empty((len(nodes), len(nodes)))
     half_done = np.empty((functions, len(nodes)))
@@ -154,7 +154,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
             if facing == axis:
                 order[n] = 0
                 places[n, 0] = length * (face[n] % 2)
-                overlaps(places[n, :1], point, 0, length, waves, room, told[axis, n])
+                overlaps(places[n, :1], point, 0, length, waves, room, overlap[axis, n])
                 continue
             w = axis if axis < facing else axis - 1
             which[axis, n] = w
@@ -170,27 +170,27 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                     if same:
                         alike[n] = m
             if alike[n] == n:
-                overlaps(places[n], jumps[n, w], 1, length, waves, room, told[axis, n])
+                overlaps(places[n], jumps[n, w], 1, length, waves, room, overlap[axis, n])
                 continue
             for f in range(functions):
                 for m in range(MODES):
-                    told[axis, n, f, m] = told[axis, alike[n], f, m]
+                    overlap[axis, n, f, m] = overlap[axis, alike[n], f, m]
         for t in range(len(taus)):
             tau = taus[t]
             late = tau > SWITCH * length * length
             now, all_over = between[axis], everywhere[axis]
             for n in range(count):
                 across = order[n] == 1
-                mine = functions if across else 1
+                axis_functions = functions if across else 1
                 a = places[n] if across else places[n, :1]
                 by = jumps[n, which[axis, n]] if across else point
-                for m in range(min(n + 1, asked)):
+                for m in range(min(n + 1, wanted)):
                     others = functions if order[m] == 1 else 1
                     if _unseen(size, face, n, m, tau):
                         continue
                     if (alike[n] < n or alike[m] < m) and not _unseen(size, face, alike[n], alike[m], tau):
                         # opposite fingertips often differ along one axis only
-                        for f in range(mine):
+                        for f in range(axis_functions):
                             for g in range(others):
                                 if alike[m] <= alike[n]:
                                     now[n, f, m, g, t] = now[alike[n], f, alike[m], g, t]
@@ -202,14 +202,16 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                             decay = np.exp(-waves[w] * waves[w] * tau)
                             if decay < 1e-17:
                                 break
-                            for f in range(mine):
+                            for f in range(axis_functions):
                                 for g in range(others):
-                                    now[n, f, m, g, t] += decay * told[axis, n, f, w] * told[axis, m, g, w]
+                                    now[n, f, m, g, t] += (
+                                        decay * overlap[axis, n, f, w] * overlap[axis, m, g, w]
+                                    )
                         continue
                     b = places[m] if order[m] == 1 else places[m, :1]
                     beside = jumps[m, which[axis, m]] if order[m] == 1 else point
                     images(a, order[n], b, order[m], n == m, length, film, tau, table)
-                    for f in range(mine):
+                    for f in range(axis_functions):
                         for q in range(len(b)):
                             half_done[f, q] = 0.0
                         for k in range(len(a)):
@@ -221,20 +223,20 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                 if film > 0.0:
                     if alike[n] == n and not late:
                         images(a, order[n], ends, 1, False, length, film, tau, table)
-                    for f in range(mine):
+                    for f in range(axis_functions):
                         value = 0.0
                         if alike[n] < n:
                             value = all_over[alike[n], f, t]
                         elif late:
                             for w in range(MODES):
                                 decay = np.exp(-waves[w] * waves[w] * tau)
-                                value += decay * told[axis, n, f, w] * inside[0, w]
+                                value += decay * overlap[axis, n, f, w] * inside[0, w]
                         else:
                             for k in range(len(a)):
                                 value += by[f, k] * (table[k, 1] - table[k, 0])
                         all_over[n, f, t] = value
-    own = asked * patterns
-    kernel, whole, port = np.zeros((len(taus), own, total)), np.zeros((len(taus), total)), np.zeros(total)
+    rows = wanted * patterns
+    kernel, whole, port = np.zeros((len(taus), rows, total)), np.zeros((len(taus), total)), np.zeros(total)
     sums = np.empty(len(taus))
     for n in range(count):
         for i in range(patterns):
@@ -243,11 +245,11 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                 if terms[i, x, 0] < 0:
                     continue
                 f0, f1, f2 = _functions(terms[i, x], orders, which, n)
-                port[at] += told[0, n, f0, 0] * told[1, n, f1, 0] * told[2, n, f2, 0]
+                port[at] += overlap[0, n, f0, 0] * overlap[1, n, f1, 0] * overlap[2, n, f2, 0]
                 for t in range(len(taus)):
                     air = everywhere[0, n, f0, t] * everywhere[1, n, f1, t]
                     whole[t, at] += air * everywhere[2, n, f2, t]
-            for m in range(min(n + 1, asked)):
+            for m in range(min(n + 1, wanted)):
                 for j in range(patterns):
                     for t in range(len(taus)):
                         sums[t] = 0.0
@@ -272,12 +274,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
     for t in range(len(taus)):
         fading = np.exp(-slowest * taus[t])
         for j in range(total):
-            mine = 4 * half[j // patterns, 0] * half[j // patterns, 1]
-            whole[t, j] = whole[t, j] / mine - fading * port[j] * held
-            for i in range(min(j + 1, own)):
-                area = 4 * half[i // patterns, 0] * half[i // patterns, 1] * mine
+            area_j = 4 * half[j // patterns, 0] * half[j // patterns, 1]
+            whole[t, j] = whole[t, j] / area_j - fading * port[j] * held
+            for i in range(min(j + 1, rows)):
+                area = 4 * half[i // patterns, 0] * half[i // patterns, 1] * area_j
                 kernel[t, i, j] = kernel[t, i, j] / (area * heat_capacity) - fading * port[i] * port[j]
-                if j < own:
+                if j < rows:
                     kernel[t, j, i] = kernel[t, i, j]
     return kernel, slowest, port, held, whole
 
