@@ -11,6 +11,7 @@ P: patterns (patterns.py), S: moments (samples.py), L: nodes among an axis' late
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -178,43 +179,54 @@ def _even_rates(stack: SensorStack) -> np.ndarray:
     return ((low + high) / 2) ** 2
 
 
+def _lateral(
+    width: float,
+    taus: np.ndarray,
+    centre: np.ndarray,
+    half: np.ndarray,
+    nodes: np.ndarray,
+    jumps: np.ndarray,
+    along: np.ndarray,
+    count: int,
+) -> tuple[np.ndarray, np.ndarray]:
+    """(T, P, P) m of the first layer's half-space and (2, F, count) of the functions on eigenfunctions. taus: (T,) m2,
+    ascending."""
+    early = int(np.count_nonzero(taus <= SWITCH * width * width))
+    tables, late, overlap = _along_sides(width, taus, early, centre, half, nodes, jumps, count)
+    between = np.concatenate((jumps @ tables @ jumps.T, late), axis=1)
+    depth = 1 / np.sqrt(np.pi * taus)
+    first, second = (axis[:, along[:, None, a], along[:, a]] for a, axis in enumerate(between))
+    return depth[:, None, None] * first * second, overlap
+
+
 @njit(cache=True, error_model="numpy")
-def _lateral(width, taus, centre, half, nodes, jumps, along, count):
-    """(T, P, P) m of the first layer's half-space and (2, F, count) of the functions on eigenfunctions."""
-    functions, patterns = len(jumps), len(along)
-    kernel = np.empty((len(taus), patterns, patterns))
+def _along_sides(width, taus, early, centre, half, nodes, jumps, count):
+    """By axis: at the first `early` times the images between nodes (2, early, E, E), at the others the functions'
+    products by eigenfunctions (2, T - early, F, F); and (2, F, count) of the functions on these."""
+    functions = len(jumps)
     overlap = np.empty((2, functions, count))
-    between = np.empty((2, functions, functions))
-    places = np.empty((2, len(nodes)))
-    table = np.empty((len(nodes), len(nodes)))
+    tables = np.empty((2, early, len(nodes), len(nodes)))
+    late = np.zeros((2, len(taus) - early, functions, functions))
+    places, seen = np.empty(len(nodes)), np.empty(len(nodes))
     for axis in range(2):
         for k in range(len(nodes)):
-            places[axis, k] = centre[axis] + half[axis] * nodes[k]
-        for f in range(functions):
-            for w in range(count):
-                total, wave = 0.0, w * np.pi / width
+            places[k] = centre[axis] + half[axis] * nodes[k]
+        for w in range(count):
+            wave, norm = w * math.pi / width, math.sqrt(width if w == 0 else width / 2)
+            for k in range(len(nodes)):
+                seen[k] = places[k] if w == 0 else math.sin(wave * places[k]) / wave
+            for f in range(functions):
+                total = 0.0
                 for k in range(len(nodes)):
-                    total += jumps[f, k] * (
-                        places[axis, k] if w == 0 else np.sin(wave * places[axis, k]) / wave
-                    )
-                overlap[axis, f, w] = total / np.sqrt(width if w == 0 else width / 2)
-    for t in range(len(taus)):
-        tau = taus[t]
-        for axis in range(2):
-            if tau > SWITCH * width * width:
-                between[axis] = 0.0
-                for w in range(min(count, MODES)):
-                    decay = np.exp(-((w * np.pi / width) ** 2) * tau)
-                    for f in range(functions):
-                        for g in range(functions):
-                            between[axis, f, g] += decay * overlap[axis, f, w] * overlap[axis, g, w]
-            else:
-                images(places[axis], 1, places[axis], 1, True, width, 0.0, tau, table)
-                between[axis] = jumps @ table @ jumps.T
-        depth = 1 / np.sqrt(np.pi * tau)
-        for i in range(patterns):
-            for j in range(patterns):
-                kernel[t, i, j] = (
-                    depth * between[0, along[i, 0], along[j, 0]] * between[1, along[i, 1], along[j, 1]]
-                )
-    return kernel, overlap
+                    total += jumps[f, k] * seen[k]
+                overlap[axis, f, w] = total / norm
+        for t in range(early):
+            images(places, 1, places, 1, True, width, 0.0, taus[t], tables[axis, t])
+        for t in range(early, len(taus)):
+            for w in range(min(count, MODES)):
+                wave = w * math.pi / width
+                decay = math.exp(-wave * wave * taus[t])
+                for f in range(functions):
+                    for g in range(functions):
+                        late[axis, t - early, f, g] += decay * overlap[axis, f, w] * overlap[axis, g, w]
+    return tables, late, overlap

@@ -114,11 +114,6 @@ def _samples(box: TouchedBox) -> _Samples:
 
 
 @lru_cache(maxsize=1024)
-def _weight(one: Tip) -> np.ndarray:
-    return one.weight
-
-
-@lru_cache(maxsize=1024)
 def _jumps(one: Tip) -> np.ndarray:
     return basis_jumps(one.basis)
 
