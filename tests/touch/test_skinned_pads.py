@@ -45,7 +45,7 @@ def scene(skin: str | None):
 def test_contacts_in_the_middle_are_those_of_the_environments_laws(force: float, skin: str | None) -> None:
     model, found, shapes = scene(skin)
     skin_worn = SKINS[skin] if skin else None
-    laws, curved, tables = pair_laws(model, found, shapes)
+    laws, curved, tables, _ = pair_laws(model, found, shapes)
     steel, sheet, middle = Surface.of(material("steel")), skinned(Pad(), skin_worn), np.zeros(3)
     if skin_worn is None:
         ball, can = (bare_footprint(Pad(), steel, 0.02, length) for length in (None, 0.06))
@@ -73,7 +73,7 @@ def test_a_bare_face_conducts_less_and_bears_less_of_a_flat_face_s_force_than_a_
 
 
 def test_what_is_alike_shares_a_table_and_flat_things_have_none() -> None:
-    _, curved, tables = pair_laws(*scene(None))
+    _, curved, tables, _ = pair_laws(*scene(None))
     assert (curved[0, 2:] == -1).all()
     assert len(tables) == 2
     assert set(curved[0, 0]) == {0}

@@ -27,6 +27,7 @@ from .array_round import array_round_contact
 from .laws import pair_laws, stacked
 from .reader import DEPTH, RIM
 from .round_pads import bends, curves
+from .tilt import TILT, array_tilted
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
 
@@ -61,7 +62,8 @@ class ArrayContacts:
     """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
     half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
     and axis of the geom's frame. tables: those of curved contacts behind one another, and curved (V F G 3) the numbers
-    of the laws', -1 for flat ones.  numbers: (F, G) integers, the laws' of the first material.
+    of the laws', -1 for flat ones; tilts (V F G 3, TILT) of rods. numbers: (F, G) integers, the laws' of the first
+    material.
     bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) 1 for pads that are round. Flat ones
     have the bend of a round one, whose contact is not used. units (3, 3) and across (3, 2, 3): an axis and the two
     others."""
@@ -73,6 +75,7 @@ class ArrayContacts:
     laws: ArrayLaws
     tables: Array
     curved: Array
+    tilts: Array
     numbers: Array
     bend: Array
     curve: Array
@@ -162,11 +165,15 @@ class ArrayContacts:
         if not self.any_curved:
             return flat
         table = self.curved[which][..., None]
-        aside, along = self._crown(law, off, from_geom, axes, geom_turn)
+        aside, along, slope = self._crown(law, off, from_geom, axes, geom_turn)
         number = as_integers(table.clip(0.0, None))
-        found = array_curved_contact(self.tables, number, pressed, aside + none, along + none)
+        whole, lying = array_tilted(self.tilts[which][..., None, :], pressed, slope + none, along + none)
+        lies = whole > 0
+        share = xp.where(lies, whole, 1.0 + 0.0 * whole)
+        found = array_curved_contact(self.tables, number, lying / share, aside + none, along + none)
         conducts, area, long = (
-            xp.where(table >= 0, bent, even) for bent, even in zip(found, flat, strict=True)
+            xp.where(table >= 0, xp.where(lies, share * bent, none), even)
+            for bent, even in zip(found, flat, strict=True)
         )
         return conducts, area, long
 
@@ -210,20 +217,26 @@ class ArrayContacts:
 
     def _crown(
         self, law: ArrayLaws, off: Array, from_geom: Array, axes: Array, geom_turn: Array
-    ) -> tuple[Array, Array]:
+    ) -> tuple[Array, Array, Array]:
         """m, (B, F, G, 1) each, from a pad's middle to where a curved body touches it: of a ball along y and z, of a
-        cylinder across it, and to its own middle along it. off: (B, F, G, 2) m."""
+        cylinder across it, and to its own middle along it; and the tangent of its angle to the pad, 0 of a ball. off:
+        (B, F, G, 2) m."""
         xp = namespace_of(off)
-        line = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])[
-            ..., 1:
-        ]  # a cylinder's axis along y and z
+        own_axis = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])
+        line = own_axis[..., 1:]  # a cylinder's axis along y and z
         length = (line * line).sum(-1) ** 0.5
         turned = off[..., 0] * line[..., 1] - off[..., 1] * line[..., 0]
-        across = (turned / xp.where(length > 0, length, length + 1))[..., None]
+        safe = xp.where(length > 0, length, length + 1)
+        across = (turned / safe)[..., None]
         lies = law.cylinder > 0
+        normal = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # in the geom's frame
+        slope = xp.where(length > 0, own_axis[..., 0] / safe, 0.0 * length)
+        away = (from_geom * normal).sum(-1)
+        middle = xp.where(length > 0, (from_geom[..., 2] - own_axis[..., 0] * away) / safe, 0.0 * length)
         return (
             xp.where(lies, across, off[..., 0][..., None]),
-            xp.where(lies, from_geom[..., 2][..., None], off[..., 1][..., None]),
+            xp.where(lies, middle[..., None], off[..., 1][..., None]),
+            xp.where(lies, slope[..., None], 0.0 * slope[..., None]),
         )
 
 
@@ -234,6 +247,7 @@ def array_contacts(
     each number that a world's `material` may be, alike but for their materials."""
     found = [pair_laws(model, pads, shapes) for shapes in kinds]
     laws = np.stack([each.laws[:, : _geoms(shapes)] for each, shapes in zip(found, kinds, strict=True)])
+    tilts = np.stack([each.tilts[:, : _geoms(shapes)] for each, shapes in zip(found, kinds, strict=True)])
     before = np.cumsum([0, *(len(each.tables) for each in found)])
     curved = np.stack(
         [
@@ -254,6 +268,7 @@ def array_contacts(
         laws=array_laws(laws.reshape(-1), like),
         tables=as_like(stacked([table for each in found for table in each.tables]).ravel(), like),
         curved=as_like(curved.ravel().astype(float), like),
+        tilts=as_like(tilts.reshape(-1, TILT), like),
         numbers=as_integers(as_like(numbers.astype(float), like)),
         bend=as_like(bend, like),
         curve=as_like(curves(model, pads, kinds[0])[: len(owner)], like),

@@ -25,6 +25,7 @@ from ...thermal import (
 )
 from ...thermal.contact import CURVED_TABLE, curved_table, skinned
 from ..scene import BodyShape, PadPlace
+from .tilt import TILT, tilt_row
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
 _WIDE = 10.0  # m, a face that no pad reaches the end of
@@ -32,11 +33,12 @@ _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 class PairLaws(NamedTuple):
     """laws: (F, G + F, 3) CONTACT_LAW records. curved: (F, G + F, 3) numbers of the tables of what is curved, -1 for
-    what is flat. tables: K, (CURVED_TABLE,) each."""
+    what is flat. tables: K, (CURVED_TABLE,) each. tilts: (F, G + F, 3, TILT) of rods, 0 of others."""
 
     laws: np.ndarray
     curved: np.ndarray
     tables: tuple[np.ndarray, ...]
+    tilts: np.ndarray
 
 
 def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> PairLaws:
@@ -44,7 +46,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     along; and on each other pad, whose sides are taken as parallel to its own."""
     geoms = [(shape, geom) for shape in shapes for geom in shape.geoms]
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
-    curved = np.full(laws.shape, -1, np.int64)
+    curved, tilts = np.full(laws.shape, -1, np.int64), np.zeros((*laws.shape, TILT))
     tables: list[np.ndarray] = []
     for f, pad in enumerate(pads):
         width = float(math.sqrt(pad.size.prod()))
@@ -58,6 +60,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 if size is None or sum(pad.curvature) > 0:
                     continue
                 table = curved_table(silicone, pad.skin, shape.material, *size)
+                if size[1] is not None:
+                    tilts[f, g, axis] = tilt_row(pad, silicone, shape, size[0], size[1])
                 known = [n for n, each in enumerate(tables) if each is table]
                 curved[f, g, axis] = known[0] if known else len(tables)
                 if not known:
@@ -66,7 +70,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = min(other.stack.width, float(math.sqrt(other.size.prod())))
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
-    return PairLaws(laws, curved, tuple(tables))
+    return PairLaws(laws, curved, tuple(tables), tilts)
 
 
 def stacked(tables: Sequence[np.ndarray]) -> np.ndarray:

@@ -45,6 +45,7 @@ from .memory import LENGTH as TABLE
 from .pointers import flags, floats, integers, laws, table, words
 from .round_pads import BEND, CURVES, bends, curves, round_contact
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
+from .tilt import TILT, tilted
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it
 RIM = 0.0005  # m beyond the pad's sides
@@ -87,6 +88,7 @@ class ContactReader:
         self._known: dict[tuple[Material, ...], int] = {}
         self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
         self._curved = np.zeros((0, 0, 0, 3), np.int64)
+        self._tilts = np.zeros((0, 0, 0, 3, TILT))
         self._every: list[np.ndarray] = []
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(parts), 3))
@@ -105,12 +107,13 @@ class ContactReader:
             if combination not in self._known:
                 self._known[combination] = len(self._known)
                 shapes = [replace(s, material=m) for s, m in zip(self._shapes, combination, strict=True)]
-                laws, curved, tables = pair_laws(self._model, self._of_pads, shapes)
+                laws, curved, tables, tilts = pair_laws(self._model, self._of_pads, shapes)
                 numbers = np.array([*map(self._number, tables), -1])  # the last of flat targets
-                first = len(self._known) == 1
-                self._laws = laws[None] if first else np.concatenate((self._laws, laws[None]))
-                curved = numbers[curved][None]
-                self._curved = curved if first else np.concatenate((self._curved, curved))
+                before = self._laws, self._curved, self._tilts
+                after = laws[None], numbers[curved][None], tilts[None]
+                if len(self._known) > 1:
+                    after = tuple(map(np.concatenate, zip(before, after, strict=True)))
+                self._laws, self._curved, self._tilts = after
             self._which[w] = self._known[combination]
         self._tables = stacked(self._every)
         self._point()
@@ -132,10 +135,11 @@ class ContactReader:
         """Says where the first world's arrays are, and whether the model's friction cones are pyramids now."""
         first = self._which[0]
         self._first_laws, self._first_curved = self._laws[first], self._curved[first]
+        self._first_tilts = self._tilts[first]
         arrays = (
             *(self._role, self._pads, self._parts, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._first_laws, self._first_curved, self._tables),
-            *(self._frames, self._spot),
+            *(self._frames, self._spot, self._first_tilts),
         )
         self._places = None
         pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
@@ -169,7 +173,8 @@ class ContactReader:
         sensed = places.pairs, places.poses, places.geoms, places.turns, places.offsets
         arrays = *sensed, self._pads, self._parts, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
-        sums = self.touches, self.beside, self.broken, self._curved, self._tables, self._frames, self._spot
+        sums = self.touches, self.beside, self.broken, self._curved, self._tables
+        sums += self._frames, self._spot, self._tilts
         sizes = len(self.beside), places.size, *map(len, sensed[:3]), *self._pushed.shape[:2]
         return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables)))
 
@@ -213,9 +218,9 @@ def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite."""
-    memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 19)
-    tips, targets, part_count, pyramidal = entries[14], entries[15], entries[16], entries[17]
-    role = carray(words(entries[0]), entries[13])
+    memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 20)
+    tips, targets, part_count, pyramidal = entries[15], entries[16], entries[17], entries[18]
+    role = carray(words(entries[0]), entries[14])
     pads = carray(floats(entries[1]), (tips, _PAD))
     parts = carray(words(entries[2]), (part_count, 3))
     bend = carray(floats(entries[3]), (tips, BEND))
@@ -225,8 +230,9 @@ def read_contacts(count, substeps, memory_at, entries_at):
     beside = carray(floats(entries[7]), tips)
     law = carray(laws(entries[8]), (tips, part_count, 3))
     curved = carray(words(entries[9]), (tips, part_count, 3))
-    tables = carray(floats(entries[10]), (entries[18], CURVED_TABLE))
+    tables = carray(floats(entries[10]), (entries[19], CURVED_TABLE))
     frames, spot = carray(floats(entries[11]), (tips, _FRAME)), carray(floats(entries[12]), _SPOT)
+    tilts = carray(floats(entries[13]), (tips, part_count, 3, TILT))
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -277,8 +283,8 @@ def read_contacts(count, substeps, memory_at, entries_at):
             beside[first] += weight * force
     if any_touch:
         _feel(
-            xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, bend, curve, pushed, touches,
-            weight, spot,
+            xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, tilts, bend, curve, pushed,
+            touches, weight, spot,
         )  # fmt: skip
     return 1
 
@@ -287,9 +293,9 @@ def read_contacts(count, substeps, memory_at, entries_at):
 def sense_contacts(record_at, substeps, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `_sensing`."""
-    entries = carray(words(entries_at), 32)
-    worlds, size, pairs, poses, geoms = entries[23], entries[24], entries[25], entries[26], entries[27]
-    tips, part_count, targets = entries[28], entries[29], entries[30]
+    entries = carray(words(entries_at), 33)
+    worlds, size, pairs, poses, geoms = entries[24], entries[25], entries[26], entries[27], entries[28]
+    tips, part_count, targets = entries[29], entries[30], entries[31]
     record = carray(floats(record_at), (worlds, substeps, size))
     pair, pose, placed = (
         carray(words(entries[0]), (pairs, 3)),
@@ -302,7 +308,8 @@ def sense_contacts(record_at, substeps, first, last, entries_at):
     kinds = which.max() + 1
     law = carray(laws(entries[7]), (kinds, tips, part_count, 3))
     curved = carray(words(entries[19]), (kinds, tips, part_count, 3))
-    tables = carray(floats(entries[20]), (entries[31], CURVED_TABLE))
+    tables = carray(floats(entries[20]), (entries[32], CURVED_TABLE))
+    tilts = carray(floats(entries[23]), (kinds, tips, part_count, 3, TILT))
     frames, spot = carray(floats(entries[21]), (tips, _FRAME)), carray(floats(entries[22]), _SPOT)
     bend = carray(floats(entries[9]), (tips, BEND))
     curve = carray(floats(entries[10]), (part_count, 3, CURVES))
@@ -369,8 +376,8 @@ def sense_contacts(record_at, substeps, first, last, entries_at):
                         _frame(pads, parts, xpos, xmat, frames, part - (part_count - tips))
                     _press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside[w])
             _feel(
-                xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law[which[w]], curved[which[w]], tables, bend,
-                curve, pushed, touches[w], 1.0, spot,
+                xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law[which[w]], curved[which[w]], tables,
+                tilts[which[w]], bend, curve, pushed, touches[w], 1.0, spot,
             )  # fmt: skip
 
 
@@ -455,8 +462,8 @@ def _within(pad, x, y, z):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _feel(
-    xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, bend, curve, pushed, touches, weight,
-    spot,
+    xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
+    weight, spot,
 ):  # fmt: skip
     """Adds what presses on the pads to the touches."""
     tips, part_count = len(pads), len(parts)
@@ -502,7 +509,7 @@ def _feel(
             conducts, area, share, kept, longer, long = 0.0, 0.0, 0.0, 1.0, 1.0, 0.0
             if not bulging and curved[f, g, axis] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
-                first, second = pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                first, second, lying, whole = pushed[f, g, 1] / force, pushed[f, g, 2] / force, force, 1.0
                 if law.shape == CYLINDER:
                     # MuJoCo may name any point of the line of contact: only what is across it is heard.
                     along_y, along_z = 0.0, 0.0
@@ -511,8 +518,24 @@ def _feel(
                         along_z += side_z[k] * geom_xmat[geom, 3 * k + 2]
                     length = math.sqrt(along_y * along_y + along_z * along_z)
                     across = first * along_z - second * along_y
-                    first, second = across / length if length > 0 else 0.0, place[2]
-                conducts, area, long = curved_contact(tables[curved[f, g, axis]], force, first, second)
+                    slope, away = 0.0, 0.0
+                    for k in range(3):
+                        slope += geom_xmat[geom, 3 * k + 2] * normal[k]
+                        away += (middle[k] - geom_xpos[geom, k]) * normal[k]
+                    first, second = 0.0, 0.0
+                    if length > 0:
+                        # along the pad
+                        first, second, slope = (
+                            across / length,
+                            (place[2] - slope * away) / length,
+                            slope / length,
+                        )
+                    whole, lying = tilted(tilts[f, g, axis], force, slope, second)
+                if whole > 0:
+                    conducts, area, long = curved_contact(
+                        tables[curved[f, g, axis]], lying / whole, first, second
+                    )
+                    conducts, area, long = whole * conducts, whole * area, whole * long
             elif bulging:
                 _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
                 area, share, kept, longer = round_contact(

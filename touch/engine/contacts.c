@@ -78,7 +78,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   double on_face = 1, longer = 1;
   int table = (int)numbers->curved[(f * numbers->things + g) * 3 + axis];
   if (table >= 0 && !bulging) {
-    double first = pushed[1] / force, second = pushed[2] / force;
+    double first = pushed[1] / force, second = pushed[2] / force, lying = force, whole = 1;
     if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
       double along_y = 0, along_z = 0;
       for (int k = 0; k < 3; k++) {
@@ -87,9 +87,19 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       }
       double line = sqrt(along_y * along_y + along_z * along_z), across = first * along_z - second * along_y;
       first = line > 0 ? across / line : 0;
-      second = place[2];
+      double slope = 0, away = 0;
+      for (int k = 0; k < 3; k++) {
+        slope += turn[3 * k + 2] * at->axes[3 * k];
+        away += at->axes[3 * k] * (at->middle[k] - d->geom_xpos[3 * geom + k]);
+      }
+      second = line > 0 ? (place[2] - slope * away) / line : 0;
+      const double* tilt = numbers->tilts + ((f * numbers->things + g) * 3 + axis) * TILT;
+      whole = heat_tilted(tilt, exp(numbers->grid[0]), force, line > 0 ? slope / line : 0, second, &lying);
     }
-    conducts = heat_curved(numbers->bent + table * CURVED, numbers->grid, force, first, second, &area, &length);
+    if (whole > 0)
+      conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length);
+    area *= whole;
+    length *= whole;
   } else if (bulging) {
     double sides[4] = {0};
     const Pose* other = turn ? at : pose(numbers, work, d, g - numbers->geoms, poses);

@@ -28,6 +28,8 @@ enum { SHAPE_CYLINDER = 1 };
 enum { PLACES = 16, FORCES = 14, VALUES = 3, CURVED = 2 * PLACES + VALUES * FORCES * PLACES * PLACES };
 /* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
 enum { BEND = 7, CURVES = 4 };
+/* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
+enum { TURN_BY, SOFT, FIRM, APART, RADIUS, HALF_ROD, HALF_PAD, HALF_FACE, TILT };
 
 typedef struct {
   double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
@@ -56,6 +58,7 @@ typedef struct {
   const double *seebeck, *warm;  /* V/K; K above the air */
   const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
   const double *laws, *curved;   /* Law of each pad on each thing, by the axis of its frame, and its table's number or -1 */
+  const double* tilts;           /* TILT each, alike */
   const double *bent, *grid;     /* CURVED each; logarithms of their first force and of the next one's ratio, least W/K */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
   const double *separation, *separation_range;
@@ -100,6 +103,7 @@ void heat_contact(const Law* law, double force, const double place[3], double* a
 double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
                           double* area, double* share, double* longer);
 
+double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed);
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
                    double* length);
 

@@ -4,6 +4,9 @@
 
 #include "heat.h"
 
+#define LEVEL 1e-7 /* rad, below which there is no angle */
+#define STEPS 4    /* Newton's */
+
 static double overlap(double reach, double offset, double half) {
   return fmax(fmin(reach, half - offset) + fmin(reach, half + offset), 0);
 }
@@ -55,6 +58,36 @@ double heat_curved(const double* table, const double grid[3], double force, doub
   *length = even(low + 2, u, v);
   *length += w * (even(high + 2, u, v) - *length);
   return conducts;
+}
+
+/* The share of a rod's line that touches under a force N, and the force on it, as touch/contacts/tilt.py. */
+double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed) {
+  double angle = fabs(slope) - tilt[TURN_BY] * force;
+  *pressed = force;
+  if (!(angle > LEVEL)) return 1;
+  double cosine = 1 / sqrt(1 + slope * slope), half = tilt[HALF_ROD] * cosine;
+  double along = (slope > 0 ? middle : -middle) - tilt[RADIUS] * fabs(slope) * cosine;
+  double start = fmax(-along - half, -tilt[HALF_PAD]), end = fmin(half - along, tilt[HALF_PAD]);
+  double first = fmax(start, -tilt[HALF_FACE]), width = fmin(end, tilt[HALF_FACE]) - first;
+  if (!(width > 0)) return 1;
+  double steep = angle * sqrt(angle), reach = first - start, soft = tilt[SOFT] * steep, share;
+  double gap = angle * fmax(reach - pow(force / soft, 0.4), 0), held = fmax(force - soft * pow(reach, 2.5), 0);
+  if (tilt[FIRM] > 0) {
+    double firm = tilt[FIRM] * steep, length = pow(held / firm, 0.4);
+    for (int i = 0; i < STEPS; i++) {
+      double load = firm * pow(length, 2.5) + soft * (pow(reach + length, 2.5) - pow(length, 2.5));
+      double rate = 2.5 * (firm * pow(length, 1.5) + soft * (pow(reach + length, 1.5) - pow(length, 1.5)));
+      length = held > 0 ? fmax(length - (load - force) / rate, 0) : 0;
+    }
+    share = fmin(length / width, 1);
+    held = fmin(firm * pow(length, 2.5), held);
+  } else {
+    double near = sqrt(1 + gap / tilt[APART]), far = sqrt(1 + (gap + angle * width) / tilt[APART]);
+    double wide = tilt[HALF_FACE] / sqrt(2 * tilt[RADIUS] * tilt[APART]);
+    share = fmin((atan(wide / near) + atan(wide / far)) / atan(wide) / (near + far), 1);
+  }
+  *pressed = fmax(held, fmin(force, first_force * share));
+  return share;
 }
 
 static double separation(const Numbers* numbers, double log_share) {

@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 4, HEADER = 13, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 5, HEADER = 13, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096 };
 
 static bool decode(const char* text, size_t count, double* out) {
@@ -70,6 +70,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->boxes, (size_t)objects * BOX},
       {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
       {&n->curved, (size_t)tips * things * 3},
+      {&n->tilts, (size_t)tips * things * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
       {&n->bends, (size_t)tips * BEND},

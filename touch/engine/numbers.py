@@ -21,7 +21,7 @@ from ..contacts import bends, curves, pair_laws, stacked
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
-_VERSION = 4
+_VERSION = 5
 
 
 def packed(
@@ -43,7 +43,7 @@ def packed(
     roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
     roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
     timestep = float(model.opt.timestep)
-    laws, curved, found = pair_laws(model, pads, shapes)
+    laws, curved, found, tilts = pair_laws(model, pads, shapes)
     tables = stacked(found)
     header = (
         *(_VERSION, len(pads), len(shapes), len(owner), level.patterns, level.rates, most, steps),
@@ -57,6 +57,7 @@ def packed(
         *(_box(shape, film, ambient) for shape in shapes),
         np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
         curved,
+        tilts,
         tables,
         *(narrow_of(pad, other, level) for pad in pads for other in (*(s.material for s in shapes), *pads)),
         bends(pads),
