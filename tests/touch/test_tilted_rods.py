@@ -80,6 +80,7 @@ def test_what_silicone_and_skin_take_is_that_of_springs_cell_by_cell(degrees: fl
     """The foundation's pressures are also those that envs finds for a surface of this shape under a force there."""
     force, skin = 8.0, named_skin("filled_silicone")
     row, slope = tilt_of("wood", "filled_silicone", half), math.tan(math.radians(degrees))
+    assert skin is not None
     share, on_face = centred(row, force, slope)
     sheet = skinned(PAD, skin)
     along, across, height, over, face = cells(half, slope)
