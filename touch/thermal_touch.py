@@ -51,7 +51,7 @@ _ON_TIME = 1e-3  # of a step, by which the data's time may be off for each step 
 @dataclass(frozen=True, slots=True, eq=False)
 class TouchState:
     """What a ThermalTouch remembers, picklable. It holds at `time` (W,) s and no other; started: whether an update or
-    a reset has said what time it is. first: (W, O) °C, what a reset begins with."""
+    a reset has said what time it is. first: (W, O) °C, what a reset begins with. of: whose state it is, by name."""
 
     time: np.ndarray
     started: bool
@@ -62,6 +62,7 @@ class TouchState:
     period: tuple[np.ndarray, np.ndarray, int]
     generators: tuple[dict, ...]
     reading: TouchReading
+    of: Mapping[str, object]
 
 
 class ThermalTouch:
@@ -115,6 +116,14 @@ class ThermalTouch:
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
         self._ambient = ambient
+        self._own = {
+            "fingertips": self.fingertips,
+            "objects": self.objects,
+            "elements": self.elements,
+            "worlds": worlds,
+            "dt": dt,
+            "tolerance": tolerance,
+        }
         self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
         self._reader = ContactReader(model, self._pads, self._shapes, count)
         self._heat = JoinedHeat(
@@ -397,16 +406,20 @@ class ThermalTouch:
             (electronics.pressed.copy(), electronics.off.copy(), int(self._taken[0])),
             tuple(electronics.noise.state(w) for w in range(len(self._time))),
             self._reading,
+            dict(self._own),
         )
 
     def set_state(self, state: TouchState) -> None:
-        """Puts it into a state taken by `state` of a ThermalTouch made alike."""
+        """Puts it into a state taken by `state` of a ThermalTouch made alike. Raises InvalidValueError for others."""
         reader, electronics = self._reader, self._electronics
-        if state.sums[0].shape != reader.touches.shape or state.signal[2].shape != electronics.voltage.shape:
-            raise InvalidValueError(
-                f"the state is of other fingertips, objects or worlds: {state.sums[0].shape[:3]} in place of "
-                f"{self._reader.touches.shape[:3]}"
-            )
+        if not isinstance(state, TouchState):
+            raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
+        for name, own in self._own.items():
+            if state.of[name] != own:
+                raise InvalidValueError(
+                    f"the state is of another ThermalTouch, whose {name} are {state.of[name]!r} in place of {own!r}: "
+                    "make this one alike"
+                )
         self._near = _NOBODY
         self._time[:], self._started, self._reading = state.time, state.started, state.reading
         self._heat.set_state(state.heat)
@@ -461,7 +474,12 @@ class ThermalTouch:
         assert self._sensors is not None
         if isinstance(record, mujoco.MjData):
             raise InvalidValueError("a ThermalTouch of many worlds reads recorded sensordata, not MjData")
-        found = np.ascontiguousarray(record, float)
+        numbers = np.asarray(record)
+        if numbers.dtype.kind not in "fiu":
+            raise InvalidValueError(
+                f"a record must hold sensordata, real numbers, got {type(record).__name__} of {numbers.dtype}"
+            )
+        found = np.ascontiguousarray(numbers, float)
         if found.ndim not in (2, 3):
             raise InvalidValueError(
                 f"a record must have the shape (worlds, substeps, sensordata), got {found.shape}"
@@ -617,4 +635,5 @@ def _mapping(name: str, value: object, example: str) -> None:
 def _shape(model: mujoco.MjModel) -> tuple[object, ...]:
     """By which a copy of a model is known from another one; `MjModel.signature` came after MuJoCo 3.3.0."""
     counts = model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom
-    return model.names, counts, model.geom_type.tobytes(), model.geom_size.tobytes()
+    geoms = model.geom_type, model.geom_size, model.geom_pos, model.geom_quat
+    return model.names, counts, *(each.tobytes() for each in geoms)

@@ -380,6 +380,37 @@ def test_a_model_of_the_same_names_and_other_sizes_is_another_one() -> None:
         make(model).update(data)
 
 
+def test_a_model_whose_geoms_lie_elsewhere_is_another_one() -> None:
+    model, _ = hand.hand()
+    other, data = hand.hand()
+    other.geom_pos[other.geom("thumb_pad").id, 2] += 0.01
+    with pytest.raises(InvalidValueError, match="another model"):
+        make(model).update(data)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ({"objects": {"ball": "wood"}}, "objects"),
+        ({"fingertips": {"other": "thumb_pad"}}, "fingertips"),
+        ({"dt": 0.04}, "dt"),
+        ({"tolerance": 0.005}, "tolerance"),
+    ],
+)
+def test_a_state_of_another_touch_is_refused_and_changes_nothing(words: dict, said: str) -> None:
+    model, data = hand.hand()
+    every = {"fingertips": {"thumb": "thumb_pad"}, "objects": {"can": "aluminium"}, "seed": 1}
+    touch, other = ThermalTouch(model, **every), ThermalTouch(model, **{**every, **words})
+    hand.press(data, 10.0)
+    run(model, data, touch, 0.1)
+    before = other.reading.voltage.copy()
+    with pytest.raises(InvalidValueError, match=f"whose {said} are"):
+        other.set_state(touch.state())
+    np.testing.assert_array_equal(other.reading.voltage, before)
+    with pytest.raises(InvalidValueError, match="what state"):
+        other.set_state(None)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("what", [None, 3.0, "model"])
 def test_what_is_no_data_is_refused(what: object) -> None:
     model, data = hand.hand()

@@ -118,6 +118,14 @@ def test_a_state_of_many_worlds_goes_on_alike(model: mujoco.MjModel, record: np.
         many(model, 2).set_state(pickle.loads(kept))
 
 
+@pytest.mark.parametrize("kind", [complex, str, object])
+def test_a_record_of_no_real_numbers_is_refused(
+    model: mujoco.MjModel, record: np.ndarray, kind: type
+) -> None:
+    with pytest.raises(InvalidValueError, match="real numbers"):
+        many(model, 3).update(record[:, :1].astype(kind))
+
+
 def test_what_does_not_fit_is_refused(model: mujoco.MjModel, record: np.ndarray) -> None:
     bare, data = hand.hand()
     with pytest.raises(InvalidValueError, match="prepare"):
