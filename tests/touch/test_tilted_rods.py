@@ -120,7 +120,7 @@ def test_gas_beside_a_bare_tilted_rod_is_that_of_its_gap(name: str, degrees: flo
     assert on_face == force
     law = cylinder_footprint(PAD, face_joint(None, Surface.of(material(name))), RADIUS, 2 * half)
     _, _, height, over, face = cells(half, slope, 1000)
-    apart = float(law["apart"])
+    apart = float(law["mean_gap"])
     sloping = (over & face) / (apart + height)
     level = (over & face) / (apart + cells(half, 0.0, 1000)[2])
     assert share == pytest.approx(sloping.sum() / level.sum(), rel=0.1)

@@ -53,7 +53,7 @@ def tilt_row(
     if pad.skin is not None:
         return (turn, soft, line * pad.skin.stiffness, 0.0, *sizes)
     law = cylinder_footprint(sheet, face_joint(None, Surface.of(shape.material)), radius, length)
-    return (turn, soft, 0.0, float(law["apart"]), *sizes)
+    return (turn, soft, 0.0, float(law["mean_gap"]), *sizes)
 
 
 @njit(cache=True, error_model="numpy")
