@@ -42,7 +42,7 @@ def rollout(
     advance: Callable[[str, float], None] = lambda doing, by: None,
 ) -> Rollout:
     """Runs episodes 0 .. episodes - 1; episode k is reset with seed + k. policy: its name, or one made for `env`.
-    advance: told of progress, in episodes.
+    advance: called with progress, in episodes.
 
     Without `check` only broken simulations are violations. Raises UnknownNameError and InvalidValueError."""
     acting = named_policy(env, policy) if isinstance(policy, str) else policy

@@ -21,7 +21,7 @@ from thermograsp.errors import positive
 MATERIALS = ("glass", "aluminium")
 WIDTH = 0.04  # m, of the object where the gripper opens that wide
 MOST_SLIP = 0.0005  # m, along the pads while held
-FELT_AFTER = 1.0  # s of contact, at which the temperature drops are told
+FELT_AFTER = 1.0  # s of contact, at which the temperature drops are reported
 _ROOM, _GAP = (
     0.008,
     0.003,

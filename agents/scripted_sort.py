@@ -90,7 +90,7 @@ class ScriptedSort:
             self._phase[row], self._side[row] = GOING, 1 - side
 
     def _wanted(self, row: int, goal: np.ndarray) -> bool:
-        """Whether what a row has just felt is to be lifted."""
+        """Whether the object that a row has just touched is to be lifted."""
         side, volts = self._side[row], self._voltages[row]
         if self._expected is not None:
             # An object that was not pressed is taken on trust: it must be the other one.

@@ -17,8 +17,9 @@ from thermograsp.errors import unknown_name
 
 
 class Command(NamedTuple):
-    """What a gripper is told for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s. lateral_rate:
-    m/s along the table, across the fingers' motion; None for a gripper that has no such axis, or is to stay."""
+    """The commands of a gripper for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s.
+    lateral_rate: m/s along the table, across the fingers' motion; None for a gripper that has no such axis, or is to
+    stay."""
 
     opening: np.ndarray
     force_limit: np.ndarray

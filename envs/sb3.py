@@ -30,7 +30,7 @@ class StableBaselinesVecEnv(VecEnv):
 
     env: such as gymnasium.make_vec("thermograsp/Grasp-v0", num_envs=32, vectorization_mode="vector_entry_point").
     senses: the observation is then a vector (SIZE,), for MlpPolicy; None: the dictionary, for MultiInputPolicy.
-    repeat: control steps that an action lasts; rewards add up. bootstrap: a time limit is told as such, and learners
+    repeat: control steps that an action lasts; rewards add up. bootstrap: a time limit is reported as such, learners
     count on what would have come after it; False where the limit is part of the task. adjust: what becomes of actions
     (B, ...), given the observation that they answer.
 

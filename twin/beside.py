@@ -29,7 +29,7 @@ class Beside:
     """columns: name_unit -> (N,), time_s first, those of the simulation at the same times with simulated_ in front;
     what is not sampled faster holds the value of its control step. error: why the grasp ended before its time, "".
     held: s up to its end that both pads pressed. counts: of the plant's pace. delay: s by which the measured voltage
-    follows the simulated one best, NaN where nothing was felt. difference: V rms between the two after that."""
+    follows the simulated one best, NaN where nothing was touched. difference: V rms between the two after that."""
 
     columns: Mapping[str, np.ndarray]
     error: str

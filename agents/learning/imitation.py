@@ -52,7 +52,7 @@ def watched(
     advance: Callable[[int], None],
 ) -> Seen:
     """T = `decisions` of each environment from a reset on. agent: acts in three of four environments, the teacher in
-    the others; None: the teacher acts in all. advance: is told of control steps as they are done."""
+    the others; None: the teacher acts in all. advance: called with the control steps done."""
     vector: Any = env.reset()
     rows = np.arange(env.num_envs)
     taught = rows % 4 == 0 if agent is not None else np.ones(env.num_envs, bool)

@@ -53,7 +53,7 @@ def score(
     advance: Callable[[str, float], None] = lambda doing, by: None,
 ) -> Score:
     """Runs a policy on episodes 0 .. N - 1 of the held-out ones. name: as policies.policy takes it; it gets the
-    observation and nothing else. load: without it, load cells read 0. advance: is told of progress, in episodes.
+    observation and nothing else. load: without it, load cells read 0. advance: called with progress, in episodes.
 
     Raises UnknownNameError and InvalidValueError."""
     if episodes < 1:

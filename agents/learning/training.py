@@ -54,7 +54,7 @@ class Progress:
 
 
 class Training:
-    """One agent in the making, in a folder of its own. report: is told how far it is.
+    """One agent in the making, in a folder of its own. report: called with the progress.
 
     resume: go on where a run in that folder was interrupted, or begin there. Raises InvalidValueError for a seed beyond
     0 .. MOST_SEED, and for a folder that holds another training or damaged files, or with `resume` off any training."""

@@ -1,4 +1,4 @@
-"""Speed across, error of the felt voltage up, a point a setting; the best toward the lower right."""
+"""Speed across, error of the voltage up, a point a setting; the best toward the lower right."""
 
 from __future__ import annotations
 

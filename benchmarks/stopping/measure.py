@@ -34,7 +34,7 @@ def identified(
     advance: Callable[[str, float], None],
 ) -> np.ndarray:
     """(N, W) the most probable material after `thermograsp identify`, from all samples up to the agent's last decision
-    within each window. It finds the touch itself. advance: is told of progress, in episodes."""
+    within each window. It finds the touch itself. advance: called with progress, in episodes."""
     identifier = Identifier(setup, touched.materials)
     named = np.empty((len(touched.truth), len(windows)), int)
     until = np.rint(touched.times[last_decisions(touched, windows)] * RATE).astype(int)

@@ -51,7 +51,7 @@ class Touched:
 
 def touched(episodes: int, first: int, seconds: float, advance: Callable[[str, float], None]) -> Touched:
     """`episodes` of them by the agent that comes with the package, on a gripper without load cells, from seed `first`
-    on, for `seconds` each. advance: is told of progress, in episodes."""
+    on, for `seconds` each. advance: called with progress, in episodes."""
     parts, task = [], TASKS["identify"]
     with closing(task.make(min(episodes, _AT_ONCE))) as env:
         for begun in range(0, episodes, env.num_envs):

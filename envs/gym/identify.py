@@ -68,7 +68,7 @@ class IdentifyVectorEnv(TouchVectorEnv):
 def _prepare(
     material: Materials, seconds: float, cost: float, config: dict[str, Any]
 ) -> tuple[IdentifyTask, dict[str, Any]]:
-    """The task, and what the plant is told: of real objects it asks nothing."""
+    """The task, and the plant's keywords: for real objects there are none."""
     chosen = SimulationConfig(material=SEED_MATERIALS if material is None else material).choices
     task = IdentifyTask(tuple(each.name for each in chosen), seconds, cost)
     drawn = {"material": list(chosen)} if simulates(config.get("plant", "simulated")) else {}

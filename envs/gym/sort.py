@@ -78,7 +78,7 @@ class SortVectorEnv(TouchVectorEnv):
 
 
 def _prepared(goal: Goal, config: dict[str, Any]) -> dict[str, Any]:
-    """What the batch is told."""
+    """The batch's keywords."""
     plant = config.pop("plant", "simulated")
     if plant != "simulated":
         raise InvalidValueError(

@@ -257,15 +257,15 @@ class Mechanics:
     def advance(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
     ) -> Motion:
-        """The same step, told of the first object in brief: all that heat and observations need, at a fraction of the
-        cost. The arrays are the caller's own."""
+        """The same step, with the first object's results alone: all that heat and observations need, at a fraction of
+        the cost. The arrays are the caller's own."""
         self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
         return self._motion(self._latest, self._layout, substeps)
 
     def advance_all(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
     ) -> tuple[Motion, ...]:
-        """The same step, told of each object."""
+        """The same step, with results for each object."""
         self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
         return tuple(self._motion(self._latest, layout, substeps) for layout in self._layouts)
 
@@ -277,8 +277,8 @@ class Mechanics:
         lateral_rate: np.ndarray,
         substeps: int = SUBSTEPS,
     ) -> tuple[Motion, ...]:
-        """The same step of an arm that moves along y as well, lateral_rate (B,) m/s, -0.1 .. 0.1, told of each object.
-        Raises InvalidValueError without such an axis."""
+        """The same step of an arm that moves along y as well, lateral_rate (B,) m/s, -0.1 .. 0.1, with results for each
+        object. Raises InvalidValueError without such an axis."""
         servo = self._along_y()[1]
         rate = within(
             "lateral_rate", self._batched("lateral_rate", lateral_rate), -MAX_LATERAL_RATE, MAX_LATERAL_RATE

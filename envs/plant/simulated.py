@@ -244,7 +244,7 @@ class SimulatedPlant:
         return SceneHeat(self.num_envs, len(self.layout.specs), **self.config.heat)
 
     def _move(self, command: Command) -> tuple[Motion, ...]:
-        """One control step of the mechanics, told of each object."""
+        """One control step of the mechanics, with its results for each object."""
         mechanics, substeps = self.mechanics, self.config.substeps
         arm = command.opening, command.force_limit, command.lift_rate
         if self.layout.lateral:

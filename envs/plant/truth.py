@@ -23,7 +23,7 @@ class Truth(TypedDict):
     the object above where it lay. crushing_force (B,) N. randomized: (B,) by name of what differs between episodes.
     failed (B,): the environment broke down.
 
-    Of several objects, what is told of fingertips is of the object that each touches or touched last, and heat's last
+    Of several objects, values of fingertips are those of the object that each touches or touched last, and heat's last
     column and the books are all objects'. object_temperatures: (B, O) °C. touched: (B, F), the number of the object.
     Of a pair, material and rung are tuples of both, and crushing_force, lift and object_temperature are (B, O).
     object_force: (B, O, F, 3) N. goal: (B, G). asked: (B,) names. right: (B,), the number of the right object.

@@ -27,7 +27,7 @@ def fall_by(sweep: Sweep, seconds: float) -> np.ndarray:
 
 
 def relative_spread(sweep: Sweep) -> np.ndarray:
-    """(n,) largest less smallest drop of the ten over their mean; 0 before the touch is felt."""
+    """(n,) largest less smallest drop of the ten over their mean; 0 before the touch begins."""
     mean = sweep.drop.mean(axis=0)
     return np.ptp(sweep.drop, axis=0) / np.maximum(mean, 1e-9)
 

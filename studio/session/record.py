@@ -27,7 +27,7 @@ def record_studio(
     advance: Callable[[float], None],
 ) -> None:
     """Writes a scripted grasp of the choices: an animation (.gif, .webp) or a strip of six pictures (.png). advance:
-    told of every s that is done. Raises MissingDependencyError where there is no OpenGL."""
+    called for every s that is done. Raises MissingDependencyError where there is no OpenGL."""
     strip_only = str(path).lower().endswith(".png")
     times = np.linspace(0.0, seconds, 6 if strip_only else max(2, round(FRAMES * seconds))).tolist()
     grasp = SimulatedGrasp(choices, stock)

@@ -1,4 +1,4 @@
-"""Round-off decides nothing: what differs by one part in 1e15 is felt alike to 1e-9 K, wherever fingertips slide."""
+"""Round-off decides nothing: what differs by one part in 1e15 is alike to 1e-9 K, wherever fingertips slide."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -65,24 +65,24 @@ def nudged_sensor(stack: SensorStack, rng: np.random.Generator) -> SensorStack:
     ("name", "skin"),
     [("rubber", None), ("rubber", "filled_silicone"), ("aluminium", None), ("wood", None)],
 )
-def test_slides_that_differ_by_round_off_are_felt_alike(name: str, skin: str | None) -> None:
+def test_slides_that_differ_by_round_off_are_curves_alike(name: str, skin: str | None) -> None:
     rng, matter, stack = np.random.default_rng(7), material(name), sensor("seed")
     pads = {finger: f"{finger}_pad" for finger in hand.FINGERS}
     model = prepare(mujoco.MjSpec.from_string(hand.scene()), pads, {"can": name})
     record = by_round_off(slide(model, rng), rng)
     cans = [matter, *(nudged_matter(matter, rng) for _ in range(WORLDS - 1))]
-    felt = []
-    for own in (stack, nudged_sensor(stack, rng)):
-        tips = {finger: Fingertip(pad, sensor=own, skin=skin) for finger, pad in pads.items()}
+    curves = []
+    for worn in (stack, nudged_sensor(stack, rng)):
+        tips = {finger: Fingertip(pad, sensor=worn, skin=skin) for finger, pad in pads.items()}
         bodies = {"can": [ThermalBody(can, 5.0) for can in cans]}
         touch = ThermalTouch(model, fingertips=tips, objects=bodies, worlds=WORLDS)
         drops = [
             touch.update(record[:, step : step + 10]).temperature_drop.copy()
             for step in range(0, record.shape[1], 10)
         ]
-        felt.append(np.stack(drops))
+        curves.append(np.stack(drops))
         assert len(touch._heat._fields[0][0].places) > len(pads)
-    both = np.concatenate(felt, axis=1)  # (samples, 2 WORLDS, F)
+    both = np.concatenate(curves, axis=1)  # (samples, 2 WORLDS, F)
     assert np.abs(both).max() > 0.1
     assert np.abs(both - both[:, :1]).max() < ROUND_OFF
 

@@ -69,8 +69,8 @@ def carry_steps(systems: Sequence[ContactSystem], states: int) -> tuple[np.ndarr
         return leave, enter
     for i, system in enumerate(systems):
         sensor_states, first = system.orders.sensor, len(system.rates) - fingertips * system.orders.sensor
-        here, there_rows = tip_rows(system), tip_rows(between)
-        out, back = carry_matrix(here, there_rows), carry_matrix(there_rows, here)
+        rows, shared_rows = tip_rows(system), tip_rows(between)
+        out, back = carry_matrix(rows, shared_rows), carry_matrix(shared_rows, rows)
         for f in range(fingertips):
             of_tip = slice(first + f * sensor_states, first + (f + 1) * sensor_states)
             of_body = slice(f * shared, (f + 1) * shared)

@@ -1,4 +1,4 @@
-"""What the plugin is told: fingertips, objects, laws and tables in one row of float64, as numbers.c reads it.
+"""The numbers handed to the plugin: fingertips, objects, laws and tables in one row of float64, as numbers.c reads it.
 
 F: fingertips, O: objects, G: geoms of the objects, N = G + F: what a pad may meet, T = O + F: targets, M: patterns.
 """
