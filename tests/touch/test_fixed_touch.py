@@ -56,10 +56,8 @@ def block() -> tuple[mujoco.MjModel, np.ndarray]:
 
 
 def worlds_of(model: mujoco.MjModel, **words: object) -> tuple[ThermalTouch, FixedTouch]:
-    both = [ThermalBody(name, 24.0 + 10 * w) for w, name in enumerate(MATERIALS)]
-    touch = ThermalTouch(
-        model, fingertips=TIP, objects={"block": both}, chain="ideal", worlds=WORLDS, **words
-    )  # pyright: ignore[reportArgumentType]
+    two = [ThermalBody(name, 24.0 + 10 * w) for w, name in enumerate(MATERIALS)]
+    touch = ThermalTouch(model, fingertips=TIP, objects={"block": two}, chain="ideal", worlds=WORLDS, **words)  # pyright: ignore[reportArgumentType]
     return touch, touch.fixed_touch(np.zeros(0))
 
 
