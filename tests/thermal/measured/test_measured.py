@@ -106,6 +106,7 @@ def made(touched: dict[str, Touched], temperature: float = 20.0, noise: float = 
     return replace(bare, heated=heated + noise * rng.standard_normal((len(labels), 1)) * (t > 0))
 
 
+@pytest.mark.slow
 def test_a_fit_finds_the_sensor_that_made_the_touches() -> None:
     touched = {"wood": touched_as("wood=wood")[1], "metal": touched_as("metal=steel")[1]}
     record = made(touched, noise=0.01)

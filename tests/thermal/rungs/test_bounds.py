@@ -70,7 +70,8 @@ def test_what_no_rung_can_do_is_refused() -> None:
         press("glass", tolerance=1e-6, seconds=1.0, cache=False)
 
 
-@pytest.mark.parametrize("mode", ["T", pytest.param("O", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", ["T", "O"])
 def test_what_the_mean_temperature_costs_in_air_is_bounded(mode: Mode) -> None:
     """What the air changes is compared, so that the errors of a coarse grid and of the network cancel."""
     size, times, first = (0.03, 0.04, 0.03), np.arange(0.0, 41.0), 36.0
