@@ -128,7 +128,7 @@ def summarise(
                 normal_force[b, s, t] = max(normal, 0.0) if sensors[b, s, first] > 0 else 0.0
             for i in range(3):
                 mean[i] /= substeps
-            _into_frame(pads[b, t], bodies[b, at.body], turns[b, at.body], place[b, t])
+            into_frame(pads[b, t], bodies[b, at.body], turns[b, at.body], place[b, t])
         opening[b] = qpos[b, at.left] + qpos[b, at.right]
         rate[b] = qvel[b, at.left_dof] + qvel[b, at.right_dof]
         height[b] = qpos[b, at.height]
@@ -136,7 +136,7 @@ def summarise(
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _into_frame(point, origin, turn, out):
+def into_frame(point, origin, turn, out):
     """Writes a point of the world in the frame at an origin, turned by a quaternion (w, x, y, z)."""
     x, y, z = point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]
     w, a, b, c = turn[0], -turn[1], -turn[2], -turn[3]

@@ -11,6 +11,8 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
+from .kernel import into_frame
+
 
 class PadContacts(NamedTuple):
     """Of one control step and one object. force (B, T) N: mean normal force over the substeps. centre (B, T, 2) m: its
@@ -32,7 +34,7 @@ def pad_contacts(layout, sensors, positions, axes, bodies, quaternions, force, c
     rows, substeps = sensors.shape[0], sensors.shape[1]
     tips = force.shape[1]
     objects = sensors.shape[2] // (tips * at.sensor)
-    turned = np.zeros(3)
+    turned, nowhere = np.zeros(3), np.zeros(3)
     for b in range(rows):
         for t in range(tips):
             first = (t * objects + at.object) * at.sensor
@@ -50,20 +52,8 @@ def pad_contacts(layout, sensors, positions, axes, bodies, quaternions, force, c
             centre[b, t, 0] = y / pushed if pushed > 0 else 0.0
             centre[b, t, 1] = z / pushed if pushed > 0 else 0.0
             frame, place = axes[b, substeps - 1, t], positions[b, substeps - 1, t]
-            for k in range(3):
-                turned[k] = place[k] - bodies[b, at.body, k]
-            _into(quaternions[b, at.body], turned, pad[b, t, 0])
+            into_frame(place, bodies[b, at.body], quaternions[b, at.body], pad[b, t, 0])
             for axis in range(3):
                 for k in range(3):
                     turned[k] = frame[3 * k + axis]
-                _into(quaternions[b, at.body], turned, pad[b, t, 1 + axis])
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _into(quaternion, v, out):
-    """Writes a vector of the world in the axes of a body of that quaternion (w, x, y, z)."""
-    w, a, b, c = quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3]
-    p, q, r = 2 * (b * v[2] - c * v[1]), 2 * (c * v[0] - a * v[2]), 2 * (a * v[1] - b * v[0])
-    out[0] = v[0] + w * p + (b * r - c * q)
-    out[1] = v[1] + w * q + (c * p - a * r)
-    out[2] = v[2] + w * r + (a * q - b * p)
+                into_frame(turned, nowhere, quaternions[b, at.body], pad[b, t, 1 + axis])
