@@ -27,7 +27,8 @@ from .teachers import Teacher
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """vector: (N, size) inputs. right: (N, n) what the teacher would do. gained: (N,) discounted rewards to the end of
+    """vector: (N, size) inputs. right: (N, n) what the teacher would do, nan
+    where it has no opinion. gained: (N,) discounted rewards to the end of
     the episode; nan where it did not end."""
 
     vector: np.ndarray
@@ -59,8 +60,10 @@ def watched(
     teacher.restart(rows)
     vectors, rights, rewards, ends = [], [], [], []
     for _ in range(decisions):
-        right = np.clip(teacher.action(env.raw), -1.0, 1.0)
-        action = right if agent is None else np.where(taught[:, None], right, agent(vector))
+        learner = None if agent is None else agent(vector)
+        right = np.clip(teacher.action(env.raw, learner), -1.0, 1.0)
+        shown = np.nan_to_num(right, nan=-1.0)
+        action = shown if learner is None else np.where(taught[:, None], shown, learner)
         vectors.append(vector)
         rights.append(right)
         vector, reward, ended, _ = env.step(action)
@@ -75,19 +78,20 @@ def watched(
     return Seen(np.concatenate(vectors), np.concatenate(rights).astype(np.float32), gained.ravel())
 
 
-def imitate(policy: Any, seen: Seen, recipe: Recipe, seed: int) -> float:
+def imitate(policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int) -> float:
     """Fits a policy of stable-baselines3, its mean actions to the teacher's and its values to what was gained; returns
     the mean squared error of the actions over the last pass."""
     generator = torch.Generator().manual_seed(seed)
     count = len(seen.vector)
     optimizer = torch.optim.Adam(policy.parameters(), lr=recipe.imitation_rate)
-    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, recipe.minibatches)
+    falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, minibatches)
     vector, right, gained = (torch.from_numpy(each) for each in (seen.vector, seen.right, seen.gained))
     errors = []
-    for _ in range(recipe.minibatches):
+    for _ in range(minibatches):
         chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
         acting, valuing = policy.mlp_extractor(vector[chosen])
-        error = ((policy.action_net(acting) - right[chosen]) ** 2).mean()
+        wanted = right[chosen]
+        error = ((policy.action_net(acting) - wanted)[~wanted.isnan()] ** 2).mean()
         known = ~gained[chosen].isnan()
         loss = error
         if known.any():

@@ -11,16 +11,18 @@ class Recipe:
 
     steps: control steps of all environments together, both parts. taught: share of them for the first part, in
     `rounds`; in the first round the teacher acts, in the others the agent does in three of four episodes, and the
-    teacher says in all of them what it would do. minibatches: of each round, of all that has been seen so far.
+    teacher says in all of them what it would do. minibatches: of each round but the last, of all that has been seen so
+    far; last_minibatches: of the last one, after which nothing is seen that could make up for what was not learned.
     hidden: tanh units of each layer. noise: logarithm of the standard deviation of PPO's actions at the start.
     decisions: of each environment between two updates of PPO. checkpoints: evaluations, evenly over PPO's steps.
     evaluated: episodes of each.
     """
 
     steps: int = 400_000
-    taught: float = 0.75
+    taught: float = 0.95
     rounds: int = 6
-    minibatches: int = 3000
+    minibatches: int = 1500
+    last_minibatches: int = 15_000
     imitation_rate: float = 3e-3
     num_envs: int = 32
     hidden: tuple[int, ...] = (128, 128)
@@ -34,4 +36,4 @@ class Recipe:
     clip: float = 0.1
     target_kl: float = 0.01
     checkpoints: int = 4
-    evaluated: int = 64
+    evaluated: int = 192

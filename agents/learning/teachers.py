@@ -6,7 +6,7 @@ B: environments.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,6 +15,7 @@ from thermograsp.agents.scripted import FeelingGrasp
 from thermograsp.agents.scripted_sort import GOING, PRESSING, ScriptedSort
 from thermograsp.envs import force_window
 from thermograsp.envs.limits import MAX_FORCE, MAX_LIFT_RATE, MAX_OPENING
+from thermograsp.envs.tasks import DECLARES
 
 from .inputs import REPEAT
 
@@ -31,47 +32,79 @@ class Teacher(Protocol):
         """The rows begin a new episode."""
         ...
 
-    def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
-        """What is right to do now."""
+    def action(self, observation: dict[str, np.ndarray], learner: np.ndarray | None = None) -> np.ndarray:
+        """What is right to do now; nan where the teacher has no opinion yet. learner: (B, n) what the agent would do;
+        None while there is none."""
         ...
 
 
 class GraspTeacher(FeelingGrasp):
-    """Closes gently, and uses more force for an object that needs it."""
+    """Closes gently, and firmly on an object that needs it and bears it, also while one fingertip has to push it."""
+
+    _firm = 38.0  # N, near the gripper's 40: drawn metals need up to 57 N
+    _known = 0.3  # s of touch, after which an agent can tell what it touches
 
     def __init__(self, batch: Any) -> None:
         super().__init__(batch.num_envs, batch.dt * REPEAT)
         self._plant = batch.plant
+        self._touched = np.zeros(batch.num_envs)  # s without a break
+
+    def restart(self, rows: Sequence[int] | np.ndarray) -> None:
+        """The rows begin a new episode."""
+        super().restart(rows)
+        self._touched[rows] = 0.0
+
+    def action(self, observation: dict[str, np.ndarray], learner: np.ndarray | None = None) -> np.ndarray:
+        """As the script's, but firm as soon as an object that needs it has been touched for long enough."""
+        touching = np.any(observation["force"][:, :, 0] > self._share * self._gentle, axis=1)
+        self._touched = np.where(touching, self._touched + self._dt, 0.0)
+        firm = (self._touched > self._known) & self._heavy(observation)
+        self._force = np.where(firm, self._firm, self._force)
+        return super().action(observation)
+
+    def _decide(self, observation: dict[str, np.ndarray], rows: np.ndarray) -> None:
+        pass  # the force is settled before
 
     def _heavy(self, observation: dict[str, np.ndarray]) -> np.ndarray:
         del observation
-        return np.array([force_window(body)[0] > self._gentle for body in self._plant.bodies])
+        windows = np.array([force_window(body) for body in self._plant.bodies])
+        return (windows[:, 0] > self._gentle) & (windows[:, 1] > self._firm)
 
 
 class IdentifyTeacher:
-    """Closes, and declares what the object is when both fingertips have pressed for long enough."""
+    """Closes, names what the object is, and would declare it wherever the agent names it, too.
+
+    An agent that regresses to this learns how probably it is right, and so when to stop: where that probability is
+    _SURE, the mean of the teacher's answers is DECLARES, from which on an agent declares."""
 
     _share = 0.25  # of the gripper's largest force
-    _feeling = 0.8  # s
+    _SURE = 0.97
+    _YES = (1.0 + DECLARES) / _SURE - 1.0  # its answer where the agent is right; -1 where it is wrong
+    _late = 0.3  # s before the end, from where on any answer is better than none
 
     def __init__(self, batch: Any) -> None:
         self._batch, self._dt = batch, batch.dt * REPEAT
-        self._pressed = np.zeros(batch.num_envs)  # s without a break
+        self._elapsed = np.zeros(batch.num_envs)  # s
 
     def restart(self, rows: np.ndarray) -> None:
         """The rows begin a new episode."""
-        self._pressed[rows] = 0.0
+        self._elapsed[rows] = 0.0
 
-    def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
-        """(B, 2 + K)."""
+    def action(self, observation: dict[str, np.ndarray], learner: np.ndarray | None = None) -> np.ndarray:
+        """(B, 2 + K). Without an agent it has no opinion about declaring."""
         classes = self._batch.task.classes
-        pressing = np.all(observation["force"][:, :, 0] > self._share * MAX_FORCE / 2, axis=1)
-        self._pressed = np.where(pressing, self._pressed + self._dt, 0.0)
-        action = np.full((len(pressing), 2 + len(classes)), -1.0, np.float32)
+        true = np.array([classes.index(name) for name in self._batch.reading.truth["material"]])
+        action = np.full((len(true), 2 + len(classes)), -1.0, np.float32)
         action[:, 0] = self._share
-        action[self._pressed >= self._feeling, 1] = 1.0
-        for row, name in enumerate(self._batch.reading.truth["material"]):
-            action[row, 2 + classes.index(name)] = 1.0
+        action[np.arange(len(true)), 2 + true] = 1.0
+        if learner is None:
+            action[:, 1] = np.nan
+        else:
+            pressing = np.all(observation["force"][:, :, 0] > self._share * MAX_FORCE / 2, axis=1)
+            right = pressing & (learner[:, 2:].argmax(axis=1) == true)
+            action[:, 1] = np.where(right, self._YES, -1.0)
+        self._elapsed += self._dt
+        action[self._elapsed > self._batch.task.seconds - self._late, 1] = 1.0
         return action
 
 
@@ -84,7 +117,7 @@ class SortTeacher(ScriptedSort):
         super().__init__(batch)
         self._batch, self._dt = batch, batch.dt * REPEAT
 
-    def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
+    def action(self, observation: dict[str, np.ndarray], learner: np.ndarray | None = None) -> np.ndarray:
         """As the script's, but goes back to its object where the agent has left it, is content where the agent closes a
         few millimetres beside its place, and lowers the arm where the agent has raised open fingers."""
         away = abs(self._places[self._side] - observation["lateral"][:, 0])

@@ -115,8 +115,8 @@ class Training:
 
     @property
     def best(self) -> dict[str, Any]:
-        """The evaluation with the most successes, and of those the largest mean return."""
-        return max(self._state["evaluations"], key=lambda each: (each["success"], each["mean_return"]))
+        """The evaluation with the most successes; of equals the last, which has learned from most."""
+        return max(reversed(self._state["evaluations"]), key=lambda each: each["success"])
 
     def evaluate(self, doing: str) -> None:
         """Evaluates what has been learnt without noise, keeps it where it is the best, and writes a checkpoint."""
@@ -162,10 +162,12 @@ class Training:
             agent = self._mean_action if done else None
             new = watched(self._practice, teacher, agent, self._per_round, recipe.gamma, advance)
             seen = new if seen is None else seen.and_also(new)
-            error = imitate(self._model.policy, seen, recipe, self.seed + done)
+            last = done + 1 == recipe.rounds
+            minibatches = recipe.last_minibatches if last else recipe.minibatches
+            error = imitate(self._model.policy, seen, minibatches, recipe, self.seed + done)
             self._model.logger.record("imitation/error", error)
             self._state["rounds_done"] = done + 1
-            if done + 1 < recipe.rounds:
+            if not last:
                 with atomic_write(self.out / SEEN) as temporary:
                     np.savez(temporary, vector=seen.vector, right=seen.right, gained=seen.gained)
             self.evaluate("imitation")

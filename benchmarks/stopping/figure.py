@@ -1,4 +1,4 @@
-"""Right answers against contact time: the agent beside posteriors, and rules that stop beside fixed times."""
+"""Right answers against contact time: the agent beside posteriors, and where the agent stops beside fixed times."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def draw(record: Record, folder: Path, footnote: str) -> list[Path]:
             size=10.5,
         )
         _windows(left, record)
-        _rules(right, record)
+        _declared(right, record)
         figure.text(0.02, 0.02, footnote, size=7, color=FAINT)
         return save_figure(figure, folder / "stopping", 110)
 
@@ -57,9 +57,9 @@ def _windows(axes: Axes, record: Record) -> None:
     axes.set_title("By contact time, from the same samples")
 
 
-def _rules(axes: Axes, record: Record) -> None:
-    rules, fixed = record["rules"], record["fixed"]
-    last = 1.6 * max(rule["contact_s"] for rule in rules)
+def _declared(axes: Axes, record: Record) -> None:
+    own, fixed = record["declared"], record["fixed"]
+    last = 2 * own["contact_s"]
     axes.plot(
         fixed["contact_s"],
         [100 * each for each in fixed["right"]],
@@ -69,12 +69,12 @@ def _rules(axes: Axes, record: Record) -> None:
         label="always at the same decision",
     )
     axes.plot(
-        [rule["contact_s"] for rule in rules],
-        [100 * rule["right"] for rule in rules],
+        [own["contact_s"]],
+        [100 * own["right"]],
+        "*",
         color=_LOOKS["agent"][0],
-        marker="o",
-        ms=4.5,
-        label="when its largest share reaches a limit",
+        ms=13,
+        label="where the agent declares",
     )
     axes.set(xlim=(0, last), xlabel="mean contact time (s)", ylabel="right (%)")
     axes.grid(color=PALE, lw=0.7)

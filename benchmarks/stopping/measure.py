@@ -1,4 +1,4 @@
-"""Right answers of an agent and of two posteriors after the same samples, and of rules that say when to stop.
+"""Right answers of an agent and of two posteriors after the same samples, and where the agent itself stops.
 
 N: episodes, D: decisions of each, K: materials, W: contact times, n: samples.
 """
@@ -23,8 +23,8 @@ def last_decisions(touched: Touched, windows: tuple[float, ...]) -> np.ndarray:
 
 
 def answers(touched: Touched) -> np.ndarray:
-    """(N, D) the agent's largest shares; once it would have declared, the declared one stands."""
-    return np.take_along_axis(touched.shares.argmax(axis=2), _standing(touched), axis=1)
+    """(N, D) the agent's largest shares, also after it would have declared."""
+    return touched.shares.argmax(axis=2)
 
 
 def identified(
@@ -81,21 +81,13 @@ def fixed(touched: Touched) -> tuple[np.ndarray, np.ndarray]:
     return touched.contact[rows, at].mean(axis=0), right[rows, at].mean(axis=0)
 
 
-def sure(touched: Touched, share: float) -> tuple[float, float]:
-    """Mean contact time and share of right answers where the agent stops as soon as its largest share reaches `share`,
-    or with its own declaration if that is earlier."""
-    stops = (touched.contact > 0) & ((touched.shares.max(axis=2) >= share) | touched.declares)
+def declared(touched: Touched) -> tuple[float, float]:
+    """Mean contact time and share of right answers where the agent itself declares, or at the last decision."""
+    stops = touched.declares.copy()
     stops[:, -1] = True
     at, rows = stops.argmax(axis=1), np.arange(len(stops))
     right = answers(touched)[rows, at] == touched.truth
     return float(touched.contact[rows, at].mean()), float(right.mean())
-
-
-def _standing(touched: Touched) -> np.ndarray:
-    """(N, D) the decision whose answer stands at each: its own, but none after the first declaration."""
-    count = len(touched.times)
-    declared = np.where(touched.declares.any(axis=1), touched.declares.argmax(axis=1), count - 1)
-    return np.minimum(np.arange(count), declared[:, None])
 
 
 def _normal(samples: np.ndarray, examples: np.ndarray, deviation: float) -> np.ndarray:

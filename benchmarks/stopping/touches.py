@@ -15,13 +15,13 @@ import numpy as np
 
 from thermograsp.agents import policy
 from thermograsp.agents.learning import TASKS
+from thermograsp.envs.tasks import DECLARES
 from thermograsp.thermal import TouchSetup
 
 STEP, EVERY = 0.02, 5  # s, the control step; control steps between decisions
 RATE = 100.0  # Hz
 _AT_ONCE = 50
 _KNOWN = 0.1  # K
-_DECLARES = 0.5  # of the action, see IdentifyEnv
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def _batch(env: Any, first: int, steps: int) -> tuple[np.ndarray, ...]:
         observation, _, _, _, info = env.step(going_on)
         if step % EVERY == 0:
             shares.append(info["prediction"])
-            declares.append(action[:, 1] > _DECLARES)
+            declares.append(action[:, 1] > DECLARES)
         voltage.append(observation["voltage"][:, :, -round(STEP * RATE) :])
         begins = np.isnan(touch) & (batch.reading.truth["conductance"].max(axis=1) > 0)
         touch[begins] = step * STEP

@@ -1,12 +1,13 @@
 """Tasks: the meaning of actions, reward, success and the end of an episode."""
 
 from .grasp import LIFTED, TOUCHING, GraspTask
-from .identify import IdentifyTask
+from .identify import DECLARES, IdentifyTask
 from .sort import SortTask
 from .stakes import STAKES, force_window
 from .task import Outcome, Task, cleared, stopped
 
 __all__ = [
+    "DECLARES",
     "LIFTED",
     "STAKES",
     "TOUCHING",

@@ -18,7 +18,8 @@ from ..limits import MAX_FORCE, MAX_OPENING
 from .task import Outcome
 
 SHARPNESS = 5.0  # of the declared distribution: softmax of 5 times the action, at most e^10 to 1
-_DECLARES = 0.5
+DECLARES = 0.5
+"""The action that declares is above it."""
 
 
 IDENTIFY_STATE = np.dtype([("elapsed", "f8")])
@@ -91,7 +92,7 @@ class IdentifyTask:
         share = np.exp(SHARPNESS * np.minimum(np.maximum(declared, -1.0), 1.0))
         share /= share.sum(axis=1, keepdims=True)
         loss = np.where(known, -np.log(share[every, target]), np.nan)
-        terminated = action[:, 1] > _DECLARES
+        terminated = action[:, 1] > DECLARES
         truncated = ~terminated & (elapsed >= self.seconds - dt / 2)
         gained = np.where(known & (terminated | truncated), 1 - loss / np.log(len(self.classes)), 0.0)
         outcome = Outcome(

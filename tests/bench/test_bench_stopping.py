@@ -1,11 +1,11 @@
-"""How soon an agent knows a material: fixed times, a rule that stops, posteriors of the same samples."""
+"""How soon an agent knows a material: fixed times, where the agent stops, posteriors of the same samples."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from thermograsp.bench.stopping.measure import answers, fitted, fixed, last_decisions, sure
+from thermograsp.bench.stopping.measure import declared, fitted, fixed, last_decisions
 from thermograsp.bench.stopping.touches import RATE, Touched
 
 TIMES = np.array([0.0, 0.1, 0.2, 0.3])
@@ -32,28 +32,23 @@ def touched(
 NEVER = [[False] * 4] * 2
 
 
-def test_who_waits_until_sure_is_right_more_often_than_any_fixed_time_of_the_same_mean() -> None:
-    """One episode is plain at once; the other is at first taken for the wrong one, but not surely."""
-    touches = touched([[0.5, 0.99, 0.99, 0.99], [0.5, 0.4, 0.99, 0.99]], NEVER)
+def test_who_waits_where_it_is_unsure_is_right_more_often_than_any_fixed_time_of_the_same_mean() -> None:
+    """One episode is plain at once; the other is at first taken for the wrong one, and the agent waits."""
+    touches = touched(
+        [[0.5, 0.99, 0.99, 0.99], [0.5, 0.4, 0.99, 0.99]],
+        [[False, True, True, True], [False, False, True, True]],
+    )
     seconds, right = fixed(touches)
     np.testing.assert_allclose(seconds, [0.05, 0.15, 0.25])
     np.testing.assert_allclose(right, [0.5, 1.0, 1.0])
-    mean, share = sure(touches, 0.9)
+    mean, share = declared(touches)
     assert (mean, share) == (pytest.approx(0.1), 1.0)
     assert np.interp(mean, seconds, right) == pytest.approx(0.75)
 
 
-def test_nobody_is_sure_before_the_touch_and_the_last_decision_ends_the_wait() -> None:
-    assert sure(touched([[1.0, 0.6, 0.6, 0.6]] * 2, NEVER), 0.9)[0] == pytest.approx(0.25)
-    assert sure(touched([[1.0, 1.0, 0.6, 0.6]] * 2, NEVER), 0.9)[0] == pytest.approx(0.05)
-
-
-def test_what_is_declared_stands() -> None:
-    touches = touched(
-        [[0.5, 0.9, 0.1, 0.1], [0.5, 0.9, 0.1, 0.9]], [[False, True, False, False], [False] * 4]
-    )
-    np.testing.assert_array_equal(answers(touches)[:, 1:], [[0, 0, 0], [0, 1, 0]])
-    assert sure(touches, 2.0) == (pytest.approx((0.05 + 0.25) / 2), 1.0)
+def test_the_last_decision_ends_the_wait_and_the_first_declaration_counts() -> None:
+    touches = touched([[0.5, 0.9, 0.1, 0.1], [0.5, 0.9, 0.1, 0.9]], [[False, True, False, True], [False] * 4])
+    assert declared(touches) == (pytest.approx((0.05 + 0.25) / 2), 1.0)
 
 
 def test_windows_count_from_each_touch() -> None:
@@ -97,5 +92,5 @@ def test_the_shipped_agent_knows_its_materials_in_the_quick_run(written: tuple[P
     for name in ("stopping.png", "stopping.svg"):
         assert str(folder / name) in document["figures"]
     assert found["right"]["agent"][2] >= 0.9  # after .3 s
-    for rule in found["rules"]:
-        assert 0 < rule["contact_s"] < 1 and rule["right"] >= rule["fixed_right"] - 0.1  # two of twenty
+    own = found["declared"]
+    assert 0 < own["contact_s"] < 1 and own["right"] >= own["fixed_right"] - 0.1  # two of twenty

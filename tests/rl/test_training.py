@@ -25,6 +25,7 @@ from thermograsp.agents.learning.inputs import REPEAT
 from thermograsp.agents.learning.perceiving import Perceiving
 from thermograsp.agents.learning.teachers import TEACHERS
 from thermograsp.agents.learning.training import MODEL, POLICY, SEEN, STATE, Progress, Training
+from thermograsp.envs import force_window
 from thermograsp.errors import InvalidValueError
 
 
@@ -39,6 +40,7 @@ TINY = Recipe(
     taught=0.5,
     rounds=2,
     minibatches=4,
+    last_minibatches=4,
     num_envs=4,
     hidden=(8,),
     decisions=12,
@@ -151,15 +153,14 @@ def test_a_damaged_folder_is_refused_by_the_name_of_its_file(tmp_path: Path, dam
         Training(task, tmp_path, recipe=TINY, resume=True).run()
 
 
-@pytest.mark.parametrize("name", sorted(TASKS))
-def test_the_teachers_succeed(name: str) -> None:
-    """In all episodes that they are shown."""
-    env = Perceiving(learning_task(name), 12, True, True)
+def shown(task: LearningTask, rows: int) -> tuple[np.ndarray, list[Any]]:
+    """Whether the teacher succeeds in `rows` episodes, (rows,) bool, and their objects."""
+    env = Perceiving(task, rows, True, True)
     env.seed(5)
     env.reset()
-    teacher = TEACHERS[name](env.batch)
-    teacher.restart(np.arange(12))
-    ended, won = np.zeros(12, bool), np.zeros(12, bool)
+    teacher, bodies = TEACHERS[task.name](env.batch), list(env.batch.plant.bodies)
+    teacher.restart(np.arange(rows))
+    ended, won = np.zeros(rows, bool), np.zeros(rows, bool)
     for _ in range(round(10.0 / 0.02 / REPEAT)):
         _, _, now, infos = env.step(np.clip(teacher.action(env.raw), -1.0, 1.0))
         won |= ~ended & np.array([bool(info.get("success")) for info in infos])
@@ -167,7 +168,22 @@ def test_the_teachers_succeed(name: str) -> None:
         teacher.restart(np.flatnonzero(now))
         if ended.all():
             break
+    return won, bodies
+
+
+@pytest.mark.parametrize("name", sorted(TASKS))
+def test_the_teachers_succeed(name: str) -> None:
+    """In all episodes that they are shown."""
+    won, _ = shown(learning_task(name), 12)
     assert won.all()
+
+
+def test_with_everything_drawn_the_grasping_teacher_fails_only_where_its_forces_slip() -> None:
+    won, bodies = shown(learning_task("grasp").drawn(), 48)
+    least = np.array([force_window(body)[0] for body in bodies])
+    soft = np.array([force_window(body)[1] < 40.0 for body in bodies])
+    assert 0 < (~won).sum() < 12
+    assert np.all(least[~won] > np.where(soft[~won], 9.5, 38.0))
 
 
 def test_a_randomized_training_is_told_from_another(tmp_path: Path) -> None:
