@@ -67,19 +67,24 @@ _BELOW = ("numpy", "numba", "scipy")
 """Packages whose functions numba compiles in its own way: their names say it."""
 
 
-def njit(*, cache: bool = False, inner: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def njit(
+    *, cache: bool = False, inner: bool = False, short_loops: bool = False, **options: Any
+) -> Callable[[Callable[..., Any]], Any]:
     """A decorator as numba.njit is, whose functions compile sooner.
 
     cache: keep the compiled code beside the source, or where NUMBA_CACHE_DIR says. inner: only compiled code calls the
     function. No entry from Python is then compiled, which may take longer than the function itself; a call from Python
     raises TypeError. Every other function has an inner twin, which compiled code calls; its entry is compiled when
     Python first calls it. A number written into a call is an argument as others are: numba would compile the function
-    once more for each.
+    once more for each. short_loops: the innermost loops run over few elements, so the processor's vectors are not used
+    for them. The results have the same bits, and the function compiles and runs in less time.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
         entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
-        entries["pipeline_class"] = _InnerCompiler if inner else _OuterCompiler
+        entries["pipeline_class"] = (
+            _InnerCompiler if inner else _ShortLoopsCompiler if short_loops else _OuterCompiler
+        )
         dispatcher: Any = numba.njit(**{**_FIXED_OPTIONS, **options, **entries})(function)
         if cache:
             dispatcher._cache = _Cache(dispatcher, inner)
@@ -123,6 +128,16 @@ class _InnerLibrary(JITCodeLibrary):
         self._finalized = True
 
 
+class _ShortLoopsLibrary(JITCodeLibrary):
+    """Code whose loops take one element after the other. Of an inner loop over three coordinates LLVM would make two
+    versions, of which the one for many elements never runs."""
+
+    def _optimize_final_module(self) -> None:
+        made = self._codegen._module_pass_manager(loop_vectorize=False)
+        passes, *builder = made if isinstance(made, tuple) else (made,)  # numba 0.61 makes no builder
+        passes.run(self._final_module, *builder)
+
+
 class _NoEngine:
     @staticmethod
     def set_env(name: str, environment: Any) -> None:
@@ -144,6 +159,12 @@ class _OuterCompiler(_InnerCompiler):
     """numba's, into a library that Python can call."""
 
     _library = JITCodeLibrary
+
+
+class _ShortLoopsCompiler(_InnerCompiler):
+    """numba's, into a library that Python can call and whose loops are left as they are."""
+
+    _library = _ShortLoopsLibrary
 
 
 def _without_numbers(call_template: Callable[..., Any]) -> Callable[..., Any]:
@@ -315,7 +336,7 @@ def _refused(name: str, *_: Any, **__: Any) -> None:
 
 def compiled_hash(kernel: Any) -> str:
     """Hash of all that is compiled into an njit function: its own code and options, what it calls, and the values
-    that it refers to. Raises InvalidValueError where it refers to something of which the value cannot be told."""
+    that it refers to. Raises InvalidValueError where it refers to something whose value cannot be read."""
     total = hashlib.sha256()
     for piece in _pieces(kernel, set()):
         total.update(piece.encode() + b"\0")
@@ -408,6 +429,7 @@ class _CacheFile(IndexDataCacheFile):
 def _pieces(value: Any, seen: set[int]) -> Iterator[str]:
     """Text that differs where what is compiled differs. seen: functions that are already in it."""
     if isinstance(value, Dispatcher):
+        yield f"compiler {cast(Any, value)._compiler.pipeline_class.__name__}"
         for name, option in sorted(value.targetoptions.items()):
             yield f"option {name}"
             yield from _pieces(option, seen)
@@ -449,8 +471,8 @@ def _pieces(value: Any, seen: set[int]) -> Iterator[str]:
         yield f"name {value.__name__}"
     else:
         raise InvalidValueError(
-            f"a compiled function cannot refer to {value!r} ({type(value).__name__}): whether it has changed since "
-            "the code was compiled cannot be told; hand it over as an argument"
+            f"a compiled function cannot refer to {value!r} ({type(value).__name__}): nothing would show whether it "
+            "has changed since the code was compiled; pass it as an argument"
         )
 
 

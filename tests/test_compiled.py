@@ -166,7 +166,7 @@ def test_what_cannot_be_hashed_is_refused() -> None:
     def kernel(x: float) -> float:
         return x if unknown else 0.0
 
-    with pytest.raises(InvalidValueError, match="hand it over as an argument"):
+    with pytest.raises(InvalidValueError, match="pass it as an argument"):
         compiled_hash(kernel)
 
 
@@ -277,3 +277,21 @@ def test_a_function_s_arithmetic_does_not_depend_on_who_calls_it_first() -> None
         kernel: kernel.overloads[kernel.signatures[0]].library.get_llvm_str() for kernel in (quick, plain)
     }
     assert "reassoc" in code[quick] and "reassoc" not in code[plain]
+
+
+def test_short_loops_use_no_vectors_and_have_the_same_bits() -> None:
+    def total(rows, out):
+        for i in range(rows.shape[0]):
+            for c in range(rows.shape[1]):
+                out[i, c] += 2.5 * rows[i, c] + 0.1
+
+    plain, short = njit()(total), njit(short_loops=True)(total)
+    assert compiled_hash(plain) != compiled_hash(short)
+    results = []
+    for function in (plain, short):
+        rows, out = np.random.default_rng(0).standard_normal((2, 7, 33))
+        function(rows, out)
+        results.append(out)
+        code = "".join(function.inspect_llvm().values())
+        assert ("x double>" in code) == (function is plain)
+    assert np.array_equal(*results)

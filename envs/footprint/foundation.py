@@ -37,7 +37,7 @@ def face_springs(
     return within, 1 + (pad.face_ratio - 1) * within
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def pressure_map(height, cover, places, area, stiffness, deepest, force, centre, out):
     """Writes the pressure, Pa, at each of n points into out (n,), where `force` N acts at `centre` (2,) m. Returns the
     depth, m, and the tilts by which the surface is pressed in; 0 where nothing is covered or pressed.

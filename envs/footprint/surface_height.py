@@ -61,7 +61,7 @@ def _mapped(shape: MeshShape, azimuth: int, elevation: int) -> HeightMap:
     return HeightMap(axes, corner, height)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def _rasterise(vertices, faces, corner, pitch, height):
     """Keeps in height the least first coordinate of triangles over each node of their other two."""
     for f in range(len(faces)):
@@ -83,7 +83,7 @@ def _rasterise(vertices, faces, corner, pitch, height):
                     height[i, j] = min(height[i, j], p[0] + b * (q[0] - p[0]) + c * (r[0] - p[0]))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def map_heights(axes, corner, mapped, pitch, frame, places, height, cover):
     """Writes heights and coverage (n,) at places (n, 2) m of the pad, from a map of pitch m."""
     for i in range(len(places)):

@@ -45,7 +45,7 @@ class Motion(NamedTuple):
     object_height: np.ndarray
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def set_points(
     layout,
     opening,
@@ -101,7 +101,7 @@ def any_risen(warnings, warned):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def summarise(
     layout, sensors, axes, pads, bodies, turns, qpos, qvel,
     normal_force, force, place, opening, rate, height, lifted,

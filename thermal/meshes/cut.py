@@ -144,7 +144,7 @@ def slab(polygon, count, axis, edges, cell, first, final, room, out):
     return clip(room, kept, axis, edges[cell + 1], False, out)
 
 
-@njit(cache=True)
+@njit(cache=True, short_loops=True)
 def _accumulate(triangles, x, y, z, walls, moments):
     in_x, in_y, in_z = (
         np.zeros((_MOST_CORNERS, 3)),
@@ -176,7 +176,7 @@ def _accumulate(triangles, x, y, z, walls, moments):
                     _add(in_z, count, walls[i, j, k], moments, i, j, k)
 
 
-@njit(cache=True)
+@njit(cache=True, short_loops=True)
 def _flat_areas(triangles, plane, first, second, found):
     """Adds the areas of triangles across the third axis to the faces (I, J) of their planes, body below or above."""
     in_x, in_y, room = (

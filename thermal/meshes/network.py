@@ -124,20 +124,32 @@ def _reduced(grid: MeshGrid, placed: list[PatchOnGrid]) -> tuple[np.ndarray, np.
     drive = np.concatenate([patch.shares for patch in placed], axis=1)
     direct = np.asarray(block_diag(*(patch.skin for patch in placed)))
     total = grid.capacity.sum()
-    fields = np.zeros((len(grid.capacity), 0))
-    gram, pencil, scales = np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0)
-    for s in _SHIFTS:
+    count, ports = drive.shape
+    most = len(_SHIFTS) * ports
+    fields = np.empty((count, most))
+    gram, pencil, seen, scales = (
+        np.empty((most, most)),
+        np.empty((most, most)),
+        np.empty((most, ports)),
+        np.empty(most),
+    )
+    for n, s in enumerate(_SHIFTS):
+        old, new, known = slice(n * ports), slice(n * ports, (n + 1) * ports), slice((n + 1) * ports)
         guess = drive.sum(axis=0) / (s * total) * np.ones_like(drive)
-        if fields.shape[1]:
-            seen = fields.T @ drive
-            guess += fields @ np.linalg.lstsq(s * gram + pencil, seen, rcond=1e-12)[0]
+        if n:
+            guess += (
+                fields[:, old]
+                @ np.linalg.lstsq(s * gram[old, old] + pencil[old, old], seen[old], rcond=1e-12)[0]
+            )
         x = solve_shifted(grid, s, drive, guess, _SETTLED)
         x -= grid.capacity @ x / total
-        scale = 1 / np.sqrt(grid.capacity @ x**2)
-        fields = np.concatenate((fields, x * scale), axis=1)
-        gram = fields.T @ (grid.capacity[:, None] * fields)
-        pencil = fields.T @ conduct(grid, fields)
-        scales = np.concatenate((scales, scale))
+        scales[new] = 1 / np.sqrt(grid.capacity @ x**2)
+        x *= scales[new]
+        fields[:, new] = x
+        gram[known, new] = fields[:, known].T @ (grid.capacity[:, None] * x)
+        pencil[known, new] = fields[:, known].T @ conduct(grid, x)
+        gram[new, old], pencil[new, old] = gram[old, new].T, pencil[old, new].T
+        seen[new] = x.T @ drive
     # The wall of a patch lies off its cells' nodes by a thermal resistance without capacity: it joins every field as
     # the flow that made it.
     skin = np.tile(direct, (len(_SHIFTS), 1)) * scales[:, None]
@@ -147,12 +159,12 @@ def _reduced(grid: MeshGrid, placed: list[PatchOnGrid]) -> tuple[np.ndarray, np.
     basis = vectors[:, kept] / np.sqrt(values[kept])
     rates, turn = eigh(basis.T @ (pencil + pencil.T + 2 * through) @ basis / 2)
     basis = basis @ turn
-    ports = basis.T @ (fields.T @ drive + skin)
+    coupled = basis.T @ (seen + skin)
     mean = np.sum(drive, axis=0) / np.sqrt(total)
     whole = np.full((len(grid.capacity), 1), 1 / np.sqrt(total))
     return (
         np.concatenate(([0.0], np.maximum(rates, 0.0))),
-        np.concatenate((mean[None], ports)),
+        np.concatenate((mean[None], coupled)),
         np.concatenate((whole, fields @ basis), axis=1),
     )
 

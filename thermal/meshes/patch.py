@@ -72,7 +72,7 @@ def patch_on_grid(
     return PatchOnGrid(shares, (turn * np.maximum(levels, 0.0)) @ turn.T, total)
 
 
-@njit(cache=True)
+@njit(cache=True, short_loops=True)
 def _pieces(corners, counts, axes, x, y, z, room):
     """The polygons' pieces in the cells, at most `room`: cells (n,) in the order of memory, areas (n,) seen along the
     last of the axes, middles (n, 3), and spans (n, 2, 2) from where to where along the first two."""

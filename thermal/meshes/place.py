@@ -83,7 +83,7 @@ def _relief(
     return relief, (float(steep[:2].max()), float(steep[2:].max()))
 
 
-@njit(cache=True)
+@njit(cache=True, short_loops=True)
 def within_cube(local, half):
     """Corners (n, 3) and their counts of the triangles' parts within the cube of that half side."""
     corners, counts = np.zeros((CORNERS * len(local), 3)), np.zeros(len(local), np.int64)

@@ -30,7 +30,7 @@ def crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) 
     return np.einsum("fi,fi->f", second, q)[inside] / scale[inside]
 
 
-@njit(cache=True)
+@njit(cache=True, short_loops=True)
 def crossed_above(places, triangles, margin):
     """How often triangles (F, 3, 3) lie more than margin m above places (n, 3), along the third axis: (n, 2), those
     that a line upwards leaves through, and those that it enters through."""

@@ -27,10 +27,10 @@ def solve_shifted(
     diagonal = s * grid.capacity + grid.links.sum(axis=1)
     pivots = _factor(diagonal, grid.neighbours, grid.links)
     x = np.array(guess, float)
-    fields, sums = tuple(np.empty((4, *x.shape))), tuple(np.empty((5, x.shape[1])))
-    count = _iterate(
-        *(diagonal, pivots, grid.neighbours, grid.links, right, x, tolerance, _MOST_ITERATIONS, fields, sums)
-    )
+    residual = right - _product(diagonal, grid, x)
+    fields, sums = (residual, *np.zeros((3, *x.shape))), tuple(np.ones((4, x.shape[1])))
+    enough = tolerance**2 * np.sum(right**2, axis=0)
+    count = _iterate(diagonal, pivots, grid.neighbours, grid.links, x, enough, _MOST_ITERATIONS, fields, sums)
     if count < 0:
         raise SimulationError(
             f"the temperatures of a mesh's grid of {len(diagonal)} cells did not settle in {_MOST_ITERATIONS} "
@@ -41,14 +41,21 @@ def solve_shifted(
 
 def conduct(grid: MeshGrid, fields: np.ndarray) -> np.ndarray:
     """Heat flow (N, P) W out of each cell by conduction at temperatures (N, P)."""
-    out = np.empty(fields.shape)
-    _multiply(grid.links.sum(axis=1), grid.neighbours, grid.links, np.ascontiguousarray(fields), out)
+    return _product(grid.links.sum(axis=1), grid, np.ascontiguousarray(fields))
+
+
+def _product(diagonal: np.ndarray, grid: MeshGrid, x: np.ndarray) -> np.ndarray:
+    out = np.empty(x.shape)
+    _multiply(diagonal, grid.neighbours, grid.links, x, out, np.empty(x.shape[1]))
     return out
 
 
-@njit(cache=True)
-def _multiply(diagonal, neighbours, links, x, out):
+@njit(cache=True, short_loops=True)
+def _multiply(diagonal, neighbours, links, x, out, products):
+    """The matrix times x (N, P), and the products (P,) of x with that."""
     cells, columns = x.shape
+    for p in range(columns):
+        products[p] = 0.0
     for i in range(cells):
         for p in range(columns):
             out[i, p] = diagonal[i] * x[i, p]
@@ -58,9 +65,11 @@ def _multiply(diagonal, neighbours, links, x, out):
                 g = links[i, n]
                 for p in range(columns):
                     out[i, p] -= g * x[j, p]
+        for p in range(columns):
+            products[p] += x[i, p] * out[i, p]
 
 
-@njit(cache=True)
+@njit(cache=True, short_loops=True)
 def _factor(diagonal, neighbours, links):
     """Inverse pivots (N,) of the incomplete factorisation, cells in their order."""
     cells = len(diagonal)
@@ -76,7 +85,8 @@ def _factor(diagonal, neighbours, links):
 
 
 @njit(cache=True, inner=True)
-def _precondition(inverse, neighbours, links, right, out):
+def _precondition(inverse, neighbours, links, right, out, products):
+    """Solves the factorisation for right (N, P), and the products (P,) of right with that."""
     cells, columns = right.shape
     for i in range(cells):
         for p in range(columns):
@@ -89,6 +99,8 @@ def _precondition(inverse, neighbours, links, right, out):
                     out[i, p] += g * out[j, p]
         for p in range(columns):
             out[i, p] *= inverse[i]
+    for p in range(columns):
+        products[p] = 0.0
     for i in range(cells - 1, -1, -1):
         for n in (1, 3, 5):
             j = neighbours[i, n]
@@ -96,53 +108,43 @@ def _precondition(inverse, neighbours, links, right, out):
                 g = links[i, n] * inverse[i]
                 for p in range(columns):
                     out[i, p] += g * out[j, p]
-
-
-@njit(cache=True, inner=True)
-def _dots(a, b, out):
-    for p in range(a.shape[1]):
-        out[p] = 0.0
-    for i in range(a.shape[0]):
-        for p in range(a.shape[1]):
-            out[p] += a[i, p] * b[i, p]
-
-
-@njit(cache=True)
-def _iterate(diagonal, inverse, neighbours, links, right, x, tolerance, most, fields, sums):
-    """Conjugate gradients on every column; x (N, P) in place. fields: four (N, P) and sums: five (P,), room. Returns
-    the iterations taken, -1 where too many."""
-    columns = x.shape[1]
-    residual, product, better, direction = fields
-    _multiply(diagonal, neighbours, links, x, product)
-    for i in range(x.shape[0]):  # written out: it takes a second less to compile
         for p in range(columns):
-            residual[i, p] = right[i, p] - product[i, p]
-            direction[i, p] = 0.0
-    whole, rest, old, new, curve = sums
-    _dots(right, right, whole)
+            products[p] += right[i, p] * out[i, p]
+
+
+@njit(cache=True, short_loops=True)
+def _iterate(diagonal, inverse, neighbours, links, x, enough, most, fields, sums):
+    """Conjugate gradients on every column of x (N, P), in place, until no residual's square is above what is enough
+    (P,). fields: four (N, P), the residual and room of which the last is zero. sums: four (P,) of ones, room. Returns
+    the iterations taken, -1 where too many."""
+    cells, columns = x.shape
+    residual, product, better, direction = fields
+    old, new, step, rest = sums
     for p in range(columns):
-        old[p] = 1.0
+        rest[p] = 0.0
+    for i in range(cells):
+        for p in range(columns):
+            rest[p] += residual[i, p] * residual[i, p]
     for iteration in range(most):
-        _dots(residual, residual, rest)
         done = True
         for p in range(columns):
-            if rest[p] > tolerance**2 * whole[p]:
+            if rest[p] > enough[p]:
                 done = False
         if done:
             return iteration
-        _precondition(inverse, neighbours, links, residual, better)
-        _dots(residual, better, new)
-        for i in range(x.shape[0]):
-            for p in range(columns):
-                ratio = new[p] / old[p] if iteration and old[p] > 0 else 0.0
-                direction[i, p] = better[i, p] + ratio * direction[i, p]
-        _multiply(diagonal, neighbours, links, direction, product)
-        _dots(direction, product, curve)
+        _precondition(inverse, neighbours, links, residual, better, new)
         for p in range(columns):
-            old[p] = new[p]
-            new[p] = new[p] / curve[p] if curve[p] > 0 else 0.0
-        for i in range(x.shape[0]):
+            step[p] = new[p] / old[p] if old[p] > 0 else 0.0
+        for i in range(cells):
             for p in range(columns):
-                x[i, p] += new[p] * direction[i, p]
-                residual[i, p] -= new[p] * product[i, p]
+                direction[i, p] = better[i, p] + step[p] * direction[i, p]
+        _multiply(diagonal, neighbours, links, direction, product, step)
+        for p in range(columns):
+            old[p], rest[p] = new[p], 0.0
+            step[p] = new[p] / step[p] if step[p] > 0 else 0.0
+        for i in range(cells):
+            for p in range(columns):
+                x[i, p] += step[p] * direction[i, p]
+                residual[i, p] -= step[p] * product[i, p]
+                rest[p] += residual[i, p] * residual[i, p]
     return -1

@@ -28,7 +28,7 @@ Far = Literal["adiabatic", "isothermal"]
 _LOG_STEP = 0.3  # trapezoidal rule in ln(tau): relative error exp(-pi^2 / step)
 _NODES = 16  # of the rule, in whole numbers of which a section's kernel is computed
 _NEGLIGIBLE_DEPTH = 20.0  # wave numbers times depth beyond which the far side is not seen, exp(-2 * 20)
-_MOST_MODES = 5e4  # of a rectangle, summed one by one; more are interpolated
+_MOST_MODES = 5e3  # of a rectangle, summed one by one; more are interpolated, which is quicker then
 _DECAYED = 45.0  # exponent of a kernel that is below round-off
 
 
