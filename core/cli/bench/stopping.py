@@ -1,4 +1,4 @@
-"""`thermograsp bench stopping`: how soon an agent knows a material, and what deciding when to stop is worth."""
+"""`thermograsp bench stopping`: how soon an agent knows a material, and where it stops itself."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _TITLES = {
 
 
 def report(record: Record, output: Output) -> None:
-    """Prints right answers by contact time, and rules beside fixed times."""
+    """Prints right answers by contact time, and where the agent stops beside fixed times."""
     output.line(
         f"right, % of {record['episodes']} held-out episodes of Identify-v0, by contact time; all from the same samples"
     )
@@ -28,18 +28,9 @@ def report(record: Record, output: Output) -> None:
         ],
     )
     output.line()
+    own = record["declared"]
     output.line(
-        "the agent stops when its largest share reaches a limit, beside a fixed time of the same mean"
-    )
-    output.table(
-        ("limit", "mean contact", "right", "fixed time"),
-        [
-            (
-                f"{rule['share']:g}",
-                f"{rule['contact_s']:.3f} s",
-                f"{100 * rule['right']:.1f} %",
-                f"{100 * rule['fixed_right']:.1f} %",
-            )
-            for rule in record["rules"]
-        ],
+        f"the agent declares after {own['contact_s']:.3f} s of contact in the mean, and is right in "
+        f"{100 * own['right']:.1f} %; always at the same decision, after as long in the mean: "
+        f"{100 * own['fixed_right']:.1f} %"
     )
