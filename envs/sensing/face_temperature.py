@@ -223,5 +223,6 @@ def _add_gas(law, pressure, cells):
             if line:
                 gas = beside_strip(square, law.mean_gap, law.radius, side / 2, off_y) / side
             else:
-                gas = beside_ball(square, law.mean_gap, law.radius, side / 2, off_y, off_z) / (side * side)
+                beside = beside_ball(square, 0.0, law.mean_gap, law.radius, side / 2, off_y, off_z)
+                gas = beside / (side * side)
             cells[i, j] = share * cells[i, j] + law.gas * gas

@@ -20,6 +20,23 @@ for name in ("Grasp-v0", "Identify-v0", "Sort-v0"):
     env.reset(seed=3)
     env.step(env.action_space.sample())
 """
+FIRST_TOUCH = """
+import logging, mujoco
+from thermograsp.touch import Fingertip, ThermalTouch
+logging.basicConfig(level=logging.INFO)
+model = mujoco.MjModel.from_xml_string(
+    '<mujoco><worldbody><body name="rod"><geom type="cylinder" size=".01 .05" euler="90 0 0"/></body>'
+    '<body name="tip" pos="0 0 .0149"><joint type="slide" axis="0 0 -1" damping="20"/>'
+    '<geom type="box" size=".01 .01 .005"/></body></worldbody></mujoco>'
+)
+data = mujoco.MjData(model)
+tip = Fingertip("tip", (0, 0, -0.005), (0, 0, -1), (0.02, 0.02), skin="filled_silicone")
+touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"rod": "wood"})
+for _ in range(20):
+    mujoco.mj_step(model, data)
+    touch.update(data)
+assert touch.reading.touching == ("rod",)
+"""
 
 
 def test_every_stage_is_done_and_told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
@@ -50,3 +67,4 @@ def test_after_it_nothing_is_compiled(tmp_path: Path) -> None:
 
     run("-m", "thermograsp", "warmup", "--json")
     assert "compiling" not in run("-c", FIRST_STEP)
+    assert "compiling" not in run("-c", FIRST_TOUCH)

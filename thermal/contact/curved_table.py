@@ -55,7 +55,7 @@ def curved_table(
     values = table[2 * PLACES :].reshape(FORCES, PLACES, PLACES, 3)
     _fill(
         law,
-        *beneath(law, body, face),
+        beneath(body, face),
         np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
         aside,
         along,
@@ -90,13 +90,13 @@ def _along(pad: Pad, length: float) -> np.ndarray:
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(law, slower, resistance, forces, aside, along, values):
+def _fill(law, resistance, forces, aside, along, values):
     place = np.zeros(3)
     for i in range(len(aside)):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]
             for k in range(len(forces)):
-                conducts, area = even_contact(law, slower, resistance, forces[k], place)
+                conducts, area = even_contact(law, resistance, forces[k], place)
                 long = math.sqrt(area)
                 if law.shape == CYLINDER:
                     half, other = law.half_face, law.length / 2

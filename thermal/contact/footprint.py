@@ -7,10 +7,10 @@ cylinders and spheres by closed forms (area.py), other bodies by a table over th
 A bare face of alumina does not sink in. Under a curved body it is a stiff spring, which takes nearly all of the force
 where the body's crown is over it, and what the pad beside it leaves where the crown is not. With its force the contact
 on it is Hertz's (rigid.py), a disc or a strip that is cut off at a face that is smaller; of a cylinder whose end is
-over the face, the part on it takes its share of the length. A disc is in series with its
-constriction in both bodies, (1/k + 1/k')(1/a - 1/w)/4, w the radius of a disc of the face's area. Beside it the gas
-is 0.7 log(1 + a^2/(2 R d)) more of 2 pi k R than in the wedge on springs, because Hertz's gap opens with a horizontal
-tangent: a fit to the integral over his gap, within 0.15 of that factor up to a^2/(2 R d) = 10.
+over the face, the part on it takes its share of the length. What a disc conducts more than the gas between faces
+without force would is in series with its constriction in both bodies, (1/k + 1/k')(1/a - 1/w)/4, w the radius of a disc
+of the face's area: the rest of its heat is no more concentrated than that of the gas around it. Beside it the gap is
+Hertz's.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductan
 from .round_bodies import ball_on_pad, cylinder_on_pad, disc_on_face
 
 TABLE = 3
-_WEDGE = 0.7  # see above
 TABLE_FORCES = 0.01 * 3.0 ** np.arange(9)
 """N on the pad, (9,), at which a table is given."""
 _FIRST, _STEP = math.log(0.01), math.log(3.0)
@@ -133,7 +132,7 @@ def footprint(law, force, place):
 
     place: (3,) m, the pad's middle from the object's in the object's frame; of curved bodies what of it lies along the
     pad. Tables leave it aside."""
-    area, load, _ = _touched(law, force, place)
+    area, load, _, _ = touched(law, force, place)
     return area, load
 
 
@@ -141,8 +140,8 @@ def footprint(law, force, place):
 def conduction(law, force, place):
     """(area m2 on the face, W/K that it conducts, gas beside it with it) at a normal force N > 0 on the pad; see
     footprint. Gas conducts where nothing on the face touches, too."""
-    area, load, square = _touched(law, force, place)
-    gas = _beside(law, square, place) if law.mean_gap > 0.0 else 0.0
+    area, load, square, hertz = touched(law, force, place)
+    gas = beside(law, law.mean_gap, area, square, hertz, place)
     return area, solid_conduction(law, area, load) + gas
 
 
@@ -151,38 +150,51 @@ def gas_conduction(law, force, place):
     """W/K of the gas beside the contact; see conduction."""
     if law.mean_gap == 0.0:
         return 0.0
-    return _beside(law, _touched(law, force, place)[2], place)
+    area, _, square, hertz = touched(law, force, place)
+    return beside(law, law.mean_gap, area, square, hertz, place)
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _beside(law, square, place):
-    """W/K of the gas beside a curved contact, whose half width has that square m2; 0 beside others."""
-    off = math.sqrt(place[0] * place[0] + place[1] * place[1])
+def beside(law, mean_gap, area, square, hertz, place):
+    """W/K of the gas beside a curved contact of that area m2, whose half width has that square m2, where faces that
+    touch without force are so far apart, m; 0 beside others. The rest: of touched."""
+    if mean_gap <= 0.0:
+        return 0.0
+    off, half = math.sqrt(place[0] * place[0] + place[1] * place[1]), law.half_face
     if law.shape == SPHERE:
-        wedge = beside_ball(square, law.mean_gap, law.radius, law.half_face, off, place[2])
-        if law.modulus > 0.0 and square > 0.0:
-            on_face, _ = disc_on_face(square, law.half_face, off, place[2])
-            more = _WEDGE * math.log1p(square / (2 * law.radius * law.mean_gap))
-            wedge += 2 * math.pi * law.radius * on_face * more
-        return law.gas * wedge
+        gas = law.gas * beside_ball(square, hertz, mean_gap, law.radius, half, off, place[2])
+        if hertz > 0.0 and area > 0.0:
+            under, _ = disc_on_face(square, half, off, place[2])
+            gas *= _left(4 * half * half, area, under * math.pi * square)
+        return gas
     if law.shape == CYLINDER:
-        along = _common(law.half_face, law.length / 2, place[2])
-        return law.gas * along * beside_strip(square, law.mean_gap, law.radius, law.half_face, off)
+        along = _common(half, law.length / 2, place[2])
+        gas = law.gas * along * beside_strip(square, mean_gap, law.radius, half, off)
+        if hertz > 0.0 and area > 0.0:
+            gas *= _left(2 * half * along, area, _common(half, math.sqrt(square), off) * along)
+        return gas
     return 0.0
 
 
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+def _left(whole, touched, under):
+    """How much of the face is beside what touches, over what is not under the curve: Hertz's contact stays on the face
+    where its middle would be near the edge or beyond it."""
+    return max(whole - touched, 0.0) / (whole - under) if under < whole else 0.0
+
+
 @njit(cache=True, inner=True, error_model="numpy")
-def _touched(law, force, place):
-    """(area m2 on the face, its force N, of a curved contact the square m2 of its half width)."""
+def touched(law, force, place):
+    """(area m2 on the face, its force N, of a curved contact the squares m2 of its half width and Hertz's)."""
     if law.shape == FLAT:
         if law.size[0] == 0.0:
-            return law.area, force * law.share, 0.0
+            return law.area, force * law.share, 0.0, 0.0
         on_pad, on_face = _overlap(law, place)
         bearing = on_pad + (law.ratio - 1.0) * on_face
-        return on_face, force * law.ratio * on_face / bearing if bearing > 0.0 else 0.0, 0.0
+        return on_face, force * law.ratio * on_face / bearing if bearing > 0.0 else 0.0, 0.0, 0.0
     if law.shape == TABLE:
         area, load = _from_table(law, force)
-        return area, load, 0.0
+        return area, load, 0.0, 0.0
     off = math.sqrt(place[0] * place[0] + place[1] * place[1])
     load = force / law.stiffness
     if law.shape == CYLINDER:
@@ -191,7 +203,7 @@ def _touched(law, force, place):
         _, area, part, square = cylinder_on_pad(
             load, law.ratio, law.half_pad, law.half_face, on_pad, along, off
         )
-        load = law.stiffness * part
+        load, hertz = law.stiffness * part, 0.0
         if law.modulus > 0.0 and along > 0.0:
             load *= min(along / min(law.length, 2 * law.half_face), 1.0)
             hertz = 4 * load * law.radius / (math.pi * law.modulus * along)
@@ -200,18 +212,18 @@ def _touched(law, force, place):
                 share = law.half_face / width
                 width, held = law.half_face, (3 - share * share) * share / 2
             area, load = 2 * width * along, load * held
-            square = max(max(off - law.half_face, 0.0) ** 2, hertz) if load > 0.0 else square
-        return area, load, square
+            square = max(min(max(off - law.half_face, 0.0) ** 2, square), hertz)
+        return area, load, square, hertz
     _, area, part, square = ball_on_pad(load, law.ratio, law.half_pad, law.half_face, off, place[2])
-    load = law.stiffness * part
+    load, hertz = law.stiffness * part, 0.0
     if law.modulus > 0.0:
         if load > 0.0:
             hertz = (0.75 * load * law.radius / law.modulus) ** (2 / 3)
             part, held = disc_on_face(hertz, law.half_face, 0.0, 0.0)
             area, load = math.pi * hertz * part, load * held
             away, aside = max(off - law.half_face, 0.0), max(abs(place[2]) - law.half_face, 0.0)
-            square = max(away * away + aside * aside, hertz)
-    return area, load, square
+            square = max(min(away * away + aside * aside, square), hertz)
+    return area, load, square, hertz
 
 
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)

@@ -8,6 +8,11 @@ the gap of faces that touch without force, the temperature jump with it, the con
 
 On rectangles in whose corner the crown is, the integral over r is a logarithm and that over the angle a sum of a few
 terms; on a strip the whole is an arc tangent. The body ends where r is its radius.
+
+Hertz's gap beside a ball on a face that does not yield opens with a horizontal tangent and is narrower. In units of
+2 R d, u the square of the contact's radius and v what r^2 has more than it at the end, the integral over it is
+0.7 log(1 + u v^2/((1 + v)(v + 2 u))) more than log(1 + v): a fit to the integral over his gap, within
+1.2 % of what the whole face conducts while u is below 3, and within 4 % for any u and v.
 """
 
 from __future__ import annotations
@@ -20,36 +25,43 @@ from thermograsp.compiled import njit
 
 _PLACES, _SHARES = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = (_PLACES + 1) / 2, _SHARES / 2
+_HERTZ = 0.7  # see above
 
 
 @njit(cache=True, error_model="numpy")
-def beside_ball(square, mean_gap, radius, half, y, z):
+def beside_ball(square, hertz, mean_gap, radius, half, y, z):
     """m, over a square of half width `half` m whose middle is y, z from the crown: times k/1, W/K.
 
-    square: m2, s. mean_gap: m, d. radius: m."""
+    square: m2, s. hertz: m2, the square of the radius of Hertz's contact, 0 on springs. mean_gap: m, d. radius: m."""
     total = 0.0
     for i in range(2):
         for j in range(2):
             v, w = (y + half if i else half - y), (z + half if j else half - z)
             sign = (1.0 if v > 0 else -1.0) * (1.0 if w > 0 else -1.0)
             angle = math.atan2(abs(w), abs(v))
-            corner = _fan(abs(v), angle, square, mean_gap, radius)
-            corner += _fan(abs(w), math.pi / 2 - angle, square, mean_gap, radius)
+            corner = _fan(abs(v), angle, square, hertz, mean_gap, radius)
+            corner += _fan(abs(w), math.pi / 2 - angle, square, hertz, mean_gap, radius)
             total += sign * corner
     return 2 * radius * max(total, 0.0)
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _fan(side, angle, square, mean_gap, radius):
+def _fan(side, angle, square, hertz, mean_gap, radius):
     """The integral of 1/(c + r^2) over a triangle with the crown in a corner, of that angle, whose far side is `side`
     away, without what is in contact."""
+    start = (
+        math.acos(side / math.sqrt(square)) if side * side < square else 0.0
+    )  # before it all is in contact
+    if start >= angle:
+        return 0.0
     total, touching = 0.0, 2 * radius * mean_gap
+    u = hertz / touching
     for k in range(len(_NODES)):
-        across = side / math.cos(angle * _NODES[k])
-        beyond = min(across * across, radius * radius) - square
-        if beyond > 0.0:
-            total += _WEIGHTS[k] * math.log1p(beyond / touching)
-    return angle / 2 * total
+        across = side / math.cos(start + (angle - start) * _NODES[k])
+        v = max(min(across * across, radius * radius) - square, 0.0) / touching
+        more = u * v * v / ((1.0 + v) * (v + 2.0 * u)) if u > 0.0 else 0.0
+        total += _WEIGHTS[k] * (math.log1p(v) + _HERTZ * math.log1p(more))
+    return (angle - start) / 2 * total
 
 
 @njit(cache=True, error_model="numpy")

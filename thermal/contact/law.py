@@ -171,7 +171,8 @@ def solid_conduction(law, area, load):
     if law.constriction > 0.0:
         more = math.sqrt(math.pi / area) - 0.5 * math.sqrt(math.pi) / law.half_face
         if more > 0.0:
-            conducts /= 1.0 + conducts * law.constriction * more
+            gas = law.gas / law.mean_gap * area if law.mean_gap > 0.0 else 0.0  # between faces without force
+            conducts = gas + (conducts - gas) / (1.0 + (conducts - gas) * law.constriction * more)
     return conducts
 
 

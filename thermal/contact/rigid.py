@@ -8,10 +8,11 @@ over a disc of 0.1 mm radius. With 1/E* = sum (1 - nu^2)/E and R the body's radi
     cylinder:  b^2 = 4 F R/(pi E* l),     mean pressure F/(2 b l)
 
 There the conductance is that of rough faces at the mean pressure (within 0.5 % of its mean over Hertz's pressures: it
-is nearly in proportion to pressure), in series with the constriction in both bodies: 1/(4 k a) each under a disc, and
-none under a strip, whose constriction depends on the whole bodies, by the logarithm of their size. Around it lies gas,
-in a gap of height d + g: d that of rough faces without pressure and the temperature jump (rough_faces.py), and with x
-the distance over a or b
+is nearly in proportion to pressure). Under a disc, what it is more than that of gas between faces without force, which
+is no more concentrated than in the gas around, is in series with the constriction in both bodies, 1/(4 k a) each. None
+is counted under a strip, whose constriction depends on the whole bodies, by the logarithm of their size. Around it lies
+gas, in a gap of height d + g: d that of rough faces without pressure and the temperature jump (rough_faces.py), and
+with x the distance over a or b
 
     ball:      g = a^2/(pi R) (sqrt(x^2 - 1) + (x^2 - 2) arccos(1/x))
     cylinder:  g = b^2/(2 R) (x sqrt(x^2 - 1) - arcosh x)
@@ -73,7 +74,9 @@ def rigid_sphere(
     area = math.pi * touching**2
     spots = _spots(face, body, load / area, gas) * area
     constriction = (1 / face.conductivity + 1 / body.conductivity) / (4 * touching)
-    return RigidContact(touching, load / area, spots, 1 / (1 / spots + constriction), around)
+    untouched = conducting / mean_gap * area
+    more = spots - untouched
+    return RigidContact(touching, load / area, spots, untouched + more / (1 + more * constriction), around)
 
 
 def rigid_cylinder(

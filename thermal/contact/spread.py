@@ -20,7 +20,8 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material
-from .footprint import conduction, gas_conduction
+from .footprint import beside, touched
+from .law import solid_conduction
 from .rough_faces import LAPPED_ALUMINA, Surface
 
 _DEEPEST, _SECONDS = 0.8e-3, 1.0  # m, s, see above
@@ -29,27 +30,27 @@ _MIDDLE = np.zeros(3)
 
 def even_patch(law: np.void, body: Material, force: float, face: Surface = LAPPED_ALUMINA) -> float:
     """m2, of a bare_footprint of the body at a force N > 0 on the pad, over the face's middle."""
-    return float(even_contact(law, *beneath(law, body, face), force, _MIDDLE)[1])
+    return float(even_contact(law, beneath(body, face), force, _MIDDLE)[1])
 
 
-def beneath(law: np.void, body: Material, face: Surface) -> tuple[np.void, float]:
-    """The law with the bodies' resistance in its gas, and that resistance, m2 K/W: what even_contact takes."""
+def beneath(body: Material, face: Surface) -> float:
+    """m2 K/W, the resistance of both bodies: what even_contact takes."""
     depth = min(float(np.sqrt(body.diffusivity * _SECONDS)), _DEEPEST)
-    resistance = depth * (1 / face.conductivity + 1 / body.conductivity)
-    slower = law.copy()
-    slower["mean_gap"] += float(law["gas"]) * resistance
-    return slower, resistance
+    return depth * (1 / face.conductivity + 1 / body.conductivity)
 
 
 @njit(cache=True, error_model="numpy")
-def even_contact(law, slower, resistance, force, place):
+def even_contact(law, resistance, force, place):
     """(W/K, m2 of the even patch) at a force N > 0 on the pad; see footprint's conduction."""
-    area, total = conduction(law, force, place)
-    gas = gas_conduction(law, force, place)
+    area, load, square, hertz = touched(law, force, place)
+    gas = beside(law, law.mean_gap, area, square, hertz, place)
+    total = solid_conduction(law, area, load) + gas
     if gas <= 0.0:
         return total, area
-    less = gas_conduction(slower, force, place)
+    less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
     spread = max(4 * law.half_face * law.half_face - area, 0.0)
     if gas > less:
         spread = min(gas * less * resistance / (gas - less), spread)
-    return total, area + spread * gas / total
+    if law.constriction > 0.0:  # what would flow there without force is spread as wide
+        gas += law.gas / law.mean_gap * area
+    return total, area + spread * min(gas / total, 1.0)

@@ -73,7 +73,7 @@ def test_gas_beside_a_ball_is_an_integral_over_the_face(
 
     breaks = sorted({y - HALF, y + HALF, *(p for p in (-half_width, 0.0, half_width) if abs(p - y) < HALF)})
     expected = sum(quad(along, a, b, limit=400)[0] for a, b in pairwise(breaks))
-    assert beside_ball(s, mean_gap, radius, HALF, y, z) == pytest.approx(2 * radius * expected, rel=0.04)
+    assert beside_ball(s, 0.0, mean_gap, radius, HALF, y, z) == pytest.approx(2 * radius * expected, rel=0.04)
 
 
 @pytest.mark.parametrize("x", [0.0, 0.003, 0.0046, 0.009])

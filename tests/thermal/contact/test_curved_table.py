@@ -166,11 +166,13 @@ def off_the_middle(name: str, radius: float, force: float, place: tuple[float, f
     spot = (3 * force * radius / (4 * stiff)) ** (1 / 3)
     spots = float(contact_conductance(pair, force / (np.pi * spot**2))) * np.pi * spot**2
     both = 1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity
-    solid = 1 / (1 / spots + both / 4 * (1 / spot - np.sqrt(np.pi) / PAD.face))
     smallest_gap = gas / (
         float(contact_conductance(pair, 1e-9))
         - float(contact_conductance(replace(pair, gas_conductivity=0.0), 1e-9))
     )
+    # what would pass the gas there without force is no more concentrated than around it
+    untouched = gas / smallest_gap * np.pi * spot**2
+    solid = untouched + 1 / (1 / (spots - untouched) + both / 4 * (1 / spot - np.sqrt(np.pi) / PAD.face))
     angle = (np.arange(1000) + 0.5) / 1000 * 2 * np.pi
     ends = [
         np.where(turned > 0, half - at, half + at) / np.maximum(np.abs(turned), 1e-12)

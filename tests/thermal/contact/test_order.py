@@ -1,0 +1,167 @@
+"""What every law of a curved contact must keep, over drawn radii, materials, fingertips and places: more force is more
+heat, a ball feels less than a rod and a rod less than a flat face, and nothing jumps over the sensor's edge."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermograsp.compiled import njit
+from thermograsp.thermal import SKINS, Material, Pad, Skin, Surface, joint, material, materials
+from thermograsp.thermal.contact import (
+    bare_footprint,
+    bared,
+    conduction,
+    curved_contact,
+    curved_table,
+    cylinder_contact,
+    cylinder_footprint,
+    face_joint,
+    flat_contact,
+    flat_footprint,
+    footprint,
+    skinned,
+    sphere_contact,
+    sphere_footprint,
+    touching,
+)
+
+PAD, SKIN = Pad(), SKINS["filled_silicone"]
+FORCES = np.geomspace(1e-3, 300.0, 90)
+RADII = np.geomspace(1e-3, 100.0, 16)
+PLACES = ((0.0, 0.0), (0.002, 0.001), (0.0044, 0.0044), (0.0, 0.0045), (0.005, 0.0), (0.007, 0.006))
+BODIES = {"ball": None, "rod": 0.05, "short rod": 0.006}
+
+
+def law(skin: Skin | None, made: Material, radius: float, length: float | None) -> np.void:
+    surface = Surface.of(made)
+    if skin is None:
+        return bare_footprint(PAD, surface, radius, length)
+    pad, pair = skinned(PAD, skin), face_joint(skin, surface)
+    return (
+        sphere_footprint(pad, pair, radius)
+        if length is None
+        else cylinder_footprint(pad, pair, radius, length)
+    )
+
+
+@njit(error_model="numpy")
+def swept(law, forces, place, out):
+    for k in range(len(forces)):
+        out[k] = conduction(law, forces[k], place)[1]
+
+
+def over_forces(law: np.void, place: tuple[float, float]) -> np.ndarray:
+    out = np.empty(len(FORCES))
+    swept(law, FORCES, np.array([0.0, *place]), out)
+    return out
+
+
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("skin", [None, SKIN], ids=["bare", "skinned"])
+def test_more_force_is_more_heat(skin: Skin | None, body: str) -> None:
+    """Of every material, from 1 mm to 100 m, wherever the body is. Where its crown or its rim is off the face, the sum
+    of the gas over angles is good to 1e-3 of what is felt in the middle."""
+    rng = np.random.default_rng(3)
+    for name in materials():
+        made = material(name)
+        for radius in RADII * rng.uniform(0.8, 1.25, len(RADII)):
+            own = law(skin, made, float(radius), BODIES[body])
+            middle = 0.0
+            for place in PLACES:
+                felt = over_forces(own, place)
+                middle = middle or felt.max()
+                assert np.isfinite(felt).all() and (felt >= 0).all()
+                on_it = max(place) <= PAD.face / 2 and radius > 2 * PAD.face
+                rounding = 1e-9 if on_it else 1e-3
+                falls = (np.maximum.accumulate(felt) - felt).max()
+                assert falls <= rounding * middle, (name, radius, place)
+
+
+@pytest.mark.parametrize("skin", [None, SKIN], ids=["bare", "skinned"])
+def test_a_ball_less_than_a_rod_and_a_rod_less_than_a_flat_face(skin: Skin | None) -> None:
+    """Of every material, in the pad's middle, up to 50 mm of radius and 50 N; the flat face is the sensor's, so that
+    all force is on it as under a ball. 2 % for soft bodies that lie on all of it, whose pressure is not even."""
+    gripped = FORCES < 50
+    for name in materials():
+        made = material(name)
+        pad = bared(PAD) if skin is None else skinned(PAD, skin)
+        pair = joint(touching(skin), Surface.of(made), full_contact=True)
+        flat = over_forces(flat_footprint(pad, pair, (PAD.face, PAD.face)), (0.0, 0.0))
+        for radius in np.geomspace(2e-3, 0.05, 6):
+            ball, rod = (
+                over_forces(law(skin, made, float(radius), length), (0.0, 0.0)) for length in (None, 0.05)
+            )
+            assert (ball <= 1.02 * rod)[gripped].all(), (name, radius)
+            assert (rod <= 1.02 * flat)[gripped].all(), (name, radius)
+
+
+@pytest.mark.parametrize("skin", [None, SKIN], ids=["bare", "skinned"])
+def test_the_pressures_add_up_to_the_force(skin: Skin | None) -> None:
+    """With the sensor's face as large as the pad, all of the force is on it, to 1e-6, wherever the body is."""
+    pad = bared(PAD) if skin is None else skinned(PAD, skin)
+    whole = Pad(face=pad.width, youngs_modulus=pad.youngs_modulus, face_stiffness=pad.face_stiffness)
+    rng = np.random.default_rng(4)
+    for _ in range(300):
+        force, radius = np.exp(rng.uniform(np.log([1e-3, 1e-3]), np.log([300.0, 100.0])))
+        y, z = rng.uniform(-0.0099, 0.0099, 2)
+        for found in (
+            sphere_contact(whole, force, radius, (y, z)),
+            cylinder_contact(whole, force, radius, 0.05, (y, z)),
+            flat_contact(whole, force, (0.05, 0.004), (y, 0.0)),
+        ):
+            assert float(found.face_force) == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("skin", [None, SKIN], ids=["bare", "skinned"])
+def test_nothing_jumps_as_a_body_slides_over_the_sensor_s_edge_and_the_pad_s(
+    skin: Skin | None, body: str
+) -> None:
+    """Steps four times as fine make changes less than half as large, or next to none."""
+    rng = np.random.default_rng(5)
+    names = sorted(materials())
+    for _ in range(12):
+        made = material(str(rng.choice(names)))
+        radius, force = np.exp(rng.uniform(np.log([2e-3, 0.05]), np.log([1.0, 50.0])))
+        own, turn = law(skin, made, float(radius), BODIES[body]), rng.uniform(0, np.pi / 2)
+        way = np.array([0.0, np.cos(turn), np.sin(turn)])
+        largest = []
+        for steps in (500, 2000):
+            felt = [conduction(own, force, at * way) for at in np.linspace(-0.0095, 0.0095, steps + 1)]
+            largest.append(np.abs(np.diff([watts for _, watts in felt])).max() / max(w for _, w in felt))
+        assert largest[1] <= 0.5 * largest[0] + 1e-4, (made.name, radius, force, turn)
+
+
+def test_what_touches_and_its_force_are_never_more_than_there_is() -> None:
+    rng = np.random.default_rng(6)
+    names = sorted(materials())
+    for _ in range(400):
+        made, skin = material(str(rng.choice(names))), (None, SKIN)[rng.integers(2)]
+        radius, force = np.exp(rng.uniform(np.log([1e-3, 1e-3]), np.log([100.0, 1e3])))
+        own = law(skin, made, float(radius), list(BODIES.values())[rng.integers(3)])
+        area, load = footprint(own, force, np.append(0.0, rng.uniform(-0.02, 0.02, 2)))
+        assert 0 <= area <= PAD.face**2 * (1 + 1e-9)
+        assert 0 <= load <= force * (1 + 1e-9)
+
+
+def test_in_tables_more_force_is_more_heat_too() -> None:
+    """What ThermalTouch, arrays and the plugin read, of drawn bodies at drawn places."""
+    rng = np.random.default_rng(7)
+    names = sorted(materials())
+    for _ in range(40):
+        made, skin = material(str(rng.choice(names))), (None, SKIN)[rng.integers(2)]
+        radius, length = (
+            float(np.exp(rng.uniform(np.log(2e-3), np.log(100.0)))),
+            rng.choice([0.0, 0.006, 0.05]),
+        )
+        table = curved_table(PAD, skin, made, radius, float(length) or None)
+        most = curved_contact(table, FORCES[-1], 0.0, 0.0)[0]
+        for place in rng.uniform(-0.012, 0.012, (5, 2)):
+            felt = np.array([curved_contact(table, force, *place)[0] for force in FORCES])
+            assert (np.maximum.accumulate(felt) - felt <= 1e-3 * most).all(), (
+                made.name,
+                radius,
+                length,
+                place,
+            )
