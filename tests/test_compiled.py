@@ -53,6 +53,7 @@ print(kernel(1.0), sum(kernel.stats.cache_misses.values()))
     return float(value), int(compiled)
 
 
+@pytest.mark.slow
 def test_a_hash_does_not_depend_on_the_process() -> None:
     code = """
 from thermograsp.compiled import compiled_hash
@@ -98,6 +99,7 @@ def hash_now(folder: Path) -> str:
             sys.modules.pop(name, None)
 
 
+@pytest.mark.slow
 def test_an_edit_of_what_was_compiled_in_is_never_missed(folder: Path) -> None:
     """Nor does code of an older version pile up."""
     assert result(folder) == (8.0, 1)
@@ -214,6 +216,7 @@ def test_every_kernel_of_the_package_has_a_hash() -> None:
     assert kernels > 50
 
 
+@pytest.mark.slow
 def test_what_an_inner_function_raises_arrives(tmp_path: Path) -> None:
     """From several callers, compiled or found compiled, also where only one of them was edited in between."""
     lines = """

@@ -138,6 +138,7 @@ def test_without_load_cells_a_script_that_needs_them_fails() -> None:
     assert score(task, "feeling", 8, load=False).successes == 0
 
 
+@pytest.mark.slow
 def test_other_grippers_and_drawn_episodes_are_scored(capsys: Any) -> None:
     line = ["score", "scripted", "--task", "grasp", "--episodes", "1", "--json"]
     digests = set()

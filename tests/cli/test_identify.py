@@ -26,6 +26,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_a_recording_is_identified(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = recording.with_name("touch.svg")
     assert main(f"identify {recording} {AMONG} --out {picture} --json".split()) == 0

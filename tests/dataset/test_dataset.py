@@ -96,6 +96,7 @@ def test_a_row_is_the_single_environments_episode_bit_for_bit(folder: Path) -> N
         assert rows["return"][k] == pytest.approx(sum(wanted["reward"]), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_an_episode_does_not_depend_on_its_neighbours() -> None:
     """The rows of ended episodes start others while their neighbours go on: 7 of 3 lengths, 1, 2 and 7 at once."""
     one, two, many = (roll(PLAN, range(8, 15), at_once)[1] for at_once in (1, 2, 7))
@@ -264,6 +265,7 @@ def test_processes_of_this_machine_make_the_same_files(folder: Path, tmp_path: P
     assert done == [1] * PLAN.episodes  # it moves with every episode
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_loses_and_doubles_nothing(folder: Path) -> None:
     made: dict[str, bytes] = {}
     producing = in_processes.produce(PLAN, PLAN.shards, 1, lambda: None)
@@ -281,6 +283,7 @@ def test_what_a_process_raises_is_raised(tmp_path: Path) -> None:
     assert not multiprocessing.active_children() and not list(tmp_path.glob("*.parquet"))
 
 
+@pytest.mark.slow
 def test_any_keyword_of_the_environment(tmp_path: Path) -> None:
     keywords = {
         "objects": [ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05))],

@@ -67,6 +67,7 @@ def test_too_hot_is_off_until_it_is_cleared(board: Board) -> None:
     assert again(line).condition().heaters_off == 0
 
 
+@pytest.mark.slow
 def test_heaters_go_off_ten_seconds_after_the_last_sign_of_the_host(board: Board) -> None:
     tips, line = driven(board, setpoint=36.0)
     attended(tips, line, 13.0)

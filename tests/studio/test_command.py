@@ -44,6 +44,7 @@ def test_what_it_refuses(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_film_of_two_grasps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     try:
         Renderer(Mechanics((ObjectSpec(),), 1), width=8, height=8).close()

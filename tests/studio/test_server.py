@@ -223,6 +223,7 @@ def test_a_studio_that_stops_says_so() -> None:
     assert made[0].stopped
 
 
+@pytest.mark.slow
 def test_two_visitors_have_a_simulation_each_and_one_that_is_killed_says_so() -> None:
     made: list[Worker] = []
 

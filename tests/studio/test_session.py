@@ -245,6 +245,7 @@ JUNK = st.recursive(
 FIELDS = st.sampled_from([*Choices().message(), *Controls().message(), "id", "do", "x"])
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     do=st.sampled_from(["choose", "control", "again", "step", "csv", "hello", None]) | JUNK,

@@ -52,6 +52,7 @@ def simulated() -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     return columns, grasp.message(0)
 
 
+@pytest.mark.slow
 def test_a_recording_gives_all_its_samples(
     simulated: tuple[dict[str, np.ndarray], dict[str, Any]], tmp_path: Path
 ) -> None:

@@ -98,7 +98,7 @@ def test_elements_start_as_warm_as_their_object_and_are_remembered() -> None:
     run(one, 0.5)
     assert np.abs(one.reading.element_drop).max() < 1e-9
     plain = touching(ThermalBody("glass"))
-    with pytest.raises(InvalidValueError, match="other fingertips"):
+    with pytest.raises(InvalidValueError, match="another ThermalTouch, whose elements"):
         plain.set_state(two.state())
 
 

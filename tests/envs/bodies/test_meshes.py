@@ -123,6 +123,7 @@ def test_a_mesh_box_feels_like_a_box(tmp_path):
     assert forces[1] == pytest.approx(forces[0], abs=0.01)
 
 
+@pytest.mark.slow
 def test_convex_pieces_leave_the_hole_open(tmp_path):
     pytest.importorskip("vhacdx")
     path = saved(trimesh.creation.annulus(0.02, 0.03, 0.03), tmp_path / "ring.stl")

@@ -77,6 +77,7 @@ def test_a_sleeve_is_felt_between_its_material_and_the_core_s():
     assert np.abs(coated - rubber)[: np.argmax(touching) + 15].max() < 0.02
 
 
+@pytest.mark.slow
 def test_a_sleeve_of_no_thickness_is_none():
     """In weight, inertia, friction and heat."""
     bare = replace(COATED, parts=(Part("stainless_steel", size=COATED.size),))
@@ -192,6 +193,7 @@ def test_a_material_asked_for_is_that_around_the_parts():
     assert body.solid is not None and body.solid.parts[0].material.name == "cork"
 
 
+@pytest.mark.slow
 def test_vector_and_single_environments_agree_bit_for_bit_and_scenes_take_parts():
     roller = objects()["rubber_roller"].spec()
     config = {"objects": [COATED, replace(COATED, parts=())], "material": None}

@@ -127,6 +127,7 @@ def test_temperatures_beyond_the_range_show_the_end_colours():
         temperature_colour(float("nan"))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("xvfb-run") is None, reason="needs xvfb-run, a screen for nobody")
 def test_a_window_opens_follows_and_closes() -> None:
     program = (

@@ -116,6 +116,7 @@ def test_rows_feel_the_same_bits_alone_and_among_others() -> None:
             assert np.array_equal(volts[0], expected[row])
 
 
+@pytest.mark.slow
 def test_maps_press_with_its_springs() -> None:
     """The taxels' force is the load cell's; under a bare face a spot bears it, under a skin some mm2."""
     areas = []
