@@ -161,8 +161,10 @@ def shown(task: LearningTask, rows: int) -> tuple[np.ndarray, list[Any]]:
     teacher, bodies = TEACHERS[task.name](env.batch), list(env.batch.plant.bodies)
     teacher.restart(np.arange(rows))
     ended, won = np.zeros(rows, bool), np.zeros(rows, bool)
+    said = None  # a learner that does what it was taught last
     for _ in range(round(10.0 / 0.02 / REPEAT)):
-        _, _, now, infos = env.step(np.clip(teacher.action(env.raw), -1.0, 1.0))
+        said = np.clip(np.nan_to_num(teacher.action(env.raw, said), nan=-1.0), -1.0, 1.0)
+        _, _, now, infos = env.step(said)
         won |= ~ended & np.array([bool(info.get("success")) for info in infos])
         ended |= now
         teacher.restart(np.flatnonzero(now))

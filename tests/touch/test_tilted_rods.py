@@ -45,6 +45,15 @@ def tilt_of(name: str, skin: str | None, half: float) -> np.ndarray:
     return pair_laws(model, tips, shapes).tilts[0, 0, 0]
 
 
+def test_a_pad_on_a_round_geom_has_no_edge_for_a_rod_to_lie_on() -> None:
+    text = scene(0.0).replace('type="box" size=".01 .01 .004"', 'type="capsule" size=".01 .02"')
+    model = mujoco.MjModel.from_xml_string(text)
+    shapes = bodies(model, {"rod": "steel"}, 24.0)
+    given = Fingertip("tip", (0.0, 0.01, 0.0), (0.0, 1.0, 0.0), (0.02, 0.02))
+    assert tilt_of("steel", None, 0.01).any()
+    assert not pair_laws(model, pads(model, {"tip": given}, shapes), shapes).tilts.any()
+
+
 def sunk(springs: np.ndarray, height: np.ndarray, area: float, force: float) -> float:
     """Depth m at which the springs Pa/m of cells take the force N, by halving an interval."""
     low, high = 0.0, 0.02

@@ -24,7 +24,7 @@ from ...thermal import (
     sphere_law,
 )
 from ...thermal.contact import CURVED_TABLE, curved_table, skinned
-from ..scene import BodyShape, PadPlace
+from ..scene import BodyShape, PadPlace, is_round
 from .tilt import TILT, tilt_row
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
@@ -52,6 +52,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         width = float(math.sqrt(pad.size.prod()))
         silicone = Pad(width=width, face=min(pad.stack.width, width))
         sheet = skinned(silicone, pad.skin)
+        # a round geom under a rod has no edge on which the rod could come to lie
+        flat = not any(is_round(model, geom) for geom in pad.geoms)
         for g, (shape, geom) in enumerate(geoms):
             faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
             for axis in range(3):
@@ -60,7 +62,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 if size is None or sum(pad.curvature) > 0:
                     continue
                 table = curved_table(silicone, pad.skin, shape.material, *size)
-                if size[1] is not None:
+                if size[1] is not None and flat:
                     tilts[f, g, axis] = tilt_row(pad, silicone, shape, size[0], size[1])
                 known = [n for n, each in enumerate(tables) if each is table]
                 curved[f, g, axis] = known[0] if known else len(tables)

@@ -3,7 +3,7 @@
 from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodies, materials_by_world
 from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, rotation, triangles
-from .fingertips import Fingertip, PadPlace, pads
+from .fingertips import Fingertip, PadPlace, is_round, pads
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
 
@@ -22,6 +22,7 @@ __all__ = [
     "geom_label",
     "geoms_of",
     "glued_elements",
+    "is_round",
     "largest_face",
     "materials_by_world",
     "pads",

@@ -269,9 +269,14 @@ _Bulge = tuple[np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]  # posit
 def _bulge(model: mujoco.MjModel, geoms: tuple[int, ...], direction: np.ndarray) -> _Bulge | None:
     """Of the pad where a direction of the body's frame leaves the first round geom."""
     for geom in geoms:
-        if mujoco.mjtGeom(int(model.geom_type[geom])) in _ROUND_KINDS:
+        if is_round(model, geom):
             return _round(model, geom, direction)
     return None
+
+
+def is_round(model: mujoco.MjModel, geom: int) -> bool:
+    """Whether a geom bulges out somewhere: a ball, a capsule, an ellipsoid or a cylinder."""
+    return mujoco.mjtGeom(int(model.geom_type[geom])) in _ROUND_KINDS
 
 
 _ROUND_KINDS = (
