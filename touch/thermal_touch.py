@@ -530,11 +530,21 @@ class ThermalTouch:
 
     def _check(self, data: mujoco.MjData) -> None:
         model = getattr(data, "model", self._model)
-        if model is not self._model and _shape(model) != _shape(self._model):
+        if model is not self._model and self._measures(model) != self._measures(self._model):
             raise InvalidValueError(
                 "the data belong to another model than this ThermalTouch: make one for theirs, "
                 "thermograsp.ThermalTouch(data.model, ...)"
             )
+
+    def _measures(self, model: mujoco.MjModel) -> tuple[object, ...]:
+        """By which a copy of a model is known from another one, where fingertips and objects are not alike;
+        `MjModel.signature` came after MuJoCo 3.3.0."""
+        counts = model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom
+        if model.ngeom != self._model.ngeom:
+            return counts
+        used = [geom for each in (*self._pads, *self._shapes) for geom in each.geoms]
+        geoms = model.geom_type, model.geom_size, model.geom_pos, model.geom_quat
+        return model.names, counts, *(each[used].tobytes() for each in geoms)
 
     def _sample(self) -> None:
         """A whole sample has passed: heat, then the converter."""
@@ -630,10 +640,3 @@ def _chain(chain: SignalChain | str) -> SignalChain:
 def _mapping(name: str, value: object, example: str) -> None:
     if not isinstance(value, Mapping):
         raise InvalidValueError(f"{name} must be a mapping such as {example}, got {type(value).__name__}")
-
-
-def _shape(model: mujoco.MjModel) -> tuple[object, ...]:
-    """By which a copy of a model is known from another one; `MjModel.signature` came after MuJoCo 3.3.0."""
-    counts = model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom
-    geoms = model.geom_type, model.geom_size, model.geom_pos, model.geom_quat
-    return model.names, counts, *(each.tobytes() for each in geoms)

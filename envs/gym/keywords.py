@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 from thermograsp.errors import unknown_keyword
 
-from ..plant import simulation_keywords
+from ..plant import SimulationConfig
 
 _OF_THE_BATCH = {"plant", "observer"}
 
 
 def keywords_of(environment: type) -> set[str]:
     """Names of all that its class, those above it and a simulated plant take."""
-    names = simulation_keywords()
+    names = {field.name for field in fields(SimulationConfig)}
     for each in environment.__mro__:
         if each.__module__.partition(".")[0] not in ("gymnasium", "builtins") and "__init__" in vars(each):
             names |= set(inspect.signature(each.__init__).parameters)

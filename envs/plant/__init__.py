@@ -1,6 +1,6 @@
 """The simulated plants: mechanics, heat and electronics of a batch of environments, and what may be drawn at random."""
 
-from .config import SimulationConfig, simulation_keywords
+from .config import SimulationConfig
 from .pair import Goal
 from .randomization import (
     EVERYTHING,
@@ -36,5 +36,4 @@ __all__ = [
     "ThermostatError",
     "Truth",
     "simulated_plant",
-    "simulation_keywords",
 ]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -56,7 +57,7 @@ AUTO = "auto"
 """A skin where one is needed; see SimulationConfig."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SimulationConfig:
     """What is simulated. material: a name, a Material, a list to draw from per episode, or None for an object's own and
     else the ten seed materials. mode: T or O. objects: the object's shape, its name in the library, or a list to draw
@@ -102,7 +103,6 @@ class SimulationConfig:
     taxels: tuple[int, int] | None = None
     face_temperature: tuple[int, int] | None = None
     skin: str | Skin | None = AUTO
-    _any_size: bool | None = field(default=None, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -395,14 +395,9 @@ class SimulationConfig:
             cause if any_size or not isinstance(cause, Size) else cause.in_steps() for cause in listed
         )
 
-    @property
+    @cached_property
     def any_size(self) -> bool:
         """Whether sizes are drawn, and each object may have any of them: its network comes from heat kernels."""
-        if self._any_size is None:  # every episode asks
-            object.__setattr__(self, "_any_size", self._served_in_any_size())
-        return bool(self._any_size)
-
-    def _served_in_any_size(self) -> bool:
         drawn = next((cause for cause in self.randomize if isinstance(cause, Size)), None)
         if drawn is None or self.mode == "O":
             return False
@@ -440,14 +435,9 @@ class SimulationConfig:
         )
 
 
-def simulation_keywords() -> set[str]:
-    """The names of what a SimulationConfig is given."""
-    return {each.name for each in fields(SimulationConfig) if each.init}
-
-
 def check_fields(plant: str, given: Iterable[str], *more: str) -> None:
     """Raises UnknownKeywordError for a name that is neither a field of SimulationConfig nor one of `more`."""
-    known = {*more, *simulation_keywords()}
+    known = {*more, *(field.name for field in fields(SimulationConfig))}
     for name in given:
         if name not in known:
             raise unknown_keyword(f"plant {plant!r}", name, known)

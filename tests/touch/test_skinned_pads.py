@@ -9,14 +9,11 @@ import pytest
 
 from thermograsp.thermal import SKINS, Pad, Surface, flat_contact, material
 from thermograsp.thermal.contact import (
-    bare_footprint,
     conduction,
     contact,
     curved_contact,
-    cylinder_footprint,
-    face_joint,
+    round_footprint,
     skinned,
-    sphere_footprint,
 )
 from thermograsp.touch import Fingertip, ThermalTouch
 from thermograsp.touch.contacts import pair_laws
@@ -47,11 +44,7 @@ def test_contacts_in_the_middle_are_those_of_the_environments_laws(force: float,
     skin_worn = SKINS[skin] if skin else None
     laws, curved, tables, _ = pair_laws(model, found, shapes)
     steel, sheet, middle = Surface.of(material("steel")), skinned(Pad(), skin_worn), np.zeros(3)
-    if skin_worn is None:
-        ball, can = (bare_footprint(Pad(), steel, 0.02, length) for length in (None, 0.06))
-    else:
-        pair = face_joint(skin_worn, steel)
-        ball, can = sphere_footprint(sheet, pair, 0.02), cylinder_footprint(sheet, pair, 0.02, 0.06)
+    ball, can = (round_footprint(Pad(), skin_worn, steel, 0.02, length) for length in (None, 0.06))
     for target, law in ((0, ball), (1, can)):
         conducts = curved_contact(tables[curved[0, target, 0]], force, 0.0, 0.0)[0]
         assert conducts == pytest.approx(conduction(law, force, middle)[1], rel=0.02)

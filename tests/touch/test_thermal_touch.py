@@ -372,6 +372,14 @@ def test_data_of_another_model_are_refused() -> None:
         make(model).update(mujoco.MjData(other))
 
 
+ASIDE = """
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <geom name="beside" type="box" size=".01 .01 .01" pos="1 0 0"/>
+  <body name="cube"><geom type="box" size=".02 .02 .02"/></body>
+  <body name="tip" pos="0 0 .1"><joint type="slide" axis="0 0 1"/><geom type="box" size=".01 .01 .004"/></body>
+</worldbody></mujoco>"""
+
+
 def test_a_model_of_the_same_names_and_other_sizes_is_another_one() -> None:
     model, _ = hand.hand()
     other, data = hand.hand()
@@ -386,6 +394,16 @@ def test_a_model_whose_geoms_lie_elsewhere_is_another_one() -> None:
     other.geom_pos[other.geom("thumb_pad").id, 2] += 0.01
     with pytest.raises(InvalidValueError, match="another model"):
         make(model).update(data)
+
+
+def test_other_geoms_of_the_scene_may_lie_elsewhere() -> None:
+    model = mujoco.MjModel.from_xml_string(ASIDE)
+    other = mujoco.MjModel.from_xml_string(ASIDE)
+    other.geom_pos[other.geom("beside").id, 2] += 0.01
+    touch = ThermalTouch(model, fingertips={"tip": "tip"}, objects={"cube": "steel"}, dt=0.02)
+    data = mujoco.MjData(other)
+    mujoco.mj_step(other, data)
+    assert touch.update(data).touching == ("",)
 
 
 @pytest.mark.parametrize(

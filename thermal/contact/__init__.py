@@ -24,6 +24,7 @@ from .footprint import (
     flat_footprint,
     footprint,
     gas_conduction,
+    round_footprint,
     sphere_footprint,
     table_footprint,
 )
@@ -114,6 +115,7 @@ __all__ = [
     "skinned",
     "solid_conduction",
     "sphere_contact",
+    "round_footprint",
     "sphere_footprint",
     "sphere_law",
     "stack_joints",

@@ -18,8 +18,8 @@ from thermograsp.compiled import njit
 from ..matter import Material, Skin
 from ..numerics import Array, as_integers, namespace_of
 from .area import Pad
-from .fingertip import face_joint, skinned, touching
-from .footprint import bare_footprint, cylinder_footprint, sphere_footprint
+from .fingertip import touching
+from .footprint import round_footprint
 from .law import CYLINDER
 from .rough_faces import Surface
 from .spread import beneath, even_contact
@@ -42,12 +42,7 @@ def curved_table(
     """(CURVED_TABLE,) of a fingertip on a ball of that radius m, or on a cylinder of that length m. pad: its silicone;
     skin: over it, None for a bare face, which is rigid. Raises InvalidValueError for sizes that are none."""
     surface, face = Surface.of(body), touching(skin)
-    if skin is None:
-        law = bare_footprint(pad, surface, radius, length)
-    elif length is None:
-        law = sphere_footprint(skinned(pad, skin), face_joint(skin, surface), radius)
-    else:
-        law = cylinder_footprint(skinned(pad, skin), face_joint(skin, surface), radius, length)
+    law = round_footprint(pad, skin, surface, radius, length)
     aside = _aside(pad)
     along = aside if length is None else _along(pad, length)
     table = np.empty(CURVED_TABLE)

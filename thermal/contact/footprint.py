@@ -23,7 +23,9 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import InvalidValueError, positive
 
+from ..matter import Skin
 from .area import ContactArea, Pad
+from .fingertip import face_joint, skinned
 from .gas_beside import beside_ball, beside_strip
 from .law import CONTACT_LAW, CYLINDER, FLAT, SPHERE, cylinder_law, flat_law, solid_conduction, sphere_law
 from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductance, joint
@@ -99,6 +101,19 @@ def bare_footprint(
 def bared(pad: Pad, face: Surface = LAPPED_ALUMINA) -> Pad:
     """The pad with springs on the sensor's face as stiff as a column of it, as deep as the pad: a rigid face."""
     return replace(pad, face_stiffness=face.youngs_modulus / pad.thickness)
+
+
+def round_footprint(
+    pad: Pad, skin: Skin | None, body: Surface, radius: float, length: float | None = None
+) -> np.void:
+    """The law of a fingertip on a ball of that radius m, or on a cylinder of that length m. pad: its silicone; skin:
+    over it, None for a bare face, which is rigid. Raises InvalidValueError for sizes that are none."""
+    if skin is None:
+        return bare_footprint(pad, body, radius, length)
+    sheet, faces = skinned(pad, skin), face_joint(skin, body)
+    if length is None:
+        return sphere_footprint(sheet, faces, radius)
+    return cylinder_footprint(sheet, faces, radius, length)
 
 
 def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:

@@ -53,7 +53,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         silicone = Pad(width=width, face=min(pad.stack.width, width))
         sheet = skinned(silicone, pad.skin)
         # a round geom under a rod has no edge on which the rod could come to lie
-        flat = not any(is_round(model, geom) for geom in pad.geoms)
+        flat = not all(is_round(model, geom) for geom in pad.geoms)
         for g, (shape, geom) in enumerate(geoms):
             faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
             for axis in range(3):

@@ -11,36 +11,22 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import AIR, LAPPED_ALUMINA, SKINS, Pad, Surface, contact_conductance, joint, material
 from thermograsp.thermal.contact import (
     array_curved_contact,
-    bare_footprint,
     conduction,
     curved_contact,
     curved_table,
-    cylinder_footprint,
     even_patch,
     face_joint,
     flat_footprint,
     rigid_cylinder,
     rigid_sphere,
+    round_footprint,
     skinned,
-    sphere_footprint,
 )
 
 PAD, SKIN = Pad(), SKINS["filled_silicone"]
 BODIES = {"ball": (0.02, None), "small ball": (0.005, None), "rod": (0.02, 0.06), "short rod": (0.02, 0.012)}
 FORCES = (0.05, 0.5, 5.0, 50.0)
 KINDS = [(skin, name) for skin in (None, SKIN) for name in ("steel", "wood")]
-
-
-def law(skin, name: str, radius: float, length: float | None) -> np.void:
-    surface = Surface.of(material(name))
-    if skin is None:
-        return bare_footprint(PAD, surface, radius, length)
-    pad, pair = skinned(PAD, skin), face_joint(skin, surface)
-    return (
-        sphere_footprint(pad, pair, radius)
-        if length is None
-        else cylinder_footprint(pad, pair, radius, length)
-    )
 
 
 @pytest.mark.parametrize(("skin", "name"), KINDS)
@@ -50,7 +36,7 @@ def test_it_is_the_law_in_the_middle_and_on_the_whole_off_it(skin, name: str, bo
     force at which a skin's spots come to full contact."""
     table, closed_form = (
         curved_table(PAD, skin, material(name), *BODIES[body]),
-        law(skin, name, *BODIES[body]),
+        round_footprint(PAD, skin, Surface.of(material(name)), *BODIES[body]),
     )
     rng, off = np.random.default_rng(0), []
     for _ in range(1000):
@@ -84,7 +70,10 @@ def test_a_bare_ball_and_a_bare_rod_are_quadratures_over_hertzs_gap() -> None:
 
 def test_the_patch_is_the_even_one() -> None:
     body = material("steel")
-    table, closed_form = curved_table(PAD, None, body, 0.02), law(None, "steel", 0.02, None)
+    table, closed_form = (
+        curved_table(PAD, None, body, 0.02),
+        round_footprint(PAD, None, Surface.of(material("steel")), 0.02),
+    )
     for force in FORCES:
         _, area, long = curved_contact(table, force, 0.0, 0.0)
         assert area == pytest.approx(even_patch(closed_form, body, force), rel=0.05)
@@ -190,7 +179,10 @@ def off_the_middle(name: str, radius: float, force: float, place: tuple[float, f
 @pytest.mark.parametrize("name", ["steel", "copper", "glass"])
 @pytest.mark.parametrize("radius", [0.005, 0.02, 0.05])
 def test_a_bare_ball_off_the_middle_is_a_sum_over_hertzs_gap(name: str, radius: float) -> None:
-    table, closed_form = curved_table(PAD, None, material(name), radius), law(None, name, radius, None)
+    table, closed_form = (
+        curved_table(PAD, None, material(name), radius),
+        round_footprint(PAD, None, Surface.of(material(name)), radius),
+    )
     for force in (1.0, 10.0):
         for place in (
             (0.0, 0.0),

@@ -7,22 +7,19 @@ import numpy as np
 import pytest
 
 from thermograsp.compiled import njit
-from thermograsp.thermal import SKINS, Material, Pad, Skin, Surface, joint, material, materials
+from thermograsp.thermal import SKINS, Pad, Skin, Surface, joint, material, materials
 from thermograsp.thermal.contact import (
-    bare_footprint,
     bared,
     conduction,
     curved_contact,
     curved_table,
     cylinder_contact,
-    cylinder_footprint,
-    face_joint,
     flat_contact,
     flat_footprint,
     footprint,
+    round_footprint,
     skinned,
     sphere_contact,
-    sphere_footprint,
     touching,
 )
 
@@ -31,18 +28,6 @@ FORCES = np.geomspace(1e-3, 300.0, 90)
 RADII = np.geomspace(1e-3, 100.0, 16)
 PLACES = ((0.0, 0.0), (0.002, 0.001), (0.0044, 0.0044), (0.0, 0.0045), (0.005, 0.0), (0.007, 0.006))
 BODIES = {"ball": None, "rod": 0.05, "short rod": 0.006}
-
-
-def law(skin: Skin | None, made: Material, radius: float, length: float | None) -> np.void:
-    surface = Surface.of(made)
-    if skin is None:
-        return bare_footprint(PAD, surface, radius, length)
-    pad, pair = skinned(PAD, skin), face_joint(skin, surface)
-    return (
-        sphere_footprint(pad, pair, radius)
-        if length is None
-        else cylinder_footprint(pad, pair, radius, length)
-    )
 
 
 @njit(error_model="numpy")
@@ -66,7 +51,7 @@ def test_more_force_is_more_heat(skin: Skin | None, body: str) -> None:
     for name in materials():
         made = material(name)
         for radius in RADII * rng.uniform(0.8, 1.25, len(RADII)):
-            own = law(skin, made, float(radius), BODIES[body])
+            own = round_footprint(PAD, skin, Surface.of(made), float(radius), BODIES[body])
             middle = 0.0
             for place in PLACES:
                 felt = over_forces(own, place)
@@ -90,7 +75,8 @@ def test_a_ball_less_than_a_rod_and_a_rod_less_than_a_flat_face(skin: Skin | Non
         flat = over_forces(flat_footprint(pad, pair, (PAD.face, PAD.face)), (0.0, 0.0))
         for radius in np.geomspace(2e-3, 0.05, 6):
             ball, rod = (
-                over_forces(law(skin, made, float(radius), length), (0.0, 0.0)) for length in (None, 0.05)
+                over_forces(round_footprint(PAD, skin, Surface.of(made), float(radius), length), (0.0, 0.0))
+                for length in (None, 0.05)
             )
             assert (ball <= 1.02 * rod)[gripped].all(), (name, radius)
             assert (rod <= 1.02 * flat)[gripped].all(), (name, radius)
@@ -124,7 +110,10 @@ def test_nothing_jumps_as_a_body_slides_over_the_sensor_s_edge_and_the_pad_s(
     for _ in range(12):
         made = material(str(rng.choice(names)))
         radius, force = np.exp(rng.uniform(np.log([2e-3, 0.05]), np.log([1.0, 50.0])))
-        own, turn = law(skin, made, float(radius), BODIES[body]), rng.uniform(0, np.pi / 2)
+        own, turn = (
+            round_footprint(PAD, skin, Surface.of(made), float(radius), BODIES[body]),
+            rng.uniform(0, np.pi / 2),
+        )
         way = np.array([0.0, np.cos(turn), np.sin(turn)])
         largest = []
         for steps in (500, 2000):
@@ -139,7 +128,9 @@ def test_what_touches_and_its_force_are_never_more_than_there_is() -> None:
     for _ in range(400):
         made, skin = material(str(rng.choice(names))), (None, SKIN)[rng.integers(2)]
         radius, force = np.exp(rng.uniform(np.log([1e-3, 1e-3]), np.log([100.0, 1e3])))
-        own = law(skin, made, float(radius), list(BODIES.values())[rng.integers(3)])
+        own = round_footprint(
+            PAD, skin, Surface.of(made), float(radius), list(BODIES.values())[rng.integers(3)]
+        )
         area, load = footprint(own, force, np.append(0.0, rng.uniform(-0.02, 0.02, 2)))
         assert 0 <= area <= PAD.face**2 * (1 + 1e-9)
         assert 0 <= load <= force * (1 + 1e-9)
