@@ -1,8 +1,8 @@
 """A fingertip that touches a bar beside where it warmed it before: finite elements, and the environments' networks.
 
-The fingertip is pressed for WARMING s, apart for APART s, and pressed for AGAIN s on a patch beside the first, both of
-the sensor's face. Half of the element and of the bar are meshes as in fem.py; the element meets the bar's nodes at one
-place or the other.
+The fingertip is pressed for WARMING s, released for RELEASED s, and pressed for AGAIN s on a patch beside the first,
+both of the sensor's face. Half of the element and of the bar are meshes as in fem.py; the element meets the bar's nodes
+at one place or the other.
 
     python studies/second_touch.py           glass, stainless steel and aluminium
     python studies/second_touch.py glass --json

@@ -6,6 +6,7 @@ import io
 import json
 import logging
 import re
+import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -104,7 +105,7 @@ def test_an_interrupt_and_a_closed_pipe_are_quiet(
 
 
 def test_a_reader_that_leaves_early_sees_no_traceback() -> None:
-    command = f"{sys.executable} -m thermograsp materials --json | head -n 1"
+    command = f"{shlex.quote(sys.executable)} -m thermograsp materials --json | head -n 1"
     done = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("{\n", "")
 

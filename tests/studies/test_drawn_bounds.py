@@ -1,0 +1,34 @@
+"""What anybody could do with everything drawn: the study counts, and the teacher stays below its bound."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def study() -> Iterator[ModuleType]:
+    sys.path.insert(0, str(ROOT / "studies"))
+    yield importlib.import_module("drawn_bounds")
+    sys.path.remove(str(ROOT / "studies"))
+    del sys.modules["drawn_bounds"]
+
+
+def test_the_teacher_is_below_its_bound_and_later_is_surer(
+    study: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert study.main(["--episodes", "60", "--examples", "500", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert 45 < found["taught"] <= found["liftable"] < 60
+    right = list(found["right"].values())
+    assert 0.3 < right[0] <= right[1] <= right[2] < 1
+    with pytest.raises(SystemExit):
+        study.main(["--episodes", "0"])
