@@ -14,6 +14,7 @@ import hashlib
 import inspect
 import logging
 import os
+import pickle
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping
@@ -23,7 +24,7 @@ from typing import Any, cast
 import numba
 import numpy as np
 from numba.core import event, ir
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -87,7 +88,7 @@ def njit(
         )
         dispatcher: Any = numba.njit(**{**_FIXED_OPTIONS, **options, **entries})(function)
         if cache:
-            dispatcher._cache = _Cache(dispatcher, inner)
+            dispatcher._cache = _cache(dispatcher, inner)
         dispatcher.compile = _quickly(dispatcher)
         if inner:  # numba would take the entry that is not there
             dispatcher._insert = _nothing
@@ -216,7 +217,7 @@ def compile_beside(module: str, *needed: Any) -> None:
     module while this one goes on (see start_beside). This one waits only where it needs what the other is compiling at
     that moment. The code is the same whoever compiles it. One second process at a time has the same first function."""
     caches = [function.called()._cache for function in needed]
-    if not all(cache.keeps_any() for cache in caches):
+    if all(isinstance(cache, _Cache) for cache in caches) and not all(cache.keeps_any() for cache in caches):
         start_beside(module, caches[0].cache_path)
 
 
@@ -343,6 +344,26 @@ def compiled_hash(kernel: Any) -> str:
     return total.hexdigest()
 
 
+def _cache(dispatcher: Any, inner: bool) -> FunctionCache | NullCache:
+    """Where the function's code is kept. Where no folder can be written, each process compiles for itself."""
+    try:
+        return _Cache(dispatcher, inner)
+    except RuntimeError:  # of numba, which has tried them all
+        _warn_of_no_folder()
+        return NullCache()
+
+
+@functools.cache
+def _warn_of_no_folder() -> None:
+    """Once, not for every function."""
+    warnings.warn(
+        "compiled code can be kept neither beside its source nor in the user's cache folder, so every process compiles "
+        "for itself, which takes some seconds; set NUMBA_CACHE_DIR to a writable folder",
+        RuntimeWarning,
+        stacklevel=2,
+    )
+
+
 class _Cache(FunctionCache):
     """A kernel's compiled code on disk. The hash is taken when the code is first looked for, as a function may refer
     to what its module defines after it."""
@@ -404,7 +425,8 @@ def _tell(name: str) -> None:
 
 class _CacheFile(IndexDataCacheFile):
     """Safe where processes write at once. A file of code is named by what it holds and is written before the index
-    that names it; of two indices written at once one is lost, and with it no more than the time to compile again."""
+    that names it; of two indices written at once one is lost, and with it no more than the time to compile again.
+    Every file begins with a hash of the rest: one that is damaged, as by a loss of power, is as good as none."""
 
     def save(self, key: Any, data: Any) -> None:
         content = hashlib.sha256(f"{self._source_stamp}\0".encode() + dumps(key)).hexdigest()
@@ -415,6 +437,41 @@ class _CacheFile(IndexDataCacheFile):
         self._save_index({**known, key: name})
         if not known:
             self._remove_others(base, name)
+
+    def _load_index(self) -> dict[Any, str]:
+        kept = self._read(self._index_path)
+        if (
+            kept is None or kept[0] != self._version
+        ):  # numba's; another one's keys may mean nothing to this one
+            return {}
+        stamp, names = pickle.loads(kept[1])
+        return names if stamp == self._source_stamp else {}
+
+    def _save_index(self, overloads: Mapping[Any, str]) -> None:
+        self._write(self._index_path, (self._version, self._dump((self._source_stamp, overloads))))
+
+    def _load_data(self, name: str) -> Any:
+        return self._read(self._data_path(name))
+
+    def _save_data(self, name: str, data: Any) -> None:
+        self._write(self._data_path(name), data)
+
+    def _write(self, path: str, data: Any) -> None:
+        content = self._dump(data)
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+
+    def _read(self, path: str) -> Any:
+        """What _write wrote there; None where there is nothing of it."""
+        try:
+            with open(path, "rb") as file:
+                found, content = file.read(hashlib.sha256().digest_size), file.read()
+        except OSError:
+            return None
+        if hashlib.sha256(content).digest() != found:
+            _LOG.info("%s is damaged: its code is compiled again", path)
+            return None
+        return pickle.loads(content)
 
     def _remove_others(self, base: str, kept: str) -> None:
         """Code of an older version."""

@@ -147,10 +147,15 @@ def objects() -> Mapping[str, ObjectPreset]:
 
 
 def library_object(name: str) -> ObjectPreset:
-    """The object of that name. Raises UnknownNameError with near names."""
+    """The object of that name. Raises UnknownNameError with near names, and InvalidValueError for a file's name."""
     try:
         return objects()[name]
     except KeyError:
+        if Path(name).suffix:
+            raise InvalidValueError(
+                f"{name!r} is the name of a file, not of an object: give ObjectSpec(shape='mesh', mesh={name!r}), or "
+                "--mesh on the command line"
+            ) from None
         raise unknown_name("object", name, objects()) from None
 
 

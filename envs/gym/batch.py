@@ -187,6 +187,10 @@ class GraspBatch:
         """Starts the rows anew, each with its generator; observations and reading are of all environments. Raises
         ClosedEnvironmentError."""
         self.require_open("reset")
+        if not isinstance(options, Mapping | None):
+            raise InvalidValueError(
+                f"options must be a dict, such as {{'material': 'glass'}}, got {options!r}"
+            )
         reading = self.plant.reset(rows, rngs, options or {})
         for row, rng in zip(rows, rngs, strict=True):
             self.generators[row] = rng

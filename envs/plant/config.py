@@ -211,9 +211,15 @@ class SimulationConfig:
 
     @property
     def choices(self) -> tuple[Material, ...]:
-        """Materials that an episode draws from. Raises UnknownNameError, and InvalidValueError for an empty list."""
+        """Materials that an episode draws from. Raises UnknownNameError, and InvalidValueError for an empty list and
+        for what is no list."""
         given = SEED_MATERIALS if self.material is None else self.material
-        listed = [given] if isinstance(given, str | Material) else list(given)
+        try:
+            listed = [given] if isinstance(given, str | Material) else list(given)
+        except TypeError:
+            raise InvalidValueError(
+                f"material must be a name, a Material or a list of them, got {given!r}"
+            ) from None
         if not listed:
             raise InvalidValueError(
                 f"material is an empty list: give one of {len(materials())} names, or None"

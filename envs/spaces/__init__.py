@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from .actions import (
         action_of,
         action_space,
+        checked_action,
         command_of,
         sliding_action_of,
         sliding_action_space,
@@ -27,6 +28,7 @@ __all__ = [
     "action_of",
     "action_space",
     "arm_waits",
+    "checked_action",
     "command_of",
     "observation_space",
     "sliding_action_of",

@@ -6,6 +6,8 @@ B: environments.
 
 from __future__ import annotations
 
+from typing import Any
+
 import gymnasium
 import numpy as np
 
@@ -21,27 +23,30 @@ def action_space() -> gymnasium.spaces.Box:
 
 
 def command_of(action: np.ndarray) -> Command:
-    """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
-    finite."""
-    array = np.ascontiguousarray(action, np.float32)  # as the space's
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise InvalidValueError(
-            f"an action is (3,): opening, force limit, lift rate, each -1 .. 1; got shape {np.shape(action)[1:]}"
-        )
-    _finite(array)
+    """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
+    array = checked_action(action, 3, "opening, force limit, lift rate", np.float32)  # as the space's
     opening, force_limit, lift_rate = np.minimum(np.maximum(array, -1.0), 1.0).astype(float).T
     return Command(
         (opening + 1) / 2 * MAX_OPENING, (force_limit + 1) / 2 * MAX_FORCE, lift_rate * MAX_LIFT_RATE
     )
 
 
-def _finite(action: np.ndarray) -> None:
-    """Raises InvalidValueError, which names the first row of actions (B, n) that is not finite."""
-    if not np.isfinite(action).all():
-        row = int(np.argmin(np.isfinite(action).all(axis=1)))
+def checked_action(action: Any, numbers: int, parts: str, kind: type = float) -> np.ndarray:
+    """Actions as an array (B, numbers) of that kind. Raises InvalidValueError, which names the parts of an action, for
+    another shape, what is no number, and numbers that are not finite."""
+    wanted = f"an action is ({numbers},): {parts}, each -1 .. 1; got"
+    try:
+        array = np.ascontiguousarray(action, kind)
+    except (TypeError, ValueError):
+        raise InvalidValueError(f"{wanted} {np.asarray(action, object)[0]!r}") from None
+    if array.ndim != 2 or array.shape[1] != numbers:
+        raise InvalidValueError(f"{wanted} shape {np.shape(action)[1:]}")
+    if not np.isfinite(array).all():
+        row = int(np.argmin(np.isfinite(array).all(axis=1)))
         raise InvalidValueError(
-            f"action {action[row]} of environment {row} is not finite: give numbers in -1 .. 1"
+            f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
         )
+    return array
 
 
 def sliding_action_space() -> gymnasium.spaces.Box:
@@ -50,15 +55,8 @@ def sliding_action_space() -> gymnasium.spaces.Box:
 
 
 def sliding_command_of(action: np.ndarray) -> Command:
-    """Commands of actions (B, 4), clipped to -1 .. 1. Raises InvalidValueError for a wrong shape or a value that is not
-    finite."""
-    array = np.asarray(action, dtype=float)
-    if array.ndim != 2 or array.shape[1] != 4:
-        raise InvalidValueError(
-            "an action is (4,): opening, force limit, lift rate, lateral rate, each -1 .. 1; got shape "
-            f"{np.shape(action)[1:]}"
-        )
-    _finite(array)
+    """Commands of actions (B, 4), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
+    array = checked_action(action, 4, "opening, force limit, lift rate, lateral rate")
     sideways = np.clip(array[:, 3], -1.0, 1.0)
     return command_of(array[:, :3])._replace(lateral_rate=sideways * MAX_LATERAL_RATE)
 

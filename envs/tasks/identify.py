@@ -15,6 +15,7 @@ from thermograsp.errors import InvalidValueError, non_negative, positive
 from thermograsp.plant import Command, Reading
 
 from ..limits import MAX_FORCE, MAX_OPENING
+from ..spaces import checked_action
 from .task import Outcome
 
 SHARPNESS = 5.0  # of the declared distribution: softmax of 5 times the action, at most e^10 to 1
@@ -59,17 +60,8 @@ class IdentifyTask:
 
     def command(self, action: np.ndarray) -> Command:
         """The arm stays down; the fingers close or open."""
-        array = np.asarray(action, dtype=float)
-        if array.ndim != 2 or array.shape[1] != 2 + len(self.classes):
-            raise InvalidValueError(
-                f"an action is ({2 + len(self.classes)},): force, declare and {len(self.classes)} classes, each "
-                f"-1 .. 1; got shape {np.shape(action)[1:]}"
-            )
-        if not np.isfinite(array).all():
-            row = int(np.argmin(np.isfinite(array).all(axis=1)))
-            raise InvalidValueError(
-                f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
-            )
+        classes = len(self.classes)
+        array = checked_action(action, 2 + classes, f"force, declare and {classes} classes")
         force = np.clip(array[:, 0], 0.0, 1.0) * MAX_FORCE
         return Command(np.where(force > 0, 0.0, MAX_OPENING), force, np.zeros(len(array)))
 

@@ -138,6 +138,11 @@ class Session:
         return self._grasp is not None and self._grasp.paced and self._grasp.running
 
     @property
+    def preparing(self) -> bool:
+        """Whether a choice is still to take effect."""
+        return self._wanted is not None
+
+    @property
     def time(self) -> float:
         """s of the grasp."""
         return 0.0 if self._grasp is None else self._grasp.time

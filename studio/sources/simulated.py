@@ -24,7 +24,6 @@ from thermograsp.thermal.network import Orders
 
 _FOREVER = 1e6  # s: an episode lasts as long as its visitor looks
 _UP = 1e-3  # m
-_NETWORK = "network:"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +39,8 @@ class Cost:
 
 
 class SimulatedGrasp:
-    """`choices` set up and reset. dt: s. rows: B, called `names`. paced: whether a step takes as long as it lasts, as
-    on hardware. running: whether there is more to come. batch, plant: what is simulated. Raises
+    """`choices` set up, tried for a step and reset. dt: s. rows: B, called `names`. paced: whether a step takes as long
+    as it lasts, as on hardware. running: whether there is more to come. batch, plant: what is simulated. Raises
     InvalidValueError, such as for a tolerance that no network keeps."""
 
     paced = False
@@ -72,6 +71,8 @@ class SimulatedGrasp:
         self._watch.put_on(self.plant.heat, "advance", "heat")
         self._model, self._data = (self.plant.mechanics.env_model(0), self.plant.mechanics.env_data(0))
         self._driving = Driving(self._env, stock.network)
+        self.reset(choices.seed)
+        self.step(Controls())  # what a first step compiles or loads is there before the grasp is shown
         self.reset(choices.seed)
 
     @property
@@ -147,12 +148,12 @@ class SimulatedGrasp:
     def cost(self, row: int) -> Cost:
         """Of the row's heat model."""
         rung = str(self._reading.truth["rung"][row])
-        orders = Orders.parse(rung.removeprefix(_NETWORK)) if rung.startswith(_NETWORK) else None
+        orders = Orders.parse(rung.partition(":")[2])  # of "network:..." or "body:..."
         spent, steps = self._watch.seconds, max(self._steps, 1)
         return Cost(
             rung,
-            orders.states if orders else 0,
-            orders.multiply_adds if orders else 0,
+            orders.states,
+            orders.multiply_adds,
             spent["heat"] / steps,
             spent["all"] / steps,
         )

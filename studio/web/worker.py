@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from thermograsp.envs.sensing import start_compiling
 from thermograsp.errors import SimulationError
 from thermograsp.studio.control import Choices, Stock
 
@@ -65,7 +66,9 @@ class Worker:
 
 
 def warm_up() -> None:
-    """Loads what a session needs, once for all that follow, where the system can hand it on."""
+    """Loads what a session needs, once for all that follow, where the system can hand it on. What is not compiled yet
+    begins to be."""
+    start_compiling()
     context = _context()
     process = context.Process(target=int, daemon=True)
     process.start()
@@ -97,9 +100,9 @@ def _serve(pipe: Connection, leaving: Connection, stock: Stock, choices: Choices
             messages = pipe.recv() if requested else ()
             for message in messages:
                 session.handle(message)
-            now = time.monotonic()
+            preparing, now = session.preparing, time.monotonic()
             session.advance(now - last)
-            last = now
+            last = time.monotonic() if preparing else now  # what took long to set up begins at its beginning
             if requested:
                 pipe.send([json.dumps(message, separators=(",", ":")) for message in session.messages()])
     except (EOFError, OSError):

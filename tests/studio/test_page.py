@@ -205,10 +205,18 @@ def test_pause_step_speed_and_again(visit: Any, url: str) -> None:
 
 def test_a_thing_that_has_its_own_material_and_temperature(visit: Any, url: str) -> None:
     page = visit(url)
+    seen = "window.seen = getComputedStyle(document.querySelector('#scene')).visibility"
+    page.evaluate(
+        "new MutationObserver(() => { if (document.body.dataset.state === 'busy') "
+        + seen
+        + "; }).observe(document.body, { attributes: true })"
+    )
     page.select_option("#shape", "toy_block")
     wait(page, "document.querySelector('#names p').textContent.startsWith('toy block')")
     wait(page, "document.querySelector('#busy').hidden")
+    assert page.evaluate("window.seen") == "hidden"  # no glass while it was prepared
     until(page, 0.3)
+    assert page.locator("#cost").inner_text().startswith("Heat model: a network of ")
     assert not page.locator("#material").is_visible() and page.locator("#shape").is_visible()
     for name in ("#shape", "#range-roughness", "#range-ambient"):  # laid out below their headings
         box = page.locator(name).bounding_box()

@@ -260,7 +260,7 @@ def test_two_visitors_have_a_simulation_each_and_one_that_is_killed_says_so() ->
 class Noting:
     """Stands in for a session, and notes when it is closed."""
 
-    paced = False
+    paced = preparing = False
 
     def __init__(self, file: Path) -> None:
         self._file = file
@@ -296,6 +296,38 @@ def test_a_session_is_closed_before_its_process_ends(
     worker.stop()
     assert worker._process.exitcode in (0, 128 + signal.SIGTERM)
     assert file.read_text() == "closed"
+
+
+class Prepared:
+    """Stands in for a session that takes a while to set up, and tells by how many seconds too much it was advanced."""
+
+    paced = False
+    preparing, late = True, 0.0
+
+    def advance(self, seconds: float) -> None:
+        if self.preparing:
+            time.sleep(0.3)
+            self.preparing, self._ready = False, time.monotonic()
+        else:
+            self.late = seconds - (time.monotonic() - self._ready)
+
+    def messages(self) -> list[float]:
+        return [self.late]
+
+    def close(self) -> None:
+        pass
+
+
+def test_time_begins_when_a_grasp_is_set_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    from thermograsp.studio import session
+
+    monkeypatch.setattr(session, "Session", lambda stock, choices: Prepared(), raising=False)
+    monkeypatch.setattr("thermograsp.studio.web.worker._context", lambda: multiprocessing.get_context("fork"))
+    worker = Worker(Stock(), Choices())
+    worker.exchange([])
+    (late,) = worker.exchange([])
+    assert float(late) <= 0.0
+    worker.stop()
 
 
 def test_a_worker_whose_server_is_gone_ends() -> None:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -216,6 +217,30 @@ def test_it_is_told_that_a_choice_takes_a_moment(session: Session) -> None:
     assert frame["busy"] == "wood"
     messages = turn(session)
     assert of_kind(messages, "scene")[0]["rows"] == ["wood"] and messages[-1]["busy"] == ""
+
+
+def test_a_grasp_is_shown_when_its_first_step_has_been_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page would stand still else, and the library of curves keep the compiler busy meanwhile."""
+    done = []
+    step, submit = GraspBatch.step, ThreadPoolExecutor.submit
+
+    def stepped(self: GraspBatch, action: np.ndarray) -> Any:
+        done.append("step")
+        return step(self, action)
+
+    def submitted(self: ThreadPoolExecutor, *work: Any) -> Any:
+        done.append("curves")
+        return submit(self, *work)
+
+    monkeypatch.setattr(GraspBatch, "step", stepped)
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", submitted)
+    session = Session()
+    turn(session)
+    assert session.preparing and not done
+    messages = turn(session)
+    assert done == ["step", "curves"] and of_kind(messages, "scene") and session.time == 0.0
+    assert of_kind(messages, "frame")[0]["curves"] == {}
+    session.close()
 
 
 def test_a_choice_that_cannot_be_had_leaves_what_was() -> None:

@@ -131,17 +131,20 @@ def _close(free: Explained, least: float) -> float:
 def _message(result: Identification) -> str:
     share = f"{result.best.replace('_', ' ')} ({100 * result.probability.max():.0f} %)"
     low, high = result.effusivity.interval()
-    object_ = f"effusivity {result.effusivity.median:.0f}, {low:.0f} .. {high:.0f} W s^0.5/(m2 K)"
+    object_ = (
+        f"its effusivity is {result.effusivity.median:.0f} W s^0.5/(m2 K), and from {low:.0f} to {high:.0f} with a "
+        "probability of 90 %"
+    )
     mean, deviation = result.difference
     several = result.likely()
     names = ", ".join(one.replace("_", " ") for one in several[:6]) + (" ..." if len(several) > 6 else "")
     return {
-        Verdict.MATERIAL: f"{share}; {object_}",
-        Verdict.SEVERAL: f"one of {len(several)} materials: {names}; {object_}",
-        Verdict.TOO_CLOSE: "object and finger were too close in temperature to tell what the object is of; "
+        Verdict.MATERIAL: f"it is {share}; {object_}",
+        Verdict.SEVERAL: f"it is one of {len(several)} materials: {names}; {object_}",
+        Verdict.TOO_CLOSE: "object and finger were too close in temperature to tell what the object is made of; "
         "heat or cool one of them by some kelvin",
         Verdict.NO_TOUCH: "the voltage shows no touch: there was none, or object and finger had the same temperature",
-        Verdict.NOT_LISTED: f"none of the materials, the nearest is {share}; {object_}",
-        Verdict.UNEXPLAINED: f"no object in a steady contact explains the curve, the nearest material is {share}; "
+        Verdict.NOT_LISTED: f"it is none of the materials, of which {share} is the nearest; {object_}",
+        Verdict.UNEXPLAINED: f"no object in a steady contact explains the curve; the nearest material is {share}; "
         f"check the object's size, the temperatures (found {mean:.1f} K apart) and that the contact lasted",
     }[result.verdict]

@@ -14,11 +14,11 @@ export function showBelief(holder, posteriors, materials) {
     one.style.setProperty("--row", rowColour(row));
     const found = posteriors[row];
     if (!found || found.verdict === "no_touch") {
-      one.replaceChildren(verdict(found ? "Nothing touched yet." : "Learns how materials feel; the first time takes a while."));
+      one.replaceChildren(verdict(found ? "Nothing is touched yet." : "The studio is learning how the materials feel. The first time takes a while."));
       return;
     }
     one.replaceChildren(...found.likely.slice(0, SHOWN).flatMap(([name, chance]) => bar(name, chance, name === material)),
-      verdict(found.message));
+      verdict(`${found.message[0].toUpperCase()}${found.message.slice(1)}.`));
   });
 }
 

@@ -128,10 +128,10 @@ function show(now) {
 
 function described(costs) {
   if (!costs.length) return "";
-  const rungs = costs.map(({ rung, states, multiply_adds: adds }) => (
-    states ? `Heat model: a network of ${states} states, ${adds} multiply-adds a sample` : rung));
+  const models = costs.map(({ states, multiply_adds: adds }) => (
+    `Heat model: a network of ${states} states, ${adds} multiply-adds a sample`));
   const { heat, all } = costs[0];
-  return `${[...new Set(rungs)].join("\n")}\nHeat takes ${Math.round(1e6 * heat)} of a step’s ${Math.round(1e6 * all)} µs`;
+  return `${[...new Set(models)].join("\n")}\nHeat takes ${Math.round(1e6 * heat)} of a step’s ${Math.round(1e6 * all)} µs`;
 }
 
 function remember({ time, rows }) {

@@ -166,8 +166,17 @@ def test_bad_keywords_say_what_to_do():
         GraspEnv(render_mode="rgb_aray")
     with pytest.raises(UnknownNameError, match="plant"):
         GraspEnv(plant="gazebo")
+    with pytest.raises(
+        InvalidValueError, match="material must be a name, a Material or a list of them, got 3"
+    ):
+        GraspEnv(material=3)
+    with pytest.raises(InvalidValueError, match="'mine.stl' is the name of a file.*ObjectSpec.shape='mesh'"):
+        GraspEnv(objects="mine.stl")
+    env = GraspEnv()
     with pytest.raises(InvalidValueError, match="reset"):
-        GraspEnv().step(np.zeros(3))
+        env.step(np.zeros(3))
+    with pytest.raises(InvalidValueError, match="options must be a dict, such as .*got 'glass'"):
+        env.reset(options="glass")  # pyright: ignore[reportArgumentType]
 
 
 def test_observations_share_no_memory_and_all_of_them_vary():

@@ -1,5 +1,7 @@
 """Commands in SI units and the actions that stand for them."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -47,3 +49,17 @@ def test_a_command_that_the_gripper_does_not_have_is_refused(
 def test_a_lateral_rate_that_the_arm_does_not_have_is_refused() -> None:
     with pytest.raises(InvalidValueError, match="lateral_rate 0.2 m/s: give -0.1 to 0.1 m/s"):
         sliding_action_of(0.0, 10.0, 0.0, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["close"], r"an action is \(3,\): opening, force limit, lift rate, each -1 .. 1; got 'close'"),
+        ([None], r"an action is \(3,\)"),
+        (np.zeros((1, 2)), r"got shape \(2,\)"),
+        ([[0.0, np.nan, 0.0]], "environment 0 is not finite"),
+    ],
+)
+def test_what_is_no_action_is_refused(given: Any, said: str) -> None:
+    with pytest.raises(InvalidValueError, match=said):
+        command_of(given)
