@@ -35,7 +35,7 @@ def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     except (OSError, ValueError, csv.Error) as error:
         raise InvalidValueError(f"cannot read {path}: {error}") from error
     if not rows:
-        raise InvalidValueError(f"{path} has no rows: it must hold a header of names and one row a sample")
+        raise InvalidValueError(f"{path} has no rows: it must hold a header of names and one row per sample")
     for number, row in enumerate(rows, start=2):
         if len(row) != len(header):
             raise InvalidValueError(f"{path}, row {number}: {len(row)} cells under {len(header)} names")

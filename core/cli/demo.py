@@ -113,6 +113,6 @@ def _print(output: Output, runs: Sequence[ModeRun]) -> None:
     output.table(header, rows)
     for one in runs:
         output.line(
-            f"{one.mode} mode: {one.physics_steps_per_s:.0f} physics steps/s, of the time "
-            f"{100 * one.heat_share:.0f} % for heat and {100 * one.mechanics_share:.0f} % for mechanics"
+            f"{one.mode} mode: {one.physics_steps_per_s:.0f} physics steps/s; heat takes "
+            f"{100 * one.heat_share:.0f} % of the time and mechanics {100 * one.mechanics_share:.0f} %"
         )

@@ -32,9 +32,9 @@ def _section(name: str) -> str:
         paragraphs = _paragraphs(type(env))
         parts = (
             f"## {name}\n\n{paragraphs['']}",
-            f"### Action\n\n{_numbers(env.action_space)}, one every {1e3 * env.dt:.0f} ms. "
-            f"What is outside is clipped.\n\n{action_table(name, env)}",
-            f"### Observation\n\nA `Dict` of float32 boxes.\n\n{observation_table(name, env)}",
+            f"### Action\n\nThe action space is {_numbers(env.action_space)}, with one action every "
+            f"{1e3 * env.dt:.0f} ms. Values outside it are clipped.\n\n{action_table(name, env)}",
+            f"### Observation\n\nThe observation space is a `Dict` of float32 boxes.\n\n{observation_table(name, env)}",
             f"### Reward and end\n\n{paragraphs['Reward']}",
             f"### Info\n\n{info_table(name, env)}",
             f"### Keywords\n\n{paragraphs['Keywords']}",

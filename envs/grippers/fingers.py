@@ -189,7 +189,7 @@ def of_one_hand(hand: Hand, found: Sequence[tuple[Finger, Finger]]) -> list[tupl
         names, lengths = zip(*((finger.name, _length(hand, finger)) for finger in found[0]), strict=True)
         raise GripperError(
             f"{names[0]!r} and {names[1]!r} close on each other by way of arms, {max(lengths):.2f} m from their first "
-            f"joint on {hand.model.body(hand.palm).name!r}: they are no fingers of one hand. Name the actuators that "
+            f"joint on {hand.model.body(hand.palm).name!r}: they are not fingers of one hand. Name the actuators that "
             "close one hand alone (actuators), or give that hand's own file"
         )
     return kept

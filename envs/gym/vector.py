@@ -144,7 +144,7 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         actions = np.asarray(actions)
         if actions.shape != self.action_space.shape:
             raise InvalidValueError(
-                f"step takes actions of shape {self.action_space.shape}, one of each environment; got {actions.shape}"
+                f"step takes actions of shape {self.action_space.shape}, one for each environment; got {actions.shape}"
             )
         starting = self._ended.copy()
         if not starting.any():

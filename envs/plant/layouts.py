@@ -92,7 +92,7 @@ class SceneLayout:
         """See Layout."""
         unknown = set(options) - {"material"}
         if unknown:
-            raise InvalidValueError(f"unknown reset options {sorted(unknown)}: material is known")
+            raise InvalidValueError(f"unknown reset options {sorted(unknown)}; the known one is 'material'")
         config, choices = self.config, self._choices
         if "material" in options:
             config = replace(config, material=options["material"])

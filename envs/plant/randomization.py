@@ -202,7 +202,7 @@ def checked(causes: Iterable[Cause]) -> tuple[Cause, ...]:
     for cause in causes:
         if type(cause) not in CAUSES:
             known = ", ".join(kind.__name__ for kind in CAUSES)
-            raise InvalidValueError(f"randomize: {cause!r} is no cause; known are {known}")
+            raise InvalidValueError(f"randomize: {cause!r} is not a randomisation; known are {known}")
         if type(cause) in given:
             raise InvalidValueError(f"randomize: {type(cause).__name__} is given twice")
         given[type(cause)] = cause

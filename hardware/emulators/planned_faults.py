@@ -84,4 +84,4 @@ def fault_number(text: str, number: str) -> float:
     try:
         return non_negative(f"fault {text!r}", float(number))
     except ValueError:
-        raise InvalidValueError(f"fault {text!r}: {number!r} is no number of 0 or above") from None
+        raise InvalidValueError(f"fault {text!r}: {number!r} is not a number of 0 or above") from None

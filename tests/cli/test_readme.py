@@ -7,6 +7,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from thermograsp.cli import COMMANDS, main
 from thermograsp.cli.shared.versions import DEVELOPMENT
@@ -44,8 +45,12 @@ def test_extras_are_those_of_setup_cfg() -> None:
     assert named == set(parser["options.extras_require"]) - DEVELOPMENT
 
 
-def test_the_picture_is_small() -> None:
-    assert (ROOT / "docs" / "images" / "demo.png").stat().st_size < 300_000
+def test_it_is_short_and_its_picture_moves() -> None:
+    assert len(README.split()) <= 700
+    (path,) = re.findall(r"!\[.*?\]\((.*?)\)", README)
+    assert (ROOT / path).stat().st_size < 1_000_000
+    with Image.open(ROOT / path) as picture:
+        assert getattr(picture, "n_frames", 1) > 10
 
 
 def test_example_press(capsys: pytest.CaptureFixture[str]) -> None:

@@ -180,7 +180,7 @@ class ArrayFingertips:
                 )
             if numbers.shape not in ((), (rows,)):
                 raise InvalidValueError(
-                    f"which must be one number or one of each of the {rows} rows, got shape {numbers.shape}"
+                    f"which must be one number or one for each of the {rows} rows, got shape {numbers.shape}"
                 )
         return which
 

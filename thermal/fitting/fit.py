@@ -272,7 +272,7 @@ class _Problem:
         if singular[-1] <= _OPEN * singular[0] or not scale.all():
             names = [name for k, name in enumerate(self.free) if abs(turn[-1, k]) > 0.1 or not scale[k]]
             raise InvalidValueError(
-                f"the touches leave {' and '.join(names) or 'a conductance'} open: hold one of them"
+                f"the touches do not determine {' and '.join(names) or 'a conductance'}: hold one of them"
             )
         half = turn.T / singular / scale[:, None]
         return half @ half.T

@@ -13,6 +13,7 @@ from scipy.interpolate import CubicSpline
 from threadpoolctl import threadpool_limits
 
 from thermograsp.files import cached_arrays
+from thermograsp.notice import busy
 
 from ..matter import Material, SensorStack
 from ..matter import material as named_material
@@ -121,7 +122,8 @@ def curve_library(
         found = [curves(one.conductivity, one.volumetric_heat_capacity) for one in chosen]
         return {"coefficients": _project(functions, np.array(found))[:, None]}
 
-    stored = cached_arrays({**key, "of": "objects"}, objects, enabled=cache)
+    with busy("computing how materials feel to this sensor, once"):
+        stored = cached_arrays({**key, "of": "objects"}, objects, enabled=cache)
     functions = stored["functions"]
     properties = [(one.conductivity, one.volumetric_heat_capacity) for one in chosen]
     named_curves = cached_arrays({**key, "of": "materials", "materials": properties}, named, enabled=cache)

@@ -106,7 +106,7 @@ def _checked(arrays: dict[str, np.ndarray]) -> Recordings:
         raise InvalidValueError("time_s must rise in equal steps")
     if steps.mean() > _COARSEST:
         raise InvalidValueError(
-            f"time_s has a sample each {steps.mean():g} s: it must be in s, {_COARSEST:g} s or less apart"
+            f"time_s has a sample every {steps.mean():g} s: it must be in s, {_COARSEST:g} s or less apart"
         )
     if t[0] > _EARLIEST or t[-1] < _LATEST:
         raise InvalidValueError(
@@ -125,7 +125,7 @@ def _checked(arrays: dict[str, np.ndarray]) -> Recordings:
             )
     for name in _ROWS:
         if arrays[name].shape != (rows,):
-            raise InvalidValueError(f"{name} must be ({rows},), one a touch, got {arrays[name].shape}")
+            raise InvalidValueError(f"{name} must be ({rows},), one per touch, got {arrays[name].shape}")
     for name in ("heated_degC", "passive_degC"):
         _within(name, curves[name], _COLDEST, _HOTTEST, "°C")
     _within("force_N", curves["force_N"], -_STRONGEST, _STRONGEST, "N")

@@ -140,7 +140,7 @@ def test_actions_of_another_shape_are_refused_and_change_nothing(action: object)
     env.reset(seed=0)
     before = env.state()
     with pytest.raises(
-        InvalidValueError, match=r"step takes actions of shape \(3, 3\), one of each environment; got"
+        InvalidValueError, match=r"step takes actions of shape \(3, 3\), one for each environment; got"
     ):
         env.step(action)  # pyright: ignore[reportArgumentType]
     assert np.array_equal(env.state().batch.history, before.batch.history)

@@ -172,7 +172,7 @@ def test_a_saved_state_keeps_what_was_drawn():
 @pytest.mark.parametrize(
     ("keywords", "message"),
     [
-        ({"randomize": ["mass"]}, "is no cause"),
+        ({"randomize": ["mass"]}, "is not a randomisation"),
         ({"randomize": [Mass(), Mass()]}, "given twice"),
         ({"randomize": [Size((3.0,))]}, "wide"),
         ({"objects": []}, "at least one"),

@@ -181,7 +181,7 @@ def arrays() -> dict[str, np.ndarray]:
         ("material", np.array([{}] * 4), "no .npz file of plain arrays"),
         ("material", np.array([b"wood"] * 4), "must be strings"),
         ("time_s", np.linspace(-1, 5, 151)[::-1], "must rise in equal steps"),
-        ("time_s", np.linspace(-1000, 5000, 151), "a sample each 40 s: it must be in s"),
+        ("time_s", np.linspace(-1000, 5000, 151), "a sample every 40 s: it must be in s"),
         ("time_s", np.array([0.0]), r"time_s must be \(20 or more,\), got \(1,\)"),
         ("force_N", np.full((4, 151), 459.0), "force_N holds 459: it must be in N"),
         ("force_N", np.full((4, 151), -4.0), "above 0, in N"),
