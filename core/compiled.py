@@ -191,7 +191,10 @@ def _quickly(dispatcher: Any) -> Callable[[Any], Any]:
         if (known := dispatcher.overloads.get(arguments)) is not None:
             return known.entry_point
         with global_compiler_lock, _turn(dispatcher, signature), _in_less_time(), _into(_InnerLibrary):
+            missed = sum(dispatcher.stats.cache_misses.values())
             entry = compile_(signature)
+            if sum(dispatcher.stats.cache_misses.values()) == missed:
+                _let_age()
         library = dispatcher.overloads[arguments].library
         for held in library._final_module.global_variables:
             if held.name.startswith(_ENVIRONMENT) and (found := lookup_environment(held.name)) is not None:
@@ -219,6 +222,14 @@ def compile_beside(module: str, *needed: Any) -> None:
     caches = [function.called()._cache for function in needed]
     if all(isinstance(cache, _Cache) for cache in caches) and not all(cache.keeps_any() for cache in caches):
         start_beside(module, caches[0].cache_path)
+
+
+def _let_age() -> None:
+    """What has been loaded lasts as long as the process. Python puts it among its oldest objects at once: it would
+    search all of it for cycles twice, for some 10 ms each, the second time amid somebody's steps."""
+    if gc.get_freeze_count() == 0:
+        gc.freeze()
+        gc.unfreeze()
 
 
 @contextmanager

@@ -145,28 +145,49 @@ def test_none_is_started_where_it_would_not_help(
         start_beside(module, str(tmp_path))
 
 
+PLATES = """
+from thermograsp.envs.sensing.kernel import advance_grasps as step, advance_row, workspace
+inner, entries = [advance_row, workspace], []
+"""
+BOXES = """
+from thermograsp.envs.sensing.kernel import advance_boxes as step, advance_fixed, fixed_room
+from thermograsp.envs.sensing.places import strayed
+from thermograsp.thermal.batch import fixed_rates
+from thermograsp.thermal.kernels import touched
+from thermograsp.thermal.numerics import port_residues
+inner = [advance_fixed, fixed_room]
+entries = [port_residues, strayed, touched._at_moments, touched._shielded, touched._warmed, fixed_rates._gram]
+"""
+
+
 @pytest.mark.slow
-def test_what_is_compiled_ahead_is_what_a_step_needs(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("module", "keywords", "needed"), [("ahead", {}, PLATES), ("boxes_ahead", {"anywhere": True}, BOXES)]
+)
+def test_what_is_compiled_ahead_is_what_a_step_needs(
+    tmp_path: Path, module: str, keywords: dict[str, bool], needed: str
+) -> None:
     """The first step finds it, and senses the same bits as one that compiles all itself."""
-    step = """
+    step = f"""
 import hashlib
 import gymnasium, numpy as np, thermograsp
 from thermograsp.envs.sensing import kernel
 from thermograsp.thermal.readout import measure_rows
-env = gymnasium.make("thermograsp/Grasp-v0")
+{needed}
+env = gymnasium.make("thermograsp/Grasp-v0", **{keywords})
 env.reset(seed=0)
 total = hashlib.sha256()
 for _ in range(40):
     observation = env.step(np.array([-1, 0, 0], np.float32))[0]
     total.update(observation["voltage"].tobytes())
-ahead = kernel.gas_conduction, kernel.footprint, kernel.solid_conduction, kernel.advance_row, kernel.workspace
-ahead = [one.called() for one in (*ahead, kernel._reading)]
-missed = sum(sum(one.stats.cache_misses.values()) for one in (*ahead, measure_rows))
-print(missed, sum(kernel.advance_grasps.stats.cache_misses.values()), total.hexdigest())
+inner += [kernel.gas_conduction, kernel.footprint, kernel.solid_conduction, kernel._reading]
+ahead = [one.called() for one in inner] + [measure_rows, *entries]
+missed = sum(sum(one.stats.cache_misses.values()) for one in ahead)
+print(missed, sum(step.stats.cache_misses.values()), total.hexdigest())
 """
     printed = []
     for name, code in (
-        ("ahead", "from thermograsp.envs.sensing.ahead import compile_ahead; compile_ahead()"),
+        ("ahead", f"from thermograsp.envs.sensing.{module} import compile_ahead; compile_ahead()"),
         ("none", ""),
     ):
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / name), ALONE: "1"}

@@ -1,5 +1,6 @@
 """Compiled code on disk is used only where nothing that was compiled into it has changed."""
 
+import gc
 import importlib
 import os
 import pkgutil
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from numba.core.dispatcher import Dispatcher
 
+from thermograsp import compiled
 from thermograsp.compiled import compiled_hash, njit
 from thermograsp.errors import InvalidValueError
 
@@ -298,3 +300,23 @@ def test_short_loops_use_no_vectors_and_have_the_same_bits() -> None:
         code = "".join(function.inspect_llvm().values())
         assert ("x double>" in code) == (function is plain)
     assert np.array_equal(*results)
+
+
+def test_loaded_code_is_old_at_once_but_what_somebody_froze_stays_frozen() -> None:
+    def age(one: object) -> int | None:
+        found = (n for n in range(3) if any(other is one for other in gc.get_objects(n)))
+        return next(found, None)
+
+    gc.disable()
+    try:
+        loaded: list[object] = [[]]
+        assert age(loaded) == 0
+        compiled._let_age()
+        assert age(loaded) == 2
+        gc.freeze()
+        young: list[object] = [[]]
+        compiled._let_age()
+        assert age(young) == 0 and gc.get_freeze_count() > 0
+    finally:
+        gc.unfreeze()
+        gc.enable()

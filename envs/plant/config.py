@@ -407,17 +407,26 @@ class SimulationConfig:
         drawn = next((cause for cause in self.randomize if isinstance(cause, Size)), None)
         if drawn is None or self.mode == "O":
             return False
-        from ..sensing import served_anywhere, served_in_the_middle
-
         if self.anywhere:
-            return all(
-                served_anywhere(shape, self.tolerance, self._most_difference(shape)) for shape in self.shapes
-            )
+            return self.by_kernels
+        from ..sensing import served_in_the_middle
+
         return all(
             served_in_the_middle(
                 scaled(shape, min(drawn.extremes)), self.stack, self.tolerance, self._most_difference(shape)
             )
             for shape in self.shapes
+        )
+
+    @cached_property
+    def by_kernels(self) -> bool:
+        """Whether the networks of all objects come from heat kernels."""
+        if not self.anywhere or self.mode == "O":
+            return self.any_size
+        from ..sensing import served_anywhere
+
+        return all(
+            served_anywhere(shape, self.tolerance, self._most_difference(shape)) for shape in self.shapes
         )
 
     def _most_difference(self, shape: ObjectSpec) -> float:

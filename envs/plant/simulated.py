@@ -60,7 +60,7 @@ class SimulatedPlant:
     scenes; None for the config's objects or scene. scenes: each environment's objects."""
 
     def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
-        start_compiling()
+        start_compiling(boxes=config.by_kernels)
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = num_envs, config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)
