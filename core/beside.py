@@ -68,8 +68,8 @@ def _handle(folder: str) -> int | None:
     return _OPEN[folder]
 
 
-def start_beside(module: str, folder: str) -> None:
-    """Starts a second process that calls compile_ahead() of a module, and ends with it or with this process.
+def start_beside(module: str, folder: str, function: str = "compile_ahead") -> None:
+    """Starts a second process that calls a function of a module, and ends with it or with this process.
 
     None is started where $THERMOGRASP_COMPILE_ALONE is set, where there is one processor, where Python is part of a
     frozen program, where processes cannot take turns in the folder, or where one is at work already."""
@@ -79,7 +79,7 @@ def start_beside(module: str, folder: str) -> None:
     with turn(folder, 0, wait=False) as free:
         if not free:
             return
-    code = f"from thermograsp.beside import _main; _main({module!r}, {folder!r})"
+    code = f"from thermograsp.beside import _main; _main({module!r}, {folder!r}, {function!r})"
     try:
         process = subprocess.Popen(
             [sys.executable, "-P", "-W", "ignore", "-c", code],
@@ -106,12 +106,12 @@ def _processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _main(module: str, folder: str) -> None:
+def _main(module: str, folder: str, function: str) -> None:
     """The second process."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
     with turn(folder, 0, wait=False) as free:
         if free:
-            importlib.import_module(module).compile_ahead()
+            getattr(importlib.import_module(module), function)()
 
 
 def _end_with_parent() -> None:

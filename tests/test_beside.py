@@ -162,10 +162,11 @@ entries = [port_residues, strayed, touched._at_moments, touched._shielded, touch
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("module", "keywords", "needed"), [("ahead", {}, PLATES), ("boxes_ahead", {"anywhere": True}, BOXES)]
+    ("function", "keywords", "needed"),
+    [("compile_ahead", {}, PLATES), ("compile_boxes_ahead", {"anywhere": True}, BOXES)],
 )
 def test_what_is_compiled_ahead_is_what_a_step_needs(
-    tmp_path: Path, module: str, keywords: dict[str, bool], needed: str
+    tmp_path: Path, function: str, keywords: dict[str, bool], needed: str
 ) -> None:
     """The first step finds it, and senses the same bits as one that compiles all itself."""
     step = f"""
@@ -187,7 +188,7 @@ print(missed, sum(step.stats.cache_misses.values()), total.hexdigest())
 """
     printed = []
     for name, code in (
-        ("ahead", f"from thermograsp.envs.sensing.{module} import compile_ahead; compile_ahead()"),
+        ("ahead", f"from thermograsp.envs.sensing import ahead; ahead.{function}()"),
         ("none", ""),
     ):
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / name), ALONE: "1"}

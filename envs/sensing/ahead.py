@@ -12,12 +12,27 @@ from numba import types
 
 from thermograsp.compiled import compile_beside
 
-from ...thermal.batch import HeatTables, advance_fixed, advance_row, fixed_room, no_fixed_tables
+from ...thermal import material, sensor
+from ...thermal.batch import (
+    FIXED_LEVEL,
+    HeatTables,
+    advance_fixed,
+    advance_row,
+    fixed_room,
+    fixed_tables,
+    no_fixed_tables,
+    set_body,
+    set_gram,
+)
 from ...thermal.contact import FOOTPRINT_LAW, footprint, gas_conduction, solid_conduction
+from ...thermal.kernels import Patches, TouchedBox, tip, touched_boxes
 from ...thermal.network import workspace
+from ...thermal.numerics import port_residues
 from ...thermal.readout import CHAIN_NUMBERS, measure_rows
 from .kernel import _reading
+from .places import BOX_ROW, strayed
 
+_SIDE = 0.02  # m
 _VECTOR = types.Array(types.float64, 1, "C")
 
 
@@ -25,22 +40,43 @@ def start_compiling(boxes: bool) -> None:
     """Starts that process, where nothing of it is kept on disk and another processor is there (see compile_beside).
     boxes: all objects have networks from heat kernels, and need nothing of others."""
     if boxes:
-        compile_beside("thermograsp.envs.sensing.boxes_ahead", gas_conduction, advance_fixed)
+        compile_beside(__name__, gas_conduction, advance_fixed, by="compile_boxes_ahead")
     else:
         compile_beside(__name__, gas_conduction, advance_row)
 
 
 def compile_ahead() -> None:
     """What it does."""
-    compile_contacts()
+    _contacts()
     tables = HeatTables(
         0.01, np.zeros((1, 5), np.int64), np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 1), np.complex128)
     )
     _advance(advance_row, tables, _made_by(workspace, types.int64, types.int64))
-    compile_readings()
+    _readings()
 
 
-def compile_contacts() -> None:
+def compile_boxes_ahead() -> None:
+    """The same for boxes whose networks come from heat kernels. First what no first process is compiling at that time;
+    the kernels come from it."""
+    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)))
+    _contacts()
+    _advance(advance_fixed, no_fixed_tables(0.01), _made_by(fixed_room, types.int64))
+    _readings()
+    strayed(
+        np.zeros(1, BOX_ROW), np.zeros((1, 1, 2)), np.zeros((1, 2, 3)), 1, _SIDE, np.zeros((1, 2), np.int64)
+    )
+    stack, middle = sensor("seed"), np.full((1, 2), _SIDE / 2)
+    worn = tip(stack, ((0.0, stack.width), (0.0, stack.width)), FIXED_LEVEL)
+    patches = Patches(np.zeros(1, int), middle, np.full((1, 2), stack.width / 2))
+    box = TouchedBox(material("glass"), (_SIDE, _SIDE, _SIDE), 5.0, patches, (worn,), 1)
+    tables = fixed_tables(1, 1, 1, FIXED_LEVEL.patterns, worn.side, 0.01)
+    (found,) = touched_boxes([box], FIXED_LEVEL)
+    set_body(tables, 0, found, (0,))
+    tables.links[0, 2:] = 0
+    set_gram(tables, 0)
+
+
+def _contacts() -> None:
     """The laws of contact."""
     law = numba.from_dtype(FOOTPRINT_LAW)
     _made_by(gas_conduction, law, types.float64, _VECTOR)
@@ -48,12 +84,7 @@ def compile_contacts() -> None:
     _made_by(solid_conduction, law, types.float64, types.float64)
 
 
-def compile_fixed() -> None:
-    """The step of a box."""
-    _advance(advance_fixed, no_fixed_tables(0.01), _made_by(fixed_room, types.int64))
-
-
-def compile_readings() -> None:
+def _readings() -> None:
     """The electronics."""
     chains, matrix, cube = (
         numba.typeof(np.zeros(1, CHAIN_NUMBERS)),

@@ -148,7 +148,7 @@ class BoxHeat:
         on. The heat of the objects and of fingertips in the state (B, n) stays to round-off."""
         tables, moved, heat = self.tables, {}, {}
         for row, fingertips in strayed:
-            heat[row] = fixed_heat(tables, row, state[row]), self._tip_heat(row)
+            heat[row] = fixed_heat(tables, row, state[row]), self._elements(row)
             touched = self._moved(row, fingertips, middles[row], state[row])
             if touched.places:
                 moved[row] = touched
@@ -156,10 +156,11 @@ class BoxHeat:
         self._make(moved)
         for row in moved:
             self._turn(row, *last[row], state[row])
-            before, tips = heat[row]
-            for f, now in enumerate(self._tip_heat(row)):
-                if not np.array_equal(tips[f], now):
-                    self._keep_heat(state[row, self.fingertip(f)], tips[f], now)
+            before, elements = heat[row]
+            for f, now in enumerate(self._elements(row)):
+                if not np.array_equal(elements[f], now):
+                    heats = (fixed_tip_heat(tables, each) for each in (elements[f], now))
+                    self._keep_heat(state[row, self.fingertip(f)], *heats)
             state[row, 0] += (before - fixed_heat(tables, row, state[row])) / tables.slow[row, HELD]
 
     def _moved(self, row: int, fingertips: Sequence[int], middles: np.ndarray, state: np.ndarray) -> Touched:
@@ -174,7 +175,7 @@ class BoxHeat:
         for f in (*fingertips, *new):
             place = place_of(record, width, middles[f])
             if place is not None:
-                warmth = [self._warmth(row, k, state) for k in range(len(touched.places))]
+                warmth = self._warmth(row, len(touched.places), state)
                 touched, given_up = touched.moved(f, place, warmth, size, width)
                 if given_up is not None:
                     gone, heir = given_up
@@ -184,8 +185,9 @@ class BoxHeat:
                         state[self._field(heir)] += field
         return touched
 
-    def _tip_heat(self, row: int) -> list[np.ndarray]:
-        return [fixed_tip_heat(self.tables, self._element(row, f)) for f in range(self._tips)]
+    def _elements(self, row: int) -> np.ndarray:
+        """(F, ...) of FixedTables.tips, a copy."""
+        return self.tables.tips[self.tables.links[row, WHERE + self._tips :]]
 
     def shift(self, rows: np.ndarray, state: np.ndarray, change: np.ndarray) -> None:
         """The thermostats moved by change (B, F) K: the fields above them in rows (n,) of state (B, n) are lower."""
@@ -210,7 +212,10 @@ class BoxHeat:
         tip_states = self.fingertip(fingertip)
         state[target, tip_states] = state[source, tip_states]
         elements = (self._element(row, fingertip) for row in (source, target))
-        self._keep_heat(state[target, tip_states], *(fixed_tip_heat(self.tables, each) for each in elements))
+        self._keep_heat(
+            state[target, tip_states],
+            *(fixed_tip_heat(self.tables, self.tables.tips[each]) for each in elements),
+        )
 
     def touched(self, row: int) -> Touched:
         """For set_touched."""
@@ -235,12 +240,14 @@ class BoxHeat:
         first = 1 + self.tables.rates.shape[1] + place * each
         return slice(first, first + each)
 
-    def _warmth(self, row: int, place: int, state: np.ndarray) -> float:
-        """K at a place, _SOON from now, from what has flowed through it alone. A place that is being made has none."""
+    def _warmth(self, row: int, count: int, state: np.ndarray) -> list[float]:
+        """K at each of the first places, _SOON from now, from what has flowed through it alone. A place that is being
+        made has none."""
         tables = self.tables
-        most, even = tables.places * tables.patterns, place * tables.patterns
-        field = state[self._field(place)][: tables.rates.shape[1]] * self._left
-        return abs(float((tables.body[row, even * (most + 1)] * field).sum()))
+        most, rates = tables.places * tables.patterns, tables.rates.shape[1]
+        even = tables.body[row, : most * most : tables.patterns * (most + 1)][:count]
+        fields = state[1 + rates : 1 + rates + most * rates].reshape(tables.places, -1)[:count, :rates]
+        return np.abs((even * (fields * self._left)).sum(axis=1)).tolist()
 
     def _turn(self, row: int, last: Touched, prints: tuple[_Print, ...], state: np.ndarray) -> None:
         """Puts the fields of places whose patterns of flow are others now, since a fingertip has come or gone behind

@@ -23,6 +23,8 @@ _LATTICE, _FINE_LATTICE = 5e-4, 1e-4
 counted from its middle, in a box that nothing has warmed. How far a place is from a warm one counts for .1 K a mm in
 glass."""
 
+_SIDES = (1, 2), (0, 2), (0, 1)  # axes of a face, by its normal
+
 Rectangle = tuple[tuple[float, float], tuple[float, float]]
 """(low, high) along both axes of a face."""
 
@@ -51,8 +53,8 @@ class Place:
 
     def sides(self, size: Sequence[float]) -> tuple[float, float]:
         """m, the face's."""
-        first, second = (side for axis, side in enumerate(size) if axis != self.face // 2)
-        return first, second
+        first, second = _SIDES[self.face // 2]
+        return size[first], size[second]
 
     def covered(self, size: Sequence[float], width: float) -> Rectangle:
         """What the face covers of a sensor's of that width, from the sensor's corner, to a nanometre: of two places as
@@ -67,7 +69,8 @@ class Place:
         """Whether a pad at the other place is on this one too."""
         if other.face != self.face:
             return False
-        if max(abs(a - b) for a, b in zip(self.middle, other.middle, strict=True)) > NEAR * width:
+        (x, y), (x0, y0) = self.middle, other.middle
+        if abs(x - x0) > NEAR * width or abs(y - y0) > NEAR * width:
             return False
         edges = zip(self.covered(size, width), other.covered(size, width), strict=True)
         return all(max(abs(a - c), abs(b - d)) <= EDGE * width for (a, b), (c, d) in edges)

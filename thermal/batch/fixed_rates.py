@@ -157,9 +157,9 @@ def fixed_tip_rows(tables: FixedTables, number: int) -> TipRows:
     )
 
 
-def fixed_tip_heat(tables: FixedTables, number: int) -> np.ndarray:
-    """(of_tip,) of such rows, the heat's alone."""
-    patterns, element = tables.patterns, tables.tips[number]
+def fixed_tip_heat(tables: FixedTables, element: np.ndarray) -> np.ndarray:
+    """(of_tip,) of such rows, the heat's alone. element: one of the tips."""
+    patterns = tables.patterns
     first = patterns**2 + patterns
     return np.concatenate((tables.poles[POLE_HEAT], element[-1], element[first : first + patterns].ravel()))
 
