@@ -33,7 +33,8 @@ def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
         with open(path, encoding="utf-8", newline="") as file:
             header, *rows = [row for row in csv.reader(file) if row] or [[]]
     except (OSError, ValueError, csv.Error) as error:
-        raise InvalidValueError(f"cannot read {path}: {error}") from error
+        reason = getattr(error, "strerror", None) or error  # of the system, without its number
+        raise InvalidValueError(f"cannot read {path}: {reason}") from error
     if not rows:
         raise InvalidValueError(f"{path} has no rows: it must hold a header of names and one row per sample")
     for number, row in enumerate(rows, start=2):

@@ -79,7 +79,7 @@ def test_bad_input_is_named(
 
 def test_a_missing_file_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", "nowhere.csv"]) == 2
-    assert "cannot read nowhere.csv" in capsys.readouterr().err
+    assert "cannot read nowhere.csv: No such file or directory" in capsys.readouterr().err
 
 
 @pytest.mark.slow
