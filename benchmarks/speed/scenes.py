@@ -77,10 +77,9 @@ def _worlds(name: str) -> Pair:
     recording = mujoco.batch.Batch(model, _WORLDS, 1)
     alone = mujoco.batch.Batch(_hand().compile(), _WORLDS, 1)
     touch = ThermalTouch(model, fingertips=_PADS, objects=_CAN, seed=0, worlds=_WORLDS)
-    forces = np.linspace(0.5 * _FORCE, 1.5 * _FORCE, _WORLDS)[:, None]
     positions = [each.bind("qpos") for each in (recording, alone)]
     for each in (recording, alone):
-        each.bind("ctrl")[:] = forces
+        each.bind("ctrl")[:] = _forces()
 
     def bare(steps: int) -> None:
         for _ in range(steps):
@@ -98,6 +97,36 @@ def _worlds(name: str) -> Pair:
     return Pair(
         name, f"{_CALL} substeps", bare, with_touch, lambda: np.array_equal(positions[0], positions[1])
     )
+
+
+def _worlds_inside(name: str) -> Pair:
+    """A batch with heat in its model, beside one of the scene without."""
+    import mujoco.batch  # from MuJoCo 4.0 on
+
+    models = install(_hand(), fingertips=_PADS, objects=_CAN), _hand().compile()
+    heated, alone = (mujoco.batch.Batch(model, _WORLDS, 1) for model in models)
+    positions = [each.bind("qpos") for each in (heated, alone)]
+    for each in (heated, alone):
+        each.bind("ctrl")[:] = _forces()
+
+    def bare(steps: int) -> None:
+        for _ in range(steps):
+            alone.step(nstep=_CALL)
+
+    def with_touch(steps: int) -> None:
+        for _ in range(steps):
+            heated.step(nstep=_CALL)
+
+    bare(_SETTLE // _CALL)
+    with_touch(_SETTLE // _CALL)
+    return Pair(
+        name, f"{_CALL} substeps", bare, with_touch, lambda: np.array_equal(positions[0], positions[1])
+    )
+
+
+def _forces() -> np.ndarray:
+    """N of all fingers of each world."""
+    return np.linspace(0.5 * _FORCE, 1.5 * _FORCE, _WORLDS)[:, None]
 
 
 def _inside(name: str) -> Pair:
@@ -155,6 +184,7 @@ def _hand() -> mujoco.MjSpec:
 _SCENES: dict[str, tuple[Callable[[str], Pair], int, int]] = {
     "three fingers, a loop of mj_step": (_loop, 40, 1000),
     "three fingers, 64 worlds": (_worlds, 24, 10),
+    "three fingers, 64 worlds, inside mj_step": (_worlds_inside, 24, 10),
     "Grasp-v0's scene, inside mj_step": (_inside, 40, 100),
     "FetchPickAndPlace, wrapped": (fetch.wrapped, 30, 10),
     "FetchPickAndPlace's scene, inside mj_step": (fetch.inside, 30, 10),

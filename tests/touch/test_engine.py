@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -212,6 +213,40 @@ def test_a_batch_does_as_steps_do(model: mujoco.MjModel) -> None:
         mujoco.mj_step(model, data)
     assert np.abs(data.sensordata).max() > 1e-4
     assert (voltages_read == data.sensordata).all()
+
+
+def test_worlds_of_a_batch_that_touch_elsewhere_do_as_alone(model: mujoco.MjModel) -> None:
+    """One thread steps all of them with one mjData, whose networks change at each turn."""
+    batch = pytest.importorskip("mujoco.batch", reason="mujoco.batch exists from MuJoCo 4.0 on")
+    shifts, substeps = (0.0, 1.0, -1.0, 0.6), 5
+    many = batch.Batch(model, len(shifts), 1)
+    alone = [mujoco.MjData(model) for _ in shifts]
+    controls, voltages_read = np.asarray(many.bind("ctrl")), np.asarray(many.bind("sensordata"))
+    for row in orders(60)[::substeps]:
+        for world, (shift, data) in enumerate(zip(shifts, alone, strict=True)):
+            controls[world] = data.ctrl[:] = (*row[:3], shift * row[3], shift * row[4])
+            mujoco.mj_step(model, data, substeps)
+        many.step(nstep=substeps)
+    assert np.array_equal(voltages_read, [data.sensordata for data in alone])
+    assert len(np.unique(voltages_read, axis=0)) == len(shifts)
+
+
+def test_worlds_of_a_batch_keep_their_networks(model: mujoco.MjModel) -> None:
+    """Made anew at each turn they would take several times as long as the steps themselves."""
+    batch = pytest.importorskip("mujoco.batch", reason="mujoco.batch exists from MuJoCo 4.0 on")
+    plain, times = mujoco.MjSpec.from_string(hand.scene()).compile(), []
+    for each in (plain, model):
+        many = batch.Batch(each, nsim=8, nthread=1)
+        places = np.linspace(-0.015, 0.015, 8)[:, None]
+        many.bind("ctrl")[:] = np.hstack([np.full((8, 3), 10.0), places, 0.0 * places])
+        many.step(nstep=300)
+        for _ in range(3):
+            many.step(nstep=5)
+        begun = time.process_time()
+        for _ in range(30):
+            many.step(nstep=5)
+        times.append(time.process_time() - begun)
+    assert times[1] < 2 * times[0]
 
 
 def test_a_state_that_comes_back_goes_on_alike(model: mujoco.MjModel) -> None:

@@ -67,20 +67,20 @@ typedef struct {
 
 /* A field: the network of an object's places, or a fingertip's; x' = -rates x + ports q. ports: of each pattern of each
 place, `stride` apart. Of a sample's step, fade: what it leaves of the states; where contacts are closed, kept: what the
-step's rational function does, and scale: 1 / (pole + dt rates), of each pole the real parts and then the imaginary. The
-numbers of an object's stand behind one another, the ports last. */
+step's rational function does, and scale: 1 / (pole + dt rates), of each pole the real parts and then the imaginary; gram:
+how all ports hear one another at each pole. The numbers of an object's stand behind one another, the ports last. */
 typedef struct {
   int count, n, stride;
   double *places, *rates, *fade, *kept, *scale, *ports;
+  double complex* gram;
 } Network;
 
-/* gram: dt times how the ports of closed contacts hear one another at each pole, and room for a step; it is made for as many
-`ports`, and of so many pairs at such places, -1 for one that is open. pairs: -1 where it is to be made anew. */
+/* matrix: room for a step of so many `ports`. */
 typedef struct {
-  Network* networks; /* of every target, and one for the network before a new place */
-  int pairs, *places;
+  Network* networks; /* of every target, one for the network before a new place, and those that objects have aside */
+  int aside, *turn;  /* of each object: how many, and the next one; worlds that share an mjData come in turns */
   size_t ports;
-  double complex* gram;
+  double complex* matrix;
   double *room, *kept, *grown;   /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
   int *role, *geom, *body;       /* of the model's geoms, as Numbers.roles or -1; of what a pad may meet */
 } Work;

@@ -13,7 +13,7 @@ told apart by the zeros between them. */
 
 /* What a closed contact sees of its target or of its fingertip: a port for each of its patterns, `sign` of it. */
 typedef struct {
-  int field, n, stride;
+  int field, place, n, stride;
   double sign;
   const double *ports, *scale;
   double* x;
@@ -28,7 +28,7 @@ static double* field(const Numbers* numbers, const State* state, int t) {
 static Side side_of(const Numbers* numbers, const Work* work, const State* state, int t, int place, double sign) {
   const Network* network = work->networks + t;
   const double* ports = network->ports + (size_t)place * numbers->patterns * network->stride;
-  return (Side){t, network->n, network->stride, sign, ports, network->scale, field(numbers, state, t)};
+  return (Side){t, place, network->n, network->stride, sign, ports, network->scale, field(numbers, state, t)};
 }
 
 /* Of the pairs of poles, the real and imaginary parts in turn. */
@@ -42,6 +42,21 @@ static double complex times(double complex a, double complex b) {
 static double complex inverse_of(double complex a) {
   double square = creal(a) * creal(a) + cimag(a) * cimag(a);
   return CMPLX(creal(a) / square, -cimag(a) / square);
+}
+
+/* How all ports of a network hear one another. */
+static void hear(const Numbers* numbers, const Network* network) {
+  int n = network->n, wide = network->count * numbers->patterns;
+  for (int p = 0; p < wide; p++) {
+    for (int r = 0; r <= p; r++) {
+      const double *port = network->ports + (size_t)p * network->stride, *heard = network->ports + (size_t)r * network->stride;
+      double sums[2 * POLES] = {0};
+      for (int k = 0; k < n; k++)
+        for (int q = 0; q < 2 * POLES; q++) sums[q] += port[k] * heard[k] * network->scale[q * n + k];
+      for (int q = 0; q < POLES; q++)
+        network->gram[(p * wide + r) * POLES + q] = network->gram[(r * wide + p) * POLES + q] = at_pole(sums, q);
+    }
+  }
 }
 
 /* What a network's step needs besides its ports. */
@@ -58,41 +73,37 @@ void heat_pace(const Numbers* numbers, Network* network) {
     network->kept[i] = 1 + 2 * rate * at_once;
     network->fade[i] = exp(-rate);
   }
+  hear(numbers, network);
 }
 
-/* How the closed contacts' ports hear one another. Returns false where there is no memory. */
-static bool join(const Numbers* numbers, Work* work, const Side* sides, int pairs) {
-  int patterns = numbers->patterns;
-  size_t m = (size_t)pairs * patterns;
-  if (m > work->ports || !work->gram) {
-    free(work->gram);
-    work->ports = 0;
-    work->gram = malloc(sizeof(double complex) * (POLES * (2 * m + 1) * m + 1)); /* never empty */
-    if (!work->gram) return false;
-    work->ports = m;
-  }
-  memset(work->gram, 0, sizeof(double complex) * POLES * m * m);
+/* Room for a step of m ports. Returns false where there is no memory. */
+static bool has_room(Work* work, size_t m) {
+  if (m <= work->ports && work->matrix) return true;
+  free(work->matrix);
+  work->matrix = malloc(sizeof(double complex) * (POLES * (m + 1) * m + 1)); /* never empty */
+  work->ports = work->matrix ? m : 0;
+  return work->matrix;
+}
+
+/* dt times how the closed contacts' ports hear one another, the lower half of (m, m) at every pole. */
+static void join(const Numbers* numbers, const Work* work, const Side* sides, int pairs) {
+  int patterns = numbers->patterns, m = pairs * patterns;
+  memset(work->matrix, 0, sizeof(double complex) * POLES * m * m);
   for (int one = 0; one < 2 * pairs; one++) {
     for (int other = 0; other < 2 * (one / 2 + 1); other++) {
       const Side *own = sides + one, *theirs = sides + other;
       if (own->field != theirs->field) continue;
+      const Network* network = work->networks + own->field;
+      int wide = network->count * patterns;
       double sign = numbers->dt * own->sign * theirs->sign;
-      for (int p = 0; p < patterns * patterns; p++) {
-        const double *port = own->ports + p / patterns * own->stride, *heard = theirs->ports + p % patterns * own->stride;
-        for (int q = 0; q < POLES; q++) {
-          const double *real = own->scale + 2 * q * own->n, *imag = real + own->n;
-          double sum = 0, aside = 0;
-          for (int k = 0; k < own->n; k++) {
-            sum += port[k] * heard[k] * real[k];
-            aside += port[k] * heard[k] * imag[k];
-          }
-          work->gram[((one / 2 * patterns + p / patterns) * m + other / 2 * patterns + p % patterns) * POLES + q] +=
-              sign * CMPLX(sum, aside);
-        }
+      for (int p = 0; p < patterns; p++) {
+        const double complex* heard =
+            network->gram + ((size_t)(own->place * patterns + p) * wide + theirs->place * patterns) * POLES;
+        double complex* at = work->matrix + ((size_t)(one / 2 * patterns + p) * m + other / 2 * patterns) * POLES;
+        for (int r = 0; r < patterns * POLES; r++) at[r] += sign * heard[r];
       }
     }
   }
-  return true;
 }
 
 /* Solves a symmetric matrix (m, m) at every pole, of which the lower half counts and is lost; no pivots, as they are never
@@ -123,11 +134,10 @@ static void solve(int m, double complex* matrix, double complex* x) {
 }
 
 /* A step of every field; of each closed contact its sides, resistance K/W and difference K. through: its mean flow W. */
-static void step(const Numbers* numbers, const Work* work, const State* state, const Side* sides,
+static void step(const Numbers* numbers, const Work* work, const State* state, int pairs, const Side* sides,
                  const double* resistance, const double* difference, double* through) {
-  int patterns = numbers->patterns, pairs = work->pairs, m = pairs * patterns;
-  size_t square = (size_t)POLES * m * m;
-  double complex *matrix = work->gram + square, *flow = matrix + square;
+  int patterns = numbers->patterns, m = pairs * patterns;
+  double complex *matrix = work->matrix, *flow = matrix + (size_t)POLES * m * m;
   for (int i = 0, j = 0; i < pairs; i++) {
     for (int p = 0; p < patterns; p++, j++) {
       double heard[2 * POLES] = {0};
@@ -142,7 +152,7 @@ static void step(const Numbers* numbers, const Work* work, const State* state, c
         flow[j * POLES + q] = (p ? 0 : difference[i]) - times(at_pole(numbers->poles, q), at_pole(heard, q));
     }
   }
-  memcpy(matrix, work->gram, sizeof(double complex) * square);
+  join(numbers, work, sides, pairs);
   for (int j = 0; j < m; j++)
     for (int q = 0; q < POLES; q++) matrix[(j * m + j) * POLES + q] += resistance[j / patterns];
   solve(m, matrix, flow);
@@ -202,14 +212,9 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, double
 /* Advances every field by a sample. Returns false where there is no memory. */
 bool heat_march(const Numbers* numbers, Work* work, State* state) {
   int tips = numbers->tips, objects = numbers->objects, targets = numbers->targets, rates = numbers->rates, pairs = 0;
-  int places[tips * targets], pair[tips * targets];
-  for (int f = 0, i = 0; f < tips; f++) {
-    for (int t = 0; t < targets; t++, i++) {
-      bool closed = state->touches[i * COLUMNS + CONDUCTANCE] > 0;
-      places[i] = !closed ? -1 : t < objects ? (int)state->current[f * objects + t] : 0;
-      if (closed) pair[pairs++] = i;
-    }
-  }
+  int pair[tips * targets];
+  for (int i = 0; i < tips * targets; i++)
+    if (state->touches[i * COLUMNS + CONDUCTANCE] > 0) pair[pairs++] = i;
   Side sides[2 * pairs + 1]; /* never empty */
   double resistance[pairs + 1], difference[pairs + 1], through[pairs + 1], roots[pairs * rates + 1];
   memset(roots, 0, sizeof roots);
@@ -217,7 +222,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     int f = pair[i] / targets, t = pair[i] % targets;
     const double *touch = state->touches + pair[i] * COLUMNS, *own = state->narrow + pair[i] * rates;
     double* root = roots + i * rates;
-    sides[2 * i] = side_of(numbers, work, state, t, places[pair[i]], 1);
+    sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : 0, 1);
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
     resistance[i] = fmin(numbers->sample_steps / touch[CONDUCTANCE], MOST);
     difference[i] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0);
@@ -228,13 +233,8 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
       resistance[i] += root[k] * root[k] * (1 - part) / numbers->decay[k];
     }
   }
-  if (work->pairs != pairs || memcmp(work->places, places, sizeof places)) {
-    work->pairs = -1;
-    if (!join(numbers, work, sides, pairs)) return false;
-    work->pairs = pairs;
-    memcpy(work->places, places, sizeof places);
-  }
-  step(numbers, work, state, sides, resistance, difference, through);
+  if (!has_room(work, (size_t)pairs * numbers->patterns)) return false;
+  step(numbers, work, state, pairs, sides, resistance, difference, through);
   for (int i = 0; i < tips * targets; i++)
     for (int k = 0; k < rates; k++) state->narrow[i * rates + k] *= work->kept[k];
   for (int i = 0; i < pairs; i++)

@@ -148,16 +148,28 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
   }
 }
 
-/* The network of the places that an object has now, made where it is not at hand. */
+/* The network of the places that an object has now; made where it is neither in use nor aside, in place of that aside which
+was in use the longest ago. */
 static Network* network_of(const Numbers* numbers, Work* work, const State* state, int o) {
-  Network* network = &work->networks[o];
+  Network *network = &work->networks[o], *aside = &work->networks[numbers->targets + 1 + o * work->aside], before = *network;
   const double* places = state->places + o * numbers->places * SLOT;
-  int count = (int)state->used[o];
-  if (network->count == count && !memcmp(network->places, places, count * SLOT * sizeof(double))) return network;
+  int count = (int)state->used[o], at = work->turn[o];
+#define IS_OF(one) ((one)->count == count && !memcmp((one)->places, places, count * SLOT * sizeof(double)))
+  if (IS_OF(network)) return network;
+  for (int i = 0; i < work->aside; i++) {
+    int next = (work->turn[o] + i) % work->aside;
+    if (!IS_OF(aside + next)) continue;
+    at = next;
+    break;
+  }
+  *network = aside[at];
+  aside[at] = before;
+  work->turn[o] = (at + 1) % work->aside;
+  if (IS_OF(network)) return network;
+#undef IS_OF
   network->count = count;
   memcpy(network->places, places, count * SLOT * sizeof(double));
   heat_network(numbers, o, network, work->room);
-  work->pairs = -1;
   return network;
 }
 

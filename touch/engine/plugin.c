@@ -10,6 +10,9 @@ is kept beside the state follows from the state alone: the networks of the place
 
 #include "heat.h"
 
+#define ASIDE 4000000 /* numbers of the networks that objects have aside; the system gives memory only for those in use */
+enum { MOST_ASIDE = 1024 };
+
 typedef struct {
   Numbers numbers;
   Work work;
@@ -26,14 +29,18 @@ static int failed(const char* what) {
 /* Says where the parts of the work stand in the block, and returns its size in doubles; each part begins on a line of the
 processor's cache. */
 static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* block) {
-  size_t used = 0, contacts = (size_t)n->tips * n->targets;
+  size_t used = 0, wide = (size_t)n->places * n->patterns;
+  size_t size = n->places * SLOT + n->states * (3 + 2 * POLES + wide) + 2 * POLES * wide * wide;
+  size_t aside = ASIDE / (size * n->objects);
+  work->aside = aside < 1 ? 1 : aside > MOST_ASIDE ? MOST_ASIDE : (int)aside;
+  int networks = n->targets + 1 + n->objects * work->aside;
 #define PART(name, count, type)                                       \
   do {                                                                \
     if (block) (name) = (type*)(block + used);                        \
     used += ((count) * sizeof(type) + 63) / 64 * (64 / sizeof(double)); \
   } while (0)
-  PART(work->networks, n->targets + 1, Network);
-  for (int t = 0; t <= n->targets; t++) {
+  PART(work->networks, networks, Network);
+  for (int t = 0; t < networks; t++) {
     bool tip = t >= n->objects && t < n->targets;
     Network none, *network = block ? &work->networks[t] : &none;
     size_t states = network->stride = tip ? n->tip_states : n->states;
@@ -42,9 +49,10 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
     PART(network->fade, states, double);
     PART(network->kept, states, double);
     PART(network->scale, 2 * POLES * states, double);
+    PART(network->gram, POLES * (tip ? (size_t)n->patterns * n->patterns : wide * wide), double complex);
     PART(network->ports, (tip ? 1 : n->places) * n->patterns * states, double);
   }
-  PART(work->places, contacts, int);
+  PART(work->turn, n->objects, int);
   PART(work->kept, n->rates, double);
   PART(work->grown, n->rates, double);
   PART(work->role, m->ngeom, int);
@@ -107,7 +115,7 @@ static int nsensordata(const mjModel* m, int instance, int sensor) {
 static void destroy(mjData* d, int instance) {
   Heat* heat = heat_of(d, instance);
   if (!heat) return;
-  free(heat->work.gram);
+  free(heat->work.matrix);
   free(heat->numbers.all);
   free(heat->block);
   free(heat);
@@ -133,10 +141,10 @@ static int init(const mjModel* m, mjData* d, int instance) {
     destroy(d, instance);
     return failed(wrong);
   }
-  heat->work.pairs = -1;
-  for (int o = 0; o < n->objects; o++) heat->work.networks[o].count = -1;
+  for (int t = 0; t < n->targets + 1 + n->objects * heat->work.aside; t++) heat->work.networks[t].count = -1;
   for (int f = 0; f < n->tips; f++) {
     Network* network = &heat->work.networks[n->objects + f];
+    network->count = 1;
     int states = network->n = n->tip_states, ports = n->patterns * states;
     memcpy(network->rates, n->tip_rates + f * states, sizeof(double) * states);
     memcpy(network->ports, n->tip_ports + f * ports, sizeof(double) * ports);
@@ -163,7 +171,6 @@ static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance
   Heat* to = heat_of(dest, instance);
   if (!from || !to) return;
   const Numbers* n = &from->numbers;
-  to->work.pairs = -1;
   for (int o = 0; o < n->objects; o++) heat_copy_network(n, &from->work.networks[o], &to->work.networks[o]);
 }
 
