@@ -41,7 +41,7 @@ from .scene import (
 )
 
 SAMPLE_TIME = 0.01  # s between samples of the converter, about: a whole part of dt and whole substeps
-_LONGEST = 3600.0  # s, of a dt
+_LONGEST = 3600.0  # s, of a dt and between updates
 _WHOLE = 1e-6
 _NOBODY = object()
 """In place of an MjData. None would do for update(None) too."""
@@ -100,6 +100,8 @@ class ThermalTouch:
         whole = isinstance(worlds, int | np.integer) and not isinstance(worlds, bool)
         if worlds is not None and not (whole and worlds >= 1):
             raise InvalidValueError(f"worlds must be a whole number from 1 on, or None, got {worlds!r}")
+        if seed is not None and not (isinstance(seed, int | np.integer) and seed >= 0):
+            raise InvalidValueError(f"seed must be a whole number from 0 on, or None, got {seed!r}")
         _mapping("fingertips", fingertips, '{"thumb": "thumb_pad"}')
         _mapping("objects", objects or {}, '{"can": "aluminium"}')
         self._model, self._step = model, float(model.opt.timestep)
@@ -263,8 +265,8 @@ class ThermalTouch:
                 raise InvalidValueError(
                     f"temperatures[{name!r}] must be one number or {len(rows)}, got shape {np.shape(value)}"
                 )
-            for one in np.ravel(value):
-                celsius(f"temperatures[{name!r}] (°C)", float(one))
+            for one in np.ravel(value).tolist():
+                celsius(f"temperatures[{name!r}] (°C)", one)
             first[:, names.index(name)] = value
         if seed is not None:
             try:
@@ -474,7 +476,10 @@ class ThermalTouch:
         assert self._sensors is not None
         if isinstance(record, mujoco.MjData):
             raise InvalidValueError("a ThermalTouch of many worlds reads recorded sensordata, not MjData")
-        numbers = np.asarray(record)
+        try:
+            numbers = np.asarray(record)
+        except ValueError:  # rows of different lengths
+            numbers = np.array("")
         if numbers.dtype.kind not in "fiu":
             raise InvalidValueError(
                 f"a record must hold sensordata, real numbers, got {type(record).__name__} of {numbers.dtype}"
@@ -524,6 +529,11 @@ class ThermalTouch:
             raise InvalidValueError(
                 f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, steps of {self._step:g} s: "
                 "call touch.reset(data) after the simulation was reset, or touch.set_state for a saved one"
+            )
+        if passed * self._step > _LONGEST:
+            raise InvalidValueError(
+                f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, more than {_LONGEST:g} s ago: "
+                "call touch.reset(data), or update more often"
             )
         self._time[0] = now
         return passed

@@ -8,6 +8,14 @@ import math
 import mujoco
 
 RADIUS = 0.03
+SOFT_LOAD = 7.0  # N
+SOFT = """
+<mujoco><option timestep=".002" gravity="0 0 -70"/><worldbody>
+  <body name="ball"><geom name="ball" type="sphere" size=".03" solref="-400 -40"/></body>
+  <body name="tip" pos="0 0 .0341"><joint type="slide" axis="0 0 -1" damping="20"/>
+    <geom name="pad" type="box" size=".01 .01 .004" mass=".1" solref="-400 -40"/></body>
+</worldbody></mujoco>"""
+"""A light pad that is pulled into a ball by that force, many millimetres deep."""
 
 
 def _finger(number: int, name: str) -> tuple[str, str]:

@@ -185,6 +185,19 @@ def test_fingertips_on_one_another_and_other_shapes() -> None:
     assert np.abs(drop).min() > 0.1
 
 
+@NEEDS_SPECS
+def test_a_pad_that_sinks_in_deep_is_on_its_face_here_too() -> None:
+    pads, objects = {"tip": "pad"}, {"ball": "glass"}
+    model = install(mujoco.MjSpec.from_string(hand.SOFT), fingertips=pads, objects=objects)
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips=pads, objects=objects, chain=IDEAL)
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    drop = voltages(model, data)[0] / touch._pads[0].stack.seebeck
+    assert drop > 0.3 and abs(drop - touch.reading.temperature_drop[0]) < ROUND_OFF
+
+
 def test_threads_of_rollout_do_as_one_does(model: mujoco.MjModel) -> None:
     data = mujoco.MjData(model)
     start, controls = states(model, data), np.stack([orders(60) * s for s in (1.0, 0.8, 0.6, 0.9)])

@@ -319,6 +319,20 @@ def test_a_touch_with_the_back_of_a_finger_is_none() -> None:
     assert touch.reading.temperature_drop[0] == 0.0
 
 
+def test_a_pad_that_sinks_in_deep_is_still_on_its_face() -> None:
+    """A soft contact's place, half way between the two faces, is then far from the pad's."""
+    model = mujoco.MjModel.from_xml_string(hand.SOFT)
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips={"tip": "pad"}, objects={"ball": "glass"})
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    assert data.contact.dist.min() < -0.0085
+    assert touch.reading.touching == ("ball",) and touch.reading.beside[0] == 0.0
+    assert touch.reading.force[0] == pytest.approx(hand.SOFT_LOAD, rel=1e-3)
+    assert touch.reading.temperature_drop[0] > 0.3
+
+
 def test_steps_that_were_not_told_are_not_lost() -> None:
     model, data = hand.hand()
     often, seldom = make(model), make(model)
@@ -355,6 +369,9 @@ WRONG = [
     ({"objects": ["can"]}, InvalidValueError, "mapping"),
     ({"worlds": 0}, InvalidValueError, "worlds"),
     ({"worlds": True}, InvalidValueError, "worlds"),
+    ({"seed": "a"}, InvalidValueError, "seed must be"),
+    ({"seed": -1}, InvalidValueError, "seed must be"),
+    ({"seed": 1.5}, InvalidValueError, "seed must be"),
 ]
 
 
@@ -443,8 +460,18 @@ def test_what_is_no_data_is_refused(what: object) -> None:
         touch.update(data)
 
 
+def test_hours_between_updates_are_refused() -> None:
+    model, data = hand.hand()
+    touch = make(model)
+    run(model, data, touch, 0.01)
+    data.time = 1e300
+    with pytest.raises(InvalidValueError, match="more than 3600 s ago"):
+        touch.update(data)
+
+
 WRONG_RESETS = [
     {"temperatures": {"can": np.nan}},
+    {"temperatures": {"can": "hot"}},
     {"temperatures": 5.0},
     {"objects": ["can"]},
     {"seed": "a"},

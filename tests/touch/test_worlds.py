@@ -142,6 +142,21 @@ def test_what_does_not_fit_is_refused(model: mujoco.MjModel, record: np.ndarray)
         ThermalTouch(bare, fingertips=PADS, objects=OBJECTS).update(record)
 
 
+def test_rows_of_different_lengths_are_refused(model: mujoco.MjModel, record: np.ndarray) -> None:
+    ragged = [record[0, 0], record[1, 0, :-1], record[2, 0]]
+    with pytest.raises(InvalidValueError, match="real numbers"):
+        many(model, 3).update(ragged)  # pyright: ignore[reportArgumentType]
+
+
+def test_sensors_are_added_once_and_to_a_spec() -> None:
+    spec = mujoco.MjSpec.from_string(hand.scene())
+    model = prepare(spec, PADS, OBJECTS)
+    with pytest.raises(InvalidValueError, match="already"):
+        prepare(spec, PADS, OBJECTS)
+    with pytest.raises(InvalidValueError, match="MjSpec, got MjModel"):
+        prepare(model, PADS, OBJECTS)  # pyright: ignore[reportArgumentType]
+
+
 def test_a_mujoco_without_contact_sensors_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("thermograsp.touch.contacts.sensors._SENSOR", None)
     with pytest.raises(MissingDependencyError, match=r"need MuJoCo 3\.3\.5"):

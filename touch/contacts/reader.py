@@ -47,7 +47,9 @@ from .round_pads import BEND, CURVES, bends, curves, round_contact
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
 from .tilt import TILT, tilted
 
-DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it
+DEPTH = (
+    0.004  # m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in
+)
 RIM = 0.0005  # m beyond the pad's sides
 LOOKING = 0.6  # least cosine between the pad's normal and the contact's
 
@@ -268,10 +270,11 @@ def read_contacts(count, substeps, memory_at, entries_at):
             any_touch = True
         part = second - tips if second >= tips else part_count - tips + second
         _frame(pads, parts, xpos, xmat, frames, first)
-        on, y, z = _lies(pads[first], frames[first], pos[c], frame[c], sign)
+        sunk = max(-numbers[c, 0], 0.0) / 2  # mjContact's first field is the distance, its place is half way
+        on, y, z = _lies(pads[first], frames[first], pos[c], frame[c], sign, sunk)
         if second < tips:
             _frame(pads, parts, xpos, xmat, frames, second)
-            on_other, _, _ = _lies(pads[second], frames[second], pos[c], frame[c], -sign)
+            on_other, _, _ = _lies(pads[second], frames[second], pos[c], frame[c], -sign, sunk)
             if not on_other:
                 beside[second] += weight * force
             on = on and on_other
@@ -432,14 +435,14 @@ def _bears(data, at, pad, frame, sign):
     """Whether a net force is on a pad, where (m, along its y and z), and its part along the normal, N."""
     place, vector = data[at + PLACE_AT : at + PLACE_AT + 3], data[at + FORCE_AT : at + FORCE_AT + 3]
     x, y, z, force = _from_pad(frame, place, vector, sign)
-    return force > 0 and _within(pad, x, y, z), y, z, force
+    return force > 0 and _within(pad, x, y, z, 0.0), y, z, force
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _lies(pad, frame, place, vector, sign):
-    """Whether a contact is on a pad and looks at it, and where (m, along its y and z)."""
+def _lies(pad, frame, place, vector, sign, sunk):
+    """Whether a contact is on a pad and looks at it, and where (m, along its y and z). sunk: m below both faces."""
     x, y, z, cosine = _from_pad(frame, place, vector, sign)
-    return cosine >= LOOKING and _within(pad, x, y, z), y, z
+    return cosine >= LOOKING and _within(pad, x, y, z, sunk), y, z
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -456,8 +459,8 @@ def _from_pad(frame, place, vector, sign):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _within(pad, x, y, z):
-    return abs(x) <= DEPTH and abs(y) <= pad[_HALF] + RIM and abs(z) <= pad[_HALF + 1] + RIM
+def _within(pad, x, y, z, sunk):
+    return abs(x) <= DEPTH + sunk and abs(y) <= pad[_HALF] + RIM and abs(z) <= pad[_HALF + 1] + RIM
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -57,6 +57,12 @@ def prepare(
             f"contact sensors need MuJoCo 3.3.5 or newer, this is {mujoco.__version__}: pip install 'mujoco>=3.3.5', "
             "or give ThermalTouch.update an MjData"
         )
+    if not isinstance(spec, mujoco.MjSpec):
+        raise InvalidValueError(f"prepare takes a mujoco.MjSpec, got {type(spec).__name__}")
+    if any(sensor.name.startswith(NAME) for sensor in spec.sensors):
+        raise InvalidValueError(
+            "this spec has its contact sensors already: begin with a new one, or prepare a copy"
+        )
     model = spec.compile()
     shapes = bodies(model, objects, 24.0)
     found = pads(model, fingertips, shapes)

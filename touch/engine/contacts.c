@@ -5,7 +5,7 @@
 
 #include "heat.h"
 
-#define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it */
+#define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in */
 #define RIM 0.0005   /* m beyond the pad's sides */
 #define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
 
@@ -35,7 +35,7 @@ static const Pose* pose(const Numbers* numbers, const Work* work, const mjData* 
 
 /* Whether a contact is on a pad and looks at it, and where, m along its y and z. */
 static bool lies(const double* pad, const Pose* at, const mjContact* contact, double sign, double* y, double* z) {
-  double x = 0, along = 0;
+  double x = 0, along = 0, sunk = fmax(-contact->dist, 0) / 2;
   *y = *z = 0;
   for (int k = 0; k < 3; k++) {
     double away = contact->pos[k] - at->middle[k];
@@ -44,7 +44,7 @@ static bool lies(const double* pad, const Pose* at, const mjContact* contact, do
     *y += away * at->axes[3 * k + 1];
     *z += away * at->axes[3 * k + 2];
   }
-  return along >= LOOKING && fabs(x) <= DEPTH && fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
+  return along >= LOOKING && fabs(x) <= DEPTH + sunk && fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
 }
 
 /* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
