@@ -61,6 +61,7 @@ ROOMS = {
         "numerics",
         "matter",
         "contact",
+        "pressed",
         "plates",
         "kernels",
         "readout",

@@ -206,8 +206,8 @@ def test_a_second_process_compiles_what_a_mesh_needs(tmp_path):
     """A first mesh finds it, also what the mesh's networks are solved with."""
     mesh = """
 import gymnasium, numpy as np, thermograsp
-from thermograsp.envs.footprint import foundation
 from thermograsp.thermal.meshes import cut, patch, place, rays, solve
+from thermograsp.thermal.pressed import foundation
 env = gymnasium.make("thermograsp/Grasp-v0", objects="mug")
 env.reset(seed=0)
 env.step(np.array([-1, 0, 0], np.float32))

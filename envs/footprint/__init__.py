@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
-    from .foundation import pressure_map
     from .grasp_body import PAD, GraspBody
     from .taxels import MOST_PRESSURE, Taxels, checked_taxels
 
@@ -15,7 +14,6 @@ __all__ = [
     "GraspBody",
     "Taxels",
     "checked_taxels",
-    "pressure_map",
 ]
 
 __getattr__ = opened(__name__)

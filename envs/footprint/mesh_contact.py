@@ -1,8 +1,8 @@
 """What a pad meets of a mesh, by force: the contact's area and the sensor's share, from how the mesh presses the pad.
 
-The mesh is pressed on the pad's elastic foundation (foundation.py) with the force's centre in the middle of what of it
-is before the pad, as pads that give way align themselves. Area counts where there is pressure and the mesh covers the
-pad: the crests of a thread, the teeth of a gear, a face up to its edge.
+The mesh is pressed on the pad's elastic foundation (thermal/pressed) with the force's centre in the middle of what of
+it is before the pad, as pads that give way align themselves. Area counts where there is pressure and the mesh covers
+the pad: the crests of a thread, the teeth of a gear, a face up to its edge.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 
 from ...thermal import ContactArea, Pad
+from ...thermal.pressed import MAP_PITCH, HeightMap, face_springs, map_heights, pressure_map
 from ..bodies import MeshShape, ObjectSpec
-from .foundation import face_springs, pressure_map
-from .surface_height import MAP_PITCH, HeightMap, map_heights, mesh_map
+from .surface_height import mesh_map
 
 _POINTS = 80  # along the pad's side, of the foundation
 _FINER = 3  # times as many, of what is touched

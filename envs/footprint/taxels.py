@@ -1,7 +1,7 @@
 """A tactile map: the pressure over each pad, from the force, where it acts, and the object's shape.
 
 MuJoCo's rigid contact gives a few points. The pad is soft: an elastic foundation spreads their force over it as the
-object's surface demands (foundation.py), with the same stiffness as thermal/contact/area.py. The map's sum is the
+object's surface demands (thermal/pressed), with the same stiffness as thermal/contact/area.py. The map's sum is the
 normal force and its centre MuJoCo's centre of contact.
 
 B: environments, F = 2 fingertips, O: objects, (n, m): taxels.
@@ -15,20 +15,12 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import Skin
 from ...thermal.contact import bared, skinned
+from ...thermal.pressed import MAP_PITCH, face_springs, map_heights, pressure_map
 from ..bodies import ObjectSpec
 from ..limits import TIPS
 from ..mechanics import Mechanics
-from .foundation import face_springs, pressure_map
 from .grasp_body import PAD
-from .surface_height import (
-    BOX,
-    CYLINDER,
-    MAP_PITCH,
-    SPHERE,
-    map_heights,
-    mesh_map,
-    shape_heights,
-)
+from .surface_height import BOX, CYLINDER, SPHERE, mesh_map, shape_heights
 
 MOST_TAXELS = 100  # along a side
 MOST_PRESSURE = 1e7  # Pa; a pad pressed to nothing, by the linear law, bears 7e6

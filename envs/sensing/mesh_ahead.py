@@ -7,7 +7,7 @@ import numpy as np
 
 from ...thermal import SolidPart, SurfacePatch, body_network, material
 from ...thermal.meshes import Solid
-from ..footprint import pressure_map
+from ...thermal.pressed import pressure_map
 from . import ahead
 
 _SIDE = 0.01  # m

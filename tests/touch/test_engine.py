@@ -314,9 +314,9 @@ def broken() -> Iterator[dict[str, str]]:
     yield {**good, "numbers": numbers[:-16]}
     yield {**good, "numbers": numbers + numbers[:16]}
     yield {**good, "numbers": numbers.replace("0", "O", 1)}
-    for at in range(15):  # what says how much there is, and the first roles
+    for at in range(16):  # what says how much there is, and the first roles
         for value in (huge, "0" * 16, "7ff8" + "0" * 12, "bff0" + "0" * 12, "3fe0" + "0" * 12):
-            if (at, value) == (13, "0" * 16):
+            if (at, value) == (14, "0" * 16):
                 continue  # the first fingertip is number 0
             if at not in (8, 9, 10) or value[:2] in ("7f", "bf"):
                 yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}

@@ -42,7 +42,8 @@ def scene(skin: str | None):
 def test_contacts_in_the_middle_are_those_of_the_environments_laws(force: float, skin: str | None) -> None:
     model, found, shapes = scene(skin)
     skin_worn = SKINS[skin] if skin else None
-    laws, curved, tables, _ = pair_laws(model, found, shapes)
+    pairs = pair_laws(model, found, shapes)
+    laws, curved, tables = pairs.laws, pairs.curved, pairs.tables
     steel, sheet, middle = Surface.of(material("steel")), skinned(Pad(), skin_worn), np.zeros(3)
     ball, can = (round_footprint(Pad(), skin_worn, steel, 0.02, length) for length in (None, 0.06))
     for target, law in ((0, ball), (1, can)):
@@ -66,7 +67,8 @@ def test_a_bare_face_conducts_less_and_bears_less_of_a_flat_face_s_force_than_a_
 
 
 def test_what_is_alike_shares_a_table_and_flat_things_have_none() -> None:
-    _, curved, tables, _ = pair_laws(*scene(None))
+    pairs = pair_laws(*scene(None))
+    curved, tables = pairs.curved, pairs.tables
     assert (curved[0, 2:] == -1).all()
     assert len(tables) == 2
     assert set(curved[0, 0]) == {0}

@@ -105,7 +105,7 @@ def test_what_silicone_and_skin_take_is_that_of_springs_cell_by_cell(degrees: fl
     assert share == pytest.approx(long, abs=0.02)
     if importlib.util.find_spec("mujoco.batch") is None:  # envs need MuJoCo 4
         return
-    from thermograsp.envs.footprint import pressure_map
+    from thermograsp.thermal.pressed import pressure_map
 
     coarse = cells(half, slope, 200)
     places = np.stack([coarse[0].ravel(), coarse[1].ravel()], axis=1)

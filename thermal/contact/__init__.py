@@ -12,6 +12,7 @@ from .curved_table import (
     array_curved_contact,
     curved_contact,
     curved_table,
+    even_places,
 )
 from .fingertip import face_joint, skinned, touching
 from .footprint import (
@@ -103,6 +104,7 @@ __all__ = [
     "cylinder_footprint",
     "cylinder_law",
     "even_patch",
+    "even_places",
     "flat_contact",
     "flat_footprint",
     "flat_law",

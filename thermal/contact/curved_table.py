@@ -9,6 +9,7 @@ the pad's two axes each, then W/K, m2 and m (the patch's length) by force and bo
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -71,11 +72,15 @@ def _aside(pad: Pad) -> np.ndarray:
 
 def _along(pad: Pad, length: float) -> np.ndarray:
     """(PLACES,) m: where an end of the cylinder comes to an edge of the face or the pad, and between."""
-    end = pad.width / 2 + _RIM
     edges = [abs(half + way * length / 2) for half in (pad.width / 2, pad.face / 2) for way in (1, -1)]
-    places = [0.0, end]
+    return even_places(0.0, pad.width / 2 + _RIM, edges)
+
+
+def even_places(first: float, last: float, edges: Iterable[float]) -> np.ndarray:
+    """(PLACES,) m from first to last: those of the edges that lie between, and others where there is most room."""
+    places = [first, last]
     for edge in edges:
-        if all(abs(edge - place) > _NEAR for place in places) and edge < end:
+        if all(abs(edge - place) > _NEAR for place in places) and first < edge < last:
             places.append(edge)
     while len(places) < PLACES:
         places.sort()

@@ -24,10 +24,11 @@ from ...thermal.contact import ArrayLaws, array_conductance, array_contact, arra
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .array_round import array_round_contact
-from .laws import pair_laws, stacked
+from .laws import pair_laws
 from .reader import DEPTH, RIM
 from .round_pads import bends, curves
 from .tilt import TILT, array_tilted
+from .views import array_viewed
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
 
@@ -61,9 +62,9 @@ class StepContacts(NamedTuple):
 class ArrayContacts:
     """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
     half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
-    and axis of the geom's frame. tables: those of curved contacts behind one another, and curved (V F G 3) the numbers
-    of the laws', -1 for flat ones; tilts (V F G 3, TILT) of rods. numbers: (F, G) integers, the laws' of the first
-    material.
+    and axis of the geom's frame. tables: those of curved contacts behind one another, and curved (V F G A) their
+    numbers by axis or, of meshes, by view, -1 for flat ones; tilts (V F G 3, TILT) of rods. numbers: (F, G) integers,
+    the pairs of the first material. views: (G, A, VIEW), and meshed: (G,) 1 for what has some.
     bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) 1 for pads that are round. Flat ones
     have the bend of a round one, whose contact is not used. units (3, 3) and across (3, 2, 3): an axis and the two
     others."""
@@ -82,6 +83,9 @@ class ArrayContacts:
     bulging: Array
     any_bulging: bool
     any_curved: bool
+    any_meshed: bool
+    views: Array
+    meshed: Array
     units: Array
     across: Array
 
@@ -147,7 +151,8 @@ class ArrayContacts:
         looking = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # (B, F, G, 3) in the geom's frame
         axis = abs(looking).argmax(-1)
         from_geom = _seen(geom_turn[:, None], middle[:, :, None] - geom_position[:, None])
-        which = as_integers((material[:, None] * (tips * geoms) + self.numbers) * 3 + axis)
+        pair = material[:, None] * (tips * geoms) + self.numbers
+        which = as_integers(pair * 3 + axis)
         law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
         kept = longer = 1.0 + 0.0 * area
@@ -164,8 +169,17 @@ class ArrayContacts:
         flat = tuple(xp.where(closed, each, none) for each in (h * safe, area, (safe * longer) ** 0.5))
         if not self.any_curved:
             return flat
-        table = self.curved[which][..., None]
         aside, along, slope = self._crown(law, off, from_geom, axes, geom_turn)
+        side = axis
+        if self.any_meshed:
+            view, *seen = array_viewed(self.views, looking, from_geom, law.half_face[..., 0])
+            meshed = (self.meshed + 0.0 * axis)[..., None] > 0
+            aside, along = (
+                xp.where(meshed, one[..., None], other)
+                for one, other in zip(seen, (aside, along), strict=True)
+            )
+            side = xp.where(meshed[..., 0], view, axis)
+        table = self.curved[as_integers(pair * self.views.shape[1] + side)][..., None]
         number = as_integers(table.clip(0.0, None))
         whole, lying = array_tilted(self.tilts[which][..., None, :], pressed, slope + none, along + none)
         lies = whole > 0
@@ -248,7 +262,8 @@ def array_contacts(
     found = [pair_laws(model, pads, shapes) for shapes in kinds]
     laws = np.stack([each.laws[:, : _geoms(shapes)] for each, shapes in zip(found, kinds, strict=True)])
     tilts = np.stack([each.tilts[:, : _geoms(shapes)] for each, shapes in zip(found, kinds, strict=True)])
-    before = np.cumsum([0, *(len(each.tables) for each in found)])
+    tables = [each.all_tables for each in found]
+    before = np.cumsum([0, *map(len, tables)])
     curved = np.stack(
         [
             np.where(each.curved < 0, -1, each.curved + first)[:, : _geoms(shapes)]
@@ -266,7 +281,7 @@ def array_contacts(
         half=as_like(np.array([pad.size / 2 for pad in pads]), like),
         width=as_like(np.array([pad.stack.width for pad in pads]), like),
         laws=array_laws(laws.reshape(-1), like),
-        tables=as_like(stacked([table for each in found for table in each.tables]).ravel(), like),
+        tables=as_like(np.concatenate(tables).ravel(), like),
         curved=as_like(curved.ravel().astype(float), like),
         tilts=as_like(tilts.reshape(-1, TILT), like),
         numbers=as_integers(as_like(numbers.astype(float), like)),
@@ -275,6 +290,9 @@ def array_contacts(
         bulging=as_like(np.array(bulging, float), like),
         any_bulging=any(bulging),
         any_curved=bool((curved >= 0).any()),
+        views=as_like(found[0].views[: len(owner)], like),
+        any_meshed=bool(found[0].viewed.any()),
+        meshed=as_like((found[0].viewed[: len(owner)] > 0).astype(float), like),
         units=as_like(np.eye(3), like),
         across=as_like(np.array(_ACROSS, float), like),
     )

@@ -7,7 +7,7 @@ contact."""
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import mujoco
@@ -24,21 +24,32 @@ from ...thermal import (
     sphere_law,
 )
 from ...thermal.contact import CURVED_TABLE, curved_table, skinned
+from ...thermal.pressed import PressedMesh
 from ..scene import BodyShape, PadPlace, is_round
 from .tilt import TILT, tilt_row
+from .views import mesh_of, stacked_views
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
 _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 
 class PairLaws(NamedTuple):
-    """laws: (F, G + F, 3) CONTACT_LAW records. curved: (F, G + F, 3) numbers of the tables of what is curved, -1 for
-    what is flat. tables: K, (CURVED_TABLE,) each. tilts: (F, G + F, 3, TILT) of rods, 0 of others."""
+    """laws: (F, N, 3) CONTACT_LAW records. curved: (F, N, A) numbers of the tables of what is curved, by axis, and of
+    meshes, by view; -1 for what is flat. tables: K, (CURVED_TABLE,) each. meshes: of the numbers behind them. tilts:
+    (F, N, 3, TILT) of rods, 0 of others. views: (N, A, VIEW) of meshes, and viewed: (N,) how many."""
 
     laws: np.ndarray
     curved: np.ndarray
     tables: tuple[np.ndarray, ...]
+    meshes: tuple[PressedMesh, ...]
     tilts: np.ndarray
+    views: np.ndarray
+    viewed: np.ndarray
+
+    @property
+    def all_tables(self) -> np.ndarray:
+        """(K + meshes, CURVED_TABLE), one of zeros where there are none."""
+        return stacked([*self.tables, *(mesh.table() for mesh in self.meshes)])
 
 
 def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> PairLaws:
@@ -46,8 +57,10 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     along; and on each other pad, whose sides are taken as parallel to its own."""
     geoms = [(shape, geom) for shape in shapes for geom in shape.geoms]
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
-    curved, tilts = np.full(laws.shape, -1, np.int64), np.zeros((*laws.shape, TILT))
+    views, viewed = stacked_views(model, [geom for _, geom in geoms], len(pads))
+    curved, tilts = np.full((*laws.shape[:2], views.shape[1]), -1, np.int64), np.zeros((*laws.shape, TILT))
     tables: list[np.ndarray] = []
+    meshes: dict[PressedMesh, list[tuple[int, int, int]]] = {}
     for f, pad in enumerate(pads):
         width = float(math.sqrt(pad.size.prod()))
         silicone = Pad(width=width, face=min(pad.stack.width, width))
@@ -56,6 +69,11 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         flat = not all(is_round(model, geom) for geom in pad.geoms)
         for g, (shape, geom) in enumerate(geoms):
             faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
+            if viewed[g] and not sum(pad.curvature) > 0:
+                for k, pressed in enumerate(
+                    _pressed(model, geom, views[g, : viewed[g]], pad, silicone, shape)
+                ):
+                    meshes.setdefault(pressed, []).append((f, g, k))
             for axis in range(3):
                 laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
                 size = _curved(model, geom, axis)
@@ -72,7 +90,19 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = min(other.stack.width, float(math.sqrt(other.size.prod())))
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
-    return PairLaws(laws, curved, tuple(tables), tilts)
+    for number, pairs in enumerate(meshes.values(), len(tables)):
+        for pair in pairs:
+            curved[pair] = number
+    return PairLaws(laws, curved, tuple(tables), tuple(meshes), tilts, views, viewed)
+
+
+def _pressed(
+    model: mujoco.MjModel, geom: int, views: np.ndarray, pad: PadPlace, silicone: Pad, shape: BodyShape
+) -> Iterator[PressedMesh]:
+    """What the pad is on the mesh from each of its views."""
+    vertices, faces = (part.tobytes() for part in mesh_of(model, geom))
+    for view in views:
+        yield PressedMesh(silicone, pad.skin, shape.material, vertices, faces, view[:9].tobytes())
 
 
 def stacked(tables: Sequence[np.ndarray]) -> np.ndarray:

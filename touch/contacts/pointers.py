@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from llvmlite import ir
 from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -80,6 +81,16 @@ def _call(context, builder, signature, arguments):
     return found
 
 
+def _asked(context, address, number):
+    return types.int64(types.int64, types.int64), _ask
+
+
+def _ask(context, builder, signature, arguments):
+    word = ir.IntType(64)
+    function = builder.inttoptr(arguments[0], ir.FunctionType(word, [word]).as_pointer())
+    return builder.call(function, [arguments[1]])
+
+
 floats: Any = intrinsic(_floats)
 complexes: Any = intrinsic(_complexes)
 integers: Any = intrinsic(_integers)
@@ -92,3 +103,5 @@ booleans, of CONTACT_LAW and of CHAIN_NUMBERS."""
 called_two: Any = intrinsic(_called_two)
 called: Any = intrinsic(_called)
 """What the function at an address returns of two or four integers. It is not compiled into its caller once more."""
+asked: Any = intrinsic(_asked)
+"""What Python's function at an address, ctypes.CFUNCTYPE(c_int64, c_int64), returns of a number."""

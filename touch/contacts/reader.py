@@ -9,8 +9,9 @@ C: contacts.
 
 from __future__ import annotations
 
+import ctypes
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,6 +24,7 @@ from thermograsp.errors import SimulationError
 
 from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import CURVED_TABLE, CYLINDER, conductance, contact, curved_contact
+from ...thermal.pressed import PressedMesh
 from ..scene import BodyShape, PadPlace
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .laws import pair_laws, stacked
@@ -42,10 +44,11 @@ from .memory import (
     ContactMemory,
 )
 from .memory import LENGTH as TABLE
-from .pointers import flags, floats, integers, laws, table, words
+from .pointers import asked, flags, floats, integers, laws, table, words
 from .round_pads import BEND, CURVES, bends, curves, round_contact
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces
 from .tilt import TILT, tilted
+from .views import VIEW, stacked_views, viewed
 
 DEPTH = (
     0.004  # m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in
@@ -81,10 +84,12 @@ class ContactReader:
             self._pads[f] = (*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width)
         geoms = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
         self._role[[geom for _, geom in geoms]] = count + np.arange(len(geoms))
-        # of what a pad may meet: the target, the geom (-1 for a fingertip), its body; of fingertips too
+        # of what a pad may meet: the target, the geom (-1 for a fingertip), its body, of meshes their views; of
+        # fingertips too
         parts = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]
         parts += [(objects + f, -1, pad.body) for f, pad in enumerate(pads)]
-        self._parts = np.array(parts, np.int64)
+        self._views, viewed = stacked_views(model, [geom for _, geom in geoms], count)
+        self._parts = np.column_stack((np.array(parts, np.int64), viewed))
         self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
         # of each combination of the objects' materials that there is, and which of them each world has
         self._known: dict[tuple[Material, ...], int] = {}
@@ -92,6 +97,7 @@ class ContactReader:
         self._curved = np.zeros((0, 0, 0, 3), np.int64)
         self._tilts = np.zeros((0, 0, 0, 3, TILT))
         self._every: list[np.ndarray] = []
+        self._meshes: dict[PressedMesh, int] = {}  # the numbers of their tables, made when first touched
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(parts), 3))
         self._frames, self._spot = np.zeros((count, _FRAME)), np.zeros(_SPOT)
@@ -109,15 +115,17 @@ class ContactReader:
             if combination not in self._known:
                 self._known[combination] = len(self._known)
                 shapes = [replace(s, material=m) for s, m in zip(self._shapes, combination, strict=True)]
-                laws, curved, tables, tilts = pair_laws(self._model, self._of_pads, shapes)
-                numbers = np.array([*map(self._number, tables), -1])  # the last of flat targets
+                found = pair_laws(self._model, self._of_pads, shapes)
+                numbers = [*map(self._number, found.tables), *map(self._number_of, found.meshes)]
+                numbers = np.array([*numbers, -1])  # the last of flat targets
                 before = self._laws, self._curved, self._tilts
-                after = laws[None], numbers[curved][None], tilts[None]
+                after = found.laws[None], numbers[found.curved][None], found.tilts[None]
                 if len(self._known) > 1:
                     after = tuple(map(np.concatenate, zip(before, after, strict=True)))
                 self._laws, self._curved, self._tilts = after
             self._which[w] = self._known[combination]
         self._tables = stacked(self._every)
+        self._make = _making(self._meshes, self._tables)
         self._point()
 
     def _number(self, table: np.ndarray) -> int:
@@ -128,9 +136,20 @@ class ContactReader:
         self._every.append(table)
         return len(self._every) - 1
 
+    def _number_of(self, mesh: PressedMesh) -> int:
+        """Of a mesh's table, which is 0 until a pad touches it."""
+        if mesh not in self._meshes:
+            self._meshes[mesh] = len(self._every)
+            self._every.append(np.zeros(CURVED_TABLE))
+        return self._meshes[mesh]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_make"}
+
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
         self.__dict__.update(state)
+        self._make = _making(self._meshes, self._tables)
         self._point()
 
     def _point(self) -> None:
@@ -141,11 +160,12 @@ class ContactReader:
         arrays = (
             *(self._role, self._pads, self._parts, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._first_laws, self._first_curved, self._tables),
-            *(self._frames, self._spot, self._first_tilts),
+            *(self._frames, self._spot, self._first_tilts, self._views),
         )
         self._places = None
         pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
         sizes = len(self._role), *self.touches.shape[1:3], len(self._parts), pyramidal, len(self._tables)
+        sizes += self._views.shape[1], ctypes.cast(self._make, ctypes.c_void_p).value or 0
         self._table = table(arrays, sizes)
         self._table_address = self._table.ctypes.data
 
@@ -176,9 +196,10 @@ class ContactReader:
         arrays = *sensed, self._pads, self._parts, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
         sums = self.touches, self.beside, self.broken, self._curved, self._tables
-        sums += self._frames, self._spot, self._tilts
+        sums += self._frames, self._spot, self._tilts, self._views
         sizes = len(self.beside), places.size, *map(len, sensed[:3]), *self._pushed.shape[:2]
-        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables)))
+        make = self._views.shape[1], ctypes.cast(self._make, ctypes.c_void_p).value or 0
+        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables), *make))
 
     def clear(self) -> None:
         """Sums start anew, with the model's kind of friction cones as it is now."""
@@ -208,6 +229,20 @@ class ContactReader:
         return self._table_address
 
 
+_MAKE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
+
+
+def _making(meshes: Mapping[PressedMesh, int], tables: np.ndarray) -> Any:
+    """What compiled code calls to have the table of that number made."""
+    of = {number: mesh for mesh, number in meshes.items()}
+
+    def make(number: int) -> int:
+        tables[number] = of[number].table()
+        return 0
+
+    return _MAKE(make)
+
+
 def broke_down(time: float) -> SimulationError:
     """What a force that is not finite at `time` s raises."""
     return SimulationError(
@@ -220,21 +255,28 @@ def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite."""
-    memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 20)
-    tips, targets, part_count, pyramidal = entries[15], entries[16], entries[17], entries[18]
-    role = carray(words(entries[0]), entries[14])
+    memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 23)
+    tips, targets, part_count, pyramidal, sides = (
+        entries[16],
+        entries[17],
+        entries[18],
+        entries[19],
+        entries[21],
+    )
+    role = carray(words(entries[0]), entries[15])
     pads = carray(floats(entries[1]), (tips, _PAD))
-    parts = carray(words(entries[2]), (part_count, 3))
+    parts = carray(words(entries[2]), (part_count, 4))
     bend = carray(floats(entries[3]), (tips, BEND))
     curve = carray(floats(entries[4]), (part_count, 3, CURVES))
     pushed = carray(floats(entries[5]), (tips, part_count, 3))  # room for forces and moments
     touches = carray(floats(entries[6]), (tips, targets, COLUMNS))
     beside = carray(floats(entries[7]), tips)
     law = carray(laws(entries[8]), (tips, part_count, 3))
-    curved = carray(words(entries[9]), (tips, part_count, 3))
-    tables = carray(floats(entries[10]), (entries[19], CURVED_TABLE))
+    curved = carray(words(entries[9]), (tips, part_count, sides))
+    tables = carray(floats(entries[10]), (entries[20], CURVED_TABLE))
     frames, spot = carray(floats(entries[11]), (tips, _FRAME)), carray(floats(entries[12]), _SPOT)
     tilts = carray(floats(entries[13]), (tips, part_count, 3, TILT))
+    views = carray(floats(entries[14]), (part_count, sides, VIEW))
     place = carray(words(memory[CONTACTS]), 1)[0]
     numbers = carray(floats(place), (count, memory[STRIDE] // 8))
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
@@ -287,7 +329,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     if any_touch:
         _feel(
             xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, tilts, bend, curve, pushed,
-            touches, weight, spot,
+            touches, weight, spot, views, entries[22],
         )  # fmt: skip
     return 1
 
@@ -296,9 +338,9 @@ def read_contacts(count, substeps, memory_at, entries_at):
 def sense_contacts(record_at, substeps, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `_sensing`."""
-    entries = carray(words(entries_at), 33)
-    worlds, size, pairs, poses, geoms = entries[24], entries[25], entries[26], entries[27], entries[28]
-    tips, part_count, targets = entries[29], entries[30], entries[31]
+    entries = carray(words(entries_at), 36)
+    worlds, size, pairs, poses, geoms = entries[25], entries[26], entries[27], entries[28], entries[29]
+    tips, part_count, targets, sides = entries[30], entries[31], entries[32], entries[34]
     record = carray(floats(record_at), (worlds, substeps, size))
     pair, pose, placed = (
         carray(words(entries[0]), (pairs, 3)),
@@ -306,12 +348,13 @@ def sense_contacts(record_at, substeps, first, last, entries_at):
         carray(words(entries[2]), (geoms, 2)),
     )
     turns, offsets = carray(floats(entries[3]), (geoms, 9)), carray(floats(entries[4]), (geoms, 3))
-    pads, parts = carray(floats(entries[5]), (tips, _PAD)), carray(words(entries[6]), (part_count, 3))
+    pads, parts = carray(floats(entries[5]), (tips, _PAD)), carray(words(entries[6]), (part_count, 4))
     which = carray(words(entries[8]), worlds)
     kinds = which.max() + 1
     law = carray(laws(entries[7]), (kinds, tips, part_count, 3))
-    curved = carray(words(entries[19]), (kinds, tips, part_count, 3))
-    tables = carray(floats(entries[20]), (entries[32], CURVED_TABLE))
+    curved = carray(words(entries[19]), (kinds, tips, part_count, sides))
+    tables = carray(floats(entries[20]), (entries[33], CURVED_TABLE))
+    views = carray(floats(entries[24]), (part_count, sides, VIEW))
     tilts = carray(floats(entries[23]), (kinds, tips, part_count, 3, TILT))
     frames, spot = carray(floats(entries[21]), (tips, _FRAME)), carray(floats(entries[22]), _SPOT)
     bend = carray(floats(entries[9]), (tips, BEND))
@@ -380,7 +423,7 @@ def sense_contacts(record_at, substeps, first, last, entries_at):
                     _press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside[w])
             _feel(
                 xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law[which[w]], curved[which[w]], tables,
-                tilts[which[w]], bend, curve, pushed, touches[w], 1.0, spot,
+                tilts[which[w]], bend, curve, pushed, touches[w], 1.0, spot, views, entries[35],
             )  # fmt: skip
 
 
@@ -466,7 +509,7 @@ def _within(pad, x, y, z, sunk):
 @njit(cache=True, inner=True, error_model="numpy")
 def _feel(
     xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
-    weight, spot,
+    weight, spot, views, make,
 ):  # fmt: skip
     """Adds what presses on the pads to the touches."""
     tips, part_count = len(pads), len(parts)
@@ -510,7 +553,16 @@ def _feel(
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
             conducts, area, share, kept, longer, long = 0.0, 0.0, 0.0, 1.0, 1.0, 0.0
-            if not bulging and curved[f, g, axis] >= 0:
+            if not bulging and parts[g, 3] > 0:
+                for i in range(3):
+                    one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
+                    sides[i] = one * normal[0] + two * normal[1] + three * normal[2]
+                view, first, second = viewed(views[g], parts[g, 3], sides, place, law.half_face)
+                number = curved[f, g, view]
+                if tables[number, 1] == 0.0:
+                    asked(make, number)
+                conducts, area, long = curved_contact(tables[number], force, first, second)
+            elif not bulging and curved[f, g, axis] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
                 first, second, lying, whole = pushed[f, g, 1] / force, pushed[f, g, 2] / force, force, 1.0
                 if law.shape == CYLINDER:

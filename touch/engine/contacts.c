@@ -47,6 +47,28 @@ static bool lies(const double* pad, const Pose* at, const mjContact* contact, do
   return along >= LOOKING && fabs(x) <= DEPTH + sunk && fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
 }
 
+/* The view of a mesh that a pad belongs to, and where it is there, as touch/contacts/views.py. place: of the pad's middle. */
+static int viewed(const double* views, int count, const double normal[3], const double p[3], double half, double at[2]) {
+  int best = 0;
+  double most = -2, q[3];
+  for (int k = 0; k < count; k++) {
+    const double* v = views + k * VIEW;
+    double cosine = v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
+    if (cosine > most) {
+      most = cosine;
+      best = k;
+    }
+  }
+  const double* v = views + best * VIEW;
+  double c[3], once[3], twice[3];
+  mju_cross(c, normal, v);
+  mju_cross(once, c, p);
+  mju_cross(twice, c, once);
+  for (int i = 0; i < 3; i++) q[i] = p[i] + once[i] + twice[i] / (1 + most);
+  for (int j = 0; j < 2; j++) at[j] = fmax(mju_dot3(v + 3 * (j + 1), q) - v[9 + j] + half, 0);
+  return best;
+}
+
 /* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
@@ -76,10 +98,19 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
   bool bulging = bend[0] + bend[1] > 0 || (!turn && curve[0] + curve[1] > 0);
   double on_face = 1, longer = 1;
-  int table = (int)numbers->curved[(f * numbers->things + g) * 3 + axis];
+  int side = axis, views = (int)numbers->viewed[g];
+  double seen[2], normal[3];
+  if (views && !bulging) {
+    for (int i = 0; i < 3; i++) normal[i] = turn[i] * at->axes[0] + turn[3 + i] * at->axes[3] + turn[6 + i] * at->axes[6];
+    side = viewed(numbers->views + g * numbers->sides * VIEW, views, normal, place, law->half_face, seen);
+  }
+  int table = (int)numbers->curved[(f * numbers->things + g) * numbers->sides + side];
   if (table >= 0 && !bulging) {
     double first = pushed[1] / force, second = pushed[2] / force, lying = force, whole = 1;
-    if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
+    if (views) {
+      first = seen[0];
+      second = seen[1];
+    } else if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
       double along_y = 0, along_z = 0;
       for (int k = 0; k < 3; k++) {
         along_y += at->axes[3 * k + 1] * turn[3 * k + 2];

@@ -28,6 +28,8 @@ enum { SHAPE_CYLINDER = 1 };
 enum { PLACES = 16, FORCES = 14, VALUES = 3, CURVED = 2 * PLACES + VALUES * FORCES * PLACES * PLACES };
 /* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
 enum { BEND = 7, CURVES = 4 };
+/* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
+enum { VIEW = 11 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
 enum { TURN_BY, SOFT, FIRM, APART, RADIUS, HALF_ROD, HALF_PAD, HALF_FACE, TILT };
 
@@ -51,13 +53,14 @@ enum {
 typedef struct {
   int rates, places, states;     /* K, P, and most states of an object */
   int tips, objects, geoms, targets, things, patterns, tip_states, sample_steps;
-  int tables;                    /* of curved contacts */
+  int tables, sides;             /* of curved contacts; axes or, of meshes, views of a thing, at most */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
   const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double *seebeck, *warm;  /* V/K; K above the air */
   const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
   const double *laws, *curved;   /* Law of each pad on each thing, by the axis of its frame, and its table's number or -1 */
+  const double *views, *viewed;  /* VIEW of each thing by its side, and how many: 0 of what is no mesh */
   const double* tilts;           /* TILT each, alike */
   const double *bent, *grid;     /* CURVED each; logarithms of their first force and of the next one's ratio, least W/K */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;

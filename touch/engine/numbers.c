@@ -8,8 +8,8 @@
 
 #include "heat.h"
 
-enum { VERSION = 5, HEADER = 13, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
-       MOST_TABLES = 4096 };
+enum { VERSION = 6, HEADER = 14, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+       MOST_TABLES = 4096, MOST_VIEWS = 256 };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;
@@ -38,7 +38,7 @@ static bool numbered(const double* values, size_t count, int tables) {
 /* Fills the numbers, whose `all` is to be freed. Returns what is wrong with the text, or NULL. */
 const char* heat_parse(Numbers* n, const char* text) {
   static const double most[HEADER] = {VERSION,    MOST_TIPS, MOST_OBJECTS, MOST_GEOMS, PATTERNS, MOST_RATES,
-                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES};
+                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES, MOST_VIEWS};
   memset(n, 0, sizeof *n);
   size_t length = text ? strlen(text) : 0;
   double* at = n->all = malloc(length / 2 + sizeof(double));
@@ -57,6 +57,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   n->least = at[10];
   n->named = (int)at[11];
   n->tables = (int)at[12];
+  n->sides = (int)at[13];
   n->targets = tips + objects;
   n->places = tips + 2;
   n->states = 1 + n->rates * patterns * n->places;
@@ -69,7 +70,9 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->pads, (size_t)tips * PAD},
       {&n->boxes, (size_t)objects * BOX},
       {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
-      {&n->curved, (size_t)tips * things * 3},
+      {&n->curved, (size_t)tips * things * n->sides},
+      {&n->views, (size_t)things * n->sides * VIEW},
+      {&n->viewed, things},
       {&n->tilts, (size_t)tips * things * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
@@ -110,7 +113,8 @@ const char* heat_parse(Numbers* n, const char* text) {
   /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
   if (!within(n->roles, n->named, 1, things - 1) || !within(n->owner, geoms, 1, objects - 1) ||
       !within(across, laws, law, 2) || !within(across + 1, laws, law, 2) ||
-      !numbered(n->curved, laws, n->tables) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
+      !numbered(n->curved, (size_t)tips * things * n->sides, n->tables) || n->sides < 3 ||
+      !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

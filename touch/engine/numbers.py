@@ -17,11 +17,11 @@ from ...thermal.contact import FIRST_FORCE, FORCE_STEP, LEAST_CURVED, LOG_LEAST,
 from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES, TO_MOMENTS, before
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
-from ..contacts import bends, curves, pair_laws, stacked
+from ..contacts import bends, curves, pair_laws
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
-_VERSION = 5
+_VERSION = 6
 
 
 def packed(
@@ -43,11 +43,12 @@ def packed(
     roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
     roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
     timestep = float(model.opt.timestep)
-    laws, curved, found, tilts = pair_laws(model, pads, shapes)
-    tables = stacked(found)
+    found = pair_laws(model, pads, shapes)
+    laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
+    tables = found.all_tables
     header = (
         *(_VERSION, len(pads), len(shapes), len(owner), level.patterns, level.rates, most, steps),
-        *(timestep, timestep * steps, level.least, len(roles), len(tables)),
+        *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1]),
     )
     every = (
         header,
@@ -57,6 +58,8 @@ def packed(
         *(_box(shape, film, ambient) for shape in shapes),
         np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
         curved,
+        views,
+        viewed,
         tilts,
         tables,
         *(narrow_of(pad, other, level) for pad in pads for other in (*(s.material for s in shapes), *pads)),

@@ -20,12 +20,13 @@ from thermograsp.envs.bodies.library import (
     objects,
 )
 from thermograsp.envs.bodies.recipes import RECIPES, make
-from thermograsp.envs.footprint.surface_height import MAP_PITCH, map_heights, mesh_map
+from thermograsp.envs.footprint.surface_height import mesh_map
 from thermograsp.envs.limits import MAX_OPENING
 from thermograsp.envs.mechanics.batch import Mechanics
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.files import cache_dir
 from thermograsp.thermal import material, sensor
+from thermograsp.thermal.pressed import MAP_PITCH, map_heights
 
 NAMES = tuple(objects())
 MESHES = tuple(name for name in NAMES if objects()[name].solid.surface is not None)

@@ -16,7 +16,6 @@ from thermograsp.envs import (
     SortEnv,
     objects,
 )
-from thermograsp.envs.footprint.foundation import pressure_map
 from thermograsp.envs.footprint.grasp_body import PAD
 from thermograsp.envs.footprint.surface_height import (
     BOX,
@@ -28,6 +27,7 @@ from thermograsp.envs.footprint.taxels import MOST_PRESSURE, Taxels
 from thermograsp.envs.mechanics.batch import Mechanics
 from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import cylinder_contact, sphere_contact
+from thermograsp.thermal.pressed import pressure_map
 
 STIFFNESS = PAD.foundation_modulus / PAD.thickness
 SIDE = PAD.width
@@ -352,10 +352,11 @@ def test_without_them_nothing_of_theirs_is_loaded_or_recorded() -> None:
         "env = GraspEnv(material='glass', tolerance=0.5)\n"
         "seen, _ = env.reset(seed=0)\n"
         "env.step(np.zeros(3))\n"
-        "names = ['footprint.taxels', 'spaces.map_observation', 'footprint.foundation', 'footprint.surface_height']\n"
+        "names = ['footprint.taxels', 'spaces.map_observation', 'footprint.surface_height']\n"
         "names += ['mechanics.pad_contacts', 'sensing.face_temperature']\n"
         "keys = {'pressure', 'face_temperature'} & set(seen)\n"
-        "names = [f'thermograsp.envs.{name}' for name in names] + ['thermograsp.thermal.batch.face']\n"
+        "names = [f'thermograsp.envs.{name}' for name in names]\n"
+        "names += [f'thermograsp.thermal.{name}' for name in ('batch.face', 'pressed')]\n"
         "print([name for name in names if name in sys.modules], bool(keys))\n"
         "print('site_xpos' in env.batch.plant.mechanics._latest)\n"
     )

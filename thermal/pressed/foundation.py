@@ -19,7 +19,7 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ...thermal import Pad
+from ..contact import Pad
 
 _STEPS = 50
 _SECANTS = 20

@@ -1,0 +1,231 @@
+"""Meshes on a pad touch what of them lies on it: beside closed forms, sums over springs, and in all three forms."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+
+from thermograsp.errors import MissingDependencyError
+from thermograsp.thermal import IDEAL, Pad, cylinder_contact, sphere_contact
+from thermograsp.thermal.contact import curved_contact, skinned
+from thermograsp.thermal.matter import skin as named_skin
+from thermograsp.thermal.pressed import MAP_PITCH, height_map, map_heights
+from thermograsp.thermal.pressed.mesh_table import _points, _sunk
+from thermograsp.touch import Fingertip, ThermalTouch, install
+from thermograsp.touch.contacts import AREA, CLOSED, FORCE, pair_laws
+from thermograsp.touch.contacts.laws import PairLaws
+from thermograsp.touch.contacts.views import array_viewed, mesh_views, viewed
+from thermograsp.touch.scene import bodies, pads
+
+Mesh = tuple[np.ndarray, np.ndarray]
+PAD = Pad(width=0.020, face=0.009)
+
+
+def swept(radius: Callable[[np.ndarray, np.ndarray], np.ndarray], length: float = 0.04) -> Mesh:
+    """A body along y whose radius m is a function of angle and height."""
+    around, up = 120, 160
+    angle, heights = np.arange(around) * (2 * np.pi / around), np.linspace(-length / 2, length / 2, up)
+    reach = np.array([radius(angle, height) for height in heights])
+    level = np.broadcast_to(heights[:, None], reach.shape)
+    loops = np.stack([reach * np.cos(angle), level, reach * np.sin(angle)], axis=-1)
+    ring, faces = np.arange(around), []
+    for k in range(up - 1):
+        a, b = ring + around * k, ring + around * (k + 1)
+        a1, b1 = np.roll(a, -1), np.roll(b, -1)
+        faces += [np.stack([a, b, a1], 1), np.stack([a1, b, b1], 1)]
+    first, last = up * around, up * around + 1
+    faces += [np.stack([0 * ring + first, ring, np.roll(ring, -1)], 1)]
+    top = ring + around * (up - 1)
+    faces += [np.stack([0 * ring + last, np.roll(top, -1), top], 1)]
+    ends = np.array([[0, -length / 2, 0], [0, length / 2, 0]])
+    return np.concatenate([*loops, ends]), np.concatenate(faces)
+
+
+def smooth(angle: np.ndarray, height: np.ndarray) -> np.ndarray:
+    return 0.01 + 0 * angle
+
+
+def thread(angle: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """M20: crests of 1/8 of a pitch of 2.5 mm, flanks of 60 degrees."""
+    turn = (height / 0.0025 - angle / (2 * np.pi)) % 1
+    return 0.01 - 0.00217 * np.maximum(abs(turn - 0.5) - 1 / 16, 0)
+
+
+def made(solid: trimesh.Trimesh) -> Mesh:
+    return np.array(solid.vertices), np.array(solid.faces)
+
+
+MESHES: dict[str, tuple[Mesh, float]] = {
+    "box": (made(trimesh.creation.box((0.04, 0.03, 0.02))), 0.02),
+    "rod": (swept(smooth), 0.02),
+    "thread": (swept(thread), 0.02),
+    "ball": (made(trimesh.creation.icosphere(4, 0.02)), 0.04),
+    "nut": (made(trimesh.creation.cylinder(0.012, 0.03, sections=6)), 0.03),
+}
+"""And their height m along z."""
+
+
+def spec(name: str) -> mujoco.MjSpec:
+    (vertices, faces), height = MESHES[name]
+    vertex, face = (" ".join(f"{x:.9g}" for x in part.ravel()) for part in (vertices, faces))
+    return mujoco.MjSpec.from_string(f"""
+      <mujoco><option timestep=".002" gravity="0 0 0"/>
+      <asset><mesh name="thing" vertex="{vertex}" face="{face}"/></asset><worldbody>
+        <body name="thing"><geom name="thing" type="mesh" mesh="thing" friction="0"/></body>
+        <body name="tip" pos="0 0 {height / 2 + 0.0045}">
+          <joint name="tip" type="slide" axis="0 0 -1" damping="20"/>
+          <joint name="aside" type="slide" axis="1 0 0" damping="20"/>
+          <geom name="tip" type="box" size=".01 .01 .004" mass=".05" friction="0"/></body>
+      </worldbody><actuator><motor joint="tip"/><position joint="aside" kp="500"/></actuator></mujoco>""")
+
+
+@lru_cache
+def scene(name: str, skin: str | None) -> tuple[mujoco.MjModel, PairLaws, np.ndarray]:
+    model = spec(name).compile()
+    shapes = bodies(model, {"thing": "steel"}, 24.0)
+    laws = pair_laws(model, pads(model, {"tip": Fingertip("tip", skin=skin)}, shapes), shapes)
+    return model, laws, laws.all_tables
+
+
+def found(name: str, skin: str | None, force: float, aside: float = 0.0) -> tuple[float, float]:
+    """W/K and m2 of steel from above, the pad's middle that far m from the mesh's along x."""
+    model, laws, tables = scene(name, skin)
+    rotation = np.zeros(9)  # the mesh's geom may have other axes than its body
+    mujoco.mju_quat2Mat(rotation, model.geom_quat[0])
+    turned = rotation.reshape(3, 3).T
+    place = turned @ (np.array([aside, 0.0, MESHES[name][1] / 2]) - model.geom_pos[0])
+    k, u, v = viewed(laws.views[0], laws.viewed[0], turned @ [0.0, 0.0, -1.0], place, PAD.face / 2)
+    conducts, area, _ = curved_contact(tables[laws.curved[0, 0, k]], force, u, v)
+    return conducts, area
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.002, 0.004, 0.006])
+def test_rods_and_balls_are_those_of_the_closed_forms(aside: float) -> None:
+    """To what tables tell of a narrow crown: their places are 2 mm apart on the rod and 3 on the ball."""
+    skin = skinned(PAD, named_skin("filled_silicone"))
+    for force in (3.0, 10.0):
+        for sheet, worn in ((PAD, None), (skin, "filled_silicone")):
+            whole = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
+            rod = float(cylinder_contact(sheet, force, 0.01, 0.04, offset=(0.0, aside)).face)
+            assert found("rod", worn, force, aside)[1] == pytest.approx(rod, abs=0.25 * whole)
+        whole = float(sphere_contact(PAD, force, 0.02).face)
+        ball = float(sphere_contact(PAD, force, 0.02, offset=(aside, 0.0)).face)
+        assert found("ball", None, force, aside)[1] == pytest.approx(ball, abs=0.25 * whole)
+
+
+@pytest.mark.parametrize("aside", np.linspace(0.0, 0.024, 9).tolist())
+def test_a_face_counts_up_to_its_edge(aside: float) -> None:
+    _, area = found("box", None, 10.0, aside)
+    assert area == pytest.approx(0.009 * min(max(0.0245 - aside, 0.0), 0.009), abs=0.02 * PAD.face**2)
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_thread_touches_less_than_a_rod_and_more_force_touches_more(skin: str | None) -> None:
+    for force in (0.3, 3.0, 10.0, 30.0):
+        rough, plain = found("thread", skin, force), found("rod", skin, force)
+        assert 0 < rough[0] < 0.8 * plain[0] and 0 < rough[1] < 0.8 * plain[1]
+    for name in MESHES:
+        through = [found(name, skin, force)[0] for force in np.geomspace(0.05, 60.0, 25)]
+        assert (np.diff(through) > -1e-9).all()
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_nothing_jumps_over_the_face_s_edge_and_beyond_it_nothing_is_left(name: str) -> None:
+    through = np.array([found(name, None, 10.0, aside)[0] for aside in np.linspace(0.0, 0.026, 521)])
+    assert abs(np.diff(through)).max() < 0.06 * through.max()  # in .05 mm
+    assert through[-1] < 1e-4 * through.max()
+
+
+def test_a_nut_lies_on_each_of_its_faces() -> None:
+    model = spec("nut").compile()
+    views = mesh_views(model, 0)
+    assert len(views) == 8
+    normals = sorted(
+        round(math.degrees(math.acos(np.clip(a @ b, -1, 1)))) for a in views[:, :3] for b in views[:, :3]
+    )
+    assert set(normals) == {0, 60, 90, 120, 180}
+
+
+def test_arrays_see_the_same_views() -> None:
+    model, rng = spec("ball").compile(), np.random.default_rng(0)
+    views = np.stack([mesh_views(model, 0), np.zeros_like(mesh_views(model, 0))])
+    normals = rng.normal(size=(50, 2, 3))
+    normals /= np.linalg.norm(normals, axis=-1)[..., None]
+    places = rng.uniform(-0.03, 0.03, (50, 2, 3))
+    which, first, second = array_viewed(views, normals, places, np.full((50, 2), 0.0045))
+    for n in range(50):
+        k, u, v = viewed(views[0], len(views[0]), normals[n, 0], places[n, 0], 0.0045)
+        assert (which[n, 0], first[n, 0], second[n, 0]) == pytest.approx((k, u, v), abs=1e-12)
+
+
+def test_what_springs_bear_is_the_force() -> None:
+    """Over the footprint, to 1e-6, wherever the mesh is and however light the force."""
+    sheet, rng = skinned(PAD, named_skin("filled_silicone")), np.random.default_rng(1)
+    points, areas, stiffness, on_face = _points(sheet)
+    assert areas.sum() == pytest.approx(PAD.width**2) and areas[:on_face].sum() == pytest.approx(PAD.face**2)
+    for name in ("box", "thread", "ball"):
+        vertices, faces = MESHES[name][0]
+        axes = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+        seen = height_map(vertices, faces, axes)
+        for force in (0.02, 1.0, 100.0):
+            heights, cover = np.zeros((2, len(points)))
+            middle = np.array([*rng.uniform(-0.015, 0.015, 2), 0.0])
+            map_heights(*seen, MAP_PITCH, np.stack([middle, *axes]), points, heights, cover)
+            heights -= heights[cover > 0].min()
+            load = force * sheet.thickness / sheet.foundation_modulus
+            depth = _sunk(heights, cover * areas, stiffness, load)
+            held = (cover * areas * stiffness * np.maximum(depth - heights, 0.0)).sum()
+            assert held == pytest.approx(load, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["box", "thread", "nut"])
+def test_three_forms_agree_while_a_mesh_slips(name: str) -> None:
+    words = {"fingertips": {"tip": Fingertip("tip", skin="filled_silicone")}, "objects": {"thing": "steel"}}
+    try:
+        model = install(spec(name), **words)
+    except MissingDependencyError:
+        pytest.skip("needs a C compiler and specs that take plugins")
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    seebeck, seen = touch._pads[0].stack.seebeck, set()
+    pressed = 0.0
+    data.ctrl[0] = 10.0
+    for n in range(600):
+        data.ctrl[1] = 0.03 * n / 600
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+        if n % 10 == 8:
+            touches = touch._reader.touches[0]
+            plugin = data.plugin_state[1 : 1 + touches.size].reshape(touches.shape)
+            np.testing.assert_allclose(plugin, touches, rtol=1e-9, atol=1e-12)
+            pressed += touches[0, 0, FORCE]
+            seen.add(round(float(touches[0, 0, AREA] / max(touches[0, 0, CLOSED], 1)) * 1e6, 1))
+        if n % 10 == 9:
+            mujoco.mj_forward(model, data)
+            assert data.sensor("heat").data[0] / seebeck == pytest.approx(
+                reading.temperature_drop[0], abs=1e-9
+            )
+    assert len(seen) > 5 and pressed > 0
+
+
+def test_a_copy_of_a_touch_makes_its_own_tables() -> None:
+    model = spec("nut").compile()
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips={"tip": "tip"}, objects={"thing": "steel"}, chain=IDEAL)
+    data.ctrl[0] = 10.0
+    both = copy.deepcopy({"data": data, "touch": touch})
+    for each in ({"data": data, "touch": touch}, both):
+        for _ in range(100):
+            mujoco.mj_step(model, each["data"])
+            each["touch"].update(each["data"])
+    assert both["touch"].reading.temperature_drop == touch.reading.temperature_drop
+    assert touch.reading.temperature_drop[0] > 1.0

@@ -1,0 +1,17 @@
+"""Bodies of any shape on a pad's springs."""
+
+from .foundation import face_springs, pressure_map
+from .height_map import MAP_PITCH, HeightMap, height_map, map_heights
+from .mesh_table import PressedMesh, PressedView, pressed_view
+
+__all__ = [
+    "MAP_PITCH",
+    "HeightMap",
+    "PressedMesh",
+    "PressedView",
+    "face_springs",
+    "height_map",
+    "map_heights",
+    "pressed_view",
+    "pressure_map",
+]

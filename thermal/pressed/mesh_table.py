@@ -1,0 +1,198 @@
+"""What a pad touches of a mesh that it meets along one direction, as a table over force and place.
+
+The mesh sinks into the pad's elastic foundation (thermal/contact/area.py) along that direction, without a tilt, until
+the springs under it take the force. Area counts where there is pressure and the mesh covers the face: the crests of a
+thread, the teeth of a gear, a face up to its edge. The tables are those of curved bodies
+(thermal/contact/curved_table.py): W/K, m2 and m at FORCES and at places of the pad's middle, whose sides lie along the
+mesh's. Places are counted from where the face begins to meet the mesh, so that they are never below 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..contact import (
+    CURVED_TABLE,
+    FIRST_FORCE,
+    FORCE_STEP,
+    FORCES,
+    PLACES,
+    Pad,
+    Surface,
+    conductance,
+    even_places,
+    face_joint,
+    flat_law,
+    skinned,
+)
+from ..matter import Material, Skin
+from .height_map import MAP_PITCH, height_map, map_heights
+
+_POINTS = 40  # along the pad's side, of the foundation
+_FINER = 3  # times as many on the face
+_STEPS = 50
+_NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
+_TOLERANCE = 1e-12  # of the force
+_FADED = 0.1  # of what a force five times as large touches, at least
+
+
+@dataclass(frozen=True, slots=True)
+class PressedMesh:
+    """A fingertip on a mesh from one side. pad: its silicone; skin: over it, None for none. body: the mesh's material.
+    vertices (n, 3) m and triangles (m, 3) of int64, as bytes; axes: (3, 3), as bytes, of which the first is the
+    direction from outside inwards."""
+
+    pad: Pad
+    skin: Skin | None
+    body: Material
+    vertices: bytes
+    faces: bytes
+    axes: bytes
+
+    def table(self) -> np.ndarray:
+        """(CURVED_TABLE,)."""
+        sheet = skinned(self.pad, self.skin)
+        faces = face_joint(self.skin, Surface.of(self.body))
+        view = pressed_view(sheet, self.vertices, self.faces, self.axes)
+        return _conducting(view, flat_law(sheet, faces, (sheet.width, sheet.width)))
+
+
+class PressedView(NamedTuple):
+    """places: (2, PLACES) m of the pad's middle along the two axes across the direction, from where the face begins to
+    meet the mesh. touched: (FORCES, PLACES, PLACES, 2), m2 of the face in contact and its share of the force."""
+
+    places: np.ndarray
+    touched: np.ndarray
+
+
+@lru_cache(maxsize=256)
+def pressed_view(pad: Pad, vertices: bytes, faces: bytes, axes: bytes) -> PressedView:
+    """Of a PressedMesh, with a pad that has its skin's springs."""
+    corners = np.frombuffer(vertices).reshape(-1, 3)
+    seen = height_map(
+        corners, np.frombuffer(faces, np.int64).reshape(-1, 3), np.frombuffer(axes).reshape(3, 3)
+    )
+    across = corners @ seen.axes[1:].T
+    low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
+    places = np.stack([_places(pad.face, float(span)) for span in high - low])
+    touched = np.zeros((FORCES, PLACES, PLACES, 2))
+    loads = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)) * pad.thickness / pad.foundation_modulus
+    _press(*seen, low, places, *_points(pad), loads, touched)
+    for array in (places, touched):
+        array.flags.writeable = False
+    return PressedView(places, touched)
+
+
+def _places(face: float, span: float) -> np.ndarray:
+    """(PLACES,) m up to the span: close together where a crown in the mesh's middle comes to the face's edge, and those
+    where a straight edge of the mesh begins and ceases to cross the face."""
+    crown = [span / 2 + way * near * face / 2 for near in _NEAR_EDGE for way in (-1, 1)]
+    return even_places(0.0, span, (face, span - face, *crown))
+
+
+def _points(pad: Pad) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Of the pad's springs: places (n, 2) m, areas (n,) m2 and stiffness (n,) over that of those around the face. The
+    first are on the face, so many, and closer together; the others' areas are what of them is beside it."""
+    fine = _middles(pad.face, math.ceil(_FINER * _POINTS * pad.face / pad.width))
+    coarse, pitch = _middles(pad.width, _POINTS), pad.width / _POINTS
+    on_face = np.clip((pad.face / 2 - np.abs(coarse)) / pitch + 0.5, 0.0, 1.0).prod(axis=1)
+    around = on_face < 1
+    areas = np.full(len(fine), pad.face**2 / len(fine)), (1 - on_face[around]) * pitch**2
+    stiffness = np.full(len(fine), pad.face_ratio), np.ones(len(areas[1]))
+    return np.concatenate((fine, coarse[around])), np.concatenate(areas), np.concatenate(stiffness), len(fine)
+
+
+def _middles(side: float, count: int) -> np.ndarray:
+    """(count^2, 2) m, of so many squares each way."""
+    middles = (np.arange(count) + 0.5) * side / count - side / 2
+    return np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
+
+
+def _conducting(view: PressedView, law: np.void) -> np.ndarray:
+    """(CURVED_TABLE,) of a view. law: a CONTACT_LAW of the faces."""
+    table = np.empty(CURVED_TABLE)
+    table[: 2 * PLACES] = view.places.ravel()
+    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
+    _conduct(law, forces, view.touched, table[2 * PLACES :].reshape((*view.touched.shape[:3], 3)))
+    table.flags.writeable = False
+    return table
+
+
+@njit(cache=True, error_model="numpy")
+def _press(axes, corner, height, begin, places, points, areas, stiffness, on_face, loads, touched):
+    """Fills touched. on_face: how many points. loads: m3, forces over the stiffness of springs around the face."""
+    frame = np.zeros((4, 3))
+    frame[1:] = axes
+    heights, cover = np.zeros(len(points)), np.zeros(len(points))
+    for a in range(1, places.shape[1] - 1):  # nothing is touched at the ends
+        for b in range(1, places.shape[1] - 1):
+            for k in range(3):
+                frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
+            map_heights(axes, corner, height, MAP_PITCH, frame, points, heights, cover)
+            cover *= areas
+            # a light force's depth is little beside the heights
+            least = np.inf
+            for i in range(len(points)):
+                if cover[i] > 0.0:
+                    least = min(least, heights[i])
+            heights -= least
+            if cover[:on_face].max() == 0.0:
+                continue
+            for n in range(0, len(loads), 2):
+                depth = _sunk(heights, cover, stiffness, loads[n])
+                area, held = 0.0, 0.0
+                for i in range(on_face):
+                    if heights[i] < depth:
+                        area += cover[i]
+                        held += cover[i] * stiffness[i] * (depth - heights[i])
+                touched[n, a, b, 0], touched[n, a, b, 1] = area, held / loads[n]
+            # between forces a power of them is taken, which must not begin at nothing
+            for n in range(len(loads) - 4, -1, -2):
+                for k in range(2):
+                    touched[n, a, b, k] = max(touched[n, a, b, k], _FADED * touched[n + 2, a, b, k])
+            for n in range(1, len(loads), 2):
+                above = min(n + 1, len(loads) - 2)
+                touched[n, a, b, 0] = math.sqrt(touched[n - 1, a, b, 0] * touched[above, a, b, 0])
+                touched[n, a, b, 1] = (touched[n - 1, a, b, 1] + touched[above, a, b, 1]) / 2
+
+
+@njit(cache=True, error_model="numpy")
+def _sunk(heights, cover, stiffness, load):
+    """m at which springs take the load, m3; -inf where there are none."""
+    depth, whole = load, 0.0
+    for i in range(len(heights)):
+        depth += cover[i] * stiffness[i] * heights[i]
+        whole += cover[i] * stiffness[i]
+    if whole == 0.0:
+        return -np.inf
+    depth /= whole  # if all pushed: at least as deep as it will be
+    for _ in range(_STEPS):
+        held, rate = 0.0, 0.0
+        for i in range(len(heights)):
+            if heights[i] < depth:
+                spring = cover[i] * stiffness[i]
+                held += spring * (depth - heights[i])
+                rate += spring
+        wrong = held - load
+        if rate == 0.0 or abs(wrong) <= _TOLERANCE * load:
+            break
+        depth -= wrong / rate
+    return depth
+
+
+@njit(cache=True, error_model="numpy")
+def _conduct(law, forces, touched, values):
+    for n in range(touched.shape[0]):
+        for a in range(touched.shape[1]):
+            for b in range(touched.shape[2]):
+                area = touched[n, a, b, 0]
+                load = touched[n, a, b, 1] * forces[n]
+                values[n, a, b, 0] = conductance(law, load / area) * area if load > 0.0 else 0.0
+                values[n, a, b, 1], values[n, a, b, 2] = area, math.sqrt(area)

@@ -1,0 +1,207 @@
+"""The sides from which a pad may meet a mesh: the directions of its hull's faces, and where the pad is as seen there.
+
+MuJoCo presses a mesh's hull on pads, so a pad that lies on a mesh looks against a face of its hull. Faces that look
+alike have one view, and a pad belongs to the view that its normal is nearest to. It is turned there about the geom's
+middle, the shortest way: on a round mesh that is the same place.
+
+N: what a pad may meet.
+"""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from types import ModuleType
+
+import mujoco
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ...thermal import Pad
+from ...thermal.numerics import Array, as_integers, as_like, namespace_of
+from ...thermal.pressed import MAP_PITCH, height_map, map_heights, pressure_map
+
+VIEW = 11
+"""Of a view: three axes, the first into the mesh, and m along the others where the mesh begins, all in the geom's
+frame."""
+_APART = math.cos(math.radians(35))  # views
+_ALIKE = math.cos(math.radians(20))  # faces whose areas count together
+_FEW = 0.01  # of the hull's area
+_DIGITS = 3  # of a direction
+PAD, _POINTS, _PRESSED = Pad(), 40, 10.0
+"""What comes to lie on a mesh: a pad, seen at so many points along its side, and N."""
+_SLANT = 0.2  # most of a hull's face between crests
+
+
+def mesh_of(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray]:
+    """(vertices (n, 3) m, triangles (m, 3)) of a mesh geom, in its frame."""
+    mesh = int(model.geom_dataid[geom])
+    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+    vertices = model.mesh_vert[first : first + count].astype(float)
+    first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+    return vertices, model.mesh_face[first : first + count].astype(np.int64)
+
+
+def mesh_views(model: mujoco.MjModel, geom: int) -> np.ndarray:
+    """(K, VIEW) of a mesh geom, those of the largest faces first."""
+    vertices, faces = mesh_of(model, geom)
+    hull = _hull(model, int(model.geom_dataid[geom]), faces).astype(np.int64)
+    return _views(vertices.tobytes(), faces.tobytes(), hull.tobytes())
+
+
+@lru_cache(maxsize=256)
+def _views(vertex: bytes, face: bytes, triangle: bytes) -> np.ndarray:
+    """mesh_views of a mesh and its hull's triangles."""
+    vertices, faces = np.frombuffer(vertex).reshape(-1, 3), np.frombuffer(face, np.int64).reshape(-1, 3)
+    triangles = np.frombuffer(triangle, np.int64).reshape(-1, 3)
+    hull, outline = vertices[triangles], vertices[np.unique(triangles)]
+    cross = np.cross(hull[:, 1] - hull[:, 0], hull[:, 2] - hull[:, 0])
+    outward = (cross * (hull[:, 0] - vertices.mean(axis=0))).sum(axis=1)
+    cross, middles = (cross * np.sign(outward)[:, None])[outward != 0], hull.mean(axis=1)[outward != 0]
+    twice = np.linalg.norm(cross, axis=1)
+    # flat faces keep their own direction, to what single precision leaves of it
+    _, first, which = np.unique(
+        np.round(cross / twice[:, None], _DIGITS), axis=0, return_index=True, return_inverse=True
+    )
+    directions, areas = cross[first] / twice[first, None], np.bincount(which.ravel(), weights=twice)
+    chosen: list[np.ndarray] = []
+    for n in np.argsort(-np.round(areas / areas.sum(), 6), kind="stable"):
+        if all(directions[n] @ other < _APART for other in chosen):
+            if areas[directions @ directions[n] > _ALIKE].sum() > _FEW * areas.sum():
+                chosen.append(directions[n])
+    views = []
+    for direction in chosen:
+        near = (directions @ direction > _ALIKE)[which.ravel()]
+        middle = np.average(middles[near], axis=0, weights=twice[near])
+        views.append(_view(outline, _lying(vertices, faces, -direction, middle)))
+    found = np.array(views)
+    found.flags.writeable = False
+    return found
+
+
+def _lying(vertices: np.ndarray, faces: np.ndarray, along: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """(3,): the direction, near `along`, in which a pad looks that comes to lie on the mesh at `middle` (3,) m: on
+    crests, whose hull has faces aslant between them."""
+    axes = _across(along)
+    places = (np.arange(_POINTS) + 0.5) * PAD.width / _POINTS - PAD.width / 2
+    places = np.stack([grid.ravel() for grid in np.meshgrid(places, places)], axis=1)
+    heights, cover, pressure = np.zeros((3, len(places)))
+    map_heights(
+        *height_map(vertices, faces, axes), MAP_PITCH, np.stack([middle, *axes]), places, heights, cover
+    )
+    if not cover.any():
+        return along
+    heights -= heights[cover > 0].min()
+    stiffness, area = PAD.foundation_modulus / PAD.thickness, (PAD.width / _POINTS) ** 2
+    centre = cover @ places / cover.sum()
+    _, tilt, other = pressure_map(
+        heights, cover, places, area, stiffness, PAD.thickness, _PRESSED, centre, pressure
+    )
+    # the pad's plane is where depth + tilt y + other z of the mesh's heights are
+    lain = axes[0] - tilt * axes[1] - other * axes[2]
+    return lain / np.linalg.norm(lain) if math.hypot(tilt, other) < _SLANT else along
+
+
+def _hull(model: mujoco.MjModel, mesh: int, faces: np.ndarray) -> np.ndarray:
+    """(m, 3): the triangles of a mesh's hull, or its own where MuJoCo has made none."""
+    first = int(model.mesh_graphadr[mesh])
+    if first < 0:
+        return faces
+    count, triangles = (int(number) for number in model.mesh_graph[first : first + 2])
+    first += 2 + 3 * count + 3 * triangles  # behind the edges of each vertex
+    return model.mesh_graph[first : first + 3 * triangles].reshape(-1, 3)
+
+
+def _view(vertices: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """(VIEW,) along a unit vector, its other axes along the narrowest rectangle round the mesh."""
+    _, aside, other = _across(along)
+    angles = np.radians(np.arange(0, 90, 1.0))[:, None]
+    first, second = (
+        np.cos(angles) * aside + np.sin(angles) * other,
+        np.cos(angles) * other - np.sin(angles) * aside,
+    )
+    areas = np.ptp(vertices @ first.T, axis=0) * np.ptp(vertices @ second.T, axis=0)
+    best = int(np.argmin(np.round(areas / areas.min(), 6)))
+    axes = np.stack([along, first[best], second[best]])
+    return np.concatenate((axes.ravel(), (vertices @ axes[1:].T).min(axis=0)))
+
+
+def _across(along: np.ndarray) -> np.ndarray:
+    """(3, 3): a unit vector and two across it."""
+    aside = np.eye(3)[np.argmin(abs(along))]
+    aside = aside - (aside @ along) * along
+    aside /= np.linalg.norm(aside)
+    return np.stack([along, aside, np.cross(along, aside)])
+
+
+def stacked_views(model: mujoco.MjModel, geoms: Sequence[int], others: int) -> tuple[np.ndarray, np.ndarray]:
+    """(views (N, A, VIEW), their number (N,)) of geoms and, behind them, of others that are no meshes; A at least 3."""
+    found = [
+        mesh_views(model, geom)
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
+        else np.zeros((0, VIEW))
+        for geom in geoms
+    ]
+    counts = np.array([*map(len, found), *[0] * others], np.int64)
+    views = np.zeros((len(counts), max(3, *counts), VIEW))
+    for g, each in enumerate(found):
+        views[g, : len(each)] = each
+    return views, counts
+
+
+@njit(cache=True, error_model="numpy")
+def viewed(views, count, normal, place, half_face):
+    """(number of the view, m along its two axes from where the face begins to meet the mesh, at least 0). normal (3,)
+    and middle, place (3,) m, of the pad in the geom's frame."""
+    best, most = 0, -2.0
+    for k in range(count):
+        cosine = views[k, 0] * normal[0] + views[k, 1] * normal[1] + views[k, 2] * normal[2]
+        if cosine > most:
+            best, most = k, cosine
+    view = views[best]
+    # about the axis c = normal x direction: p + c x p + c x (c x p)/(1 + cosine)
+    c0 = normal[1] * view[2] - normal[2] * view[1]
+    c1 = normal[2] * view[0] - normal[0] * view[2]
+    c2 = normal[0] * view[1] - normal[1] * view[0]
+    p0, p1, p2 = c1 * place[2] - c2 * place[1], c2 * place[0] - c0 * place[2], c0 * place[1] - c1 * place[0]
+    more = 1 / (1 + most)
+    q0 = place[0] + p0 + more * (c1 * p2 - c2 * p1)
+    q1 = place[1] + p1 + more * (c2 * p0 - c0 * p2)
+    q2 = place[2] + p2 + more * (c0 * p1 - c1 * p0)
+    aside = view[3] * q0 + view[4] * q1 + view[5] * q2 - view[9] + half_face
+    along = view[6] * q0 + view[7] * q1 + view[8] * q2 - view[10] + half_face
+    return best, max(aside, 0.0), max(along, 0.0)
+
+
+def array_viewed(views: Array, normal: Array, place: Array, half_face: Array) -> tuple[Array, Array, Array]:
+    """viewed as a pure function of arrays: NumPy, PyTorch, JAX. views: (G, A, VIEW), of what is no mesh 0; normal and
+    place: (..., G, 3); half_face: (..., G). Returns (..., G) each."""
+    xp = namespace_of(place)
+    cosines = (views[..., :3] * normal[..., None, :]).sum(-1)
+    known = (views[..., :3] * views[..., :3]).sum(-1) > 0
+    cosines = xp.where(known, cosines, 0.0 * cosines - 2.0)
+    best = cosines.argmax(-1)
+    geoms, most = views.shape[:2]
+    first = as_integers(as_like(np.arange(geoms) * most, place))
+    view = views.reshape((geoms * most, VIEW))[best + first]
+    axis, aside, along = view[..., :3], view[..., 3:6], view[..., 6:9]
+    turn = _cross(xp, normal, axis)
+    once = _cross(xp, turn, place)
+    cosine = (axis * normal).sum(-1)
+    seen = place + once + _cross(xp, turn, once) / (1 + cosine)[..., None]
+    return (
+        best,
+        ((aside * seen).sum(-1) - view[..., 9] + half_face).clip(0.0, None),
+        ((along * seen).sum(-1) - view[..., 10] + half_face).clip(0.0, None),
+    )
+
+
+def _cross(xp: ModuleType, one: Array, other: Array) -> Array:
+    x, y, z = (one[..., k] for k in range(3))
+    u, v, w = (other[..., k] for k in range(3))
+    return xp.stack([y * w - z * v, z * u - x * w, x * v - y * u], -1)
