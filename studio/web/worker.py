@@ -68,7 +68,7 @@ class Worker:
 def warm_up() -> None:
     """Loads what a session needs, once for all that follow, where the system can hand it on. What is not compiled yet
     begins to be."""
-    start_compiling()
+    start_compiling(boxes=False)
     context = _context()
     process = context.Process(target=int, daemon=True)
     process.start()

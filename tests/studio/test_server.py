@@ -18,11 +18,12 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.typing import Origin
 
+from thermograsp.envs.sensing import ahead
 from thermograsp.errors import InvalidValueError, SimulationError
 from thermograsp.studio.control.choices import Choices, Stock
 from thermograsp.studio.web.access import BURST, LARGEST
 from thermograsp.studio.web.files import HEADERS, page_files
-from thermograsp.studio.web.worker import _LEAVING, Worker
+from thermograsp.studio.web.worker import _LEAVING, Worker, warm_up
 
 from .studio import PATIENCE, Echo, get, heard, serving, socket_of, token_of
 
@@ -328,6 +329,14 @@ def test_time_begins_when_a_grasp_is_set_up(monkeypatch: pytest.MonkeyPatch) -> 
     (late,) = worker.exchange([])
     assert float(late) <= 0.0
     worker.stop()
+
+
+def test_code_is_compiled_from_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[str] = []
+    monkeypatch.setattr(ahead, "compile_beside", lambda module, *needed, **by: started.append(module))
+    monkeypatch.setattr("thermograsp.studio.web.worker._context", lambda: multiprocessing.get_context("fork"))
+    warm_up()
+    assert started == [ahead.__name__]
 
 
 def test_a_worker_whose_server_is_gone_ends() -> None:
