@@ -20,7 +20,7 @@ TASK = "Thermograsp-Keep-Cube-Yam"
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--device", default="cpu")
 parser.add_argument("--worlds", type=int, default=64)
-parser.add_argument("--iterations", type=int, default=120)
+parser.add_argument("--iterations", type=int, default=60)
 parser.add_argument("--rounds", type=int, default=4, help="episodes of every world after the training")
 parser.add_argument("--seed", type=int, default=1)
 parser.add_argument("--without-heat", action="store_true", help="the voltages are not observed")

@@ -107,8 +107,14 @@ class KeepActionCfg(JointPositionActionCfg):
 
 
 def right(env: Any, command_name: str) -> torch.Tensor:
-    """(worlds,) 1 for a KeepCommand that is met, else 0, for a RewardTermCfg or a MetricsTermCfg."""
+    """(worlds,) 1 for a KeepCommand that is met, else 0, for a MetricsTermCfg."""
     return env.command_manager.get_term(command_name).right.float()
+
+
+def right_at_last(env: Any, command_name: str) -> torch.Tensor:
+    """(worlds,) the same in an episode's last step and else 0, for a RewardTermCfg: until then the hand feels whatever
+    it is told, and to be paid for that would be chance."""
+    return right(env, command_name) * (env.episode_length_buf >= env.max_episode_length)
 
 
 def keep_cube_cfg(play: bool = False) -> Any:
@@ -131,7 +137,7 @@ def keep_cube_cfg(play: bool = False) -> Any:
     cfg.terminations = {"time_out": cfg.terminations["time_out"]}
     cfg.curriculum = {}
     command = {"command_name": COMMAND}
-    cfg.rewards = {"right": RewardTermCfg(func=right, weight=1.0, params=command)}
+    cfg.rewards = {"right": RewardTermCfg(func=right_at_last, weight=1.0, params=command)}
     cfg.metrics = {"right": MetricsTermCfg(func=right, params=command, reduce="last")}
     for group in cfg.observations.values():
         group.terms = {name: group.terms[name] for name in ("joint_pos", "ee_to_cube")}

@@ -21,10 +21,12 @@ _KEEPING = RslRlOnPolicyRunnerCfg(
         distribution_cfg={"class_name": "GaussianDistribution", "init_std": 1.0, "std_type": "scalar"},
     ),
     critic=RslRlModelCfg(**_SMALL),
-    algorithm=RslRlPpoAlgorithmCfg(num_learning_epochs=10, schedule="fixed", learning_rate=3e-3),
+    algorithm=RslRlPpoAlgorithmCfg(
+        num_learning_epochs=10, schedule="adaptive", desired_kl=0.02, learning_rate=1e-3
+    ),
     experiment_name="thermograsp_keep_cube",
     num_steps_per_env=4,
-    max_iterations=120,
+    max_iterations=60,
 )
 _LEARNING = yam_lift_cube_ppo_runner_cfg()
 _LEARNING.experiment_name = "thermograsp_sort_cube"

@@ -46,12 +46,11 @@ def test_each_reset_draws_the_material_and_what_is_asked_for(env: Any) -> None:
 def test_it_holds_the_cube_and_feels_it_whatever_it_is_told_first(env: Any) -> None:
     env.reset()
     touch = env.scene["touch"]
-    matches = touch.material[:, 0] == env.command_manager.get_term("keep").requested
     action = torch.ones(WORLDS, 1)
     action[::2] = -1.0
     _, reward, *_ = env.step(action)
     assert (touch.data.force > 1.0).all()
-    assert torch.equal(reward, matches.float())
+    assert not reward.any()  # nothing has been decided yet
     aluminium = touch.material[:, 0] == 0
     assert aluminium.any() and not aluminium.all()
     drop = touch.data.temperature_drop

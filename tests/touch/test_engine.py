@@ -344,10 +344,19 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
             hit = rng.random(model.npluginstate) < share
             data.plugin_state[hit] = scale * rng.standard_normal(hit.sum())
             mujoco.mj_step(model, data, 20)
-    mujoco.mj_resetData(model, data)
     hand.press(data, 10.0)
-    mujoco.mj_step(model, data, 200)
-    assert np.abs(voltages(model, data)).min() > 1e-4
+    numbers = np.array([np.nan, np.inf, -np.inf, 1e308, -1e308, 1e-308, -1.0, 0.0, 0.5, 3.0, 1e9])
+    for turn in range(200):  # among numbers that make sense
+        hit = rng.integers(model.npluginstate, size=20 if turn % 3 else model.npluginstate)
+        data.plugin_state[hit] = rng.choice(numbers, len(hit))
+        mujoco.mj_step(model, data, 7)
+    fresh = mujoco.MjData(model)
+    mujoco.mj_resetData(model, data)
+    for each in (data, fresh):
+        hand.press(each, 10.0)
+        mujoco.mj_step(model, each, 200)
+    assert np.abs(voltages(model, fresh)).min() > 1e-4
+    assert np.array_equal(data.plugin_state, fresh.plugin_state)
 
 
 @NEEDS_SPECS

@@ -194,7 +194,7 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, double
   double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
   double first = fmin(area / (touch[LENGTH] / touch[AREA]), width), second = area / first;
   double across = fmin(first, second), along = fmin(fmax(first, second), width);
-  if (!(across < width * (1 - 1e-9))) return false;
+  if (!(across > 0 && across < width * (1 - 1e-9))) return false; /* any number may have been written to the state */
   int rates = numbers->rates;
   double narrow = fmin(2 * log2(width / across), WIDTHS - 1);
   int at = (int)fmin(narrow, WIDTHS - 2);
