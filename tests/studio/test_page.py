@@ -48,7 +48,12 @@ def serving(port: int = 0) -> Iterator[tuple[subprocess.Popen[str], str]]:
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=heed)
     try:
         assert process.stdout is not None
-        yield process, json.loads("".join(iter(process.stdout.readline, "}\n")) + "}")["url"]
+        told = ""
+        while not told.endswith("}\n"):
+            line = process.stdout.readline()
+            assert line, "the studio ended before it told its address"
+            told += line
+        yield process, json.loads(told)["url"]
     finally:
         process.kill()
         process.wait()
