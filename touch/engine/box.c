@@ -129,7 +129,7 @@ static void impedance(const Numbers* numbers, int object, const Network* network
       own->order = axis != facing;
       own->which = axis < facing ? axis : axis - 1;
       if (own->order) {
-        double half = fmin(sqrt(numbers->tip_area[tip]), box[axis]) / 2;
+        double half = lesser(sqrt(numbers->tip_area[tip]), box[axis]) / 2;
         area[n] *= half;
         for (int k = 0; k < NODES; k++) own->places[k] = place[MIDDLE + own->which] + half * numbers->nodes[k];
       } else {
@@ -232,7 +232,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     heat_diagonalise(wide, rates, moved, turn);
     for (int m = 0; m < wide; m++)
       for (int i = 0; i < wide; i++)
-        for (int k = 0; k < rates; k++) AT(half, m, i)[k] = fmax(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];
+        for (int k = 0; k < rates; k++) AT(half, m, i)[k] = greater(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
         double* own = AT(inside, i, j);
@@ -282,7 +282,7 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
         double even = port[n * patterns];
         double own = 1 / numbers->tip_weight[(size_t)network->places[n * SLOT + TIP] * MOMENTS + s];
         own += rest[((size_t)s * wide + n * patterns) * wide + n * patterns] + even * even / moment;
-        most = fmin(most, 1 / own);
+        most = lesser(most, 1 / own);
       }
       weight[s] = most;
       for (int k = 0; k < rates; k++) columns[s * rates + k] = most / (moment + numbers->decay[k]);

@@ -9,10 +9,10 @@
 #define RIM 0.0005   /* m beyond the pad's sides */
 #define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
 
-/* A pad in the world: its middle and its axes in columns. */
+/* A pad in the world: its middle and its axes. */
 typedef struct {
   bool known;
-  double middle[3], axes[9];
+  double middle[3], axes[3][3];
 } Pose;
 
 /* Of pad f in this step, found when it is first asked for. */
@@ -22,29 +22,20 @@ static const Pose* pose(const Numbers* numbers, const Work* work, const mjData* 
   int body = work->body[numbers->geoms + f];
   const double *pad = numbers->pads + f * PAD, *turn = d->xmat + 9 * body;
   found->known = true;
-  for (int k = 0; k < 3; k++) {
-    found->middle[k] = d->xpos[3 * body + k];
-    for (int j = 0; j < 3; j++) found->middle[k] += turn[3 * k + j] * pad[j];
-    for (int a = 0; a < 3; a++) {
-      found->axes[3 * k + a] = 0;
-      for (int j = 0; j < 3; j++) found->axes[3 * k + a] += turn[3 * k + j] * pad[AXES + 3 * j + a];
-    }
-  }
+  mju_mulMatVec3(found->middle, turn, pad);
+  mju_addTo3(found->middle, d->xpos + 3 * body);
+  for (int a = 0; a < 3; a++) mju_mulMatVec3(found->axes[a], turn, pad + AXES + 3 * a);
   return found;
 }
 
 /* Whether a contact is on a pad and looks at it, and where, m along its y and z. */
 static bool lies(const double* pad, const Pose* at, const mjContact* contact, double sign, double* y, double* z) {
-  double x = 0, along = 0, sunk = fmax(-contact->dist, 0) / 2;
-  *y = *z = 0;
-  for (int k = 0; k < 3; k++) {
-    double away = contact->pos[k] - at->middle[k];
-    along += sign * at->axes[3 * k] * contact->frame[k];
-    x += away * at->axes[3 * k];
-    *y += away * at->axes[3 * k + 1];
-    *z += away * at->axes[3 * k + 2];
-  }
-  return along >= LOOKING && fabs(x) <= DEPTH + sunk && fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
+  double away[3], sunk = greater(-contact->dist, 0) / 2;
+  subtract(contact->pos, at->middle, away);
+  *y = dot(at->axes[1], away);
+  *z = dot(at->axes[2], away);
+  return sign * dot(at->axes[0], contact->frame) >= LOOKING && fabs(dot(at->axes[0], away)) <= DEPTH + sunk &&
+         fabs(*y) <= pad[HALF] + RIM && fabs(*z) <= pad[HALF + 1] + RIM;
 }
 
 /* The view of a mesh that a pad belongs to, and where it is there, as touch/contacts/views.py. place: of the pad's middle. */
@@ -53,7 +44,7 @@ static int viewed(const double* views, int count, const double normal[3], const 
   double most = -2, q[3];
   for (int k = 0; k < count; k++) {
     const double* v = views + k * VIEW;
-    double cosine = v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
+    double cosine = dot(v, normal);
     if (cosine > most) {
       most = cosine;
       best = k;
@@ -65,7 +56,7 @@ static int viewed(const double* views, int count, const double normal[3], const 
   mju_cross(once, c, p);
   mju_cross(twice, c, once);
   for (int i = 0; i < 3; i++) q[i] = p[i] + once[i] + twice[i] / (1 + most);
-  for (int j = 0; j < 2; j++) at[j] = fmax(mju_dot3(v + 3 * (j + 1), q) - v[9 + j] + half, 0);
+  for (int j = 0; j < 2; j++) at[j] = greater(dot(v + 3 * (j + 1), q) - v[9 + j] + half, 0);
   return best;
 }
 
@@ -75,76 +66,51 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
                  Pose* poses, bool again, double* touch) {
   const Pose* at = pose(numbers, work, d, f, poses);
   int geom = work->geom[g], body = work->body[g], axis = 0;
-  double force = pushed[0], place[3] = {0}, most = 0, area = 0, share = 0, length = 0, conducts = 0;
-  const double* turn = geom >= 0 ? d->geom_xmat + 9 * geom : NULL;
-  if (turn) {
-    for (int i = 0; i < 3; i++) {
-      double looking = 0;
-      for (int k = 0; k < 3; k++) {
-        looking += turn[3 * k + i] * at->axes[3 * k];
-        place[i] += turn[3 * k + i] * (at->middle[k] - d->geom_xpos[3 * geom + k]);
-      }
-      if (fabs(looking) > most) {
-        most = fabs(looking);
-        axis = i;
-      }
-    }
-  } else { /* another fingertip: how far the pads' middles are apart along this one's sides */
-    const Pose* other = pose(numbers, work, d, g - numbers->geoms, poses);
-    for (int k = 0; k < 3; k++)
-      for (int j = 1; j < 3; j++) place[j] += (at->middle[k] - other->middle[k]) * at->axes[3 * k + j];
+  double force = pushed[0], first = pushed[1] / force, second = pushed[2] / force;
+  double away[3], place[3], looking[3], area = 0, share = 0, length = 0, conducts = 0;
+  const Pose* other = geom < 0 ? pose(numbers, work, d, g - numbers->geoms, poses) : NULL;
+  double facing[3][3]; /* axes of what it meets */
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) facing[i][k] = other ? other->axes[i][k] : d->geom_xmat[9 * geom + 3 * k + i];
+  subtract(at->middle, other ? other->middle : d->geom_xpos + 3 * geom, away);
+  for (int i = 0; i < 3; i++) {
+    place[i] = dot(other ? at->axes[i] : facing[i], away);
+    looking[i] = dot(facing[i], at->axes[0]);
+    if (!other && fabs(looking[i]) > fabs(looking[axis])) axis = i;
   }
   const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
-  bool bulging = bend[0] + bend[1] > 0 || (!turn && curve[0] + curve[1] > 0);
+  bool bulging = bend[0] + bend[1] > 0 || (other && curve[0] + curve[1] > 0);
   double on_face = 1, longer = 1;
-  int side = axis, views = (int)numbers->viewed[g];
-  double seen[2], normal[3];
-  if (views && !bulging) {
-    for (int i = 0; i < 3; i++) normal[i] = turn[i] * at->axes[0] + turn[3 + i] * at->axes[3] + turn[6 + i] * at->axes[6];
-    side = viewed(numbers->views + g * numbers->sides * VIEW, views, normal, place, law->half_face, seen);
-  }
-  int table = (int)numbers->curved[(f * numbers->things + g) * numbers->sides + side];
+  int side = axis, views = other ? 0 : (int)numbers->viewed[g];
+  double seen[2];
+  if (views && !bulging)
+    side = viewed(numbers->views + g * numbers->sides * VIEW, views, looking, place, law->half_face, seen);
+  int table = other ? -1 : (int)numbers->curved[(f * numbers->things + g) * numbers->sides + side];
   if (table >= 0 && !bulging) {
-    double first = pushed[1] / force, second = pushed[2] / force, lying = force, whole = 1;
+    double lying = force, whole = 1;
     if (views) {
       first = seen[0];
       second = seen[1];
     } else if (law->shape == SHAPE_CYLINDER) { /* MuJoCo may name any point of the line of contact: what is across it counts */
-      double along_y = 0, along_z = 0;
-      for (int k = 0; k < 3; k++) {
-        along_y += at->axes[3 * k + 1] * turn[3 * k + 2];
-        along_z += at->axes[3 * k + 2] * turn[3 * k + 2];
-      }
+      double along_y = dot(facing[2], at->axes[1]), along_z = dot(facing[2], at->axes[2]);
       double line = sqrt(along_y * along_y + along_z * along_z), across = first * along_z - second * along_y;
       first = line > 0 ? across / line : 0;
-      double slope = 0, away = 0;
-      for (int k = 0; k < 3; k++) {
-        slope += turn[3 * k + 2] * at->axes[3 * k];
-        away += at->axes[3 * k] * (at->middle[k] - d->geom_xpos[3 * geom + k]);
-      }
-      second = line > 0 ? (place[2] - slope * away) / line : 0;
+      second = line > 0 ? (place[2] - looking[2] * dot(at->axes[0], away)) / line : 0;
       const double* tilt = numbers->tilts + ((f * numbers->things + g) * 3 + axis) * TILT;
-      whole = heat_tilted(tilt, exp(numbers->grid[0]), force, line > 0 ? slope / line : 0, second, &lying);
+      whole = heat_tilted(tilt, exp(numbers->grid[0]), force, line > 0 ? looking[2] / line : 0, second, &lying);
     }
     if (whole > 0)
       conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length);
     area *= whole;
     length *= whole;
   } else if (bulging) {
-    double sides[4] = {0};
-    const Pose* other = turn ? at : pose(numbers, work, d, g - numbers->geoms, poses);
+    double sides[4];
     for (int i = 0, n = 0; i < 3; i++) {
-      if (i == (turn ? axis : 0)) continue;
-      for (int k = 0; k < 3; k++) {
-        double points = turn ? turn[3 * k + i] : other->axes[3 * k + i];
-        sides[2 * n] += points * at->axes[3 * k + 1];
-        sides[2 * n + 1] += points * at->axes[3 * k + 2];
-      }
-      n++;
+      if (i == axis) continue;
+      for (int k = 1; k < 3; k++) sides[n++] = dot(facing[i], at->axes[k]);
     }
-    on_face = heat_round_contact(bend, curve, sides, force, pushed[1] / force, pushed[2] / force, &area, &share,
-                                 &longer);
+    on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
   } else {
     heat_contact(law, force, place, &area, &share);
   }
@@ -161,14 +127,9 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     again = true;
   }
   touch[FORCE] += force;
-  const double *rotation = d->xmat + 9 * body, *origin = d->xpos + 3 * body;
-  for (int i = 0; i < 3; i++) {
-    touch[PLACE + i] = touch[NORMAL + i] = 0;
-    for (int k = 0; k < 3; k++) {
-      touch[PLACE + i] += rotation[3 * k + i] * (at->middle[k] - origin[k]);
-      touch[NORMAL + i] += rotation[3 * k + i] * at->axes[3 * k];
-    }
-  }
+  subtract(at->middle, d->xpos + 3 * body, away);
+  mju_mulMatTVec3(touch + PLACE, d->xmat + 9 * body, away);
+  mju_mulMatTVec3(touch + NORMAL, d->xmat + 9 * body, at->axes[0]);
   return again;
 }
 

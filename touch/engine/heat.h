@@ -10,7 +10,6 @@ fields, M: patterns of a contact, K: rates, P: places of an object. */
 #define THERMOGRASP_HEAT_H
 
 #include <mujoco/mujoco.h>
-#include <complex.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -68,14 +67,21 @@ typedef struct {
   double* all; /* what the others point into */
 } Numbers;
 
+/* Complex numbers at all poles, two at once; behind the poles is one that weighs nothing. */
+enum { HALVES = (POLES + 1) / 2 };
+typedef double Two __attribute__((vector_size(2 * sizeof(double))));
+typedef struct {
+  Two real[HALVES], imag[HALVES];
+} Complex;
+
 /* A field: the network of an object's places, or a fingertip's; x' = -rates x + ports q. ports: of each pattern of each
 place, `stride` apart. Of a sample's step, fade: what it leaves of the states; where contacts are closed, kept: what the
-step's rational function does, and scale: 1 / (pole + dt rates), of each pole the real parts and then the imaginary; gram:
-how all ports hear one another at each pole. The numbers of an object's stand behind one another, the ports last. */
+step's rational function does, and scale: 1 / (pole + dt rates) of each state; gram: how all ports hear one another at each
+pole. The numbers of an object's stand behind one another, the ports last. */
 typedef struct {
   int count, n, stride;
-  double *places, *rates, *fade, *kept, *scale, *ports;
-  double complex* gram;
+  double *places, *rates, *fade, *kept, *ports;
+  Complex *scale, *gram;
 } Network;
 
 /* matrix: room for a step of so many `ports`. */
@@ -83,7 +89,7 @@ typedef struct {
   Network* networks; /* of every target, one for the network before a new place, and those that objects have aside */
   int aside, *turn;  /* of each object: how many, and the next one; worlds that share an mjData come in turns */
   size_t ports;
-  double complex* matrix;
+  Complex* matrix;
   double *room, *kept, *grown;   /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
   int *role, *geom, *body;       /* of the model's geoms, as Numbers.roles or -1; of what a pad may meet */
 } Work;
@@ -92,6 +98,14 @@ typedef struct {
 typedef struct {
   double *count, *touches, *places, *used, *current, *narrow, *x, *voltages;
 } State;
+
+/* As fmin and fmax of numbers, which compilers call; where the first is none the second is taken. */
+static inline double lesser(double a, double b) { return a < b ? a : b; }
+static inline double greater(double a, double b) { return a > b ? a : b; }
+static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline void subtract(const double a[3], const double b[3], double out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
+}
 
 const char* heat_parse(Numbers* numbers, const char* text);
 size_t heat_states(const Numbers* numbers);

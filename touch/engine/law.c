@@ -8,7 +8,7 @@
 #define STEPS 4    /* Newton's */
 
 static double overlap(double reach, double offset, double half) {
-  return fmax(fmin(reach, half - offset) + fmin(reach, half + offset), 0);
+  return greater(lesser(reach, half - offset) + lesser(reach, half + offset), 0);
 }
 
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share) {
@@ -29,7 +29,7 @@ void heat_contact(const Law* law, double force, const double place[3], double* a
 static int between(const double* places, double at, double* share) {
   int k = 0;
   while (k < PLACES - 2 && at >= places[k + 1]) k++;
-  *share = fmin((at - places[k]) / (places[k + 1] - places[k]), 1);
+  *share = lesser((at - places[k]) / (places[k + 1] - places[k]), 1);
   return k;
 }
 
@@ -45,14 +45,14 @@ double heat_curved(const double* table, const double grid[3], double force, doub
   double u, v;
   int i = between(table, fabs(aside), &u), j = between(table + PLACES, fabs(along), &v);
   double at = (log(force) - grid[0]) / grid[1];
-  int k = (int)fmin(fmax(at, 0), FORCES - 2);
-  double w = fmin(at - k, 1);
+  int k = (int)lesser(greater(at, 0), FORCES - 2);
+  double w = lesser(at - k, 1);
   const double* low = table + 2 * PLACES + VALUES * ((k * PLACES + i) * PLACES + j);
   const double* high = low + VALUES * PLACES * PLACES;
-  double conducts = fmax(even(low, u, v), grid[2]);
-  conducts *= exp(w * log(fmax(even(high, u, v), grid[2]) / conducts));
+  double conducts = greater(even(low, u, v), grid[2]);
+  conducts *= exp(w * log(greater(even(high, u, v), grid[2]) / conducts));
   if (conducts <= 2 * grid[2]) return 0;
-  w = fmax(w, 0);
+  w = greater(w, 0);
   *area = even(low + 1, u, v);
   *area += w * (even(high + 1, u, v) - *area);
   *length = even(low + 2, u, v);
@@ -67,42 +67,47 @@ double heat_tilted(const double* tilt, double first_force, double force, double 
   if (!(angle > LEVEL)) return 1;
   double cosine = 1 / sqrt(1 + slope * slope), half = tilt[HALF_ROD] * cosine;
   double along = (slope > 0 ? middle : -middle) - tilt[RADIUS] * fabs(slope) * cosine;
-  double start = fmax(-along - half, -tilt[HALF_PAD]), end = fmin(half - along, tilt[HALF_PAD]);
-  double first = fmax(start, -tilt[HALF_FACE]), width = fmin(end, tilt[HALF_FACE]) - first;
+  double start = greater(-along - half, -tilt[HALF_PAD]), end = lesser(half - along, tilt[HALF_PAD]);
+  double first = greater(start, -tilt[HALF_FACE]), width = lesser(end, tilt[HALF_FACE]) - first;
   if (!(width > 0)) return 1;
   double steep = angle * sqrt(angle), reach = first - start, soft = tilt[SOFT] * steep, share;
-  double gap = angle * fmax(reach - pow(force / soft, 0.4), 0), held = fmax(force - soft * pow(reach, 2.5), 0);
+  double gap = angle * greater(reach - pow(force / soft, 0.4), 0), held = greater(force - soft * pow(reach, 2.5), 0);
   if (tilt[FIRM] > 0) {
     double firm = tilt[FIRM] * steep, length = pow(held / firm, 0.4);
     for (int i = 0; i < STEPS; i++) {
       double load = firm * pow(length, 2.5) + soft * (pow(reach + length, 2.5) - pow(length, 2.5));
       double rate = 2.5 * (firm * pow(length, 1.5) + soft * (pow(reach + length, 1.5) - pow(length, 1.5)));
-      length = held > 0 ? fmax(length - (load - force) / rate, 0) : 0;
+      length = held > 0 ? greater(length - (load - force) / rate, 0) : 0;
     }
-    share = fmin(length / width, 1);
-    held = fmin(firm * pow(length, 2.5), held);
+    share = lesser(length / width, 1);
+    held = lesser(firm * pow(length, 2.5), held);
   } else {
     double near = sqrt(1 + gap / tilt[APART]), far = sqrt(1 + (gap + angle * width) / tilt[APART]);
     double wide = tilt[HALF_FACE] / sqrt(2 * tilt[RADIUS] * tilt[APART]);
-    share = fmin((atan(wide / near) + atan(wide / far)) / atan(wide) / (near + far), 1);
+    share = lesser((atan(wide / near) + atan(wide / far)) / atan(wide) / (near + far), 1);
   }
-  *pressed = fmax(held, fmin(force, first_force * share));
+  *pressed = greater(held, lesser(force, first_force * share));
   return share;
 }
 
+/* A series whose even and odd terms need not wait for each other. */
 static double separation(const Numbers* numbers, double log_share) {
-  const double* range = numbers->separation_range; /* low, high, and the logarithms of the least and most shares */
-  double y = sqrt(-fmin(fmax(log_share, range[2]), range[3]));
-  double z = (2 * y - range[0] - range[1]) / (range[1] - range[0]), total = 0;
-  for (int i = SERIES - 1; i >= 0; i--) total = total * z + numbers->separation[i];
-  return total;
+  /* range: slope and offset of the series' variable, and the logarithms of the least and most shares */
+  const double *range = numbers->separation_range, *term = numbers->separation;
+  double y = sqrt(-lesser(greater(log_share, range[2]), range[3]));
+  double z = y * range[0] - range[1], even = 0, odd = 0;
+  for (int i = SERIES - 1; i > 0; i -= 2) {
+    even = even * (z * z) + term[i];
+    odd = odd * (z * z) + term[i - 1];
+  }
+  return (even * z + odd) * z + term[0];
 }
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure) {
   double log_pressure = log(pressure), share = law->elastic_share, apart = 0;
   if (share < 1) apart += (1 - share) * separation(numbers, log_pressure + log(2) - law->log_hardness);
   if (share > 0) apart += share * separation(numbers, log_pressure + log(4) - law->log_elastic_hardness);
-  double solid = exp(fmin(law->spot_scale + law->spot_power * log_pressure, law->spot_most));
+  double solid = exp(lesser(law->spot_scale + law->spot_power * log_pressure, law->spot_most));
   double gap = law->roughness * apart + law->jump;
   if (law->flatness > 0) return solid + law->gas / law->flatness * log1p(law->flatness / gap);
   return solid + law->gas / gap;

@@ -2,7 +2,6 @@
 touch/heat/systems.py, narrow.py and march.py, thermal/network/coupling.py and kernel.py. Groups that share no field are
 told apart by the zeros between them. */
 
-#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +14,8 @@ told apart by the zeros between them. */
 typedef struct {
   int field, place, n, stride;
   double sign;
-  const double *ports, *scale;
+  const double* ports;
+  const Complex* scale;
   double* x;
 } Side;
 
@@ -31,46 +31,70 @@ static Side side_of(const Numbers* numbers, const Work* work, const State* state
   return (Side){t, place, network->n, network->stride, sign, ports, network->scale, field(numbers, state, t)};
 }
 
-/* Of the pairs of poles, the real and imaginary parts in turn. */
-static double complex at_pole(const double* parts, int q) { return CMPLX(parts[2 * q], parts[2 * q + 1]); }
+static const Complex one = {.real = {{1, 1}, {1, 1}}};
 
-/* Of finite numbers: C's own takes care of others. */
-static double complex times(double complex a, double complex b) {
-  return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
+/* From real and imaginary parts in turn, of every pole. */
+static Complex at_poles(const double parts[2 * POLES], double behind) {
+  return (Complex){{{parts[0], parts[2]}, {parts[4], behind}}, {{parts[1], parts[3]}, {parts[5], 0}}};
 }
 
-static double complex inverse_of(double complex a) {
-  double square = creal(a) * creal(a) + cimag(a) * cimag(a);
-  return CMPLX(creal(a) / square, -cimag(a) / square);
+static inline double sum(const Two a[HALVES]) {
+  Two both = a[0] + a[1];
+  return both[0] + both[1];
+}
+
+static inline Complex times(Complex a, Complex b) {
+  Complex out;
+  for (int h = 0; h < HALVES; h++) {
+    out.real[h] = a.real[h] * b.real[h] - a.imag[h] * b.imag[h];
+    out.imag[h] = a.real[h] * b.imag[h] + a.imag[h] * b.real[h];
+  }
+  return out;
+}
+
+/* a + factor b */
+static inline Complex plus(Complex a, double factor, Complex b) {
+  for (int h = 0; h < HALVES; h++) {
+    a.real[h] += factor * b.real[h];
+    a.imag[h] += factor * b.imag[h];
+  }
+  return a;
+}
+
+static inline Complex inverse_of(Complex a) {
+  for (int h = 0; h < HALVES; h++) {
+    Two part = 1.0 / (a.real[h] * a.real[h] + a.imag[h] * a.imag[h]);
+    a.real[h] *= part;
+    a.imag[h] *= -part;
+  }
+  return a;
+}
+
+/* What a port tells of n states. */
+static inline Complex told(int n, const double* port, const double* x, const Complex* scale) {
+  Complex all = {0};
+  for (int k = 0; k < n; k++) all = plus(all, port[k] * x[k], scale[k]);
+  return all;
 }
 
 /* How all ports of a network hear one another. */
 static void hear(const Numbers* numbers, const Network* network) {
-  int n = network->n, wide = network->count * numbers->patterns;
+  int wide = network->count * numbers->patterns;
   for (int p = 0; p < wide; p++) {
-    for (int r = 0; r <= p; r++) {
-      const double *port = network->ports + (size_t)p * network->stride, *heard = network->ports + (size_t)r * network->stride;
-      double sums[2 * POLES] = {0};
-      for (int k = 0; k < n; k++)
-        for (int q = 0; q < 2 * POLES; q++) sums[q] += port[k] * heard[k] * network->scale[q * n + k];
-      for (int q = 0; q < POLES; q++)
-        network->gram[(p * wide + r) * POLES + q] = network->gram[(r * wide + p) * POLES + q] = at_pole(sums, q);
-    }
+    const double* port = network->ports + (size_t)p * network->stride;
+    for (int r = 0; r <= p; r++)
+      network->gram[p * wide + r] = network->gram[r * wide + p] =
+          told(network->n, port, network->ports + (size_t)r * network->stride, network->scale);
   }
 }
 
 /* What a network's step needs besides its ports. */
 void heat_pace(const Numbers* numbers, Network* network) {
-  int n = network->n;
-  for (int i = 0; i < n; i++) {
-    double rate = numbers->dt * network->rates[i], at_once = 0;
-    for (int q = 0; q < POLES; q++) {
-      double complex scale = inverse_of(at_pole(numbers->poles, q) + rate);
-      network->scale[2 * q * n + i] = creal(scale);
-      network->scale[(2 * q + 1) * n + i] = cimag(scale);
-      at_once += creal(times(at_pole(numbers->weights, q), scale));
-    }
-    network->kept[i] = 1 + 2 * rate * at_once;
+  Complex poles = at_poles(numbers->poles, 1), weights = at_poles(numbers->weights, 0);
+  for (int i = 0; i < network->n; i++) {
+    double rate = numbers->dt * network->rates[i];
+    network->scale[i] = inverse_of(plus(poles, rate, one));
+    network->kept[i] = 1 + 2 * rate * sum(times(weights, network->scale[i]).real);
     network->fade[i] = exp(-rate);
   }
   hear(numbers, network);
@@ -80,15 +104,15 @@ void heat_pace(const Numbers* numbers, Network* network) {
 static bool has_room(Work* work, size_t m) {
   if (m <= work->ports && work->matrix) return true;
   free(work->matrix);
-  work->matrix = malloc(sizeof(double complex) * (POLES * (m + 1) * m + 1)); /* never empty */
+  work->matrix = malloc(sizeof(Complex) * ((m + 1) * m + 1)); /* never empty */
   work->ports = work->matrix ? m : 0;
   return work->matrix;
 }
 
-/* dt times how the closed contacts' ports hear one another, the lower half of (m, m) at every pole. */
+/* dt times how the closed contacts' ports hear one another, the lower half of (m, m). */
 static void join(const Numbers* numbers, const Work* work, const Side* sides, int pairs) {
   int patterns = numbers->patterns, m = pairs * patterns;
-  memset(work->matrix, 0, sizeof(double complex) * POLES * m * m);
+  memset(work->matrix, 0, sizeof(Complex) * m * m);
   for (int one = 0; one < 2 * pairs; one++) {
     for (int other = 0; other < 2 * (one / 2 + 1); other++) {
       const Side *own = sides + one, *theirs = sides + other;
@@ -97,70 +121,58 @@ static void join(const Numbers* numbers, const Work* work, const Side* sides, in
       int wide = network->count * patterns;
       double sign = numbers->dt * own->sign * theirs->sign;
       for (int p = 0; p < patterns; p++) {
-        const double complex* heard =
-            network->gram + ((size_t)(own->place * patterns + p) * wide + theirs->place * patterns) * POLES;
-        double complex* at = work->matrix + ((size_t)(one / 2 * patterns + p) * m + other / 2 * patterns) * POLES;
-        for (int r = 0; r < patterns * POLES; r++) at[r] += sign * heard[r];
+        const Complex* heard = network->gram + (size_t)(own->place * patterns + p) * wide + theirs->place * patterns;
+        Complex* at = work->matrix + (size_t)(one / 2 * patterns + p) * m + other / 2 * patterns;
+        for (int r = 0; r < patterns; r++) at[r] = plus(at[r], sign, heard[r]);
       }
     }
   }
 }
 
+static bool zero(const Complex* a) {
+  const double* parts = (const double*)a;
+  for (size_t i = 0; i < sizeof *a / sizeof(double); i++)
+    if (parts[i] != 0) return false;
+  return true;
+}
+
 /* Solves a symmetric matrix (m, m) at every pole, of which the lower half counts and is lost; no pivots, as they are never
-small (thermal/batch/step.py). Poles come last: each waits for itself alone. */
-static void solve(int m, double complex* matrix, double complex* x) {
-#define AT(r, c) matrix[((r) * m + (c)) * POLES + q]
-  double complex factor[POLES];
+small (thermal/batch/step.py). */
+static void solve(int m, Complex* matrix, Complex* x) {
   for (int c = 0; c < m; c++) {
-    for (int q = 0; q < POLES; q++) AT(c, c) = inverse_of(AT(c, c));
+    matrix[c * m + c] = inverse_of(matrix[c * m + c]);
     for (int r = c + 1; r < m; r++) {
-      bool apart = true;
-      for (int q = 0; q < POLES; q++) {
-        factor[q] = times(AT(r, c), AT(c, c));
-        apart = apart && factor[q] == 0;
-      }
-      if (apart) continue;
-      for (int k = c + 1; k <= r; k++)
-        for (int q = 0; q < POLES; q++) AT(r, k) -= times(factor[q], AT(k, c));
-      for (int q = 0; q < POLES; q++) x[r * POLES + q] -= times(factor[q], x[c * POLES + q]);
+      if (zero(matrix + r * m + c)) continue;
+      Complex factor = times(matrix[r * m + c], matrix[c * m + c]);
+      for (int k = c + 1; k <= r; k++) matrix[r * m + k] = plus(matrix[r * m + k], -1, times(factor, matrix[k * m + c]));
+      x[r] = plus(x[r], -1, times(factor, x[c]));
     }
   }
   for (int c = m - 1; c >= 0; c--) {
-    for (int r = c + 1; r < m; r++)
-      for (int q = 0; q < POLES; q++) x[c * POLES + q] -= times(AT(r, c), x[r * POLES + q]);
-    for (int q = 0; q < POLES; q++) x[c * POLES + q] = times(x[c * POLES + q], AT(c, c));
+    for (int r = c + 1; r < m; r++) x[c] = plus(x[c], -1, times(matrix[r * m + c], x[r]));
+    x[c] = times(x[c], matrix[c * m + c]);
   }
-#undef AT
 }
 
 /* A step of every field; of each closed contact its sides, resistance K/W and difference K. through: its mean flow W. */
 static void step(const Numbers* numbers, const Work* work, const State* state, int pairs, const Side* sides,
                  const double* resistance, const double* difference, double* through) {
   int patterns = numbers->patterns, m = pairs * patterns;
-  double complex *matrix = work->matrix, *flow = matrix + (size_t)POLES * m * m;
-  for (int i = 0, j = 0; i < pairs; i++) {
-    for (int p = 0; p < patterns; p++, j++) {
-      double heard[2 * POLES] = {0};
-      for (const Side* side = sides + 2 * i; side < sides + 2 * i + 2; side++) {
-        const double *restrict port = side->ports + p * side->stride, *restrict scale = side->scale;
-        for (int k = 0; k < side->n; k++) {
-          double seen = side->sign * port[k] * side->x[k];
-          for (int q = 0; q < 2 * POLES; q++) heard[q] += seen * scale[q * side->n + k];
-        }
-      }
-      for (int q = 0; q < POLES; q++)
-        flow[j * POLES + q] = (p ? 0 : difference[i]) - times(at_pole(numbers->poles, q), at_pole(heard, q));
-    }
-  }
+  Complex *matrix = work->matrix, *flow = matrix + (size_t)m * m, poles = at_poles(numbers->poles, 1);
   join(numbers, work, sides, pairs);
-  for (int j = 0; j < m; j++)
-    for (int q = 0; q < POLES; q++) matrix[(j * m + j) * POLES + q] += resistance[j / patterns];
+  for (int j = 0; j < m; j++) {
+    Complex heard = {0};
+    for (const Side* side = sides + j / patterns * 2; side < sides + j / patterns * 2 + 2; side++)
+      heard = plus(heard, side->sign, told(side->n, side->ports + j % patterns * side->stride, side->x, side->scale));
+    flow[j] = plus((Complex){0}, -1, times(poles, heard));
+    if (j % patterns == 0) flow[j] = plus(flow[j], difference[j / patterns], one);
+    matrix[j * m + j] = plus(matrix[j * m + j], resistance[j / patterns], one);
+  }
   solve(m, matrix, flow);
-  memset(through, 0, sizeof(double) * pairs);
-  for (int q = 0; q < POLES; q++) {
-    double complex weight = 2 * at_pole(numbers->weights, q), lag = times(weight, inverse_of(at_pole(numbers->poles, q)));
-    for (int i = 0; i < pairs; i++) through[i] -= creal(times(lag, flow[i * patterns * POLES + q]));
-    for (int j = 0; j < m; j++) flow[j * POLES + q] = numbers->dt * times(weight, flow[j * POLES + q]);
+  Complex weights = plus((Complex){0}, 2 * numbers->dt, at_poles(numbers->weights, 0));
+  for (int j = 0; j < m; j++) {
+    flow[j] = times(weights, flow[j]);
+    if (j % patterns == 0) through[j / patterns] = -sum(times(flow[j], inverse_of(poles)).real) / numbers->dt;
   }
   for (int t = 0; t < numbers->targets; t++) {
     const Network* network = work->networks + t;
@@ -169,21 +181,11 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
       if (sides[i].field == t) left = network->kept;
     for (int k = 0; k < network->n; k++) x[k] *= left[k];
   }
-  for (int i = 0, j = 0; i < pairs; i++) {
-    for (int p = 0; p < patterns; p++, j++) {
-      for (const Side* side = sides + 2 * i; side < sides + 2 * i + 2; side++) {
-        const double *restrict port = side->ports + p * side->stride, *restrict scale = side->scale;
-        double given[2 * POLES];
-        for (int q = 0; q < POLES; q++) {
-          given[2 * q] = side->sign * creal(flow[j * POLES + q]);
-          given[2 * q + 1] = -side->sign * cimag(flow[j * POLES + q]);
-        }
-        for (int k = 0; k < side->n; k++) {
-          double sum = 0;
-          for (int q = 0; q < 2 * POLES; q++) sum += scale[q * side->n + k] * given[q];
-          side->x[k] -= port[k] * sum;
-        }
-      }
+  for (int j = 0; j < m; j++) {
+    for (const Side* side = sides + j / patterns * 2; side < sides + j / patterns * 2 + 2; side++) {
+      const double* port = side->ports + j % patterns * side->stride;
+      Complex given = plus((Complex){0}, side->sign, flow[j]);
+      for (int k = 0; k < side->n; k++) side->x[k] -= port[k] * sum(times(given, side->scale[k]).real);
     }
   }
 }
@@ -192,14 +194,14 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
 static bool spread(const Numbers* numbers, int pair, const double* touch, double* root) {
   if (!(touch[AREA] > 0)) return false;
   double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
-  double first = fmin(area / (touch[LENGTH] / touch[AREA]), width), second = area / first;
-  double across = fmin(first, second), along = fmin(fmax(first, second), width);
+  double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = area / first;
+  double across = lesser(first, second), along = lesser(greater(first, second), width);
   if (!(across > 0 && across < width * (1 - 1e-9))) return false; /* any number may have been written to the state */
   int rates = numbers->rates;
-  double narrow = fmin(2 * log2(width / across), WIDTHS - 1);
-  int at = (int)fmin(narrow, WIDTHS - 2);
+  double narrow = lesser(2 * log2(width / across), WIDTHS - 1);
+  int at = (int)lesser(narrow, WIDTHS - 2);
   double of_squares = exp2(narrow - at) - 1, of_strips = (exp2((narrow - at) / 2) - 1) / (sqrt(2) - 1);
-  double square = fmin((width / along - 1) / (exp2(narrow / 2) - 1), 1);
+  double square = lesser((width / along - 1) / (exp2(narrow / 2) - 1), 1);
   const double *one = numbers->narrow + ((size_t)pair * 2 * WIDTHS + at) * rates, *other = one + WIDTHS * rates;
   for (int k = 0; k < rates; k++) {
     double of_square = one[k] + of_squares * (one[rates + k] - one[k]);
@@ -224,7 +226,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     double* root = roots + i * rates;
     sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : 0, 1);
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
-    resistance[i] = fmin(numbers->sample_steps / touch[CONDUCTANCE], MOST);
+    resistance[i] = lesser(numbers->sample_steps / touch[CONDUCTANCE], MOST);
     difference[i] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0);
     if (!spread(numbers, pair[i], touch, root)) continue;
     for (int k = 0; k < rates; k++) {

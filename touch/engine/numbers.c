@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 6, HEADER = 14, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 7, HEADER = 14, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256 };
 
 static bool decode(const char* text, size_t count, double* out) {

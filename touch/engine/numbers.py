@@ -21,7 +21,7 @@ from ..contacts import bends, curves, pair_laws
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 
-_VERSION = 6
+_VERSION = 7
 
 
 def packed(
@@ -54,7 +54,7 @@ def packed(
         header,
         roles,
         owner,
-        *((*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width) for pad in pads),
+        *((*pad.position, *pad.axes.T.ravel(), *(pad.size / 2), pad.stack.width) for pad in pads),
         *(_box(shape, film, ambient) for shape in shapes),
         np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
         curved,
@@ -77,7 +77,7 @@ def packed(
         *(TIMES, TO_MOMENTS[OF_GRASP], GRASP, NODES, JUMPS, ALONG, GRAM),
         *(_pairs(POLES), _pairs(WEIGHTS), AFTERWARDS),
         (FIRST_FORCE, FORCE_STEP, LEAST_CURVED),
-        *(SEPARATION, (LOW, HIGH, LOG_LEAST, LOG_MOST)),
+        *(SEPARATION, (2 / (HIGH - LOW), (HIGH + LOW) / (HIGH - LOW), LOG_LEAST, LOG_MOST)),
     )
     return np.concatenate([np.ravel(part) for part in every]).astype(">f8").tobytes().hex()
 

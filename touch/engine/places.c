@@ -69,7 +69,7 @@ static void future(const Numbers* numbers, const Network* network, int common, c
   for (int p = 0; p < common * patterns; p++) {
     const double* port = network->ports + (size_t)(at[p / patterns] * patterns + p % patterns) * numbers->states + 1;
     for (int l = 0; l < AFTERWARDS; l++) {
-      double later = numbers->afterwards[l], weight = sqrt(fmax(later, numbers->afterwards[1]));
+      double later = numbers->afterwards[l], weight = sqrt(greater(later, numbers->afterwards[1]));
       for (int i = 0; i < columns; i++)
         out[(size_t)i * stride + p * AFTERWARDS + l] = port[i] * exp(-network->rates[i + 1] * later) * weight;
     }
@@ -117,8 +117,8 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
           b += right[r] * right[r];
           c += left[r] * right[r];
         }
-        largest = fmax(largest, fmax(a, b));
-        if (fabs(c) <= 1e-14 * sqrt(a * b) || fmax(a, b) < 1e-4 * LEAST * LEAST * largest) continue;
+        largest = greater(largest, greater(a, b));
+        if (fabs(c) <= 1e-14 * sqrt(a * b) || greater(a, b) < 1e-4 * LEAST * LEAST * largest) continue;
         turned = true;
         double ratio = (b - a) / (2 * c), tangent = copysign(1 / (fabs(ratio) + sqrt(ratio * ratio + 1)), ratio);
         double cosine = 1 / sqrt(tangent * tangent + 1), sine = tangent * cosine;
@@ -141,7 +141,7 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
         met += column[r] * wanted[r];
       }
       double left = size - LEAST * LEAST * largest;
-      if (pass == 0) largest = fmax(largest, size);
+      if (pass == 0) largest = greater(largest, size);
       else if (left > 0)
         for (int i = 0; i < columns; i++) x[i + 1] += column[rows + i] * met * left / (size * size);
     }
@@ -220,9 +220,9 @@ static bool moved(const Numbers* numbers, const State* state, int f, int o, int*
   *face = 2 * most + (looking[most] < 0); /* the pad looks inward */
   for (int i = 0, j = 0; i < 3; i++) {
     if (i == most) continue;
-    double room = fmax(box[i] - width, 0) / 2;
-    middle[j] = box[i] / 2 + fmin(fmax(position[i], -room), room);
-    apart = fmax(apart, fabs(middle[j] - place[MIDDLE + j]));
+    double room = greater(box[i] - width, 0) / 2;
+    middle[j] = box[i] / 2 + lesser(greater(position[i], -room), room);
+    apart = greater(apart, fabs(middle[j] - place[MIDDLE + j]));
     j++;
   }
   return *face != known || apart > NEAR * width;
@@ -243,14 +243,14 @@ void heat_settle(const Numbers* numbers, Work* work, State* state) {
     double width = numbers->pads[i / objects * PAD + WIDTH], place[SLOT] = {faces[i], 0, 0, i / objects};
     for (int axis = 0, j = 0; axis < 3; axis++) {
       if (axis == faces[i] / 2) continue;
-      double size = numbers->boxes[o * BOX + axis], room = fmax(size - width, 0) / 2, spacing = GRID * width;
+      double size = numbers->boxes[o * BOX + axis], room = greater(size - width, 0) / 2, spacing = GRID * width;
       double steps = rint((middles[i][j] - size / 2) / spacing * (1 - TIE));
-      place[MIDDLE + j] = size / 2 + fmin(fmax(steps * spacing, -room), room);
+      place[MIDDLE + j] = size / 2 + lesser(greater(steps * spacing, -room), room);
       j++;
     }
     for (int n = 0; n < (int)state->used[o] && at < 0; n++) {
       const double* known = state->places + (o * numbers->places + n) * SLOT;
-      double apart = fmax(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
+      double apart = greater(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
       if (known[FACE] == place[FACE] && known[TIP] == place[TIP] && apart <= NEAR * width) at = n;
     }
     if (at >= 0) state->current[i] = at;

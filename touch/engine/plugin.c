@@ -30,7 +30,7 @@ static int failed(const char* what) {
 processor's cache. */
 static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* block) {
   size_t used = 0, wide = (size_t)n->places * n->patterns;
-  size_t size = n->places * SLOT + n->states * (3 + 2 * POLES + wide) + 2 * POLES * wide * wide;
+  size_t size = n->places * SLOT + n->states * (3 + wide) + (n->states + wide * wide) * (sizeof(Complex) / sizeof(double));
   size_t aside = ASIDE / (size * n->objects);
   work->aside = aside < 1 ? 1 : aside > MOST_ASIDE ? MOST_ASIDE : (int)aside;
   int networks = n->targets + 1 + n->objects * work->aside;
@@ -48,8 +48,8 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
     PART(network->rates, states, double);
     PART(network->fade, states, double);
     PART(network->kept, states, double);
-    PART(network->scale, 2 * POLES * states, double);
-    PART(network->gram, POLES * (tip ? (size_t)n->patterns * n->patterns : wide * wide), double complex);
+    PART(network->scale, states, Complex);
+    PART(network->gram, tip ? (size_t)n->patterns * n->patterns : wide * wide, Complex);
     PART(network->ports, (tip ? 1 : n->places) * n->patterns * states, double);
   }
   PART(work->turn, n->objects, int);

@@ -24,12 +24,12 @@ static double clipped(double x, double y, double* load) {
 }
 
 static double depth_of(double load, double most, double least, double reach, double width) {
-  double depth = fmax(sqrt(load * sqrt(most * least) / pi), load / (4 * reach * width));
-  depth = fmax(depth, pow(0.375 * load * sqrt(most / 2) / width, 2.0 / 3));
-  depth = fmax(depth, pow(0.375 * load * sqrt(least / 2) / reach, 2.0 / 3));
+  double depth = greater(sqrt(load * sqrt(most * least) / pi), load / (4 * reach * width));
+  depth = greater(depth, pow(0.375 * load * sqrt(most / 2) / width, 2.0 / 3));
+  depth = greater(depth, pow(0.375 * load * sqrt(least / 2) / reach, 2.0 / 3));
   for (int i = 0; i < NEWTON_STEPS; i++) {
     double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least), held;
-    double area = clipped(fmin(reach / a, 1), fmin(width / b, 1), &held);
+    double area = clipped(lesser(reach / a, 1), lesser(width / b, 1), &held);
     double change = (depth * held - load / (4 * a * b)) / area;
     depth -= change;
     if (fabs(change) < 1e-15 * depth) break;
@@ -39,7 +39,7 @@ static double depth_of(double load, double most, double least, double reach, dou
 
 /* Share of an interval of half width reach round `at` that is within -half to half, of the most that can be. */
 static double kept(double at, double reach, double half) {
-  return fmin(fmax(fmin(half, at + reach) - fmax(-half, at - reach), 0) / (2 * fmin(reach, half)), 1);
+  return lesser(greater(lesser(half, at + reach) - greater(-half, at - reach), 0) / (2 * lesser(reach, half)), 1);
 }
 
 double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
@@ -48,19 +48,19 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3];
   double second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3];
   double middle = (first + second) / 2, apart = hypot((first - second) / 2, both);
-  double most = middle + apart, least = fmax(middle - apart, LEAST * (middle + apart));
-  double own = apart > 0 ? fmin(fmax((1 + (first - second) / 2 / apart) / 2, 0), 1) : 1;
+  double most = middle + apart, least = greater(middle - apart, LEAST * (middle + apart));
+  double own = apart > 0 ? lesser(greater((1 + (first - second) / 2 / apart) / 2, 0), 1) : 1;
   double along = sqrt(own), aside = copysign(sqrt(1 - own), both), part = along * sides[0] + aside * sides[1];
-  double other = fmin(part * part, 1);
-  double reach = fmin(own * bend[3] + (1 - own) * bend[4], other * curve[2] + (1 - other) * curve[3]);
-  double width = fmin((1 - own) * bend[3] + own * bend[4], (1 - other) * curve[2] + other * curve[3]);
-  double face_reach = fmin(own * bend[5] + (1 - own) * bend[6], reach);
-  double face_width = fmin((1 - own) * bend[5] + own * bend[6], width);
+  double other = lesser(part * part, 1);
+  double reach = lesser(own * bend[3] + (1 - own) * bend[4], other * curve[2] + (1 - other) * curve[3]);
+  double width = lesser((1 - own) * bend[3] + own * bend[4], (1 - other) * curve[2] + other * curve[3]);
+  double face_reach = lesser(own * bend[5] + (1 - own) * bend[6], reach);
+  double face_width = lesser((1 - own) * bend[5] + own * bend[6], width);
   double depth = depth_of(force / bend[2], most, least, reach, width), load;
   double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least);
-  *area = 4 * a * b * clipped(fmin(face_reach / a, 1), fmin(face_width / b, 1), &load);
+  *area = 4 * a * b * clipped(lesser(face_reach / a, 1), lesser(face_width / b, 1), &load);
   *share = 4 * bend[2] * depth * a * b * load;
-  *longer = fmin(b, face_width) / fmin(a, face_reach);
-  *longer = fmax(*longer, 1 / *longer);
+  *longer = lesser(b, face_width) / lesser(a, face_reach);
+  *longer = greater(*longer, 1 / *longer);
   return kept(along * y + aside * z, a, face_reach) * kept(along * z - aside * y, b, face_width);
 }
