@@ -14,8 +14,9 @@ HELP = "Compile and build ahead what the shipped environments need, for an image
 
 _CLOSING = 50  # control steps, in which the fingers meet what lies between them
 _MESH = "mug_of_coffee"
-_SCENE = """<mujoco><option gravity="0 0 0"/><worldbody>
-  <body name="thing"><geom type="sphere" size=".02"/></body>
+_SCENE = """<mujoco><option gravity="0 0 0"/>
+  <asset><mesh name="octahedron" scale=".02 .02 .02" vertex="1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1"/></asset><worldbody>
+  <body name="thing"><geom {geom}/></body>
   <body name="tip" pos="0 0 .0254">
     <joint type="slide" axis="0 0 -1" damping="20"/><geom type="box" size=".01 .01 .005"/>
   </body></worldbody></mujoco>"""
@@ -58,18 +59,19 @@ def stages() -> dict[str, Callable[[], None]]:
             "Grasp-v0", taxels=(4, 4), face_temperature=(4, 4)
         ),
         "an object of any shape": lambda: _close("Grasp-v0", objects=_MESH),
-        "ThermalTouch on a ball": _touch,
+        "ThermalTouch on a ball": lambda: _touch('type="sphere" size=".02"'),
+        "ThermalTouch on a mesh": lambda: _touch('type="mesh" mesh="octahedron"'),
     }
 
 
-def _touch() -> None:
-    """Presses a fingertip of a scene of its own on a ball."""
+def _touch(geom: str) -> None:
+    """Presses a fingertip of a scene of its own on a geom of that kind."""
     import mujoco as _mujoco
 
     from thermograsp.touch import Fingertip, ThermalTouch
 
     mujoco: Any = _mujoco  # it ships no type stubs for its compiled names
-    model = mujoco.MjModel.from_xml_string(_SCENE)
+    model = mujoco.MjModel.from_xml_string(_SCENE.format(geom=geom))
     data = mujoco.MjData(model)
     tip = Fingertip("tip", (0, 0, -0.005), (0, 0, -1), (0.02, 0.02))
     touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"thing": "steel"})
