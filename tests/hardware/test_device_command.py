@@ -257,9 +257,9 @@ def test_emulate_serves_another_process(tmp_path: Path, capsys: pytest.CaptureFi
     [
         ("corupt=0.1", UnknownNameError, "did you mean 'corrupt'"),
         ("corrupt=2", InvalidValueError, "chance"),
-        ("corrupt", InvalidValueError, "no number"),
+        ("corrupt", InvalidValueError, "not a number"),
         ("saturate=up", InvalidValueError, "saturate=left"),
-        ("reboot@soon", InvalidValueError, "no number"),
+        ("reboot@soon", InvalidValueError, "not a number"),
     ],
 )
 def test_a_fault_that_cannot_be_planned(

@@ -185,9 +185,9 @@ def test_restart_is_a_start() -> None:
 
 @pytest.mark.parametrize("which", [np.array([0, 1, 2]), np.array([0]), np.array([[0, 1]])])
 def test_a_choice_that_is_not_one_of_each_row_is_refused(which: np.ndarray) -> None:
-    with pytest.raises(InvalidValueError, match="one of each of the 2 rows"):
+    with pytest.raises(InvalidValueError, match="one for each of the 2 rows"):
         tips().conductance(np.ones((2, 2)), which)
-    with pytest.raises(InvalidValueError, match="one of each of the 2 rows"):
+    with pytest.raises(InvalidValueError, match="one for each of the 2 rows"):
         tips().step(tips().start(2), np.ones((2, 2)), which)
 
 
