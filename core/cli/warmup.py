@@ -15,7 +15,8 @@ HELP = "Compile and build ahead what the shipped environments need, for an image
 _CLOSING = 50  # control steps, in which the fingers meet what lies between them
 _MESH = "mug_of_coffee"
 _SCENE = """<mujoco><option gravity="0 0 0"/>
-  <asset><mesh name="octahedron" scale=".02 .02 .02" vertex="1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1"/></asset><worldbody>
+  <asset><mesh name="octahedron" scale=".02 .02 .02" vertex="1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1"/></asset>
+  <worldbody>
   <body name="thing"><geom {geom}/></body>
   <body name="tip" pos="0 0 .0254">
     <joint type="slide" axis="0 0 -1" damping="20"/><geom type="box" size=".01 .01 .005"/>
