@@ -19,7 +19,7 @@ def test_the_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
     for block in blocks:
         exec(compile(block, "identification.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("material glass (")
+    assert lines[0].startswith("material it is glass (")
     assert lines[-1].startswith("glass ")
 
 
