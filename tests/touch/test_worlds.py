@@ -148,9 +148,9 @@ def test_rows_of_different_lengths_are_refused(model: mujoco.MjModel, record: np
         many(model, 3).update(ragged)  # pyright: ignore[reportArgumentType]
 
 
-def test_sensors_are_added_once_and_to_a_spec() -> None:
+def test_sensors_are_added_once_and_to_a_spec(model: mujoco.MjModel) -> None:
     spec = mujoco.MjSpec.from_string(hand.scene())
-    model = prepare(spec, PADS, OBJECTS)
+    prepare(spec, PADS, OBJECTS)
     with pytest.raises(InvalidValueError, match="already"):
         prepare(spec, PADS, OBJECTS)
     with pytest.raises(InvalidValueError, match="MjSpec, got MjModel"):
