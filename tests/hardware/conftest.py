@@ -1,12 +1,22 @@
-"""The firmware in a simulator, where its tools are installed."""
+"""The firmware in a simulator, where its tools are installed; no pauses in what runs in real time."""
 
 import fcntl
+import gc
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from .board import Board, build, require_tools
+
+
+@pytest.fixture(autouse=True)
+def _no_pauses() -> Iterator[None]:
+    """Python searches for cycles only between these tests: after thousands of others that takes most of a second, in
+    which an emulated device in the same process does not answer."""
+    gc.disable()
+    yield
+    gc.enable()
 
 
 @pytest.fixture(scope="session")
