@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...thermal import ContactArea, Pad
-from ...thermal.pressed import MAP_PITCH, HeightMap, face_springs, map_heights, pressure_map
+from ...thermal.pressed import HeightMap, face_springs, map_heights, pressure_map
 from ..bodies import MeshShape, ObjectSpec
 from .surface_height import mesh_map
 
@@ -83,5 +83,5 @@ def _seen(
     middles = (np.arange(count) + 0.5) * pad.width / count - pad.width / 2
     places = np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
     height, cover = np.zeros(len(places)), np.zeros(len(places))
-    map_heights(*seen, MAP_PITCH, frame, places, height, cover)
+    map_heights(*seen, frame, places, height, cover)
     return places, height, cover

@@ -15,7 +15,7 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import Skin
 from ...thermal.contact import bared, skinned
-from ...thermal.pressed import MAP_PITCH, face_springs, map_heights, pressure_map
+from ...thermal.pressed import face_springs, map_heights, pressure_map
 from ..bodies import ObjectSpec
 from ..limits import TIPS
 from ..mechanics import Mechanics
@@ -90,7 +90,7 @@ class Taxels:
         pitch = max(self._sides)
         if spec.mesh:
             seen = mesh_map(spec.geometry, pad[1])
-            map_heights(*seen, MAP_PITCH, pad, self._places, self._height, self._cover)
+            map_heights(*seen, pad, self._places, self._height, self._cover)
         else:
             half = np.array(spec.size) / 2
             shape_heights(_SHAPES[spec.shape], half, pad, self._places, pitch, self._height, self._cover)

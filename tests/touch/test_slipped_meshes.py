@@ -19,7 +19,7 @@ from thermograsp.errors import MissingDependencyError
 from thermograsp.thermal import IDEAL, Pad, cylinder_contact, sphere_contact
 from thermograsp.thermal.contact import curved_contact, skinned
 from thermograsp.thermal.matter import skin as named_skin
-from thermograsp.thermal.pressed import MAP_PITCH, height_map, map_heights
+from thermograsp.thermal.pressed import height_map, map_heights
 from thermograsp.thermal.pressed.mesh_table import _points, _sunk
 from thermograsp.touch import Fingertip, ThermalTouch, install
 from thermograsp.touch.contacts import AREA, CLOSED, FORCE, pair_laws
@@ -180,7 +180,7 @@ def test_what_springs_bear_is_the_force() -> None:
         for force in (0.02, 1.0, 100.0):
             heights, cover = np.zeros((2, len(points)))
             middle = np.array([*rng.uniform(-0.015, 0.015, 2), 0.0])
-            map_heights(*seen, MAP_PITCH, np.stack([middle, *axes]), points, heights, cover)
+            map_heights(*seen, np.stack([middle, *axes]), points, heights, cover)
             heights -= heights[cover > 0].min()
             load = force * sheet.thickness / sheet.foundation_modulus
             depth = _sunk(heights, cover * areas, stiffness, load)
@@ -229,3 +229,9 @@ def test_a_copy_of_a_touch_makes_its_own_tables() -> None:
             each["touch"].update(each["data"])
     assert both["touch"].reading.temperature_drop == touch.reading.temperature_drop
     assert touch.reading.temperature_drop[0] > 1.0
+
+
+def test_a_mesh_in_the_wrong_unit_takes_no_more_room_than_another() -> None:
+    cube = trimesh.creation.box((40.0, 40.0, 40.0))
+    seen = height_map(np.asarray(cube.vertices), np.asarray(cube.faces), np.eye(3))
+    assert seen.height.size < 2010**2 and seen.pitch == pytest.approx(0.02)

@@ -1,11 +1,10 @@
 """Bodies of any shape on a pad's springs."""
 
 from .foundation import face_springs, pressure_map
-from .height_map import MAP_PITCH, HeightMap, height_map, map_heights
+from .height_map import HeightMap, height_map, map_heights
 from .mesh_table import PressedMesh, PressedView, pressed_view
 
 __all__ = [
-    "MAP_PITCH",
     "HeightMap",
     "PressedMesh",
     "PressedView",

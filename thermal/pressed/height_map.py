@@ -14,28 +14,32 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-MAP_PITCH = 0.25e-3  # m
+_PITCH = 0.25e-3  # m
+_MOST_NODES = 2000  # each way: half a metre at that pitch, and 32 MB
 
 
 class HeightMap(NamedTuple):
     """A surface seen along one direction. axes (3, 3): the direction and the two across it. height (n, m): m along the
-    direction of what is hit first, on nodes MAP_PITCH apart from `corner` (2,) m on; inf where nothing is."""
+    direction of what is hit first, on nodes `pitch` m apart from `corner` (2,) m on; inf where nothing is. Nodes are
+    .25 mm apart, and further where the surface is wider than half a metre."""
 
     axes: np.ndarray
     corner: np.ndarray
     height: np.ndarray
+    pitch: float
 
 
 def height_map(vertices: np.ndarray, faces: np.ndarray, axes: np.ndarray) -> HeightMap:
     """Triangles (m, 3) of vertices (n, 3) m seen along axes[0]."""
     seen = np.ascontiguousarray(np.stack([(vertices * axis).sum(axis=1) for axis in axes], axis=1))
     low, high = seen.min(axis=0)[1:], seen.max(axis=0)[1:]
-    size = np.ceil((high - low) / MAP_PITCH).astype(int) + 2
+    pitch = max(_PITCH, float((high - low).max()) / _MOST_NODES)
+    size = np.ceil((high - low) / pitch).astype(int) + 2
     # nodes symmetric about the middle, so that symmetric objects are seen so
-    corner = (low + high) / 2 - MAP_PITCH * (size - 1) / 2
+    corner = (low + high) / 2 - pitch * (size - 1) / 2
     height = np.full(tuple(size), np.inf)
-    _rasterise(seen, np.asarray(faces, np.int64), corner, MAP_PITCH, height)
-    return HeightMap(axes, corner, height)
+    _rasterise(seen, np.asarray(faces, np.int64), corner, pitch, height)
+    return HeightMap(axes, corner, height, pitch)
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")

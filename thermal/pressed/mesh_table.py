@@ -33,7 +33,7 @@ from ..contact import (
     skinned,
 )
 from ..matter import Material, Skin
-from .height_map import MAP_PITCH, height_map, map_heights
+from .height_map import height_map, map_heights
 
 _POINTS = 40  # along the pad's side, of the foundation
 _FINER = 3  # times as many on the face
@@ -126,7 +126,7 @@ def _conducting(view: PressedView, law: np.void) -> np.ndarray:
 
 
 @njit(cache=True, error_model="numpy")
-def _press(axes, corner, height, begin, places, points, areas, stiffness, on_face, loads, touched):
+def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness, on_face, loads, touched):
     """Fills touched. on_face: how many points. loads: m3, forces over the stiffness of springs around the face."""
     frame = np.zeros((4, 3))
     frame[1:] = axes
@@ -135,7 +135,7 @@ def _press(axes, corner, height, begin, places, points, areas, stiffness, on_fac
         for b in range(1, places.shape[1] - 1):
             for k in range(3):
                 frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
-            map_heights(axes, corner, height, MAP_PITCH, frame, points, heights, cover)
+            map_heights(axes, corner, height, pitch, frame, points, heights, cover)
             cover *= areas
             # a light force's depth is little beside the heights
             least = np.inf

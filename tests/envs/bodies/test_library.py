@@ -26,7 +26,7 @@ from thermograsp.envs.mechanics.batch import Mechanics
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.files import cache_dir
 from thermograsp.thermal import material, sensor
-from thermograsp.thermal.pressed import MAP_PITCH, map_heights
+from thermograsp.thermal.pressed import map_heights
 
 NAMES = tuple(objects())
 MESHES = tuple(name for name in NAMES if objects()[name].solid.surface is not None)
@@ -159,7 +159,7 @@ def test_what_collides_is_the_surface_where_the_pads_meet_it(name: str) -> None:
             y, z = np.meshgrid(*2 * [np.linspace(-0.0095, 0.0095, 39)])
             places = np.stack([y.ravel(), z.ravel()], axis=1)
             height, cover = np.zeros(len(places)), np.zeros(len(places))
-            map_heights(*seen, MAP_PITCH, pad, places, height, cover)
+            map_heights(*seen, pad, places, height, cover)
             nearest.append(height[cover > 0].min())
         assert nearest[0] == pytest.approx(nearest[1], abs=1e-4)
 
