@@ -254,7 +254,7 @@ print(one(3.0, 2.0), other(3.0, 2.0))
 """
     for factor, expected in ("2", "2.5 6.5"), ("2", "2.5 6.5"), ("3", "2.5 9.0"):
         edit(tmp_path, "inner.py", "return 2 * between", f"return {factor} * between")
-        run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+        run = subprocess.run([sys.executable, "-B", "-c", code], cwd=tmp_path, capture_output=True, text=True)
         assert (run.returncode, run.stdout.strip()) == (0, expected), run.stderr
 
 
