@@ -26,8 +26,8 @@ MAX_WIDTH, MAX_HEIGHT = 1280, 960  # the offscreen buffer of assets/gripper.xml
 _MAX_GEOMS = 500
 _CLOSING = 5.0  # s, at most, that a closing window is waited for
 _HELP = (
-    "on Debian or Ubuntu: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri (software rendering, no screen needed); "
-    "MUJOCO_GL=egl, osmesa or glfw chooses the library"
+    "on Debian or Ubuntu: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri libopengl0 (software rendering, no "
+    "screen needed); MUJOCO_GL=egl, osmesa or glfw chooses the library"
 )
 
 

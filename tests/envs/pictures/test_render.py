@@ -1,6 +1,8 @@
+import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +15,8 @@ from thermograsp.envs.pictures.colormap import temperature_colour
 from thermograsp.envs.pictures.render import Renderer, Window
 from thermograsp.envs.tasks import SortTask
 from thermograsp.errors import InvalidValueError, MissingDependencyError, UnknownNameError
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="module")
@@ -85,8 +89,13 @@ def test_missing_opengl_names_the_packages(mechanics, monkeypatch):
         raise OSError("libEGL.so.1 not found")
 
     monkeypatch.setattr(render, "gl_context", broken)
-    with pytest.raises(MissingDependencyError, match="libegl1 libegl-mesa0 libgl1-mesa-dri"):
+    with pytest.raises(MissingDependencyError, match="apt-get install") as raised:
         Renderer(mechanics)
+    packages = re.search(r"apt-get install ((lib[\w-]+ )+)", str(raised.value))
+    assert packages is not None
+    for name in ("README.md", "docs/start.md", "Dockerfile"):
+        assert packages[1].strip() in (ROOT / name).read_text()
+    assert set(packages[1].split()) <= set(re.findall(r"lib[\w-]+", (ROOT / ".ci" / "run").read_text()))
 
 
 def test_a_window_needs_a_display(mechanics, monkeypatch):
