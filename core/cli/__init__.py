@@ -96,7 +96,7 @@ def command_parser(given: Sequence[str], as_json: bool = False) -> argparse.Argu
         "--version",
         action=ShowVersion,
         as_json=as_json,
-        help="show the version and exit; with --json, those of everything it runs on",
+        help="show the version and exit; with --json, the versions of everything that it runs on",
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     first = given[0] if given else "--help"
@@ -108,7 +108,7 @@ def command_parser(given: Sequence[str], as_json: bool = False) -> argparse.Argu
         module.add_arguments(sub)
         sub.add_argument(VERBOSE, action="store_true", help="report details of the computation on stderr")
         sub.add_argument(
-            JSON, action="store_true", help="print one JSON document and nothing else, errors too"
+            JSON, action="store_true", help="print one JSON document and nothing else; errors are JSON too"
         )
         sub.set_defaults(run=module.run)
     return parser

@@ -7,14 +7,14 @@ import json
 import time
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.shared import Output, add_materials_file, chosen_material, load_mujoco
+from thermograsp.cli.shared import Output, add_materials_file, add_mode, chosen_material, load_mujoco
 from thermograsp.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from thermograsp.dataset import Plan
 
 NAME = "dataset"
-HELP = "Write episodes to Parquet files, in parallel, going on where it was stopped; export them to Minari or LeRobot."
+HELP = "Write episodes to Parquet files in parallel, resuming where it stopped; export them to Minari or LeRobot."
 
 _FORMATS = {"minari": "Minari", "lerobot": "LeRobot"}
 
@@ -22,41 +22,46 @@ _FORMATS = {"minari": "Minari", "lerobot": "LeRobot"}
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("--episodes", type=int, help="how many; without it --export takes the folder as it is")
+    add("--episodes", type=int, help="number of episodes; without it, --export takes the folder as it is")
     add("--out", metavar="DIR", default="dataset", help="folder of the dataset")
-    add("--id", default="thermograsp/Grasp-v0", help="environment")
-    add("--policy", default="scripted", help="scripted, feeling, trained, random or zero")
-    add("--seed", type=int, default=0, help="episode k is that of seed + k")
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add("--id", default="thermograsp/Grasp-v0", help="id of the environment")
+    add("--policy", default="scripted", help="policy: scripted, feeling, trained, random or zero")
+    add("--seed", type=int, default=0, help="seed of the first episode; episode k uses seed + k")
+    add_mode(parser)
     add(
         "--material",
         nargs="+",
         metavar="NAME",
-        help="materials that episodes draw from (default: the paper's ten)",
+        help="names of the materials that episodes draw from (default: the paper's ten)",
     )
     add_materials_file(parser)
-    add("--shard", type=int, default=128, metavar="N", help="episodes a file")
+    add("--shard", type=int, default=128, metavar="N", help="number of episodes per file")
     add(
         "--set",
         nargs="+",
         default=[],
         metavar="NAME=VALUE",
-        help="other keywords of the environment, values as JSON or text: tolerance=0.02 objects=mug_of_coffee",
+        help="further keywords of the environment, with values as JSON or text, such as tolerance=0.02",
     )
-    add("--workers", type=int, default=0, help="processes, or Ray's tasks at a time; 0: this process")
+    add(
+        "--workers",
+        type=int,
+        default=0,
+        help="number of processes, or of Ray tasks at a time; 0 works in this process",
+    )
     add(
         "--ray-address",
         metavar="ADDRESS",
-        help="run the workers on Ray: of a running cluster, auto, or local for a Ray of its own",
+        help="Ray cluster to run the workers on: its address, auto for one that is running, or local to start one",
     )
     add(
         "--export",
         choices=tuple(_FORMATS),
-        help="when the folder is complete, write a Minari or a LeRobot dataset",
+        help="format in which to write a dataset of the complete folder",
     )
     add(
         "--name",
-        help="of the exported dataset (default: such as thermograsp/Grasp/scripted-v0 for Minari, "
+        help="name of the exported dataset (default: such as thermograsp/Grasp/scripted-v0 for Minari, "
         "thermograsp/Grasp-scripted for LeRobot)",
     )
 

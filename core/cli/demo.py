@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from thermograsp.reports.demo import ModeRun
 
 NAME = "demo"
-HELP = "Grasp all ten seed materials in both modes; write a page, one CSV file a run, and a table."
+HELP = "Grasp all ten seed materials in both modes; write a page, a CSV file for each run, and a table."
 
 _MODES = ("T", "O")
 _SECONDS, _QUICK = 10.0, 4.0
@@ -24,9 +24,9 @@ _FAILED = 1
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("--out", default="out/demo", metavar="DIR", help="where to write")
-    add_seed(parser, "of the objects' places and the noise")
-    add("--quick", action="store_true", help=f"grasps of {_QUICK:g} s instead of {_SECONDS:g}")
+    add("--out", default="out/demo", metavar="DIR", help="folder for the page and the tables")
+    add_seed(parser, "seed of the objects' places and of the noise")
+    add("--quick", action="store_true", help=f"shorter grasps, of {_QUICK:g} s instead of {_SECONDS:g} s")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from thermograsp.envs import Gripper
 
 NAME = "gripper"
-HELP = "Your own gripper from an MJCF file: what is found in it, and a grasp that shows whether it is fit."
+HELP = "Check your own gripper's MJCF file: report what is found in it, and grasp to show whether it is fit."
 
 _FAILED = 1
 _PICTURE = (480, 360)  # pixels, each of the two
@@ -25,18 +25,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     about = "Find fingers, pads and actuators, grasp an object of glass and one of aluminium, and report the result."
     check = actions.add_parser("check", help=about, description=about, allow_abbrev=False)
     add = check.add_argument
-    add("file", help="an MJCF file; a whole robot will do")
+    add("file", help="MJCF file of the gripper; a whole robot will do")
     add(
         "--fingertips",
         nargs=2,
         metavar=("BODY", "BODY"),
-        help="bodies that carry the fingertips, or parts of two digits' names (default: found)",
+        help="bodies that carry the fingertips, or parts of the names of two digits (default: found in the file)",
     )
-    add("--actuators", nargs="+", metavar="NAME", help="those that close it (default: all)")
-    add("--parallel-at", type=float, default=0.04, help="opening with parallel pads, m")
-    add("--shape", choices=("box", "cylinder", "sphere"), default="box", help="of the objects")
-    add("--force", type=float, help="the limit, N (default: that of a usual grasp, or what the gripper can)")
-    render = add("--render", metavar="FILE", help="draw it, open and closed: .png")
+    add(
+        "--actuators",
+        nargs="+",
+        metavar="NAME",
+        help="names of the actuators that close the gripper (default: all)",
+    )
+    add("--parallel-at", type=float, default=0.04, help="opening at which the pads are parallel, m")
+    add("--shape", choices=("box", "cylinder", "sphere"), default="box", help="shape of the objects")
+    add(
+        "--force",
+        type=float,
+        help="limit of the gripper's force, N (default: that of a usual grasp, or the most that it can exert)",
+    )
+    render = add("--render", metavar="FILE", help="draw the gripper open and closed: .png")
     add_old_name(check, "--png", render)
 
 

@@ -6,7 +6,16 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.shared import Output, add_old_name, target
+from thermograsp.cli.shared import (
+    Output,
+    add_materials_file,
+    add_mode,
+    add_old_name,
+    add_sensor,
+    add_skin,
+    add_tolerance,
+    target,
+)
 from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:
@@ -28,46 +37,57 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "csv",
         metavar="CSV",
-        help=f"{_TIME}, and voltage_V or {' and '.join(_VOLTAGES)}, as `grasp` writes them",
+        help=f"table with the columns {_TIME} and voltage_V, or {_TIME}, {' and '.join(_VOLTAGES)}, as "
+        "`thermograsp grasp --csv` writes it",
     )
-    add("--among", nargs="+", metavar="NAME", help="materials it may be (default: the whole table)")
-    add("--materials", metavar="FILE", help="your own TOML table in place of the package's")
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
-    add("--sensor", default="seed", help="a sensor's name")
-    add("--skin", help="over its face, in T mode: a skin's name, such as filled_silicone (default: bare)")
+    add(
+        "--among",
+        nargs="+",
+        metavar="NAME",
+        help="names of the materials that it may be (default: the whole table)",
+    )
+    add_materials_file(parser)
+    add_mode(parser)
+    add_sensor(parser)
+    add_skin(parser)
     add(
         "--fingertips",
         type=int,
-        help="1, or 2 on opposite faces (default: as many as the file has voltages)",
+        help="number of fingertips: 1, or 2 on opposite faces (default: the number of voltages in the file)",
     )
     add(
         "--object-size",
         type=float,
         nargs=3,
         metavar=("X", "Y", "THICKNESS"),
-        help="m (default: "
+        help="size of the object, m (default: "
         + ", between two fingertips ".join(" ".join(map(str, size)) for size in _SIZES.values())
         + ")",
     )
     spread = ("MEAN", "DEVIATION")
-    for name, usual in (("object", (24.0, 3.0)), ("sensor", (36.0, 0.1))):
-        option = f"--{name}-temperature"
-        add(option, type=float, nargs=2, default=usual, metavar=spread, help="degC and K")
+    for name, what, usual in (("object", "object", (24.0, 3.0)), ("sensor", "thermostat", (36.0, 0.1))):
+        about = f"initial temperature of the {what}, degC, and its standard deviation, K"
+        add(f"--{name}-temperature", type=float, nargs=2, default=usual, metavar=spread, help=about)
     add(
         "--conductance",
         type=float,
         nargs=2,
         default=(1e3, 2e4),
         metavar=("LOW", "HIGH"),
-        help="of the contact, W/(m2 K)",
+        help="range of the contact conductance, W/(m2 K)",
     )
     add("--touch", type=float, help="time of the touch, s (default: found in the voltage)")
-    add("--until", type=float, help="use samples up to this time, s (default: all)")
-    add("--bandwidth", type=float, default=30.0, help="of the amplifier, Hz, inf for none")
-    add("--model-error", type=float, default=0.005, help="of the curves, rms, share of the largest value")
-    add("--tolerance", type=float, default=0.05, help="K that the network of a simulated curve may be off")
-    add("--no-cache", action="store_true", help="do not keep curves on disk")
-    plot = add("--plot", metavar="FILE", help="draw voltage and posteriors: .svg, .png or .pdf")
+    add("--until", type=float, help="time of the last sample to use, s (default: all samples)")
+    add("--bandwidth", type=float, default=30.0, help="bandwidth of the amplifier, Hz; inf for no limit")
+    add(
+        "--model-error",
+        type=float,
+        default=0.005,
+        help="rms error of the simulated curves, as a share of their largest value",
+    )
+    add_tolerance(parser)
+    add("--no-cache", action="store_true", help="do not keep simulated curves on disk")
+    plot = add("--plot", metavar="FILE", help="draw the voltage and the posteriors: .svg, .png or .pdf")
     add_old_name(parser, "--out", plot)
 
 

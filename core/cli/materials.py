@@ -6,14 +6,14 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.shared import Output, add_old_name
+from thermograsp.cli.shared import Output, add_materials_file, add_old_name
 from thermograsp.errors import unknown_name
 
 if TYPE_CHECKING:
     from thermograsp.thermal import Material
 
 NAME = "materials"
-HELP = "List materials, or compare some and show where their numbers come from."
+HELP = "List materials, or compare some of them and show the sources of their numbers."
 
 _SORTS = ("effusivity", "diffusivity", "conductivity", "density", "specific_heat", "name", "family")
 _HEADER = ("material", "family", "k", "rho", "c", "effusivity", "diffusivity")
@@ -39,14 +39,11 @@ _UNITS = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "names", nargs="*", metavar="NAME", help="materials to compare; all where none is named"
+        "names", nargs="*", metavar="NAME", help="names of the materials to compare (default: a list of all)"
     )
-    table = parser.add_argument(
-        "--materials", metavar="FILE", help="a TOML table of your own instead of the package's"
-    )
-    add_old_name(parser, "--file", table)
+    add_old_name(parser, "--file", add_materials_file(parser))
     parser.add_argument(
-        "--sort", default="effusivity", metavar="PROPERTY", help=f"one of {', '.join(_SORTS)}"
+        "--sort", default="effusivity", metavar="PROPERTY", help=f"property to sort by: {', '.join(_SORTS)}"
     )
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from thermograsp.envs import ObjectPreset
 
 NAME = "objects"
-HELP = "List the everyday objects that `thermograsp grasp --object` and environments take by name."
+HELP = "List the everyday objects that `thermograsp grasp --object` and the environments take by name."
 
 _HEADER = ("object", "what", "material", "mm", "g", "degC", "N")
 _LEGEND = "mm between the fingers, g with contents, degC at first, N on each pad that holds it with a margin"
@@ -20,7 +20,9 @@ _LEGEND = "mm between the fingers, g with contents, degC at first, N on each pad
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("names", nargs="*", metavar="NAME", help="objects to list; all where none is named")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help="names of the objects to list (default: all)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

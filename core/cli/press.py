@@ -6,7 +6,16 @@ import argparse
 from typing import TYPE_CHECKING
 
 from thermograsp.cli.pressed_mesh import KEYWORDS, PLATES, add_mesh_arguments, press_mesh
-from thermograsp.cli.shared import Output, add_materials_file, chosen_material, target
+from thermograsp.cli.shared import (
+    Output,
+    add_materials_file,
+    add_mode,
+    add_sensor,
+    add_skin,
+    add_tolerance,
+    chosen_material,
+    target,
+)
 
 if TYPE_CHECKING:
     from thermograsp.thermal import Press
@@ -18,26 +27,27 @@ HELP = "Press the sensor on an object and print what it feels."
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command: thermal.press's keywords, with its defaults."""
     add = parser.add_argument
-    add("material", help="a name of `thermograsp materials`")
+    add("material", help="name of the material, see `thermograsp materials`")
     add_materials_file(parser)
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
-    add("--sensor", default="seed", help="a sensor's name")
+    add_mode(parser)
+    add_sensor(parser)
     add(
         "--conductance",
         type=float,
-        help="of the contact, W/(m2 K) (default: 1e4, and of a heated sensor what its contact conducts at --force)",
+        help="contact conductance, W/(m2 K) (default: 1e4; for a heated sensor, what its contact conducts at --force)",
     )
-    add("--force", type=float, help="on a heated sensor, N (default: the one its contact is stated at)")
+    add(
+        "--force",
+        type=float,
+        help="contact force of a heated sensor, N (default: the force for which its contact is stated)",
+    )
     add(
         "--area",
         type=float,
-        help="of the contact, m2 (default: 81e-6, or the sensor's face where it is smaller)",
+        help="contact area, m2 (default: 81e-6, or the area of the sensor's face if that is smaller)",
     )
-    add(
-        "--skin",
-        help="over the sensor's face, in T mode: a skin's name, such as filled_silicone (default: bare)",
-    )
-    add("--shape", default="square", help="of the contact: square or round")
+    add_skin(parser)
+    add("--shape", default="square", help="shape of the contact: square or round")
     size = (0.04, 0.04, 0.01)
     add(
         "--object-size",
@@ -45,29 +55,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         default=size,
         metavar=("X", "Y", "THICKNESS"),
-        help="m",
+        help="size of the object, m",
     )
-    add("--air", type=float, default=0.0, help="heat transfer to the air, W/(m2 K)")
-    add("--sensor-temperature", type=float, default=36.0, help="of the thermostat, degC")
-    add("--object-temperature", type=float, default=24.0, help="at first, degC")
-    add("--seconds", type=float, default=10.0, help="s")
-    add("--dt", type=float, default=0.02, help="spacing of the samples, s")
-    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K")
-    add("--rung", default="auto", help="model: auto, or a name such as layered or network")
+    add("--air", type=float, default=0.0, help="coefficient of heat transfer to the air, W/(m2 K)")
+    add("--sensor-temperature", type=float, default=36.0, help="initial temperature of the thermostat, degC")
+    add("--object-temperature", type=float, default=24.0, help="initial temperature of the object, degC")
+    add("--seconds", type=float, default=10.0, help="length of the press, s")
+    add("--dt", type=float, default=0.02, help="interval between samples, s")
+    add_tolerance(parser)
+    add(
+        "--rung",
+        default="auto",
+        help="model of the press: auto for the cheapest that keeps the tolerance, or a name such as layered or network",
+    )
     add(
         "--opposite",
         type=float,
-        help="conductance of a fingertip on the opposite face, W/(m2 K) (default: none)",
+        help="contact conductance of a second fingertip on the opposite face, W/(m2 K) (default: no second fingertip)",
     )
     add(
         "--thermostat-power",
         type=float,
         metavar="W",
-        help="limit of the thermostat's heater (default: an ideal one)",
+        help="limit of the thermostat's heating power, W (default: an ideal thermostat)",
     )
     add_mesh_arguments(parser)
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
-    add("--csv", metavar="FILE", help="write the curves")
+    add("--csv", metavar="FILE", help="write the curves as a table")
     add("--plot", metavar="FILE", help="draw the curves: .svg, .png or .pdf")
 
 

@@ -51,14 +51,14 @@ def add_mesh_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--mesh",
         metavar="FILE",
-        help="press an object from a mesh file (.stl, .obj, .ply, .glb), not a plate",
+        help="mesh file of the object, pressed instead of a plate: .stl, .obj, .ply or .glb",
     )
-    add("--scale", type=float, default=1.0, help="m per unit of length in that file")
+    add("--scale", type=float, default=1.0, help="metres per unit of length in the mesh file")
     add(
         "--side",
         choices=tuple(SIDES),
         default="top",
-        help="of the mesh, in whose middle it is pressed",
+        help="side of the mesh that is pressed, in its middle",
     )
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from thermograsp.reports.paper import Claim, Support, Task
 
 NAME = "reproduce"
-HELP = "Recompute the heat flux sensor paper (Wu et al. 2012): its figures, and which of its statements hold."
+HELP = "Recompute the figures of the heat flux sensor paper (Wu et al. 2012), and report which of its statements hold."
 
 _MARKS = {"holds": "holds  ", "partly": "partly ", "fails": "FAILS  ", "open": "open   "}
 _ON_RIGS: dict[Literal["holds", "partly", "fails"], str] = {
@@ -29,9 +29,11 @@ _ON_RIGS: dict[Literal["holds", "partly", "fails"], str] = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("--out", metavar="DIR", default="reproduction", help="folder for figures and claims")
     parser.add_argument(
-        "--quick", action="store_true", help="coarser: 0.005 K instead of 0.002 K, half the grid"
+        "--out", metavar="DIR", default="reproduction", help="folder for the figures and claims"
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="coarser computation: 0.005 K instead of 0.002 K, half the grid"
     )
 
 

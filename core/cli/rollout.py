@@ -18,21 +18,34 @@ _SHOWN = 10
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("env_id", metavar="ENV_ID", help="such as thermograsp/Grasp-v0")
-    add("--episodes", type=int, default=20, help="how many")
-    add("--num-envs", type=int, default=4, help="how many at once; it changes the speed only")
-    add_seed(parser, "episode k starts from seed + k")
-    add("--stakes", action="store_true", help="materials of which each needs its own force (envs.STAKES)")
+    add("env_id", metavar="ENV_ID", help="id of the environment, such as thermograsp/Grasp-v0")
+    add("--episodes", type=int, default=20, help="number of episodes")
+    add(
+        "--num-envs",
+        type=int,
+        default=4,
+        help="number of environments that run at once; only the speed depends on it",
+    )
+    add_seed(parser, "seed of the first episode; episode k uses seed + k")
+    add(
+        "--stakes",
+        action="store_true",
+        help="draw from materials that need different forces (envs.STAKES)",
+    )
     add(
         "--policy",
         default="scripted",
-        help="scripted, feeling, trained, random, zero, or a trained policy's .npz file",
+        help="policy: scripted, feeling, trained, random, zero, or a policy's .npz file",
     )
-    add("--max-steps", type=int, help="end episodes after so many control steps")
+    add(
+        "--max-steps",
+        type=int,
+        help="number of control steps after which episodes are cut off (default: none are)",
+    )
     add(
         "--check",
         action="store_true",
-        help="check values, bounds, temperatures and the heat's balance on every step",
+        help="check values, bounds, temperatures and the heat balance after every step",
     )
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from thermograsp.cli.shared import Output, load_mujoco
+from thermograsp.cli.shared import Output, add_randomize, load_mujoco
 from thermograsp.errors import InvalidValueError
 
 NAME = "score"
-HELP = "Count how often a policy succeeds in held-out episodes of a task, the same for every policy."
+HELP = (
+    "Count how often a policy succeeds in held-out episodes of a task, which are the same for every policy."
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,20 +20,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "policy",
         metavar="POLICY",
-        help="trained, a script (scripted, feeling), random, zero, a policy's .npz file, or module:callable, which "
-        "gets observations of all environments and returns their actions",
+        help="policy: scripted, feeling, trained, random, zero, a policy's .npz file, or module:callable, a function "
+        "of the observations of all environments that returns their actions",
     )
-    add("--task", required=True, help="grasp, identify, sort or hotter")
-    add("--episodes", type=int, default=200, help="how many")
-    add("--no-load", action="store_true", help="a gripper without load cells: forces read 0")
-    add("--gripper", metavar="FILE", help="MJCF file of another gripper")
-    add(
-        "--randomize", action="store_true", help="draw all that can differ between episodes (envs.EVERYTHING)"
-    )
+    add("--task", required=True, help="task: grasp, identify, sort or hotter")
+    add("--episodes", type=int, default=200, help="number of episodes")
+    add("--no-load", action="store_true", help="score on a gripper without load cells: forces read 0")
+    add("--gripper", metavar="FILE", help="MJCF file of your own gripper (default: the shipped gripper)")
+    add_randomize(parser)
     add(
         "--twin",
         action="store_true",
-        help="through emulated devices and their serial protocols; identify only",
+        help="score through emulated devices and their serial protocols, on the task identify only",
     )
 
 

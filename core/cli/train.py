@@ -6,29 +6,31 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.shared import Output, load_mujoco
+from thermograsp.cli.shared import Output, add_randomize, load_mujoco
 from thermograsp.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from thermograsp.agents.learning.training import Progress
 
 NAME = "train"
-HELP = "Train an agent on a task, by imitation and then PPO; write checkpoints and a policy that NumPy alone runs."
+HELP = "Train an agent on a task by imitation and then PPO; write checkpoints and a policy that needs only NumPy."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("task", metavar="TASK", help="grasp, identify, sort or hotter")
-    add("--out", metavar="DIR", help="folder of the training (default: out/TASK-SEED)")
-    add("--seed", type=int, default=0, help="0 to 999")
-    add("--steps", type=int, help="control steps of all environments together (default: the recipe's)")
-    add("--resume", action="store_true", help="go on from the folder's last checkpoint")
-    add("--no-heat", action="store_true", help="voltages and thermostats read 0")
-    add("--no-load", action="store_true", help="load cells read 0")
+    add("task", metavar="TASK", help="task: grasp, identify, sort or hotter")
+    add("--out", metavar="DIR", help="folder for the checkpoints and the policy (default: out/TASK-SEED)")
+    add("--seed", type=int, default=0, help="seed of the training, 0 to 999")
     add(
-        "--randomize", action="store_true", help="draw all that can differ between episodes (envs.EVERYTHING)"
+        "--steps",
+        type=int,
+        help="number of control steps, of all environments together (default: the recipe's)",
     )
+    add("--resume", action="store_true", help="continue from the folder's last checkpoint")
+    add("--no-heat", action="store_true", help="train without heat sensing: voltages and thermostats read 0")
+    add("--no-load", action="store_true", help="train on a gripper without load cells: forces read 0")
+    add_randomize(parser)
 
 
 def run(args: argparse.Namespace) -> int:

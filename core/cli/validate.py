@@ -29,34 +29,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         nargs="?",
         metavar="FILE",
-        help="recorded touches, .npz (default: 180 touches of Bhattacharjee et al. 2021, which the package ships)",
+        help="file of recorded touches, .npz (default: the shipped file of 180 touches of Bhattacharjee et al. 2021)",
     )
     add(
         "--sensor",
         default="heated_thermistor",
-        help="a heated sensor's name or file",
+        help="name of a heated sensor, or a file that `thermograsp device fit` wrote",
     )
     add(
         "--sample",
         action="append",
         default=[],
         metavar="LABEL=MATERIAL[@WHERE]",
-        help="what a label of the file stands for, and where its temperature comes from: @passive (default), @free for "
-        "one number for all of its touches, or degC; may be repeated",
+        help="material that a label of the file stands for, and its temperature: @passive for that of the passive "
+        "sensor (default), @free for one fitted to all of its touches, or a number in degC; may be repeated",
     )
     add(
         "--split",
         type=int,
         metavar="RUN",
-        help="show runs up to this one, on which the sensor was fitted, and later ones apart (default: "
+        help="last run on which the sensor was fitted; later runs are shown separately (default: "
         f"{_SHIPPED_SPLIT} for the shipped file)",
     )
     add(
         "--sort",
         action="store_true",
-        help="also tell the label of each touch from its curve, with and without the passive sensor",
+        help="also classify each touch by its curve, with and without the passive sensor",
     )
-    add("--plot", metavar="FILE", help="draw measured and predicted drops: .svg, .png or .pdf")
+    add(
+        "--plot", metavar="FILE", help="draw the measured and predicted temperature drops: .svg, .png or .pdf"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

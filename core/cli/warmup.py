@@ -10,7 +10,7 @@ from typing import Any
 from thermograsp.cli.shared import Output, load_mujoco
 
 NAME = "warmup"
-HELP = "Compile and build ahead what the shipped environments need, for an image or a cluster's shared cache."
+HELP = "Compile and build in advance what the shipped environments need, for an image or a cluster's shared cache."
 
 _CLOSING = 50  # control steps, in which the fingers meet what lies between them
 _MESH = "mug_of_coffee"

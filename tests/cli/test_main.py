@@ -278,10 +278,16 @@ def test_help_shows_the_parser_s_own_defaults() -> None:
         assert not re.search(r"\(default [^:]", action.help or ""), (command, action.dest)
     assert with_default > 60
     by_name = {(command, action.dest): described(action) for command, action in every}
-    assert by_name["thermograsp press", "object_size"] == "m (default 0.04 0.04 0.01)"
+    assert by_name["thermograsp press", "object_size"] == "size of the object, m (default 0.04 0.04 0.01)"
     assert by_name["thermograsp press", "area"].endswith(
-        "(default: 81e-6, or the sensor's face where it is smaller)"
+        "(default: 81e-6, or the area of the sensor's face if that is smaller)"
     )
+
+
+def test_help_can_be_read_without_the_option_s_name() -> None:
+    fragment = re.compile(r"(of|as|at|on|over|in|to|by|with|how|where|what|when|a|an|such)\b|\S+$")
+    for command, action in arguments(cli.command_parser([])):
+        assert not fragment.match(action.help or ""), (command, action.dest, action.help)
 
 
 def test_help_follows_a_changed_default(capsys: pytest.CaptureFixture[str]) -> None:

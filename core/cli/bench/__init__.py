@@ -18,7 +18,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.files import made_folder, write_text
 
 NAME = "bench"
-HELP = "Measure what accuracy and touch cost, map where time steps fail, compare with a peer's published figures."
+HELP = "Measure what accuracy and touch cost, map where time steps fail, and compare with a peer's published figures."
 
 BENCHMARKS = ("accuracy", "stability", "grasp", "speed", "episode", "peer", "identify", "stopping")
 
@@ -26,15 +26,15 @@ BENCHMARKS = ("accuracy", "stability", "grasp", "speed", "episode", "peer", "ide
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("what", nargs="?", choices=(*BENCHMARKS, "all"), default="all", help="which benchmark")
-    add("--out", metavar="DIR", default="bench", help="folder for records and figures")
-    add("--quick", action="store_true", help="coarser: one material, small maps")
-    add_seed(parser, "of the order of timings and of bouncing contacts")
+    add("what", nargs="?", choices=(*BENCHMARKS, "all"), default="all", help="benchmark to run")
+    add("--out", metavar="DIR", default="bench", help="folder for the records and figures")
+    add("--quick", action="store_true", help="coarser measurements: one material, small maps")
+    add_seed(parser, "seed of the order of timings and of the bouncing contacts")
     add(
         "--from",
         dest="source",
         metavar="FILE",
-        help="print and draw an earlier run's NAME.json, measure nothing",
+        help="record of an earlier run, NAME.json, to print and draw instead of measuring",
     )
 
 

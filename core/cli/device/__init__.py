@@ -9,7 +9,9 @@ import argparse
 import importlib
 
 NAME = "device"
-HELP = "Fingertips and grippers on serial ports: list, monitor, record, replay, test, calibrate, fit and emulate them."
+HELP = (
+    "List, monitor, record, replay, test, calibrate, fit and emulate fingertips and grippers on serial ports."
+)
 
 ACTIONS = (
     "list",

@@ -27,9 +27,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=NUMBERS",
-        help="left then right, such as voltage_offset=20e-6,-10e-6; for forces three numbers each; may be repeated",
+        help="constant to set, for the left and then the right fingertip, such as voltage_offset=20e-6,-10e-6; forces "
+        "take three numbers for each fingertip; may be repeated",
     )
-    parser.add_argument("--load", metavar="FILE", help="set the constants of a file that --json has printed")
+    parser.add_argument("--load", metavar="FILE", help="file of constants to set, as printed with --json")
 
 
 def run(args: argparse.Namespace) -> int:

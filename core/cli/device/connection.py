@@ -22,27 +22,31 @@ _FOREVER = 2**31 - 1.0  # s
 def add_port(parser: argparse.ArgumentParser) -> None:
     """PORT and --baud."""
     parser.add_argument(
-        "port", metavar="PORT", help="such as /dev/serial/by-id/..., see `thermograsp device list`"
+        "port",
+        metavar="PORT",
+        help="serial port of the device, such as /dev/serial/by-id/..., see `thermograsp device list`",
     )
-    parser.add_argument("--baud", type=int, default=_BAUD, help="bits a second")
+    parser.add_argument("--baud", type=int, default=_BAUD, help="bit rate of the line, bits per second")
 
 
 def add_sampling(parser: argparse.ArgumentParser) -> None:
     """--rate and --setpoint."""
-    parser.add_argument("--rate", type=int, default=_RATE, help="samples a second")
+    parser.add_argument("--rate", type=int, default=_RATE, help="sampling rate, samples per second")
     parser.add_argument(
-        "--setpoint", type=float, help="of both thermostats, degC (default: leave the heaters as they are)"
+        "--setpoint",
+        type=float,
+        help="temperature of both thermostats, degC (default: the heaters stay as they are)",
     )
 
 
 def add_service(parser: argparse.ArgumentParser, seed: str, faults: str = "") -> None:
     """--link, --seed, --seconds, and --fault where the emulator has faults, of which some examples are given."""
     add = parser.add_argument
-    add("--link", metavar="PATH", help="a stable name for the port (default: none)")
+    add("--link", metavar="PATH", help="path of a symbolic link to the port (default: none)")
     add_seed(parser, seed)
     add_duration(parser)
     if faults:
-        about = f"what goes wrong, and when, such as {faults}; may be repeated; an unknown one lists all"
+        about = f"fault to emulate and its time, such as {faults}; may be repeated; an unknown name lists all"
         add("--fault", action="append", default=[], metavar="NAME[=VALUE][@SECONDS]", help=about)
 
 

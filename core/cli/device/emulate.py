@@ -6,33 +6,31 @@ import argparse
 from typing import TYPE_CHECKING
 
 from thermograsp.cli.device.connection import add_service, serve
+from thermograsp.cli.shared import add_mode, add_skin
 from thermograsp.errors import unknown_name
 
 if TYPE_CHECKING:
     from thermograsp.hardware import Source
 
-HELP = "Emulate fingertips that press an object again and again, or feel a recording again, on a pseudo-terminal."
+HELP = "Emulate fingertips that press an object again and again, or play a recording, on a pseudo-terminal."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add = parser.add_argument
+    add("--material", default="glass", help="name of the object's material, see `thermograsp materials`")
+    add_mode(parser)
+    add_skin(parser)
+    add("--conductance", type=float, default=1e4, help="contact conductance, W/(m2 K)")
+    add("--force", type=float, default=10.0, help="contact force, N")
     add(
-        "--material",
-        default="glass",
-        help="what they press: a name of `thermograsp materials`",
+        "--replay",
+        metavar="FILE",
+        help="recording to play instead of presses, from `thermograsp device record`",
     )
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
-    add(
-        "--skin",
-        help="over the fingertips, in T mode: a skin's name, such as filled_silicone (default: bare)",
-    )
-    add("--conductance", type=float, default=1e4, help="of the contact, W/(m2 K)")
-    add("--force", type=float, default=10.0, help="while touching, N")
-    add("--replay", metavar="FILE", help="feel a recording again instead of a press")
-    add("--chain", default="ads1115", help="amplifier and converter: ads1115 or ideal")
-    add("--drift", type=float, default=0.0, help="of the device's clock, ppm")
-    add_service(parser, "of noise and faults", "corrupt=0.01, reboot@5, unplug=2@10")
+    add("--chain", default="ads1115", help="signal chain (amplifier and converter): ads1115 or ideal")
+    add("--drift", type=float, default=0.0, help="drift of the device's clock, ppm")
+    add_service(parser, "seed of the noise and the faults", "corrupt=0.01, reboot@5, unplug=2@10")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -6,16 +6,16 @@ import argparse
 
 from thermograsp.cli.device.connection import add_service, serve
 
-HELP = "Emulate a Robotiq 2F-85 with something between its fingers, on a pseudo-terminal."
+HELP = "Emulate a Robotiq 2F-85 with or without an object between its fingers, on a pseudo-terminal."
 _STROKE = 0.085
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add = parser.add_argument
-    add("--width", type=float, help="of what is between the fingers, m (default: nothing is)")
-    add("--stiffness", type=float, default=1e5, help="of it, N/m")
-    add_service(parser, "of faults", "corrupt=0.01, overcurrent@5, stall=2@10")
+    add("--width", type=float, help="width of the object between the fingers, m (default: no object)")
+    add("--stiffness", type=float, default=1e5, help="stiffness of the object, N/m")
+    add_service(parser, "seed of the faults", "corrupt=0.01, overcurrent@5, stall=2@10")
 
 
 def run(args: argparse.Namespace) -> int:

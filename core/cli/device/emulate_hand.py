@@ -5,28 +5,31 @@ from __future__ import annotations
 import argparse
 
 from thermograsp.cli.device.connection import add_service, serve
-from thermograsp.cli.shared import Output, add_materials_file, chosen_material, load_mujoco
+from thermograsp.cli.shared import (
+    Output,
+    add_materials_file,
+    add_mode,
+    add_sensor,
+    add_skin,
+    chosen_material,
+    load_mujoco,
+)
 
-HELP = "Emulate fingertips and a Robotiq 2F-85 that grasp a simulated object, on two pseudo-terminals, in real time."
+HELP = "Emulate fingertips and a Robotiq 2F-85 that grasp a simulated object in real time, on two pseudo-terminals."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add = parser.add_argument
-    add("--material", default="glass", help="of the object: a name of `thermograsp materials`")
+    add("--material", default="glass", help="name of the object's material, see `thermograsp materials`")
     add_materials_file(parser)
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add_mode(parser)
+    add_sensor(parser)
+    add_skin(parser)
     add(
-        "--sensor",
-        default="seed",
-        help="a sensor's name, or a file of `thermograsp device fit`",
+        "--gripper-link", metavar="PATH", help="path of a symbolic link to the gripper's port (default: none)"
     )
-    add(
-        "--skin",
-        help="over the fingertips, in T mode: a skin's name, such as filled_silicone (default: bare)",
-    )
-    add("--gripper-link", metavar="PATH", help="a stable name for the gripper's port (default: none)")
-    add_service(parser, "of the objects' places and the noise")
+    add_service(parser, "seed of the object's place and of the noise")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -26,24 +26,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "recordings",
         nargs="+",
         metavar="MATERIAL[@DEGC]=FILE",
-        help="a recording of `thermograsp device record` and what its first touch is of, such as glass=a.tgr or, at "
-        "21.5 degC, glass@21.5=a.tgr",
+        help="known material and a recording from `thermograsp device record` whose first touch is of that "
+        "material, such as glass=a.tgr, or glass@21.5=a.tgr for an object at 21.5 degC",
     )
     add_materials_file(parser)
     preset = add(
         "--save",
         dest="out",
         metavar="FILE",
-        help="the preset, .toml; load it with sensor=FILE or --sensor FILE",
+        help="write the sensor as a preset: .toml, to load with sensor=FILE or --sensor FILE",
     )
     add_old_name(parser, "--out", preset)
-    add("--fingertip", default="left", help="left or right")
+    add("--fingertip", default="left", help="fingertip to fit: left or right")
     warmth = add(
         "--object-temperature",
         dest="temperature",
         type=float,
         default=24.0,
-        help="of objects where none is given, degC",
+        help="initial temperature of the objects for which none is given, degC",
     )
     add_old_name(parser, "--temperature", warmth)
     size = (0.04, 0.04, 0.01)
@@ -53,16 +53,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         default=size,
         metavar=("X", "Y", "THICKNESS"),
-        help="m",
+        help="size of the object, m",
     )
-    add("--start", default="seed", help="a sensor of the same make: a preset's name or file")
-    add("--chain", default="ads1115", help="amplifier and converter")
+    add(
+        "--start",
+        default="seed",
+        help="sensor of the same make to start from: a name, or a file that `thermograsp device fit` wrote",
+    )
+    add("--chain", default="ads1115", help="signal chain (amplifier and converter): ads1115 or ideal")
     add(
         "--hold",
         action="append",
         default=[],
         metavar="NAME",
-        help="keep seebeck, offset, delay, conductivity or heat_capacity as it starts; may be repeated",
+        help="property to keep as in --start: seebeck, offset, delay, conductivity or heat_capacity; may be repeated",
     )
 
 

@@ -6,18 +6,31 @@ import argparse
 
 from thermograsp.cli.shared import Output
 
-HELP = "Report the status of a gripper; on request activate or move it first."
+HELP = "Report the status of a gripper, after activating or moving it if asked."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add = parser.add_argument
-    add("url", metavar="URL", help="such as robotiq:///dev/ttyUSB0")
-    add("--activate", action="store_true", help="where it is not ready: its fingers travel their whole range")
-    add("--clear-faults", action="store_true", help="reset and activate it; what it holds falls")
-    add("--opening", type=float, metavar="M", help="move there, m, and wait for the end of the motion")
-    add("--force", type=float, default=20.0, help="limit, N")
-    add("--speed", type=float, default=0.05, help="m/s")
+    add("url", metavar="URL", help="URL of the gripper, such as robotiq:///dev/ttyUSB0")
+    add(
+        "--activate",
+        action="store_true",
+        help="activate the gripper if it is not ready; its fingers travel their whole range",
+    )
+    add(
+        "--clear-faults",
+        action="store_true",
+        help="reset and activate the gripper; an object that it holds falls",
+    )
+    add(
+        "--opening",
+        type=float,
+        metavar="M",
+        help="opening to move to, m; the command waits for the end of the motion",
+    )
+    add("--force", type=float, default=20.0, help="limit of the gripper's force, N")
+    add("--speed", type=float, default=0.05, help="speed of the motion, m/s")
 
 
 def run(args: argparse.Namespace) -> int:

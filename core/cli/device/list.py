@@ -6,7 +6,7 @@ import argparse
 
 from thermograsp.cli.shared import Output
 
-HELP = "List serial ports, by names that stay when a device is plugged in again."
+HELP = "List serial ports, by names that stay the same when a device is plugged in again."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from thermograsp.hardware import Fingertips, Samples
 
 HELP = (
-    "Show voltages, temperatures and forces live: a plot on a terminal, a line a second in a pipe; with --json a line "
-    "of JSON for each sample, and at the end one with the counts."
+    "Show voltages, temperatures and forces live, as a plot on a terminal or a line per second in a pipe. With --json, "
+    "print a line of JSON for each sample and a last one with the counts."
 )
 
 _PERIOD = 0.1  # s between pictures

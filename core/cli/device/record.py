@@ -23,10 +23,10 @@ _PERIOD = 0.1  # s
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
     add_port(parser)
-    parser.add_argument("file", metavar="FILE", help="a new file")
+    parser.add_argument("file", metavar="FILE", help="new file for the recording")
     add_sampling(parser)
     add_duration(parser)
-    parser.add_argument("--note", default="", help="text to keep in the file")
+    parser.add_argument("--note", default="", help="text to keep in the recording")
 
 
 def run(args: argparse.Namespace) -> int:

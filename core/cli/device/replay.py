@@ -13,8 +13,8 @@ HELP = "Decode a recording: report what arrived and what was lost, and write a C
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the action."""
-    parser.add_argument("file", metavar="FILE", help="of `thermograsp device record`")
-    parser.add_argument("--csv", metavar="FILE", help="write one row per sample, calibrated")
+    parser.add_argument("file", metavar="FILE", help="recording from `thermograsp device record`")
+    parser.add_argument("--csv", metavar="FILE", help="write a table with one row per sample, calibrated")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -12,7 +12,7 @@ from thermograsp.cli.device.connection import (
 )
 from thermograsp.cli.shared import Output
 
-HELP = "Run the device's self-test, and test its line for a second."
+HELP = "Run the device's self-test, and test its line for one second."
 
 _SECONDS = 1
 _RATE = 100

@@ -10,8 +10,11 @@ from thermograsp.cli.grasp.beside import run_beside
 from thermograsp.cli.shared import (
     Output,
     add_materials_file,
+    add_mode,
     add_old_name,
     add_seed,
+    add_sensor,
+    add_tolerance,
     chosen_material,
     load_mujoco,
     target,
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
 NAME = "grasp"
 HELP = (
     "Grasp one object in simulation, lift it by 5 cm and hold it; record what the fingertips feel. Or grasp with a "
-    "real gripper, and set the simulation beside it."
+    "real gripper, and compare it with the simulation."
 )
 
 _FAILED = 1
@@ -37,65 +40,85 @@ _ROOM, _FORCE = 24.0, 10.0  # °C, N
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add = parser.add_argument
-    add("--material", help=f"a name of `thermograsp materials` (default: the object's own, else {_MATERIAL})")
+    add(
+        "--material",
+        help="name of the object's material, see `thermograsp materials` "
+        f"(default: the object's own, else {_MATERIAL})",
+    )
     add_materials_file(parser)
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
+    add_mode(parser)
     add(
         "--seconds",
         type=float,
         default=6.0,
-        help="of the whole episode; the touch is at about 0.5 s",
+        help="length of the episode, s; the touch is at about 0.5 s",
     )
-    add("--hold", type=float, default=2.0, help="s at 5 cm, up to the end, that count as held")
-    add_seed(parser, "of the object's place and the noise")
+    add(
+        "--hold",
+        type=float,
+        default=2.0,
+        help="time at a height of 5 cm, up to the end of the episode, that counts as holding, s",
+    )
+    add_seed(parser, "seed of the object's place and of the noise")
     add(
         "--force",
         type=float,
-        help=f"the gripper's limit, N (default: what holds the object, else {_FORCE:g})",
+        help=f"limit of the gripper's force, N (default: enough to hold the object of --object, else {_FORCE:g})",
     )
-    add("--object", metavar="NAME", help="one of `thermograsp objects`, such as mug_of_coffee")
-    add("--shape", help=f"box, cylinder or sphere (default: the object's own, else {_SHAPE})")
+    add(
+        "--object",
+        metavar="NAME",
+        help="name of an everyday object, such as mug_of_coffee, see `thermograsp objects`",
+    )
+    add(
+        "--shape",
+        help=f"shape of the object: box, cylinder or sphere (default: the object's own, else {_SHAPE})",
+    )
     add(
         "--width",
         type=float,
-        help=f"of the object between the fingers, m (default: its own, else {_WIDTH:g})",
+        help=f"width of the object between the fingers, m (default: the object's own, else {_WIDTH:g})",
     )
-    add("--height", type=float, help="of the object, m (default: as its width)")
-    add("--mesh", metavar="FILE", help="an object from a mesh: .stl, .obj, .ply or .glb")
-    add("--scale", type=float, help=f"lengths in the mesh times this are metres (default: {_SCALE:g})")
+    add("--height", type=float, help="height of the object, m (default: its width)")
+    add("--mesh", metavar="FILE", help="mesh file of the object: .stl, .obj, .ply or .glb")
+    add("--scale", type=float, help=f"metres per unit of length in the mesh file (default: {_SCALE:g})")
     warmth = add(
         "--object-temperature",
         dest="temperature",
         type=float,
-        help=f"of the object at first, degC (default: its own, else {_ROOM:g})",
+        help=f"initial temperature of the object, degC (default: the object's own, else {_ROOM:g})",
     )
     add_old_name(parser, "--temperature", warmth)
-    add("--tolerance", type=float, default=0.05, help="of the temperature drop, K")
-    add(
-        "--sensor",
-        default="seed",
-        help="a sensor's name, or a file of `thermograsp device fit`",
-    )
+    add_tolerance(parser)
+    add_sensor(parser)
     add(
         "--skin",
         default="auto",
-        help="over the fingertips, in T mode: a skin's name, none for bare ones, or auto: filled_silicone with "
-        "--object and on what is no box",
+        help="name of a skin over the sensor's face, in T mode only; none for a bare one; or auto for filled_silicone "
+        "with --object and on objects other than boxes",
     )
-    add("--gripper", metavar="FILE", help="your own in simulation, an MJCF file (default: the shipped one)")
+    add(
+        "--gripper",
+        metavar="FILE",
+        help="MJCF file of your own gripper, in simulation (default: the shipped gripper)",
+    )
     add(
         "--plant",
         metavar="URL",
-        help="grasp with the gripper of serial://PORT?gripper=URL, and simulate the same; it can't know the material",
+        help="real gripper to grasp with, serial://PORT?gripper=URL; the same grasp is simulated beside it",
     )
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
-    add("--csv", metavar="FILE", help="write one row a voltage sample (100 Hz)")
+    add("--csv", metavar="FILE", help="write a table with one row per voltage sample (100 Hz)")
     add(
         "--render",
         metavar="FILE",
-        help="draw the grasp: an animation (.gif, .webp) or a strip of pictures (.png)",
+        help="draw the grasp as an animation (.gif, .webp) or a strip of pictures (.png)",
     )
-    add("--plot", metavar="FILE", help="with --plant: draw real beside simulated: .svg, .png or .pdf")
+    add(
+        "--plot",
+        metavar="FILE",
+        help="draw the real and the simulated curves, with --plant: .svg, .png or .pdf",
+    )
 
 
 def run(args: argparse.Namespace) -> int:

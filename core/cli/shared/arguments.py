@@ -46,12 +46,50 @@ def add_old_name(parser: argparse.ArgumentParser, old: str, option: argparse.Act
     )
 
 
-def add_materials_file(parser: argparse.ArgumentParser) -> None:
+def add_materials_file(parser: argparse.ArgumentParser) -> argparse.Action:
     """--materials FILE, for materials of one's own."""
+    return parser.add_argument(
+        "--materials", metavar="FILE", help="TOML table of your own materials, used instead of the package's"
+    )
+
+
+def add_mode(parser: argparse.ArgumentParser) -> None:
+    """--mode."""
     parser.add_argument(
-        "--materials",
-        metavar="FILE",
-        help="take the material from your own TOML table",
+        "--mode",
+        default="T",
+        help="sensing mode: T (element on the thermostat) or O (element on the object)",
+    )
+
+
+def add_sensor(parser: argparse.ArgumentParser) -> None:
+    """--sensor."""
+    parser.add_argument(
+        "--sensor", default="seed", help="name of a sensor, or a file that `thermograsp device fit` wrote"
+    )
+
+
+def add_skin(parser: argparse.ArgumentParser) -> None:
+    """--skin, for sensors that are bare unless it is given."""
+    parser.add_argument(
+        "--skin",
+        help="name of a skin over the sensor's face, in T mode only, such as filled_silicone (default: bare)",
+    )
+
+
+def add_tolerance(parser: argparse.ArgumentParser) -> None:
+    """--tolerance."""
+    parser.add_argument(
+        "--tolerance", type=float, default=0.05, help="tolerance of the simulated temperature drop, K"
+    )
+
+
+def add_randomize(parser: argparse.ArgumentParser) -> None:
+    """--randomize."""
+    parser.add_argument(
+        "--randomize",
+        action="store_true",
+        help="draw at random everything that can differ between episodes (envs.EVERYTHING)",
     )
 
 
@@ -62,7 +100,7 @@ def add_seed(parser: argparse.ArgumentParser, about: str) -> None:
 
 def add_duration(parser: argparse.ArgumentParser) -> None:
     """--seconds, above 0, for what otherwise runs until an interrupt."""
-    parser.add_argument("--seconds", type=duration, help="stop then (default: at Ctrl-C)")
+    parser.add_argument("--seconds", type=duration, help="time to run, s (default: until Ctrl-C)")
 
 
 def seed_number(text: str) -> int:

@@ -13,14 +13,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.shared import Output, add_materials_file, add_old_name, load_mujoco, target
+from thermograsp.cli.shared import Output, add_materials_file, add_mode, add_old_name, load_mujoco, target
 from thermograsp.errors import InvalidValueError, positive
 
 if TYPE_CHECKING:
     from thermograsp.studio.control import Choices, Stock
 
 NAME = "view"
-HELP = "Open the studio: a web page with the gripper in 3-D, live curves and all controls. Or record what it shows."
+HELP = "Open the studio, a web page with the gripper in 3-D, live curves and all controls, or record what it shows."
 
 _PORT = 8421
 _TOKEN_VARIABLE = "THERMOGRASP_TOKEN"
@@ -34,49 +34,64 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=["glass"],
         metavar="NAME",
-        help="one, or two side by side",
+        help="name of the object's material, or of two to see side by side",
     )
     add_materials_file(parser)
-    add("--mode", default="T", help="T: element on the thermostat, O: on the object")
-    add("--mesh", metavar="FILE", help="an object to choose, from a mesh: .stl, .obj, .ply or .glb")
-    add("--scale", type=float, default=1.0, help="lengths in the mesh times this are metres")
+    add_mode(parser)
+    add("--mesh", metavar="FILE", help="mesh file of one more object to choose: .stl, .obj, .ply or .glb")
+    add("--scale", type=float, default=1.0, help="metres per unit of length in the mesh file")
     add(
         "--policy",
         metavar="FILE",
-        help="a trained policy's .npz file, for the driver Learnt (default: the package's)",
+        help="policy for the driver Learnt, an .npz file (default: the package's)",
     )
-    add("--model", metavar="XML", help="a MuJoCo scene of your own, in MuJoCo's viewer, with what it feels")
-    add("--fingertips", nargs="+", default=[], metavar="NAME", help="with --model: geoms, sites or bodies")
+    add(
+        "--model",
+        metavar="XML",
+        help="MuJoCo scene of your own to open in MuJoCo's viewer, with what its fingertips feel",
+    )
+    add(
+        "--fingertips",
+        nargs="+",
+        default=[],
+        metavar="NAME",
+        help="names of the geoms, sites or bodies that feel heat, with --model",
+    )
     add(
         "--objects",
         nargs="+",
         default=[],
         metavar="NAME=MATERIAL",
-        help="with --model: what is touched, besides those that the scene describes",
+        help="objects and their materials, in addition to those that the scene describes, with --model",
     )
     add(
         "--recording",
         metavar="CSV",
-        help="play what `grasp`, `press` or `device replay` wrote instead of simulating",
+        help="table to play instead of a simulation, as `grasp`, `press` or `device replay` writes it",
     )
     add(
         "--plant",
         metavar="URL",
-        help="drive the gripper of serial://PORT?gripper=URL instead; one page at a time",
+        help="real gripper to drive instead of a simulation, serial://PORT?gripper=URL; allows one page at a time",
     )
     add(
         "--host",
         default="127.0.0.1",
-        help="address to listen on; 127.0.0.1 is for this machine only",
+        help="address to listen on; 127.0.0.1 lets only this machine connect",
     )
-    add("--port", type=int, default=_PORT, help="to listen on, 0 for any that is free")
-    add("--visitors", type=int, default=4, help="pages at once, each with its own simulation")
+    add("--port", type=int, default=_PORT, help="TCP port to listen on; 0 for any that is free")
+    add(
+        "--visitors",
+        type=int,
+        default=4,
+        help="number of pages that may be open at once, each with its own simulation",
+    )
     add("--open", action="store_true", help="open the page in this machine's browser")
     render = add(
-        "--render", metavar="FILE", help="write a grasp as .gif, .webp or .png and leave; needs no display"
+        "--render", metavar="FILE", help="write a grasp as .gif, .webp or .png and exit; needs no display"
     )
     add_old_name(parser, "--record", render)
-    add("--seconds", type=float, default=6.0, help="with --render: how long")
+    add("--seconds", type=float, default=6.0, help="length of the film, s, with --render")
 
 
 def run(args: argparse.Namespace) -> int:
