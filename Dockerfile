@@ -19,7 +19,7 @@ ENV MUJOCO_GL=egl \
     NUMBA_CPU_NAME=generic \
     NUMBA_CACHE_DIR=/var/cache/thermograsp/compiled \
     THERMOGRASP_CACHE=/var/cache/thermograsp/networks
-# Any user may run the image: numba reads its cache only where it can write.
+# Any user may run the image, and keep what it lacks.
 RUN thermograsp warmup && chmod -R a+rwX /var/cache/thermograsp
 
 WORKDIR /work

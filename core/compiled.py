@@ -17,14 +17,21 @@ import os
 import pickle
 import types
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import Any, cast
 
 import numba
 import numpy as np
 from numba.core import event, ir
-from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    InTreeCacheLocator,
+    NullCache,
+    UserProvidedCacheLocator,
+)
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -356,28 +363,43 @@ def compiled_hash(kernel: Any) -> str:
 
 
 def _cache(dispatcher: Any, inner: bool) -> FunctionCache | NullCache:
-    """Where the function's code is kept. Where no folder can be written, each process compiles for itself."""
+    """Where the function's code is kept: nowhere where numba knows no place for it, as for text that was executed."""
     try:
         return _Cache(dispatcher, inner)
-    except RuntimeError:  # of numba, which has tried them all
-        _warn_of_no_folder()
+    except RuntimeError:
         return NullCache()
 
 
 @functools.cache
-def _warn_of_no_folder() -> None:
+def _warn_of_no_folder(reason: str) -> None:
     """Once, not for every function."""
     warnings.warn(
-        "compiled code can be kept neither beside its source nor in the user's cache folder, so every process compiles "
-        "for itself, which takes some seconds; set NUMBA_CACHE_DIR to a writable folder",
+        f"cannot keep compiled code ({reason}): every process compiles it again, which takes some seconds; make room, "
+        "or set NUMBA_CACHE_DIR to a writable folder",
         RuntimeWarning,
         stacklevel=2,
     )
 
 
+class _Unwritable(InTreeCacheLocator):
+    """Where no folder can be written: the source's. What others have kept can still be read."""
+
+    @classmethod
+    def from_function(cls, py_func: Any, py_file: str) -> InTreeCacheLocator | None:
+        return cls(py_func, py_file) if os.path.exists(py_file) else None
+
+
+class _Implementation(CompileResultCacheImpl):
+    """numba's, with one more place to try."""
+
+    _locator_classes = (*CompileResultCacheImpl._locator_classes, _Unwritable)
+
+
 class _Cache(FunctionCache):
     """A kernel's compiled code on disk. The hash is taken when the code is first looked for, as a function may refer
     to what its module defines after it."""
+
+    _impl_class = _Implementation
 
     def __init__(self, dispatcher: Any, inner: bool) -> None:
         super().__init__(dispatcher.py_func)
@@ -394,22 +416,17 @@ class _Cache(FunctionCache):
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Where the disk is full, this process has its code all the same, and the next one compiles again."""
+        """Where nothing can be written, this process has its code all the same, and the next one compiles again."""
         self._hash()
         try:
             super().save_overload(sig, data)
         except OSError as error:
-            warnings.warn(
-                f"cannot keep compiled code in {self._cache_path} ({error}): the next process compiles again; make "
-                "room, or set NUMBA_CACHE_DIR to another folder",
-                RuntimeWarning,
-                stacklevel=2,
-            )
+            _warn_of_no_folder(error.strerror or str(error))
 
     def keeps_any(self) -> bool:
         """Whether code of the function as it is now is on disk, for whatever arguments."""
         self._hash()
-        return bool(self._cache_file._load_index())
+        return self._cache_file.holds_any()
 
     def number(self, sig: Any, codegen: Any) -> int:
         """What processes that compile the function for such arguments call it."""
@@ -422,8 +439,18 @@ class _Cache(FunctionCache):
         if not self._hashed:
             stamp = compiled_hash(self._dispatcher)
             name = self._impl.filename_base + (".inner" if self._inner else "")
-            self._cache_file = _CacheFile(self._cache_path, name, stamp)
+            shared = [_CacheFile(folder, name, stamp) for folder in self._shared()]
+            self._cache_file = _CacheFile(self._cache_path, name, stamp, shared)
             self._hashed = True
+
+    def _shared(self) -> Iterator[str]:
+        """Folders that numba would have taken if this user could write them: others may have filled them."""
+        function = self._dispatcher.py_func
+        for kind in (UserProvidedCacheLocator, InTreeCacheLocator):
+            if type(self._impl.locator) is kind:
+                return
+            if kind is InTreeCacheLocator or cast(Any, numba).config.CACHE_DIR:
+                yield kind(function, inspect.getfile(function)).get_cache_path()
 
 
 def _tell(name: str) -> None:
@@ -437,7 +464,25 @@ def _tell(name: str) -> None:
 class _CacheFile(IndexDataCacheFile):
     """Safe where processes write at once. A file of code is named by what it holds and is written before the index
     that names it; of two indices written at once one is lost, and with it no more than the time to compile again.
-    Every file begins with a hash of the rest: one that is damaged, as by a loss of power, is as good as none."""
+    Every file begins with a hash of the rest: one that is damaged, as by a loss of power, is as good as none.
+
+    shared: files that are only read, before this one."""
+
+    def __init__(
+        self, cache_path: str, filename_base: str, source_stamp: str, shared: Sequence[_CacheFile] = ()
+    ) -> None:
+        super().__init__(cache_path, filename_base, source_stamp)
+        self._shared = shared
+
+    def load(self, key: Any) -> Any:
+        for file in self._shared:
+            if (found := file.load(key)) is not None:
+                return found
+        return super().load(key)
+
+    def holds_any(self) -> bool:
+        """Whether it has code for whatever arguments."""
+        return any(file.holds_any() for file in self._shared) or bool(self._load_index())
 
     def save(self, key: Any, data: Any) -> None:
         content = hashlib.sha256(f"{self._source_stamp}\0".encode() + dumps(key)).hexdigest()

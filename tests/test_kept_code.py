@@ -1,12 +1,17 @@
-"""Compiled code on disk that is damaged, of another numba, or that can be kept nowhere: it is compiled again."""
+"""Compiled code on disk that is damaged, of another numba, another user's, or that can be kept nowhere."""
 
-from collections.abc import Callable
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
-from numba.core.caching import FunctionCache
 
 from thermograsp import compiled
+from thermograsp.beside import ALONE
 from thermograsp.compiled import _CacheFile, compile_beside, njit
 
 KEY, CODE = ("float64",), {"code": b"0123456789" * 100}
@@ -16,6 +21,37 @@ DAMAGES: dict[str, Callable[[bytes], bytes]] = {
     "zeros": lambda content: bytes(len(content)),
     "one bit": lambda content: content[:-9] + bytes([content[-9] ^ 1]) + content[-8:],
 }
+
+NOBODY = 65534
+KERNELS = """
+from thermograsp.compiled import njit
+
+@njit(cache=True)
+def doubled(x):
+    return 2 * x
+
+@njit(cache=True)
+def tripled(x):
+    return 3 * x
+"""
+READER = """
+import os, sys, warnings
+from thermograsp.compiled import njit
+njit()(lambda x: x)(1.5)  # what numba imports late may lie where only root can read
+if os.geteuid() != (user := int(sys.argv[1])):
+    os.setgroups([]), os.setgid(user), os.setuid(user)
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    import kernels
+    for kernel, value in ((kernels.doubled, 1.5), (kernels.doubled, 1), (kernels.tripled, 1.5)):
+        before = sum(kernel.stats.cache_hits.values())
+        kernel(value)
+        found = sum(kernel.stats.cache_hits.values()) > before
+        print(f"{kernel.py_func.__name__}({value}): {'found' if found else 'compiled'}")
+for one in said:
+    print(one.message)
+"""
+unix = pytest.mark.skipif(sys.platform == "win32", reason="users and modes of files are POSIX's")
 
 
 @pytest.fixture
@@ -48,19 +84,76 @@ def test_an_index_of_another_numba_is_not_read(kept: _CacheFile, monkeypatch: py
     assert kept.load(KEY) is None
 
 
-def test_where_no_folder_can_be_written_each_process_compiles(monkeypatch: pytest.MonkeyPatch) -> None:
-    def nowhere(*_: object) -> None:
-        raise RuntimeError("cannot cache function 'doubled': no locator available")
+@pytest.fixture
+def others() -> Iterator[Path]:
+    """A folder with a kernel's module and an empty cache, which every user may read and this one may write."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "kernels.py").write_text(KERNELS)
+        folder.chmod(0o755)
+        yield folder
 
+
+def run_as_reader(others: Path, home: Path) -> list[str]:
+    """Calls both kernels as a user that may write nothing but what is below `home`, if that is there. Returns what each
+    call found or compiled, and the warnings."""
+    environment = os.environ | {"HOME": str(home), "XDG_CACHE_HOME": str(home), ALONE: "1"}
+    environment |= {"NUMBA_CACHE_DIR": str(others / "cache"), "PYTHONPATH": str(others)}
+    root = os.geteuid() == 0
+    if not root:
+        subprocess.run(["chmod", "-R", "a-w", others], check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", READER, str(NOBODY if root else os.geteuid())],
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    if not root:
+        subprocess.run(["chmod", "-R", "u+w", others], check=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+def fill(others: Path) -> None:
+    """One kernel, for one kind of argument."""
+    subprocess.run(
+        [sys.executable, "-c", "import kernels; kernels.doubled(1.5)"],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(others / "cache"), "PYTHONPATH": str(others)},
+        check=True,
+    )
+
+
+@unix
+def test_what_others_have_compiled_is_read_where_it_cannot_be_written(others: Path) -> None:
+    fill(others)
+    said = run_as_reader(others, others / "no home")
+    assert said[:3] == ["doubled(1.5): found", "doubled(1): compiled", "tripled(1.5): compiled"]
+    (warning,) = said[3:]
+    assert "cannot keep compiled code (Permission denied)" in warning and "set NUMBA_CACHE_DIR" in warning
+
+
+@unix
+def test_what_others_have_not_compiled_is_kept_in_the_user_s_own_folder(others: Path) -> None:
+    fill(others)
+    home = others / "home"
+    home.mkdir()
+    if os.geteuid() == 0:
+        os.chown(home, NOBODY, NOBODY)
+    before = sorted((others / "cache").rglob("*"))
+    compiled_, found = (
+        ["doubled(1): compiled", "tripled(1.5): compiled"],
+        ["doubled(1): found", "tripled(1.5): found"],
+    )
+    assert run_as_reader(others, home) == ["doubled(1.5): found", *compiled_]
+    assert run_as_reader(others, home) == ["doubled(1.5): found", *found]
+    assert sorted((others / "cache").rglob("*")) == before
+
+
+def test_code_of_text_that_was_executed_is_kept_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[str] = []
-    monkeypatch.setattr(FunctionCache, "__init__", nowhere)
-    compiled._warn_of_no_folder.cache_clear()
     monkeypatch.setattr(compiled, "start_beside", lambda module, folder: started.append(module))
-    with pytest.warns(RuntimeWarning, match="set NUMBA_CACHE_DIR to a writable folder"):
-
-        @njit(cache=True)
-        def doubled(x: float) -> float:
-            return 2.0 * x
-
-        compile_beside("none", doubled)
+    names: dict[str, Any] = {}
+    exec("def doubled(x):\n    return 2.0 * x\n", names)
+    doubled = njit(cache=True)(names["doubled"])
+    compile_beside("none", doubled)
     assert doubled(1.5) == 3.0 and not started
