@@ -10,6 +10,7 @@ import os
 import tempfile
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -67,3 +68,20 @@ def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder that all processes of the run share."""
     base = tmp_path_factory.getbasetemp()
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session")
+def opengl() -> None:
+    """Skips where there is none to draw with."""
+    from thermograsp.errors import (
+        MissingDependencyError,  # numpy with it, which reads the number of threads once
+    )
+    from thermograsp.opengl import offscreen
+
+    mujoco: Any = pytest.importorskip("mujoco")
+    try:
+        context, buffers = offscreen(mujoco.MjModel.from_xml_string("<mujoco/>"), 8, 8)
+    except MissingDependencyError as error:
+        pytest.skip(str(error))
+    buffers.free()
+    context.free()

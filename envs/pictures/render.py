@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, MissingDependencyError, unknown_name
-from thermograsp.opengl import gl_context, has_display
+from thermograsp.opengl import has_display, offscreen
 
 from ..limits import TIPS
 from ..mechanics import Mechanics, element_geom
@@ -25,10 +25,6 @@ from .colormap import temperature_colour
 MAX_WIDTH, MAX_HEIGHT = 1280, 960  # the offscreen buffer of assets/gripper.xml
 _MAX_GEOMS = 500
 _CLOSING = 5.0  # s, at most, that a closing window is waited for
-_HELP = (
-    "on Debian or Ubuntu: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri libopengl0 (software rendering, no "
-    "screen needed); MUJOCO_GL=egl, osmesa or glfw chooses the library"
-)
 
 
 class _Stage:
@@ -79,21 +75,13 @@ class Renderer:
             raise InvalidValueError(
                 f"frame of {width} x {height} pixels: give 1 to {MAX_WIDTH} x {MAX_HEIGHT}"
             )
-        self._context = self._buffers = None
         self._mechanics = mechanics
         self._stage = _Stage(mechanics, low, high)
         self._view = mujoco.MjrRect(0, 0, width, height)
         self._scene = mujoco.MjvScene(self._stage.model, maxgeom=_MAX_GEOMS)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = shadows
         self._options = mujoco.MjvOption()
-        try:
-            self._context = gl_context(width, height)
-            self._context.make_current()
-            self._buffers = mujoco.MjrContext(self._stage.model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        except Exception as error:  # whatever the platform's OpenGL raises
-            self.close()
-            raise MissingDependencyError(f"no OpenGL to render with ({error}); {_HELP}") from error
-        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._buffers)
+        self._context, self._buffers = offscreen(self._stage.model, width, height)
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -127,10 +115,9 @@ class Renderer:
 
     def close(self) -> None:
         """Free what OpenGL holds; may be called twice."""
-        if self._buffers is not None:
-            self._buffers.free()
-        if self._context is not None:
-            self._context.free()
+        for held in (self._buffers, self._context):
+            if held is not None:
+                held.free()
         self._context = self._buffers = None
 
     def __enter__(self) -> Renderer:

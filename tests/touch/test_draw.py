@@ -44,6 +44,7 @@ def test_a_cold_touch_is_drawn_blue_with_a_bar() -> None:
     assert touch.draw(full, data) == 2
 
 
+@pytest.mark.usefixtures("opengl")
 def test_view_writes_a_picture_of_any_scene(
     tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -14,11 +14,7 @@ def load_mujoco(output: Output) -> None:
     """Imports mujoco; where the library that MUJOCO_GL names cannot be loaded, says so and goes on without pictures."""
     try:
         importlib.import_module("mujoco")
-    except (
-        ImportError,
-        AttributeError,
-        RuntimeError,
-    ) as error:  # PyOpenGL raises AttributeError for a missing library
+    except Exception as error:  # whatever PyOpenGL raises for a library that is missing or lacks another one
         choice = os.environ.get(_CHOICE)
         if not choice:
             raise

@@ -57,13 +57,10 @@ def _drawn(model: mujoco.MjModel, data: mujoco.MjData, touch: ThermalTouch) -> n
     """(height, width, 3) uint8, by the default camera. mujoco.Renderer finds no OpenGL where there is no screen."""
     import mujoco
 
-    from thermograsp.opengl import gl_context
+    from thermograsp.opengl import offscreen
 
-    context = gl_context(_WIDTH, _HEIGHT)
-    context.make_current()
+    context, buffers = offscreen(model, _WIDTH, _HEIGHT)
     try:
-        buffers = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, buffers)
         scene, view = mujoco.MjvScene(model, _GEOMS), mujoco.MjvCamera()
         mujoco.mjv_defaultFreeCamera(model, view)
         everything = mujoco.mjtCatBit.mjCAT_ALL

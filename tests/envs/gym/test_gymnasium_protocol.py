@@ -109,6 +109,7 @@ def test_closed_before_the_first_reset():
             env.step(env.action_space.sample())
 
 
+@pytest.mark.usefixtures("opengl")
 @pytest.mark.parametrize("env_id", ["Grasp", "Identify", "Sort"])
 def test_gymnasiums_full_check_passes_without_a_display(env_id: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("thermograsp.envs.gym.single.has_display", lambda: False)

@@ -147,6 +147,7 @@ def test_actions_of_another_shape_are_refused_and_change_nothing(action: object)
     env.close()
 
 
+@pytest.mark.usefixtures("opengl")
 def test_a_picture_of_each_environment_is_the_single_ones() -> None:
     size = {"width": 64, "height": 48, "seconds": 0.1, "render_mode": "rgb_array"}
     vector = GraspVectorEnv(2, **size)

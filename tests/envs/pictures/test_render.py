@@ -88,7 +88,7 @@ def test_missing_opengl_names_the_packages(mechanics, monkeypatch):
     def broken(width, height):
         raise OSError("libEGL.so.1 not found")
 
-    monkeypatch.setattr(render, "gl_context", broken)
+    monkeypatch.setattr("thermograsp.opengl._context", broken)
     with pytest.raises(MissingDependencyError, match="apt-get install") as raised:
         Renderer(mechanics)
     packages = re.search(r"apt-get install ((lib[\w-]+ )+)", str(raised.value))
