@@ -370,7 +370,7 @@ def _cache(dispatcher: Any, inner: bool) -> FunctionCache | NullCache:
         return NullCache()
 
 
-@functools.cache
+@functools.lru_cache(maxsize=8)
 def _warn_of_no_folder(reason: str) -> None:
     """Once, not for every function."""
     warnings.warn(
