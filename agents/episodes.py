@@ -17,6 +17,7 @@ import numpy as np
 from thermograsp.agents.checks import Violation, violations
 from thermograsp.agents.policies import Policy
 from thermograsp.agents.policies import policy as named_policy
+from thermograsp.errors import whole_number
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,10 @@ def rollout(
     advance: called with progress, in episodes.
 
     Without `check` only broken simulations are violations. Raises UnknownNameError and InvalidValueError."""
+    whole_number("episodes", episodes, 1)
+    whole_number("seed", seed)
+    if max_steps is not None:
+        whole_number("max_steps", max_steps, 1)
     acting = named_policy(env, policy) if isinstance(policy, str) else policy
     digests, found, returns = [], [], []
     steps = successes = 0

@@ -37,6 +37,8 @@ class Policy(Protocol):
 def policy(env: gymnasium.vector.VectorEnv, name: str) -> Policy:
     """The policy of that name, of a file of a trained one, or of "module:callable" (see called.py). Raises
     UnknownNameError, and InvalidValueError where there is none or it cannot act in `env`."""
+    if not isinstance(name, str):
+        raise unknown_name("policy", name, POLICIES)
     if name == "trained" or name.endswith(".npz"):
         return _of_file(env, shipped(env) if name == "trained" else name)
     if ":" in name:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Callable, Iterable
-from numbers import Real
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -108,6 +108,24 @@ def non_negative(name: str, value: object) -> float:
     if not (math.isfinite(number) and number >= 0):
         raise InvalidValueError(f"{name} must be a finite number, 0 or above, got {value!r}")
     return number
+
+
+def whole_number(name: str, value: object, least: int = 0) -> int:
+    """The value as an int. Raises InvalidValueError unless it is an integer (2.0 is none), `least` or above."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        raise InvalidValueError(f"{name} must be a whole number, {least} or above, got {value!r}")
+    return int(value)
+
+
+def numbers(name: str, values: object, count: int) -> tuple[float, ...]:
+    """The values as floats. Raises InvalidValueError unless they are so many finite numbers."""
+    try:
+        given = tuple(finite(name, value) for value in values)  # pyright: ignore[reportGeneralTypeIssues]
+    except (TypeError, InvalidValueError):  # not iterable, or holds something else
+        given = ()
+    if len(given) != count:
+        raise InvalidValueError(f"{name} must be {count} finite numbers, got {values!r}")
+    return given
 
 
 def celsius(name: str, value: object) -> float:

@@ -113,7 +113,7 @@ def plant_factory(url: str) -> Callable[..., Plant]:
     Other packages add theirs as an entry point of the group `thermograsp.plants`, the scheme its name. Raises
     UnknownNameError with the known schemes.
     """
-    scheme = url.partition(":")[0]
+    scheme = str(url).partition(":")[0]
     if scheme in _SCHEMES:
         module, _, name = _SCHEMES[scheme].partition(":")
         return getattr(importlib.import_module(module), name)

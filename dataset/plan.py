@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import metadata
 from typing import Any
@@ -12,7 +12,7 @@ import thermograsp
 from thermograsp.agents import POLICIES
 from thermograsp.dataset.keywords import decoded, encoded
 from thermograsp.dataset.sources import sources_digest
-from thermograsp.errors import InvalidValueError, unknown_name
+from thermograsp.errors import InvalidValueError, unknown_name, whole_number
 from thermograsp.thermal import SEED_MATERIALS, Material, material
 
 FORMAT = 2
@@ -71,15 +71,20 @@ class Plan:
     sources: str = field(default_factory=sources_digest)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.keywords, Mapping):
+            raise InvalidValueError(
+                f"keywords must be a dictionary, such as {{'tolerance': 0.02}}, got {self.keywords!r}"
+            )
+        if isinstance(self.materials, str) or not isinstance(self.materials, Sequence):
+            raise InvalidValueError(f"materials must be a list of materials, got {self.materials!r}")
+        object.__setattr__(self, "materials", tuple(map(material, self.materials)))
         kept = {name: decoded(encoded(value, name)) for name, value in self.keywords.items()}
         object.__setattr__(self, "keywords", kept)
         for name in _RESERVED:
             if name in kept:
                 raise InvalidValueError(f"{name} is an argument of its own, not one of the keywords")
         for name, least in (("episodes", 1), ("seed", 0), ("shard_size", 1)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or value < least:
-                raise InvalidValueError(f"{name} must be a whole number, {least} or above, got {value!r}")
+            whole_number(name, getattr(self, name), least)
         if self.seed + self.episodes - 1 > _MOST:
             raise InvalidValueError(
                 f"seed {self.seed} is too large for {self.episodes} episodes: the last must be below 2**63"

@@ -15,7 +15,7 @@ import numpy as np
 
 from thermograsp.dataset.schema import arrow, shape_of
 from thermograsp.dataset.shards import whole
-from thermograsp.errors import InvalidValueError, MissingDependencyError, install, unknown_name
+from thermograsp.errors import InvalidValueError, MissingDependencyError, install, unknown_name, whole_number
 
 Library = Literal["numpy", "torch"]
 
@@ -69,8 +69,7 @@ def iterate(
 
     part: (k, n), the k-th of n readers, from 0: every shard is read by one of them, whatever their generators are. The
     workers of a torch DataLoader share what their process is to read by themselves."""
-    if batch_size < 1:
-        raise InvalidValueError(f"batch_size must be at least 1, got {batch_size}")
+    whole_number("batch_size", batch_size, 1)
     tensors = _tensors(library)
     k, n = _share(*part)
     files = whole(folder, incomplete)[1][k::n]

@@ -18,7 +18,7 @@ from thermograsp.dataset.shards import (
     store,
     tidy,
 )
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, whole_number
 
 Advance = Callable[[str, float], None]
 
@@ -53,8 +53,7 @@ def make(
     machine; None for no Ray. progress: given the episodes to do, a context whose value is told what is being
     done and of each advance in episodes.
     Raises InvalidValueError, MissingDependencyError and what the environment raises."""
-    if workers < 0:
-        raise InvalidValueError(f"workers must be 0 or above, got {workers}")
+    whole_number("workers", workers)
     if address is not None and workers == 0:
         raise InvalidValueError("a Ray address needs workers: say how many tasks are to run at a time")
     arrow()  # what is not installed is told before anything is written

@@ -18,8 +18,10 @@ from thermograsp.errors import (
     install,
     length,
     non_negative,
+    numbers,
     positive,
     unknown_name,
+    whole_number,
     within,
 )
 
@@ -55,6 +57,28 @@ def test_numbers_pass_as_floats(check, value) -> None:
 def test_what_is_no_finite_number_is_refused_by_name(check, value) -> None:
     with pytest.raises(InvalidValueError, match="width must be a"):
         check("width", value)
+
+
+@pytest.mark.parametrize("value", [2.0, 2.5, "2", None, True, np.True_, [2], math.nan, 0, -1])
+def test_what_is_no_whole_number_or_too_small_is_refused_by_name(value) -> None:
+    with pytest.raises(InvalidValueError, match="num_envs must be a whole number, 1 or above, got"):
+        whole_number("num_envs", value, 1)
+
+
+def test_a_whole_number_is_an_int() -> None:
+    assert type(whole_number("seed", np.int64(0))) is int
+
+
+@pytest.mark.parametrize("value", [2.0, "12", "ab", None, (), (1, 2, 3), (1, "2"), (1, math.nan), (1, True)])
+def test_what_is_not_so_many_numbers_is_refused_as_a_whole(value) -> None:
+    with pytest.raises(InvalidValueError, match=r"placement \(m\) must be 2 finite numbers, got "):
+        numbers("placement (m)", value, 2)
+
+
+@pytest.mark.parametrize("value", [(1, 2.0), [1, 2], np.array([1, 2])])
+def test_so_many_numbers_are_a_tuple_of_floats(value) -> None:
+    given = numbers("placement (m)", value, 2)
+    assert given == (1.0, 2.0) and all(type(one) is float for one in given)
 
 
 def test_zero_and_below() -> None:

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, whole_number
 
 from ..thermal import ArrayTables, Material, SignalChain, SignalState, array_step, measure_sample
 from ..thermal.numerics import Array, as_integers, as_like, namespace_of
@@ -119,9 +119,7 @@ class FixedTouch:
         """The ThermalTouch's worlds as they were, or so many copies of its one world. Raises InvalidValueError for
         another number of worlds than the ThermalTouch has."""
         rows = self.origin.heat.shape[0]
-        count = rows if worlds is None else worlds
-        if not isinstance(count, int) or count < 1:
-            raise InvalidValueError(f"worlds must be a whole number from 1 on, or None, got {worlds!r}")
+        count = rows if worlds is None else whole_number("worlds", worlds, 1)
         if rows not in (1, count):
             raise InvalidValueError(f"worlds must be {rows}, as many as the ThermalTouch has, got {worlds}")
         if rows == count:

@@ -16,7 +16,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name
+from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name, whole_number
 
 from ..thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
 from ..thermal import material as named_material
@@ -97,11 +97,9 @@ class ThermalTouch:
     ) -> None:
         if not isinstance(model, mujoco.MjModel):
             raise InvalidValueError(f"model must be a mujoco.MjModel, got {type(model).__name__}")
-        whole = isinstance(worlds, int | np.integer) and not isinstance(worlds, bool)
-        if worlds is not None and not (whole and worlds >= 1):
-            raise InvalidValueError(f"worlds must be a whole number from 1 on, or None, got {worlds!r}")
-        if seed is not None and not (isinstance(seed, int | np.integer) and seed >= 0):
-            raise InvalidValueError(f"seed must be a whole number from 0 on, or None, got {seed!r}")
+        for name, value, least in (("worlds", worlds, 1), ("seed", seed, 0)):
+            if value is not None:
+                whole_number(name, value, least)
         _mapping("fingertips", fingertips, '{"thumb": "thumb_pad"}')
         _mapping("objects", objects or {}, '{"can": "aluminium"}')
         self._model, self._step = model, float(model.opt.timestep)

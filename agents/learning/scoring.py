@@ -15,10 +15,10 @@ import numpy as np
 
 from thermograsp.agents.episodes import rollout
 from thermograsp.agents.policies import Policy, policy
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import whole_number
 
 from .inputs import STEP
-from .tasks import LearningTask
+from .tasks import LearningTask, learning_task
 
 HELD_OUT = 1_000_000_000
 """Seed of the first episode; episode k has HELD_OUT + k. No training may use seeds from here on."""
@@ -46,18 +46,19 @@ class Score:
 
 
 def score(
-    task: LearningTask,
+    task: LearningTask | str,
     name: str,
     episodes: int,
     load: bool = True,
     advance: Callable[[str, float], None] = lambda doing, by: None,
 ) -> Score:
-    """Runs a policy on episodes 0 .. N - 1 of the held-out ones. name: as policies.policy takes it; it gets the
-    observation and nothing else. load: without it, load cells read 0. advance: called with progress, in episodes.
+    """Runs a policy on episodes 0 .. N - 1 of the held-out ones. task: or its name. name: as policies.policy takes
+    it; it gets the observation and nothing else. load: without it, load cells read 0. advance: called with progress,
+    in episodes.
 
     Raises UnknownNameError and InvalidValueError."""
-    if episodes < 1:
-        raise InvalidValueError(f"episodes must be at least 1, got {episodes}")
+    task = learning_task(task) if isinstance(task, str) else task
+    whole_number("episodes", episodes, 1)
     at_once = 1 if "plant" in task.keywords else _AT_ONCE
     with closing(task.make(min(episodes, at_once))) as env:
         acting = _Unseeded(policy(env, name), load)

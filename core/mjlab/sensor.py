@@ -20,6 +20,7 @@ from thermograsp.errors import (
     non_negative,
     positive,
     unknown_name,
+    whole_number,
 )
 from thermograsp.thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
 from thermograsp.thermal import material as named_material
@@ -89,8 +90,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
         positive("tolerance (K)", cfg.tolerance)
         celsius("ambient (°C)", cfg.ambient)
         non_negative("air (W/(m2 K))", cfg.air)
-        if not isinstance(cfg.samples, int) or cfg.samples < 1:
-            raise InvalidValueError(f"samples must be a whole number from 1 on, got {cfg.samples!r}")
+        whole_number("samples", cfg.samples, 1)
         if isinstance(cfg.chain, str) and cfg.chain not in SIGNAL_CHAINS:
             raise unknown_name("signal chain", cfg.chain, SIGNAL_CHAINS)
         self.cfg = cfg

@@ -151,7 +151,7 @@ def library_object(name: str) -> ObjectPreset:
     try:
         return objects()[name]
     except KeyError:
-        if Path(name).suffix:
+        if isinstance(name, str) and Path(name).suffix:
             raise InvalidValueError(
                 f"{name!r} is the name of a file, not of an object: give ObjectSpec(shape='mesh', mesh={name!r}), or "
                 "--mesh on the command line"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from thermograsp.errors import InvalidValueError, finite, length, unknown_name
+from thermograsp.errors import InvalidValueError, finite, length, numbers, unknown_name
 
 from ...thermal import Material, material
 
@@ -60,9 +60,8 @@ class Part:
 
 def checked_size(shape: str, size: Size) -> Size:
     """The full extents m as floats. Raises InvalidValueError for what is no size of that shape."""
-    if len(size) != 3:
-        raise InvalidValueError(f"size {size}: give full extents (x, y, z) in m")
-    x, y, z = (length("size", value) for value in size)
+    extents = numbers("size, the full extents (x, y, z) in m,", size, 3)
+    x, y, z = (length("size", value) for value in extents)
     if (shape == "sphere" and not x == y == z) or (shape == "cylinder" and x != y):
         raise InvalidValueError(f"size {(x, y, z)} of a {shape}: the extents across its axis must be equal")
     return x, y, z

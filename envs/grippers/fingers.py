@@ -220,8 +220,8 @@ def _length(hand: Hand, finger: Finger) -> float:
 
 def named_pair(hand: Hand, names: Sequence[str], pads: Sequence[Pad | None]) -> tuple[Finger, Finger]:
     """The two named fingers. Raises UnknownNameError, InvalidValueError, or GripperError where one has no flat face."""
-    if len(names) != 2 or len(set(names)) < 2:
-        raise InvalidValueError(f"fingertips {tuple(names)}: name two that close on each other")
+    if not isinstance(names, Sequence) or len(names) != 2 or len(set(names)) < 2:
+        raise InvalidValueError(f"fingertips {names!r}: name two that close on each other")
     a, b = (hand.tip_of(name) for name in names)
     fingers: list[Finger] = []
     still_last = [(a, b, pads[0]), (b, a, pads[1])]

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from thermograsp.errors import GripperError, unknown_name
+from thermograsp.errors import GripperError, InvalidValueError, unknown_name
 
 _LINEAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 _COUPLED = 1e-9  # of a constraint's derivative that counts
@@ -86,6 +86,8 @@ class Mechanism:
     def _find(self, names: Sequence[str] | None) -> list[Coordinate]:
         model, moments = self.model, self._moments()
         known = [model.actuator(i).name or f"#{i}" for i in range(model.nu)]
+        if isinstance(names, str) or not isinstance(names, Sequence | None):
+            raise InvalidValueError(f"actuators must be a list of names, got {names!r}")
         for name in names or ():
             if name not in known:
                 raise unknown_name("actuator", name, known)

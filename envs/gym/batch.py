@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import gymnasium.error
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, ThermograspError
+from thermograsp.errors import InvalidValueError, ThermograspError, whole_number
 from thermograsp.plant import (
     Plant,
     Reading,
@@ -130,6 +130,13 @@ def infos_of(
     return infos
 
 
+def reset_options(options: object) -> dict[str, Any]:
+    """A copy of a reset's options. Raises InvalidValueError for what is no dictionary."""
+    if not isinstance(options, Mapping | None):
+        raise InvalidValueError(f"options must be a dict, such as {{'material': 'glass'}}, got {options!r}")
+    return dict(options or {})
+
+
 class GraspBatch:
     """`num_envs` environments over a plant. task: defines the actions, rewards and endings. plant: "simulated" or a
     URL. observer: makes the observations of that many environments. Other keywords go to the plant
@@ -145,8 +152,8 @@ class GraspBatch:
         **config: Any,
     ) -> None:
         self.task: Task = task or GraspTask()
+        self.num_envs = num_envs = whole_number("num_envs", num_envs, 1)
         self.plant: Plant = plant_factory(plant)(plant, num_envs, **config)
-        self.num_envs = num_envs
         self._observer = observer(num_envs)
         maps = {name: config[name] for name in MAPS if config.get(name) is not None}
         if maps:
@@ -187,11 +194,7 @@ class GraspBatch:
         """Starts the rows anew, each with its generator; observations and reading are of all environments. Raises
         ClosedEnvironmentError."""
         self.require_open("reset")
-        if not isinstance(options, Mapping | None):
-            raise InvalidValueError(
-                f"options must be a dict, such as {{'material': 'glass'}}, got {options!r}"
-            )
-        reading = self.plant.reset(rows, rngs, options or {})
+        reading = self.plant.reset(rows, rngs, reset_options(options))
         for row, rng in zip(rows, rngs, strict=True):
             self.generators[row] = rng
         self._never_reset -= {int(row) for row in rows}

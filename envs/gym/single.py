@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from thermograsp.errors import InvalidValueError, unknown_name
+from thermograsp.errors import InvalidValueError, unknown_name, whole_number
 from thermograsp.opengl import has_display
 
 from ..spaces import Observation
@@ -51,7 +51,7 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
         self.observation_space: gymnasium.spaces.Dict = self.batch.observation_space  # pyright: ignore
         self.action_space = self.batch.action_space
         self.render_mode = render_mode
-        self._picture = (camera, width, height)
+        self._picture = (camera, whole_number("width", width, 1), whole_number("height", height, 1))
         self._spec: EnvSpec | None = None
         self._renderer: Any = None
         self._started = False

@@ -12,11 +12,11 @@ from gymnasium.utils.seeding import np_random
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, iterate
 
-from thermograsp.errors import InvalidValueError, UnknownNameError, unknown_name
+from thermograsp.errors import InvalidValueError, UnknownNameError, unknown_name, whole_number
 
 from ..spaces import Observation
 from ..tasks import Task, cleared
-from .batch import BatchState, GraspBatch, Step, infos_of
+from .batch import BatchState, GraspBatch, Step, infos_of, reset_options
 from .copies import Copied
 from .keywords import check_keywords
 from .single import frames_per_second
@@ -66,10 +66,8 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
             raise InvalidValueError(
                 f"render_mode {render_mode!r}: a vector environment draws pictures, 'rgb_array', and opens no windows"
             )
-        if num_envs < 1:
-            raise InvalidValueError(f"num_envs must be at least 1, got {num_envs}")
-        if max_episode_steps is not None and max_episode_steps < 1:
-            raise InvalidValueError(f"max_episode_steps must be at least 1, got {max_episode_steps}")
+        if max_episode_steps is not None:
+            whole_number("max_episode_steps", max_episode_steps, 1)
         self.autoreset_mode = _mode(autoreset_mode)
         check_keywords(type(self), config)
         self.batch = GraspBatch(num_envs, task=task, **config)
@@ -78,7 +76,7 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
             "autoreset_mode": self.autoreset_mode,
             "render_fps": frames_per_second(self.batch.dt),
         }
-        self.num_envs = num_envs
+        self.num_envs = num_envs = self.batch.num_envs
         self.single_observation_space = self.batch.observation_space
         self.single_action_space = self.batch.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -89,7 +87,7 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         self._spec: EnvSpec | None = None
         self._attributes: dict[str, list[Any]] = {}
         self.render_mode = render_mode
-        self._picture = (camera, width, height)
+        self._picture = (camera, whole_number("width", width, 1), whole_number("height", height, 1))
         self._renderer: Any = None
 
     @property
@@ -122,16 +120,18 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         """Starts all environments, or those of options={"reset_mask": (B,) bool}. seed: s for s, s + 1, ..., or a list
         of one each. Raises ClosedEnvironmentError after close, as step does."""
         self.batch.require_open("reset")
-        options = dict(options or {})
+        options = reset_options(options)
         mask = np.asarray(options.pop("reset_mask", np.ones(self.num_envs, bool)), bool)
         if mask.shape != (self.num_envs,) or not mask.any():
             raise InvalidValueError(
                 f"reset_mask must be ({self.num_envs},) with one True at least, got {mask.tolist()}"
             )
-        if isinstance(seed, (int, np.integer)):
-            seeds: list[int | None] = [int(seed) + i for i in range(self.num_envs)]
+        if isinstance(seed, list | tuple | np.ndarray):
+            seeds: list[int | None] = list(seed)
+        elif seed is None:
+            seeds = [None] * self.num_envs
         else:
-            seeds = list(seed) if seed is not None else [None] * self.num_envs
+            seeds = [whole_number("seed", seed) + i for i in range(self.num_envs)]
         if len(seeds) != self.num_envs:
             raise InvalidValueError(f"seed lists {len(seeds)} values for {self.num_envs} environments")
         rows = [int(row) for row in np.flatnonzero(mask)]

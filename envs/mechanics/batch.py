@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, whole_number
 
 from ..bodies import ObjectSpec, placeless
 from ..grippers import SHIPPED_GRIPPER, GripperModel
@@ -98,8 +98,8 @@ class Mechanics:
         gripper: GripperModel = SHIPPED_GRIPPER,
         contacts: bool = False,
     ) -> None:
-        if num_envs < 1 or threads < 0:
-            raise InvalidValueError(f"num_envs {num_envs}, threads {threads}: give >= 1 and >= 0")
+        whole_number("num_envs", num_envs, 1)
+        whole_number("threads", threads)
         self._library = tuple(library) + tuple(o for o in objects if o.mesh)
         self._settings, self._sideways, self.gripper = settings, lateral, gripper
         # Another gripper may do less than a command can say.

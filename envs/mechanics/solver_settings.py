@@ -12,9 +12,10 @@ import mujoco
 
 from thermograsp.errors import (
     InvalidValueError,
-    finite,
+    numbers,
     positive,
     unknown_name,
+    whole_number,
 )
 
 _INTEGRATORS = {
@@ -66,10 +67,8 @@ class SolverSettings:
             if getattr(self, kind) not in known:
                 raise unknown_name(kind, getattr(self, kind), known)
         for name, least in (("iterations", 1), ("noslip_iterations", 0)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or value < least:
-                raise InvalidValueError(f"{name} must be a whole number from {least} up, got {value!r}")
-        first, second = (finite("solref", value) for value in self.solref)
+            whole_number(name, getattr(self, name), least)
+        first, second = numbers("solref", self.solref, 2)
         if not (first > 0 and second > 0) and not (first < 0 and second <= 0):
             raise InvalidValueError(
                 f"solref {self.solref}: give (time constant s, damping ratio), both above 0, "

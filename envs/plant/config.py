@@ -14,8 +14,10 @@ from thermograsp.errors import (
     InvalidValueError,
     celsius,
     non_negative,
+    numbers,
     positive,
     unknown_keyword,
+    whole_number,
     within,
 )
 
@@ -124,7 +126,7 @@ class SimulationConfig:
         celsius("object_temperature", self.object_temperature)
         if self.ambient_temperature is not None:
             celsius("ambient_temperature", self.ambient_temperature)
-        for value in self.placement:
+        for value in numbers("placement (m, degree)", self.placement, 2):
             non_negative("placement (m, degree)", value)
         within("placement", self.placement[0], 0.0, LONGEST, "m")
         checked(self.randomize)
@@ -141,8 +143,11 @@ class SimulationConfig:
                 f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene needs "
                 "at least one object and mode 'T', and it replaces `objects`"
             )
-        period = self.substeps * self.solver.timestep
-        if self.substeps < 1 or self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
+        if not isinstance(self.solver, SolverSettings):
+            raise InvalidValueError(f"solver must be SolverSettings, got {self.solver!r}")
+        whole_number("threads", self.threads)
+        period = whole_number("substeps", self.substeps, 1) * self.solver.timestep
+        if self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
             raise InvalidValueError(
                 f"{self.substeps} substeps of {self.solver.timestep:g} s make a control step of {period:g} s: "
                 f"give a whole number of {SAMPLE_PERIOD:g} s samples"

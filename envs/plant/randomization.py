@@ -6,12 +6,12 @@ judgements from the sources named; give others to the constructors.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.errors import InvalidValueError, finite, positive, whole_number
 
 SIZES = (0.8, 0.9, 1.0, 1.1, 1.2)
 """Factors on the size of what needs a thermal network of its own for each."""
@@ -81,8 +81,10 @@ class Size:
     high: float = 1.2
 
     def __post_init__(self) -> None:
-        if self.factors is not None and not self.factors:
-            raise InvalidValueError("Size: factors is empty: give one at least")
+        if self.factors is not None and not (isinstance(self.factors, Sequence) and self.factors):
+            raise InvalidValueError(
+                f"Size: factors must be a list of one number or more, got {self.factors!r}"
+            )
         for factor in self.factors or ():
             positive("Size: factor", factor)
         _Factor(self.low, self.high)
@@ -156,8 +158,7 @@ class Delay:
     most: int = 3
 
     def __post_init__(self) -> None:
-        if self.most < 0:
-            raise InvalidValueError(f"Delay: most must be 0 samples or above, got {self.most!r}")
+        whole_number("Delay: most (samples)", self.most)
 
     def draw(self, rng: np.random.Generator) -> float:
         """One value."""
@@ -198,6 +199,8 @@ EVERYTHING: tuple[Cause, ...] = tuple(cause() for cause in CAUSES)
 def checked(causes: Iterable[Cause]) -> tuple[Cause, ...]:
     """The causes in the order in which they are drawn. Raises InvalidValueError for what is none, or one given
     twice."""
+    if not isinstance(causes, Iterable):
+        raise InvalidValueError(f"randomize must be a list of randomisations, got {causes!r}")
     given: dict[type, Cause] = {}
     for cause in causes:
         if type(cause) not in CAUSES:

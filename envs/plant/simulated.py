@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermograsp.errors import whole_number
 from thermograsp.notice import busy
 from thermograsp.plant import Command, Reading
 
@@ -62,7 +63,7 @@ class SimulatedPlant:
     def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
         start_compiling(boxes=config.by_kernels)
         self.layout: Layout = SceneLayout(config) if layout is None else layout
-        self.num_envs, self.config, self._stack = num_envs, config, config.stack
+        self.num_envs, self.config, self._stack = whole_number("num_envs", num_envs, 1), config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)
         self.heat: Any = GraspHeat(num_envs, **config.heat) if self._alone else self._scene_heat()
         self.mechanics = Mechanics(

@@ -17,6 +17,7 @@ from ...thermal import (
     settled_thermostat,
     thermostat_step,
 )
+from ...thermal.readout import thermostat_at
 from .rows import OVER_TEMPERATURE
 
 _OFF = -273.15  # °C, a setpoint at which no heater works
@@ -34,7 +35,7 @@ class Thermostats:
         self, num_envs: int, model: Thermostat | None, setpoints: tuple[float, float], dt: float
     ) -> None:
         self.setpoints = np.tile(setpoints, (num_envs, 1))
-        self._model = None if model is None else replace(model, setpoint=setpoints[0])
+        self._model = None if model is None else thermostat_at(setpoints[0], model)
         self._dt = dt
         self._hot = np.zeros(num_envs, bool)
         self._tripped = np.zeros((num_envs, 2), bool)

@@ -11,7 +11,7 @@ from typing import ClassVar
 import gymnasium
 import numpy as np
 
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, positive
 from thermograsp.plant import Command, Reading
 
 from ..spaces import action_space, command_of
@@ -54,8 +54,8 @@ class GraspTask:
 
     def __post_init__(self) -> None:
         for name in ("hold_seconds", "seconds", "most_slip"):
-            if not getattr(self, name) > 0:
-                raise InvalidValueError(f"{name} must be above 0, got {getattr(self, name)!r}")
+            if getattr(self, name) != np.inf:
+                positive(name, getattr(self, name))
 
     def action_space(self) -> gymnasium.spaces.Box:
         """See actions.py."""

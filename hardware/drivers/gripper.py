@@ -104,7 +104,7 @@ def open_gripper(url: str, **keywords: Any) -> Gripper:
     Other packages add theirs as an entry point of the group `thermograsp.grippers`, the scheme its name: a function of
     the URL and keywords. Raises UnknownNameError with the known schemes, and what the factory raises.
     """
-    scheme = url.partition(":")[0]
+    scheme = str(url).partition(":")[0]
     if scheme in _SCHEMES:
         module, _, name = _SCHEMES[scheme].partition(":")
         return getattr(importlib.import_module(module), name)(url, **keywords)

@@ -460,7 +460,7 @@ def test_workers_without_ray(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         dataset.make(PLAN, tmp_path, workers=1, address="local")
     with pytest.raises(InvalidValueError, match="needs workers"):
         dataset.make(PLAN, tmp_path, address="auto")
-    with pytest.raises(InvalidValueError, match="workers must be 0"):
+    with pytest.raises(InvalidValueError, match="workers must be a whole number, 0 or above"):
         dataset.make(PLAN, tmp_path, workers=-1)
 
 

@@ -78,7 +78,11 @@ class Identifier:
     ) -> Identification:
         """Takes the next samples and returns the posterior. t: (n,) s, increasing. voltage: (n,) V or (n, F), which
         every fingertip of the touch has its column in. Raises InvalidValueError."""
-        self._append(np.asarray(t, float), np.asarray(voltage, float))
+        try:
+            samples = np.asarray(t, float), np.asarray(voltage, float)
+        except (TypeError, ValueError):
+            raise InvalidValueError("t and voltage must be arrays of numbers, in s and V") from None
+        self._append(*samples)
         evidence, touches = [], []
         for tip, kelvin in enumerate(self._kelvin.T):
             touch = self._touch(tip, kelvin)

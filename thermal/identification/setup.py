@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
+from thermograsp.errors import InvalidValueError, celsius, non_negative, numbers, positive
 
 from ..matter import Material, Mode, SensorStack, Shape, Skin, sensor
 from ..matter import skin as named_skin
 from ..plates import Geometry
 from ..readout import ADS1115, SignalChain, saturated
-from ..stack import HeatedCore, HeatedStack, converter, fallen, heated_core, require_linear
+from ..stack import HeatedCore, HeatedStack, any_sensor, converter, fallen, heated_core, require_linear
 
 _STEP = 0.01  # s; curves take nothing of it
 
@@ -54,13 +54,15 @@ class TouchSetup:
 
     def __post_init__(self) -> None:
         named_skin(self.skin, self.mode)  # checks it
-        low, high = self.conductance
+        object.__setattr__(self, "stack", any_sensor(self.stack))
+        numbers("object_size (m)", self.object_size, 3)
+        low, high = numbers("conductance (W/(m2 K))", self.conductance, 2)
         if not positive("lowest conductance (W/(m2 K))", low) < positive(
             "highest conductance (W/(m2 K))", high
         ):
             raise InvalidValueError(f"conductance must be (lowest, highest), got {self.conductance!r}")
         for name in ("object_temperature", "sensor_temperature"):
-            mean, deviation = getattr(self, name)
+            mean, deviation = numbers(f"{name} (°C, K)", getattr(self, name), 2)
             celsius(f"{name}: mean (°C)", mean)
             non_negative(f"{name}: standard deviation (K)", deviation)
         positive("standard deviation of the temperature difference (K)", self.difference[1])

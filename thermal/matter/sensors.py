@@ -78,7 +78,7 @@ def sensor(name: str | os.PathLike[str] | SensorStack) -> SensorStack:
     """
     if isinstance(name, SensorStack):
         return name
-    if isinstance(name, os.PathLike) or name.endswith(".toml"):
+    if isinstance(name, os.PathLike) or (isinstance(name, str) and name.endswith(".toml")):
         found = load_sensors(name)
         if len(found) != 1:
             raise InvalidValueError(

@@ -19,6 +19,7 @@ from .thermostat import (
     ThermostatState,
     ideal_thermostat,
     settled_thermostat,
+    thermostat_at,
     thermostat_step,
 )
 
@@ -41,5 +42,6 @@ __all__ = [
     "saturated",
     "settled",
     "settled_thermostat",
+    "thermostat_at",
     "thermostat_step",
 ]

@@ -5,7 +5,7 @@ B: rows (fingertips). Everything is elementwise, so a row does not depend on the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,6 +49,15 @@ class Thermostat:
         positive("thermostat: power_limit (W)", self.power_limit)
         for name in ("proportional", "integral", "derivative", "sensor_lag", "loss"):
             non_negative(f"thermostat: {name}", getattr(self, name))
+
+
+def thermostat_at(setpoint: float, thermostat: Thermostat) -> Thermostat:
+    """The thermostat with that setpoint, °C. Raises InvalidValueError for what is none, such as a temperature."""
+    if not isinstance(thermostat, Thermostat):
+        raise InvalidValueError(
+            f"thermostat must be a thermal.Thermostat, or None for an ideal one, got {thermostat!r}"
+        )
+    return replace(thermostat, setpoint=setpoint)
 
 
 def ideal_thermostat(setpoint: float = 36.0) -> Thermostat:

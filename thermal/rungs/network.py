@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -21,7 +20,7 @@ from ..network import (
     workspace,
 )
 from ..plates import Geometry
-from ..readout import ThermostatState, settled_thermostat, thermostat_step
+from ..readout import ThermostatState, settled_thermostat, thermostat_at, thermostat_step
 from ..stack import CoreState, heated_core
 from .problem import Conductance, PressCurves, PressProblem
 
@@ -146,7 +145,7 @@ def _back(problem: PressProblem, fingertips: int, dt: float) -> tuple[_Back, _Fo
 
         return first, core_after
     assert problem.thermostat is not None
-    thermostat = replace(problem.thermostat, setpoint=problem.sensor_temperature)
+    thermostat = thermostat_at(problem.sensor_temperature, problem.thermostat)
 
     def plate_after(
         state: ThermostatState, drawn: np.ndarray, drop: np.ndarray, time: float

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, positive
+from thermograsp.errors import InvalidValueError, numbers, positive
 
 from ..matter import Material, Mode, SensorStack, Shape, Skin
 from ..matter import material as named_material
@@ -96,7 +96,7 @@ def press(
         conductance=pressed.conductance,
         area=min(_FACE, pressed.stack.face_area) if area is None else area,
         shape=shape,
-        object_size=tuple(object_size),  # pyright: ignore[reportArgumentType]
+        object_size=numbers("object_size (m)", object_size, 3),  # pyright: ignore[reportArgumentType]
         air=air,
         sensor_temperature=sensor_temperature,
         object_temperature=object_temperature,

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from ...thermal import ThermostatState, settled_thermostat, thermostat_step
+from ...thermal.readout import thermostat_at
 from ...thermal.stack import CoreState, heated_core
 from ..scene import PadPlace
 from .fields import TipField
@@ -106,7 +107,7 @@ class ThermostatBack(_Back[ThermostatState]):
 
     def __init__(self, pad: PadPlace, number: int, element: TipField, *, worlds: int, dt: float) -> None:
         assert pad.thermostat is not None
-        self._thermostat = replace(pad.thermostat, setpoint=pad.temperature)
+        self._thermostat = thermostat_at(pad.temperature, pad.thermostat)
         super().__init__(pad, number, element, dt, settled_thermostat(self._thermostat, worlds))
 
     def _after(self, drawn: np.ndarray, drop: np.ndarray, force: np.ndarray) -> ThermostatState:

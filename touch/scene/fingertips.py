@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, celsius, length
+from thermograsp.errors import InvalidValueError, celsius, length, numbers
 
 from ...thermal import LAPPED_ALUMINA, SensorStack, Skin, Surface, Thermostat, material
 from ...thermal.matter import skin as named_skin
@@ -59,10 +59,7 @@ class Fingertip:
             value = getattr(self, field)
             if value is None:
                 continue
-            if len(value) != count or not np.isfinite(value).all():
-                raise InvalidValueError(
-                    f"fingertip {self.name!r}: {field} must be {count} finite numbers, got {value!r}"
-                )
+            numbers(f"fingertip {self.name!r}: {field}", value, count)
         for side in self.size or ():
             length(f"fingertip {self.name!r}: size (m)", side)
         if self.normal is not None and not np.linalg.norm(self.normal) > 0:

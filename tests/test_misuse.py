@@ -1,0 +1,136 @@
+"""What is given in place of a number, a list or a name is refused in the package's words, not NumPy's or Python's."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermograsp import agents, dataset, thermal
+from thermograsp.agents import learning
+from thermograsp.dataset import Plan
+from thermograsp.envs import (
+    Delay,
+    GraspBatch,
+    GraspTask,
+    GraspVectorEnv,
+    Mechanics,
+    ObjectSpec,
+    SimulatedPlant,
+    SimulationConfig,
+    Size,
+    SortVectorEnv,
+    library_object,
+    load_gripper,
+)
+from thermograsp.errors import InvalidValueError, ThermograspError, UnknownNameError
+from thermograsp.hardware import open_gripper
+from thermograsp.thermal import Identifier, Thermostat, TouchSetup
+from thermograsp.touch import Fingertip
+
+Call = Callable[[Any], Any]
+NO_COUNTS: tuple[Any, ...] = (2.5, "2", None, True, -1, [2], float("nan"))
+NOT_THREE: tuple[Any, ...] = (0.04, "abc", None, (0.04, 0.04), (0.04, 0.04, "x"), (0.04, 0.04, float("nan")))
+COUNTS: dict[str, Call] = {
+    "num_envs": GraspBatch,
+    "num_envs ": GraspVectorEnv,
+    "num_envs  ": SortVectorEnv,
+    "num_envs   ": lambda value: SimulatedPlant(value, SimulationConfig()),
+    "num_envs    ": lambda value: Mechanics(num_envs=value),
+    "threads": lambda value: SimulationConfig(threads=value),
+    "substeps": lambda value: SimulationConfig(substeps=value),
+    "episodes": lambda value: learning.score("identify", "zero", value),
+    "episodes ": lambda value: agents.rollout(None, value, 0),  # pyright: ignore[reportArgumentType]
+    "seed": lambda value: agents.rollout(None, 1, value),  # pyright: ignore[reportArgumentType]
+    "shard_size": lambda value: Plan(shard_size=value),
+    "workers": lambda value: dataset.make(Plan(episodes=1), "never made", value),
+    "batch_size": lambda value: next(dataset.iterate("not there", value)),
+    "most": Delay,
+}
+THREE: dict[str, Call] = {
+    "object_size": lambda value: thermal.press("glass", object_size=value),
+    "object_size ": lambda value: TouchSetup(object_size=value),
+    "size, the full extents": lambda value: ObjectSpec(size=value),
+    "position": lambda value: Fingertip("tip", position=value, normal=(0, 0, 1)),
+}
+OTHERS: list[tuple[Call, Any, str]] = [
+    (lambda value: SimulationConfig(placement=value), 0.002, "placement .* must be 2 finite numbers"),
+    (lambda value: GraspBatch(sensor=value), 3, "unknown sensor 3; known: "),
+    (lambda value: SimulationConfig(randomize=value), 3, "randomize must be a list"),
+    (lambda value: SimulationConfig(solver=value), 3, "solver must be SolverSettings"),
+    (lambda value: GraspBatch(plant=value), 3, "unknown plant '3'; known: "),
+    (lambda value: GraspBatch(thermostat=value), 36.0, "thermostat must be a thermal.Thermostat"),
+    (lambda value: GraspTask(seconds=value), "10", "seconds must be a number, got '10'"),
+    (lambda value: GraspTask(hold_seconds=value), None, "hold_seconds must be a number"),
+    (lambda value: GraspTask(most_slip=value), float("nan"), "most_slip must be a finite number"),
+    (lambda value: GraspVectorEnv(width=value), "640", "width must be a whole number"),
+    (lambda value: Size(value), 1.5, "factors must be a list"),  # pyright: ignore[reportArgumentType]
+    (library_object, 3, "unknown object 3; known: "),
+    (open_gripper, 3, "unknown gripper '3'; known: "),
+    (lambda value: thermal.press("glass", thermostat=value), 36.0, "thermostat must be a thermal.Thermostat"),
+    (lambda value: TouchSetup(conductance=value), 1e4, "conductance .* must be 2 finite numbers"),
+    (
+        lambda value: TouchSetup(object_temperature=value),
+        24,
+        "object_temperature .* must be 2 finite numbers",
+    ),
+    (lambda value: TouchSetup(stack=value), 3, "unknown sensor 3; known: "),
+    (lambda value: Plan(materials=value), "glass", "materials must be a list"),
+    (lambda value: Plan(materials=value), ("glas",), "unknown material 'glas'; did you mean 'glass'"),
+    (lambda value: Plan(keywords=value), 3, "keywords must be a dictionary"),
+    (lambda value: learning.score(value, "zero", 1), "grsp", "unknown task 'grsp'; did you mean 'grasp'"),
+]
+
+
+@pytest.mark.parametrize("value", NO_COUNTS, ids=repr)
+@pytest.mark.parametrize("name", COUNTS)
+def test_no_count(name: str, value: Any) -> None:
+    with pytest.raises(
+        InvalidValueError, match=f"{name.strip()}.* must be a whole number, [01] or above, got "
+    ):
+        COUNTS[name](value)
+
+
+@pytest.mark.parametrize("value", NOT_THREE, ids=repr)
+@pytest.mark.parametrize("name", THREE)
+def test_not_three_numbers(name: str, value: Any) -> None:
+    if name != "position" or value is not None:  # which is left out then
+        with pytest.raises(InvalidValueError, match=f"{name.strip()}.* must be 3 finite numbers, got "):
+            THREE[name](value)
+
+
+@pytest.mark.parametrize(("call", "value", "message"), OTHERS, ids=[message for _, _, message in OTHERS])
+def test_something_else(call: Call, value: Any, message: str) -> None:
+    with pytest.raises((InvalidValueError, UnknownNameError), match=message):
+        call(value)
+
+
+@pytest.mark.parametrize("seed", [1.5, "1", -1, True], ids=repr)
+def test_no_seed_and_no_options(seed: Any) -> None:
+    env = GraspVectorEnv(2, material="glass")
+    with pytest.raises(InvalidValueError, match="seed must be a whole number, 0 or above, got "):
+        env.reset(seed=seed)
+    with pytest.raises(InvalidValueError, match="options must be a dict, such as "):
+        env.reset(options=seed)
+    env.close()
+
+
+def test_fingers_and_actuators_that_are_no_names() -> None:
+    from thermograsp.assets import asset
+
+    wrong: list[dict[str, Any]] = [{"fingertips": 3}, {"actuators": 3}, {"actuators": "closing"}]
+    for keywords in wrong:
+        with pytest.raises(ThermograspError, match="name two that close|actuators must be a list of names"):
+            load_gripper(asset("gripper.xml"), **keywords)
+
+
+def test_samples_that_are_no_numbers() -> None:
+    identifier = Identifier(TouchSetup(), ["glass"], cache=False)
+    with pytest.raises(InvalidValueError, match="t and voltage must be arrays of numbers"):
+        identifier.update(np.arange(3.0), "abc")  # pyright: ignore[reportArgumentType]
+
+
+def test_a_thermostat_keeps_all_but_its_setpoint() -> None:
+    from thermograsp.thermal.readout import thermostat_at
+
+    assert thermostat_at(30.0, Thermostat(power_limit=2.0)) == Thermostat(setpoint=30.0, power_limit=2.0)
