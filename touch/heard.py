@@ -16,8 +16,8 @@ from .readings import close_sample
 
 NOTHING, DUE, SPENT, FULL, BROKEN, ELSEWHERE = 0, 1, 2, 4, 8, 16
 """What `hear` returns: DUE where a reading is to be made and SPENT where noise is to be drawn, or both; FULL where the
-sample's contacts are there and its heat is still to be advanced; BROKEN where a force is not finite; ELSEWHERE where
-not one step has passed, and nothing has been done."""
+sample's contacts are there and its heat is still to be advanced; BROKEN where a force is not finite or a
+mesh's table could not be made; ELSEWHERE where not one step has passed, and nothing has been done."""
 
 _LAST, _STEP, _SUBSTEPS, _TAKEN, _NOW, _CONTACTS, _MEMORY, _READER, _HEAT, _TOUCHES, _ELECTRONICS = range(11)
 _OF_SAMPLE, _OF_READING, _READ, _ADVANCE, _CLOSE, _LENGTH = range(11, 17)

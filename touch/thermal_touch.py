@@ -23,7 +23,7 @@ from ..thermal import material as named_material
 from ..thermal.numerics import Array
 from ..thermal.readout import chain_numbers
 from ..thermal.stack import converter
-from .contacts import ContactReader, broke_down, sensor_places
+from .contacts import ContactReader, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
 from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, hear
@@ -591,7 +591,7 @@ class ThermalTouch:
     def _finish(self, heard: int) -> TouchReading:
         """What is left to do where `hear` found something to do."""
         if heard == BROKEN:
-            raise broke_down(self._time.item())
+            raise self._reader.failure(self._time.item())
         if heard == FULL:
             self._sample()
             self._listen()

@@ -19,9 +19,9 @@ from thermograsp.errors import MissingDependencyError
 from thermograsp.thermal import IDEAL, Pad, cylinder_contact, sphere_contact
 from thermograsp.thermal.contact import curved_contact, skinned
 from thermograsp.thermal.matter import skin as named_skin
-from thermograsp.thermal.pressed import height_map, map_heights
+from thermograsp.thermal.pressed import PressedMesh, height_map, map_heights
 from thermograsp.thermal.pressed.mesh_table import _points, _sunk
-from thermograsp.touch import Fingertip, ThermalTouch, install
+from thermograsp.touch import Fingertip, ThermalTouch, install, prepare
 from thermograsp.touch.contacts import AREA, CLOSED, FORCE, pair_laws
 from thermograsp.touch.contacts.laws import PairLaws
 from thermograsp.touch.contacts.views import array_viewed, mesh_views, viewed
@@ -235,3 +235,55 @@ def test_a_mesh_in_the_wrong_unit_takes_no_more_room_than_another() -> None:
     cube = trimesh.creation.box((40.0, 40.0, 40.0))
     seen = height_map(np.asarray(cube.vertices), np.asarray(cube.faces), np.eye(3))
     assert seen.height.size < 2010**2 and seen.pitch == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("heard", [1, 10])
+@pytest.mark.parametrize("error", [MemoryError("no room"), KeyboardInterrupt()])
+def test_what_stops_a_table_is_raised_and_the_next_touch_makes_it(
+    heard: int, error: BaseException, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By an update after every step, which one call hears, and after ten."""
+    model = spec("nut").compile()
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(model, fingertips={"tip": "tip"}, objects={"thing": "steel"}, chain=IDEAL)
+    for _ in range(5):  # in the air
+        mujoco.mj_step(model, data)
+        touch.update(data)
+
+    def failing(mesh: PressedMesh) -> np.ndarray:
+        raise error
+
+    data.ctrl[0] = 10.0
+    with monkeypatch.context() as patched, pytest.raises(type(error)):
+        patched.setattr(PressedMesh, "table", failing)
+        for _ in range(100):
+            for _ in range(heard):
+                mujoco.mj_step(model, data)
+            touch.update(data)
+    for _ in range(100):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    assert touch.reading.temperature_drop[0] > 1.0
+
+
+@pytest.mark.skipif(
+    not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"), reason="this MuJoCo has no contact sensors"
+)
+def test_of_many_worlds_it_is_raised_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = prepare(spec("nut"), fingertips={"tip": "tip"}, objects={"thing": "steel"})
+    data, record = mujoco.MjData(made), []
+    touch = ThermalTouch(made, fingertips={"tip": "tip"}, objects={"thing": "steel"}, worlds=2)
+    data.ctrl[0] = 10.0
+    for _ in range(50):
+        mujoco.mj_step(made, data)
+        record.append(data.sensordata.copy())
+
+    def failing(mesh: PressedMesh) -> np.ndarray:
+        raise MemoryError("no room")
+
+    with monkeypatch.context() as patched, pytest.raises(MemoryError, match="no room"):
+        patched.setattr(PressedMesh, "table", failing)
+        touch.update(np.array([record, record]))
+    touch.reset()
+    touch.update(np.array([record, record]))
+    assert (touch.reading.temperature_drop > 0.1).all()

@@ -5,7 +5,7 @@ from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, 
 from .glued import GluedContacts
 from .laws import pair_laws, stacked
 from .pointers import called, called_two, chains, complexes, entry, flags, floats, integers, table, words
-from .reader import ContactReader, broke_down, read_contacts
+from .reader import ContactReader, read_contacts
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
 
@@ -28,7 +28,6 @@ __all__ = [
     "TouchContacts",
     "array_contacts",
     "bends",
-    "broke_down",
     "called",
     "called_two",
     "chains",

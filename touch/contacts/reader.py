@@ -98,6 +98,7 @@ class ContactReader:
         self._tilts = np.zeros((0, 0, 0, 3, TILT))
         self._every: list[np.ndarray] = []
         self._meshes: dict[PressedMesh, int] = {}  # the numbers of their tables, made when first touched
+        self._failed: list[BaseException] = []  # while a table was made, until it is raised
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(parts), 3))
         self._frames, self._spot = np.zeros((count, _FRAME)), np.zeros(_SPOT)
@@ -125,7 +126,7 @@ class ContactReader:
                 self._laws, self._curved, self._tilts = after
             self._which[w] = self._known[combination]
         self._tables = stacked(self._every)
-        self._make = _making(self._meshes, self._tables)
+        self._make = _making(self._meshes, self._tables, self._failed)
         self._point()
 
     def _number(self, table: np.ndarray) -> int:
@@ -149,7 +150,7 @@ class ContactReader:
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
         self.__dict__.update(state)
-        self._make = _making(self._meshes, self._tables)
+        self._make = _making(self._meshes, self._tables, self._failed)
         self._point()
 
     def _point(self) -> None:
@@ -171,7 +172,7 @@ class ContactReader:
 
     def read(self, data: mujoco.MjData, weight: int = 1) -> None:
         """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
-        that are not finite."""
+        that are not finite, and what went wrong where a mesh's table could not be made."""
         self.counted += weight
         count = data.ncon
         if count == 0:
@@ -180,15 +181,26 @@ class ContactReader:
         if not memory.follows:
             memory.refresh()
         if not read_contacts(count, weight, memory.address, self._table_address):
-            raise broke_down(data.time)
+            raise self.failure(data.time)
 
     def sense(self, record: np.ndarray, first: int, last: int, places: SensorPlaces) -> None:
         """Adds what contact sensors recorded of the substeps first to last - 1, (W, substeps, sensordata). Worlds with
-        a number that is not finite are `broken` from then on, and nothing more is added to them."""
+        a number that is not finite are `broken` from then on, and nothing more is added to them. Raises what went wrong
+        where a mesh's table could not be made."""
         self.counted += last - first
         if places is not self._places:
             self._places, self._sensed = places, self._sensing(places)
-        sense_contacts(record.ctypes.data, record.shape[1], first, last, self._sensed.ctypes.data)
+        at = record.ctypes.data
+        if not sense_contacts(at, record.shape[1], first, last, self._sensed.ctypes.data):
+            raise self._failed.pop()
+
+    def failure(self, time: float) -> BaseException:
+        """What to raise where `read_contacts` has returned 0, at `time` s."""
+        if self._failed:
+            return self._failed.pop()
+        return SimulationError(
+            f"a contact force is not finite at {time:g} s: the simulation broke down; reset both"
+        )
 
     def _sensing(self, places: SensorPlaces) -> np.ndarray:
         """What `sense_contacts` takes of it: all addresses and sizes, until a call of set_materials."""
@@ -232,29 +244,27 @@ class ContactReader:
 _MAKE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
 
 
-def _making(meshes: Mapping[PressedMesh, int], tables: np.ndarray) -> Any:
-    """What compiled code calls to have the table of that number made."""
+def _making(meshes: Mapping[PressedMesh, int], tables: np.ndarray, failed: list[BaseException]) -> Any:
+    """What compiled code calls to have the table of that number made: 1, or 0 and why in `failed`, since nothing can be
+    raised through compiled code."""
     of = {number: mesh for mesh, number in meshes.items()}
 
     def make(number: int) -> int:
-        tables[number] = of[number].table()
-        return 0
+        try:
+            tables[number] = of[number].table()
+        except BaseException as error:  # noqa: BLE001  (raised by the caller; Ctrl-C too)
+            failed.append(error)
+            return 0
+        return 1
 
     return _MAKE(make)
-
-
-def broke_down(time: float) -> SimulationError:
-    """What a force that is not finite at `time` s raises."""
-    return SimulationError(
-        f"a contact force is not finite at {time:g} s: the simulation broke down; reset both"
-    )
 
 
 @njit(cache=True, error_model="numpy")
 def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
-    Returns 1, and 0 where a force is not finite."""
+    Returns 1, and 0 where a force is not finite or a table could not be made."""
     memory, entries = carray(words(memory_at), TABLE), carray(words(entries_at), 23)
     tips, targets, part_count, pyramidal, sides = (
         entries[16],
@@ -326,18 +336,19 @@ def read_contacts(count, substeps, memory_at, entries_at):
             pushed[first, part, 2] += force * z
         else:
             beside[first] += weight * force
-    if any_touch:
-        _feel(
-            xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, tilts, bend, curve, pushed,
-            touches, weight, spot, views, entries[22],
-        )  # fmt: skip
+    if any_touch and not _feel(
+        xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, tilts, bend, curve, pushed,
+        touches, weight, spot, views, entries[22],
+    ):  # fmt: skip
+        return 0
     return 1
 
 
 @njit(cache=True, error_model="numpy")
 def sense_contacts(record_at, substeps, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
-    sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `_sensing`."""
+    sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `_sensing`.
+    Returns 1, and 0 where a table could not be made."""
     entries = carray(words(entries_at), 36)
     worlds, size, pairs, poses, geoms = entries[25], entries[26], entries[27], entries[28], entries[29]
     tips, part_count, targets, sides = entries[30], entries[31], entries[32], entries[34]
@@ -421,10 +432,12 @@ def sense_contacts(record_at, substeps, first, last, entries_at):
                     if part >= part_count - tips:
                         _frame(pads, parts, xpos, xmat, frames, part - (part_count - tips))
                     _press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside[w])
-            _feel(
+            if not _feel(
                 xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law[which[w]], curved[which[w]], tables,
                 tilts[which[w]], bend, curve, pushed, touches[w], 1.0, spot, views, entries[35],
-            )  # fmt: skip
+            ):  # fmt: skip
+                return 0
+    return 1
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -511,7 +524,7 @@ def _feel(
     xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
     weight, spot, views, make,
 ):  # fmt: skip
-    """Adds what presses on the pads to the touches."""
+    """Adds what presses on the pads to the touches. Returns whether every table that it needs could be made."""
     tips, part_count = len(pads), len(parts)
     place, sides = spot[:3], spot[3:]
     for f in range(tips):
@@ -559,8 +572,8 @@ def _feel(
                     sides[i] = one * normal[0] + two * normal[1] + three * normal[2]
                 view, first, second = viewed(views[g], parts[g, 3], sides, place, law.half_face)
                 number = curved[f, g, view]
-                if tables[number, 1] == 0.0:
-                    asked(make, number)
+                if tables[number, 1] == 0.0 and asked(make, number) == 0:
+                    return False
                 conducts, area, long = curved_contact(tables[number], force, first, second)
             elif not bulging and curved[f, g, axis] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
@@ -615,6 +628,7 @@ def _feel(
                 one, two, three = xmat[body, i], xmat[body, 3 + i], xmat[body, 6 + i]
                 touch[PLACE + i] = one * x + two * y + three * z
                 touch[NORMAL + i] = one * normal[0] + two * normal[1] + three * normal[2]
+    return True
 
 
 @njit(cache=True, error_model="numpy", inline="always")
