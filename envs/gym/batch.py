@@ -39,8 +39,7 @@ class BatchState:
     """A whole batch in mid-episode; picklable."""
 
     plant: Any
-    history: np.ndarray
-    last: tuple[np.ndarray, ...]
+    observed: tuple[np.ndarray, ...]
     task: Any
     reading: Reading | None
 
@@ -232,11 +231,7 @@ class GraspBatch:
         self._all_reset_before("state")
         plant: Any = self.plant
         rows = range(self.num_envs)
-        return copy.deepcopy(
-            BatchState(
-                plant.state(rows), self._observer.history, self._observer.last, self._judged, self.reading
-            )
-        )
+        return copy.deepcopy(BatchState(plant.state(rows), self._observer.arrays, self._judged, self.reading))
 
     def set_state(self, state: BatchState) -> tuple[np.random.Generator, ...]:
         """Puts the batch into a state: what follows is bit-identical to what followed it first. Returns the
@@ -249,7 +244,7 @@ class GraspBatch:
         if (
             current.dtype != given.dtype
             or current.shape != given.shape
-            or self._observer.history.shape != state.history.shape
+            or [kept.shape for kept in self._observer.arrays] != [kept.shape for kept in state.observed]
         ):
             raise InvalidValueError(
                 f"the state is of {len(given)} environments of another task or of other keywords: give one of "
@@ -258,7 +253,8 @@ class GraspBatch:
         state = copy.deepcopy(state)
         plant: Any = self.plant
         rngs = plant.set_state(range(self.num_envs), state.plant)
-        self._observer.history, self._observer.last = state.history, state.last
+        for kept, observed in zip(self._observer.arrays, state.observed, strict=True):
+            kept[:] = observed
         self._judged, self.reading = state.task, state.reading
         self.generators = list(rngs)
         self._never_reset = set()

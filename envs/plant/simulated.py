@@ -302,30 +302,30 @@ class SimulatedPlant:
         """What is known of a step, and why an environment can't go on. heights: (B, O) m. force: (B, O, F, 3) N."""
         heat, labels, lift = step.info, self._labels, heights - self._rest
         error = tuple(self.mechanics.failure)
-        truth = Truth(
-            mode=self.config.mode,
-            material=labels.material,
-            temperature_drop=step.drop[:, -1],
-            temperature_drops=step.drop,
-            contact_area=heat["area"],
-            conductance=heat["conductance"],
-            sensor_surface=heat["sensor_surface"],
-            object_surface=heat["object_surface"],
-            object_temperature=heat["object_temperature"],
-            heat_flow=heat["flow"],
-            heat_drawn=heat["drawn"],
-            heat=heat["heat"],
-            heat_imbalance=heat["imbalance"],
-            heat_exchanged=heat["exchanged"],
-            reservoir_temperature=heat["reservoir_temperature"],
-            over_temperature=heat["over_temperature"],
-            events=step.events,
-            rung=labels.rung,
-            lift=lift[:, 0],
-            crushing_force=labels.crushing_force,
-            randomized=self._randomized,
-            failed=np.array([bool(reason) for reason in error]),
-        )
+        truth: Truth = {
+            "mode": self.config.mode,
+            "material": labels.material,
+            "temperature_drop": step.drop[:, -1],
+            "temperature_drops": step.drop,
+            "contact_area": heat["area"],
+            "conductance": heat["conductance"],
+            "sensor_surface": heat["sensor_surface"],
+            "object_surface": heat["object_surface"],
+            "object_temperature": heat["object_temperature"],
+            "heat_flow": heat["flow"],
+            "heat_drawn": heat["drawn"],
+            "heat": heat["heat"],
+            "heat_imbalance": heat["imbalance"],
+            "heat_exchanged": heat["exchanged"],
+            "reservoir_temperature": heat["reservoir_temperature"],
+            "over_temperature": heat["over_temperature"],
+            "events": step.events,
+            "rung": labels.rung,
+            "lift": lift[:, 0],
+            "crushing_force": labels.crushing_force,
+            "randomized": self._randomized,
+            "failed": np.array(error, bool),
+        }
         if scene is not None:
             truth["object_temperatures"] = scene.objects["object_temperature"].copy()
             truth["touched"] = scene.owner.copy()
@@ -340,9 +340,9 @@ def _by_object(each: list[np.ndarray]) -> np.ndarray:
 
 def _summed(force: np.ndarray) -> np.ndarray:
     """(B, F, 3) N on all objects, from (B, O, F, 3) one after the other."""
-    total = force[:, 0].copy()
+    total = force[:, 0]
     for number in range(1, force.shape[1]):
-        total += force[:, number]
+        total = total + force[:, number]
     return total
 
 

@@ -102,6 +102,7 @@ class GraspHeat:
         self._films: dict[int, float] = {}
         self._touches: dict[int, Touches] = {}
         self._waiting: set[int] = set()
+        self._boxed: set[int] = set()
         self._rows = np.zeros(num_envs, HEAT_ROW)
         self._laws = np.zeros(num_envs, FOOTPRINT_LAW)
         self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
@@ -158,7 +159,7 @@ class GraspHeat:
         drop = np.empty((len(force), self._samples, 2))
         info = np.empty(len(force), HEAT_INFO)
         normal, middles = np.ascontiguousarray(force, dtype=float), np.ascontiguousarray(place, dtype=float)
-        boxed = np.count_nonzero(self._rows["boxed"])
+        boxed = len(self._boxed)
         strayed = self._boxes.strayed(normal, middles, self._samples) if boxed else []
         starts = sorted({0, *(sample for sample, *_ in (*strayed, *carried, *moved))})
         for first, last in pairwise((*starts, self._samples)):
@@ -294,7 +295,10 @@ class GraspHeat:
             celsius.add(float(self._reservoirs["temperature"][row]))
         # In steps, so that nearly equal temperatures share a network.
         above = float(max(np.abs(sensor_temperature - each).max() for each in celsius))
-        self._rows["boxed"][row] = self._boxes.serves(body, above)
+        self._boxed.discard(row)
+        if self._boxes.serves(body, above):
+            self._boxed.add(row)
+        self._rows["boxed"][row] = row in self._boxed
         above /= LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
         self._demands[row] = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)

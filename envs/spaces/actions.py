@@ -16,6 +16,10 @@ from thermograsp.plant import Command
 
 from ..limits import MAX_FORCE, MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
 
+# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE.
+_MIDDLE = np.array([1.0, 1.0, 0.0])
+_HALF_RANGE = np.array([MAX_OPENING / 2, MAX_FORCE / 2, MAX_LIFT_RATE])
+
 
 def action_space() -> gymnasium.spaces.Box:
     """Target opening 0 .. 85 mm, force limit 0 .. 40 N, lift rate -50 .. 50 mm/s, each scaled to -1 .. 1."""
@@ -25,10 +29,8 @@ def action_space() -> gymnasium.spaces.Box:
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
     array = checked_action(action, 3, "opening, force limit, lift rate", np.float32)  # as the space's
-    opening, force_limit, lift_rate = np.minimum(np.maximum(array, -1.0), 1.0).astype(float).T
-    return Command(
-        (opening + 1) / 2 * MAX_OPENING, (force_limit + 1) / 2 * MAX_FORCE, lift_rate * MAX_LIFT_RATE
-    )
+    command = (np.minimum(np.maximum(array, -1.0), 1.0) + _MIDDLE) * _HALF_RANGE
+    return Command(command[:, 0], command[:, 1], command[:, 2])
 
 
 def checked_action(action: Any, numbers: int, parts: str, kind: type = float) -> np.ndarray:
@@ -41,7 +43,7 @@ def checked_action(action: Any, numbers: int, parts: str, kind: type = float) ->
         raise InvalidValueError(f"{wanted} {np.asarray(action, object)[0]!r}") from None
     if array.ndim != 2 or array.shape[1] != numbers:
         raise InvalidValueError(f"{wanted} shape {np.shape(action)[1:]}")
-    if not np.isfinite(array).all():
+    if np.count_nonzero(np.isfinite(array)) < array.size:
         row = int(np.argmin(np.isfinite(array).all(axis=1)))
         raise InvalidValueError(
             f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"

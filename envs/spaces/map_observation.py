@@ -30,25 +30,12 @@ class MapObserver:
         self._within, self._name, self._bounds = within, name, bounds
         box = gymnasium.spaces.Box(*bounds, (2, *shape), np.float32)
         self.space = gymnasium.spaces.Dict({**within.space.spaces, name: box})
-        self._map = np.zeros((len(within.history), *box.shape), np.float32)
+        self._map = np.zeros((len(within.arrays[0]), *box.shape), np.float32)
 
     @property
-    def history(self) -> np.ndarray:
+    def arrays(self) -> tuple[np.ndarray, ...]:
         """See Observer."""
-        return self._within.history
-
-    @history.setter
-    def history(self, values: np.ndarray) -> None:
-        self._within.history = values
-
-    @property
-    def last(self) -> tuple[np.ndarray, ...]:
-        """What each key of the space last held."""
-        return (*self._within.last, self._map)
-
-    @last.setter
-    def last(self, values: tuple[np.ndarray, ...]) -> None:
-        self._within.last, self._map = values[:-1], values[-1]
+        return *self._within.arrays, self._map
 
     def restart(self, rows: np.ndarray) -> None:
         """See Observer."""

@@ -45,36 +45,38 @@ class Observer:
 
     def __init__(self, num_envs: int) -> None:
         self.space = observation_space()
-        self.history = np.full((num_envs, 2, HISTORY), np.nan)  # nan: nothing observed yet
-        self.last: tuple[np.ndarray, ...] = (np.zeros((num_envs, len(_LOW)), np.float32),)
-        """What was observed last: all numbers of an environment in a row; more arrays follow in a subclass."""
+        self._fresh = np.ones(num_envs, bool)  # nothing has been observed since a restart
+        self._values = np.zeros((num_envs, len(_LOW)))  # as read last: all of an environment in a row
+        self._read = _by_key(self._values.view(_record(float)))
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """All that is remembered, (B, ...) each, to be copied from and written into; a subclass adds its own."""
+        return self._fresh, self._values
 
     def restart(self, rows: np.ndarray) -> None:
         """Forgets the rows' history: the next reading's first voltage stands for it."""
-        self.history[rows] = np.nan
+        self._fresh[rows] = True
 
     def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
         """Observations (B, ...) after a reading; arrays of their own. force_limit: (B,) N, as commanded. Rows of which
         `seen` (B,) is False keep what they last observed."""
+        before = None if np.count_nonzero(seen) == len(seen) else self._values.copy()
+        gripper, force, voltage, thermostat = self._read.values()
         samples = reading.voltage.transpose(0, 2, 1)[:, :, -HISTORY:]
-        begins = np.isnan(self.history[:, 0, 0]) & seen
-        if begins.any():
-            self.history[begins] = samples[begins, :, :1]
-        history = np.concatenate((self.history[:, :, samples.shape[2] :], samples), axis=2)
-        values = np.empty(self.last[0].shape)
-        values[:, 0], values[:, 1] = reading.opening, reading.opening_rate
-        values[:, 2], values[:, 3] = reading.height, force_limit
-        rows = len(values)
-        arrays = reading.force, history, reading.thermostat
-        for (_, part, shape), value in zip(_PARTS[1:], arrays, strict=True):
-            values[:, part].reshape(rows, *shape)[:] = value
+        if np.count_nonzero(self._fresh):
+            begins = self._fresh & seen
+            voltage[begins], self._fresh[begins] = samples[begins, :, :1], False
+        voltage[:, :, : -samples.shape[2]] = voltage[:, :, samples.shape[2] :]
+        voltage[:, :, -samples.shape[2] :] = samples
+        gripper[:, 0], gripper[:, 1] = reading.opening, reading.opening_rate
+        gripper[:, 2], gripper[:, 3] = reading.height, force_limit
+        force[:], thermostat[:] = reading.force, reading.thermostat
+        if before is not None:
+            self._values[~seen] = before[~seen]
         # Rounding to float32 keeps the bounds: those of the space are rounded alike.
-        clipped = np.minimum(np.maximum(values, _LOW), _HIGH).astype(np.float32)
-        if not seen.all():
-            kept = ~seen
-            history[kept], clipped[kept] = self.history[kept], self.last[0][kept]
-        self.history, self.last = history, (clipped.copy(), *self.last[1:])
-        return {name: clipped[:, part].reshape(rows, *shape) for name, part, shape in _PARTS}
+        clipped = np.minimum(np.maximum(self._values, _LOW), _HIGH).astype(np.float32)
+        return _by_key(clipped.view(_OBSERVED))
 
 
 _SHAPES = {"gripper": (4,), "force": (2, 3), "voltage": (2, HISTORY), "thermostat": (2,)}
@@ -89,13 +91,6 @@ _BOUNDS: dict[str, tuple[Any, Any]] = {
 }
 
 
-def _parts() -> tuple[tuple[str, slice, tuple[int, ...]], ...]:
-    """Of each key its name, where it is in a row, and its shape."""
-    ends = np.cumsum([np.prod(shape) for shape in _SHAPES.values()]).tolist()
-    places = [slice(begin, end) for begin, end in zip((0, *ends), ends, strict=False)]
-    return tuple((name, place, shape) for (name, shape), place in zip(_SHAPES.items(), places, strict=True))
-
-
 def _row(end: int) -> np.ndarray:
     """The lower (0) or upper (1) bounds of a row's numbers."""
     return np.concatenate(
@@ -103,4 +98,15 @@ def _row(end: int) -> np.ndarray:
     )
 
 
-_PARTS, _LOW, _HIGH = _parts(), _row(0), _row(1)
+def _record(kind: type) -> np.dtype:
+    """All numbers of an environment in a row."""
+    return np.dtype([(name, kind, shape) for name, shape in _SHAPES.items()])
+
+
+def _by_key(records: np.ndarray) -> Observation:
+    """Views (B, ...) of records (B, 1)."""
+    rows = records[:, 0]
+    return {name: rows[name] for name in _SHAPES}
+
+
+_LOW, _HIGH, _OBSERVED = _row(0), _row(1), _record(np.float32)

@@ -22,14 +22,18 @@ class SortObserver(Observer):
         lateral = gymnasium.spaces.Box(-_FURTHEST, _FURTHEST, (1,), np.float32)
         goal = gymnasium.spaces.Box(0.0, 1.0, (goals,), np.float32)
         self.space = gymnasium.spaces.Dict({**self.space.spaces, "lateral": lateral, "goal": goal})
-        self.last = (*self.last, *(np.zeros((num_envs, *box.shape), np.float32) for box in (lateral, goal)))
+        self._lateral, self._goal = (np.zeros((num_envs, *box.shape), np.float32) for box in (lateral, goal))
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """See Observer."""
+        return *super().arrays, self._lateral, self._goal
 
     def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
         """See Observer; needs a plant with a lateral axis that says what is asked."""
         observation = super().observe(reading, force_limit, seen)
         assert reading.lateral is not None
-        lateral, goal = self.last[-2:]
         bound = np.float32(_FURTHEST)
-        lateral[seen, 0] = np.clip(reading.lateral[seen].astype(np.float32), -bound, bound)
-        goal[seen] = reading.truth["goal"][seen]
-        return {**observation, "lateral": lateral.copy(), "goal": goal.copy()}
+        self._lateral[seen, 0] = np.clip(reading.lateral[seen].astype(np.float32), -bound, bound)
+        self._goal[seen] = reading.truth["goal"][seen]
+        return {**observation, "lateral": self._lateral.copy(), "goal": self._goal.copy()}

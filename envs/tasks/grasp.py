@@ -85,7 +85,7 @@ class GraspTask:
         above = lift - height
         after = np.empty_like(state)
         after["elapsed"] = elapsed = state["elapsed"] + dt
-        after["held"] = held = np.where(at_height, state["held"] + dt, 0.0)
+        after["held"] = held = at_height * (state["held"] + dt)
         after["gripped"] = gripped = np.where(state["pressed"], state["gripped"], above)
         after["lifted"] = lifted = state["lifted"] | at_height
         after["pressed"] = pressing
@@ -101,7 +101,7 @@ class GraspTask:
         )
         ended = success | failed
         outcome = Outcome(
-            reward=step_reward(state["progress"], progress, success, failed, elapsed / self.seconds),
+            reward=step_reward(state["progress"], progress, success, failed, elapsed, self.seconds),
             success=success,
             terminated=ended,
             truncated=~ended & (elapsed >= self.seconds - dt / 2),
@@ -115,7 +115,7 @@ def _known(reading: Reading, name: str, otherwise: np.ndarray | float) -> np.nda
     """(B,) of what the plant's truth tells by that name, or else what stands for it."""
     if name not in reading.truth:
         return otherwise
-    values = np.ascontiguousarray(reading.truth[name], dtype=float)
+    values = np.asarray(reading.truth[name], float)
     if values.shape != reading.height.shape:
         raise InvalidValueError(
             f"the plant's truth has {name!r} of shape {values.shape}: this task needs one for each environment, "

@@ -27,7 +27,14 @@ def lift_progress(pressing: np.ndarray, share: np.ndarray, held: np.ndarray, pre
 
 
 def step_reward(
-    before: np.ndarray, after: np.ndarray, success: np.ndarray, failed: np.ndarray, spent: np.ndarray
+    before: np.ndarray,
+    after: np.ndarray,
+    success: np.ndarray,
+    failed: np.ndarray,
+    elapsed: np.ndarray,
+    limit: float,
 ) -> np.ndarray:
-    """(B,), what a step pays that took progress from `before` to `after`. spent: share of the time limit gone by."""
-    return np.where(failed, FAILURE, after) - before + success * (SUCCESS * (1 - LATE * spent))
+    """(B,), what a step pays that took progress from `before` to `after`. elapsed: s of the time limit, gone by."""
+    if not np.count_nonzero(success | failed):  # as in most steps
+        return after - before
+    return np.where(failed, FAILURE, after) - before + success * (SUCCESS * (1 - LATE * (elapsed / limit)))

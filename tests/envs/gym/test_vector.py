@@ -143,7 +143,8 @@ def test_actions_of_another_shape_are_refused_and_change_nothing(action: object)
         InvalidValueError, match=r"step takes actions of shape \(3, 3\), one for each environment; got"
     ):
         env.step(action)  # pyright: ignore[reportArgumentType]
-    assert np.array_equal(env.state().batch.history, before.batch.history)
+    for now, then in zip(env.state().batch.observed, before.batch.observed, strict=True):
+        assert np.array_equal(now, then)
     env.close()
 
 
