@@ -24,14 +24,7 @@ from typing import Any, cast
 import numba
 import numpy as np
 from numba.core import event, ir
-from numba.core.caching import (
-    CompileResultCacheImpl,
-    FunctionCache,
-    IndexDataCacheFile,
-    InTreeCacheLocator,
-    NullCache,
-    UserProvidedCacheLocator,
-)
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -381,11 +374,15 @@ def _warn_of_no_folder(reason: str) -> None:
     )
 
 
-class _Unwritable(InTreeCacheLocator):
+_Chosen, _BesideSource = cast(tuple[Any, Any], tuple(CompileResultCacheImpl._locator_classes[:2]))
+"""numba's places of code: in NUMBA_CACHE_DIR, and in the source's folder. Their names depend on numba's version."""
+
+
+class _Unwritable(_BesideSource):
     """Where no folder can be written: the source's. What others have kept can still be read."""
 
     @classmethod
-    def from_function(cls, py_func: Any, py_file: str) -> InTreeCacheLocator | None:
+    def from_function(cls, py_func: Any, py_file: str) -> Any:
         return cls(py_func, py_file) if os.path.exists(py_file) else None
 
 
@@ -446,10 +443,10 @@ class _Cache(FunctionCache):
     def _shared(self) -> Iterator[str]:
         """Folders that numba would have taken if this user could write them: others may have filled them."""
         function = self._dispatcher.py_func
-        for kind in (UserProvidedCacheLocator, InTreeCacheLocator):
+        for kind in (_Chosen, _BesideSource):
             if type(self._impl.locator) is kind:
                 return
-            if kind is InTreeCacheLocator or cast(Any, numba).config.CACHE_DIR:
+            if kind is _BesideSource or cast(Any, numba).config.CACHE_DIR:
                 yield kind(function, inspect.getfile(function)).get_cache_path()
 
 

@@ -98,7 +98,10 @@ def run_as_reader(others: Path, home: Path) -> list[str]:
     """Calls both kernels as a user that may write nothing but what is below `home`, if that is there. Returns what each
     call found or compiled, and the warnings."""
     environment = os.environ | {"HOME": str(home), "XDG_CACHE_HOME": str(home), ALONE: "1"}
-    environment |= {"NUMBA_CACHE_DIR": str(others / "cache"), "PYTHONPATH": str(others)}
+    environment |= {
+        "NUMBA_CACHE_DIR": str(others / "cache"),
+        "PYTHONPATH": os.pathsep.join([str(others), *sys.path]),
+    }
     root = os.geteuid() == 0
     if not root:
         subprocess.run(["chmod", "-R", "a-w", others], check=True)
@@ -118,9 +121,15 @@ def fill(others: Path) -> None:
     """One kernel, for one kind of argument."""
     subprocess.run(
         [sys.executable, "-c", "import kernels; kernels.doubled(1.5)"],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(others / "cache"), "PYTHONPATH": str(others)},
+        env=os.environ
+        | {"NUMBA_CACHE_DIR": str(others / "cache"), "PYTHONPATH": os.pathsep.join([str(others), *sys.path])},
         check=True,
     )
+
+
+def test_numba_has_its_places_in_this_order() -> None:
+    places = [place.__name__.removeprefix("_") for place in (compiled._Chosen, compiled._BesideSource)]
+    assert places == ["UserProvidedCacheLocator", "InTreeCacheLocator"]
 
 
 @unix
