@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import errno
+import functools
 import hashlib
 import json
 import logging
@@ -158,13 +159,20 @@ def cached_arrays(
             np.savez(temporary, **arrays)  # pyright: ignore[reportArgumentType]
         _evict(path.parent, cache_size())
     except OSError as error:
-        warnings.warn(
-            f"cannot keep a result in {path.parent} ({error.__cause__ or error}); set {CACHE_VARIABLE} to a writable "
-            "folder",
-            RuntimeWarning,
-            stacklevel=2,
-        )
+        reason = error.__cause__ if isinstance(error.__cause__, OSError) else error
+        _warn_of_folder(path.parent, reason.strerror or str(reason))
     return arrays
+
+
+@functools.lru_cache(maxsize=8)
+def _warn_of_folder(folder: Path, reason: str) -> None:
+    """Once, not for every result."""
+    warnings.warn(
+        f"cannot keep results in {folder} ({reason}), so every process computes them again; set {CACHE_VARIABLE} to a "
+        "writable folder",
+        RuntimeWarning,
+        stacklevel=3,
+    )
 
 
 def cached_file(key_fields: Mapping[str, Any], suffix: str, write: Callable[[Path], None]) -> Path:

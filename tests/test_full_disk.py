@@ -122,7 +122,7 @@ def test_a_cache_that_is_full_costs_a_warning_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, full: Callable[[], AbstractContextManager[None]]
 ) -> None:
     monkeypatch.setenv("THERMOGRASP_CACHE", str(tmp_path / "cache"))
-    with pytest.warns(RuntimeWarning, match="cannot keep a result in .*set THERMOGRASP_CACHE"), full():
+    with pytest.warns(RuntimeWarning, match="cannot keep results in .*set THERMOGRASP_CACHE"), full():
         built = cached_arrays({"key": 1}, lambda: {"noise": NOISE})
     assert np.array_equal(built["noise"], NOISE)
     with pytest.raises(InvalidValueError, match="set THERMOGRASP_CACHE to a writable folder"), full():
