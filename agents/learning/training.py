@@ -38,7 +38,11 @@ from .teachers import TEACHERS
 VALIDATION = 900_000_000
 """Seed of the first episode that chooses among a training's checkpoints. Training itself uses seeds below 1e8."""
 MOST_SEED = 999
-_ROUND, _PPO = 1_000, 50_000  # seeds of a round, and from which PPO's begin, within a training's 1e5
+_ROUND, _HALF, _PPO = (
+    1_000,
+    500,
+    50_000,
+)  # seeds of a round and of half of it, and PPO's first, within a training's 1e5
 POLICY, STATE, MODEL, SEEN = "policy.npz", "state.json", "model.zip", "seen.npz"
 
 
@@ -56,8 +60,10 @@ class Progress:
 class Training:
     """One agent in the making, in a folder of its own. report: called with the progress.
 
-    resume: go on where a run in that folder was interrupted, or begin there. Raises InvalidValueError for a seed beyond
-    0 .. MOST_SEED, and for a folder that holds another training or damaged files, or with `resume` off any training."""
+    drawn: imitate in two halves, of which one has everything drawn that can differ between episodes, and choose the
+    checkpoint by both. resume: go on where a run in that folder was interrupted, or begin there. Raises
+    InvalidValueError for a seed beyond 0 .. MOST_SEED, and for a folder that holds another training or damaged files,
+    or with `resume` off any training."""
 
     def __init__(
         self,
@@ -68,6 +74,7 @@ class Training:
         recipe: Recipe | None = None,
         heat: bool = True,
         load: bool = True,
+        drawn: bool = False,
         resume: bool = False,
         report: Callable[[Progress], None] = lambda progress: None,
     ) -> None:
@@ -77,7 +84,7 @@ class Training:
         self._report = report
         whole = {
             "task": task.name,
-            "randomize": "randomize" in task.keywords,
+            "randomize": drawn,
             "seed": seed,
             "heat": heat,
             "load": load,
@@ -87,9 +94,11 @@ class Training:
         self._state: dict[str, Any] = {**self.about, "rounds_done": 0, "evaluations": []}
         self._take_up(resume)
         torch.set_num_threads(1)
-        self._practice = Perceiving(task, self.recipe.num_envs, heat, load, practice=True)
+        conditions = (task, task.drawn()) if drawn else (task,)
+        at_once = self.recipe.num_envs // len(conditions)
+        self._practice = [Perceiving(each, at_once, heat, load, practice=True) for each in conditions]
         self._env = Perceiving(task, self.recipe.num_envs, heat, load)
-        self._judging = task.make(self.recipe.evaluated)
+        self._judging = [each.make(self.recipe.evaluated // len(conditions)) for each in conditions]
         made_folder(self.out)
         self._model = self._loaded() if (self.out / MODEL).exists() and resume else self._fresh()
         self._model.set_logger(configure(str(self.out / "tensorboard"), ["tensorboard"]))
@@ -108,9 +117,8 @@ class Training:
             self._env.seed(self.seed * 100_000 + _PPO + self._model.num_timesteps)
             self._model.learn(left, callback=_Checkpoints(self), reset_num_timesteps=False)
             self.evaluate("ppo")
-        self._practice.close()
-        self._env.close()
-        self._judging.close()
+        for env in (*self._practice, self._env, *self._judging):
+            env.close()
         return dict(self.best)
 
     @property
@@ -124,17 +132,18 @@ class Training:
         agent = Agent(
             self.task.name, self._env.inputs, _layers(self._model.policy), {**self.about, "steps": steps}
         )
-        found = rollout(self._judging, self.recipe.evaluated, VALIDATION, Acting(self._judging, agent))
-        success = found.successes / self.recipe.evaluated
-        one = {"doing": doing, "steps": steps, "success": success, "mean_return": found.mean_return}
+        found = [rollout(env, env.num_envs, VALIDATION, Acting(env, agent)) for env in self._judging]
+        success = sum(each.successes for each in found) / sum(env.num_envs for env in self._judging)
+        mean_return = float(np.mean([each.mean_return for each in found]))
+        one = {"doing": doing, "steps": steps, "success": success, "mean_return": mean_return}
         self._state["evaluations"].append(one)
         if self.best is one:
             agent.save(self.out / POLICY)
         self._model.logger.record("evaluation/success", success)
-        self._model.logger.record("evaluation/mean_return", found.mean_return)
+        self._model.logger.record("evaluation/mean_return", mean_return)
         self._model.logger.dump(steps)
         self._keep()
-        self._report(Progress(doing, steps, success, found.mean_return))
+        self._report(Progress(doing, steps, success, mean_return))
 
     def report_steps(self, doing: str, steps: int) -> None:
         """Reports control steps."""
@@ -149,9 +158,8 @@ class Training:
     def _imitation(self) -> None:
         """The rounds that are left."""
         recipe, seen = self.recipe, self._seen()
-        teacher = TEACHERS[self.task.name](self._practice.batch)
+        teachers = [TEACHERS[self.task.name](env.batch) for env in self._practice]
         while (done := self._state["rounds_done"]) < recipe.rounds:
-            self._practice.seed(self.seed * 100_000 + done * _ROUND)
             steps = self.steps
 
             def advance(more: int) -> None:
@@ -160,8 +168,11 @@ class Training:
                 self.report_steps("imitation", steps)
 
             agent = self._mean_action if done else None
-            new = watched(self._practice, teacher, agent, self._per_round, recipe.gamma, advance)
-            seen = new if seen is None else seen.and_also(new)
+            for half, (env, teacher) in enumerate(zip(self._practice, teachers, strict=True)):
+                env.seed(self.seed * 100_000 + done * _ROUND + half * _HALF)
+                new = watched(env, teacher, agent, self._per_round, recipe.gamma, advance)
+                seen = new if seen is None else seen.and_also(new)
+            assert seen is not None
             last = done + 1 == recipe.rounds
             minibatches = recipe.last_minibatches if last else recipe.minibatches
             error = imitate(self._model.policy, seen, minibatches, recipe, self.seed + done)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from thermograsp.cli.shared import Output, add_randomize, load_mujoco
+from thermograsp.cli.shared import Output, load_mujoco
 from thermograsp.errors import InvalidValueError
 
 NAME = "score"
@@ -27,7 +27,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--episodes", type=int, default=200, help="number of episodes")
     add("--no-load", action="store_true", help="score on a gripper without load cells: forces read 0")
     add("--gripper", metavar="FILE", help="MJCF file of your own gripper (default: the shipped gripper)")
-    add_randomize(parser)
+    add(
+        "--randomize",
+        action="store_true",
+        help="draw at random everything that can differ between episodes (envs.EVERYTHING)",
+    )
     add(
         "--twin",
         action="store_true",

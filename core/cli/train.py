@@ -6,7 +6,7 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.shared import Output, add_randomize, load_mujoco
+from thermograsp.cli.shared import Output, load_mujoco
 from thermograsp.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -30,7 +30,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--resume", action="store_true", help="continue from the folder's last checkpoint")
     add("--no-heat", action="store_true", help="train without heat sensing: voltages and thermostats read 0")
     add("--no-load", action="store_true", help="train on a gripper without load cells: forces read 0")
-    add_randomize(parser)
+    add(
+        "--randomize",
+        action="store_true",
+        help="draw at random everything that can differ between episodes (envs.EVERYTHING), in half of the practice",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -42,8 +46,6 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.agents.learning import Recipe, learning_task
 
     task = learning_task(args.task)
-    if args.randomize:
-        task = task.drawn()
     from thermograsp.agents.learning import training
 
     recipe = Recipe() if args.steps is None else replace(Recipe(), steps=args.steps)
@@ -68,6 +70,7 @@ def run(args: argparse.Namespace) -> int:
             recipe=recipe,
             heat=not args.no_heat,
             load=not args.no_load,
+            drawn=args.randomize,
             resume=args.resume,
             report=report,
         )

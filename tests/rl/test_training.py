@@ -65,6 +65,24 @@ def test_every_task_is_trained_alike(name: str, tmp_path: Path) -> None:
     assert [each["doing"] for each in state["evaluations"]][:2] == ["imitation", "imitation"]
 
 
+def test_half_of_the_practice_has_everything_drawn(tmp_path: Path) -> None:
+    """And a run that was begun with draws does not go on without."""
+    recipe = replace(TINY, steps=320, taught=1.0, rounds=1)
+    seen = {}
+    for drawn in (False, True):
+        training = Training(brief("grasp"), tmp_path / str(drawn), recipe=recipe, drawn=drawn)
+        training.run()
+        assert load_agent(training.out / POLICY).about["randomize"] == drawn
+        with np.load(training.out / SEEN) as kept:
+            seen[drawn] = kept["vector"]
+    assert seen[True].shape == seen[False].shape
+    plain = seen[False].reshape(-1, recipe.num_envs, seen[False].shape[1])
+    first, second = seen[True].reshape(2, len(plain), recipe.num_envs // 2, -1)
+    assert np.array_equal(first, plain[:, :2]) and not np.array_equal(second, plain[:, :2])
+    with pytest.raises(InvalidValueError, match="another training"):
+        Training(brief("grasp"), tmp_path / "True", recipe=recipe, resume=True)
+
+
 def test_the_file_acts_as_the_network_that_was_trained(tmp_path: Path) -> None:
     training = Training(brief("sort"), tmp_path, recipe=replace(TINY, taught=1.0, rounds=1))
     training.run()  # with one evaluation, which is the best

@@ -84,15 +84,6 @@ def add_tolerance(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_randomize(parser: argparse.ArgumentParser) -> None:
-    """--randomize."""
-    parser.add_argument(
-        "--randomize",
-        action="store_true",
-        help="draw at random everything that can differ between episodes (envs.EVERYTHING)",
-    )
-
-
 def add_seed(parser: argparse.ArgumentParser, about: str) -> None:
     """--seed, a whole number from 0 on."""
     parser.add_argument("--seed", type=seed_number, default=0, help=about)
