@@ -7,7 +7,7 @@ a cube and a cylinder and feels glass against aluminium. `make test-grippers` in
 from __future__ import annotations
 
 import importlib.util
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal
@@ -19,6 +19,7 @@ import pytest
 
 import thermograsp  # noqa: F401  registers the environments
 from thermograsp.agents.gripper_check import MOST_SLIP, check_gripper
+from thermograsp.agents.learning import learning_task, score
 from thermograsp.cli import main
 from thermograsp.envs import (
     Gripper,
@@ -165,6 +166,14 @@ def test_fingertips_fit_on_the_file_as_it_is(name: str):
     assert np.isfinite(data.qpos).all()
     for number in range(2):
         assert len(data.sensor(f"contact_mine_{number}").data) == 7
+
+
+@pytest.mark.parametrize("name", ["Robotiq 2F-140", "Fetch, the whole robot", "Adroit hand"])
+def test_the_shipped_agent_grasps_with_what_it_has_never_met(name: str):
+    """Butter too, which breaks where fingers hit it with more than 12 N."""
+    task = learning_task("grasp")
+    keywords = {**task.keywords, "gripper": loaded(name), "material": ["butter", "iron"]}
+    assert score(replace(task, keywords=keywords), "trained", 16, load=False).successes >= 15
 
 
 def test_the_force_of_a_franka_hand_is_that_of_its_joints():
