@@ -21,6 +21,8 @@ pytest.importorskip("tensorboard", reason="needs tensorboard: make test-rl")
 from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
 
 from thermograsp.agents.learning import TASKS, LearningTask, Recipe, learning_task, load_agent
+from thermograsp.agents.learning import training as training_module
+from thermograsp.agents.learning.imitation import watched
 from thermograsp.agents.learning.inputs import REPEAT
 from thermograsp.agents.learning.perceiving import Perceiving
 from thermograsp.agents.learning.teachers import TEACHERS
@@ -65,21 +67,18 @@ def test_every_task_is_trained_alike(name: str, tmp_path: Path) -> None:
     assert [each["doing"] for each in state["evaluations"]][:2] == ["imitation", "imitation"]
 
 
-def test_half_of_the_practice_has_everything_drawn(tmp_path: Path) -> None:
+def test_half_of_the_practice_has_everything_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """And a run that was begun with draws does not go on without."""
-    recipe = replace(TINY, steps=320, taught=1.0, rounds=1)
-    seen = {}
+    recipe, seen = replace(TINY, steps=320, taught=1.0, rounds=1), []
+    monkeypatch.setattr(training_module, "watched", lambda *given: seen.append(watched(*given)) or seen[-1])
     for drawn in (False, True):
         training = Training(brief("grasp"), tmp_path / str(drawn), recipe=recipe, drawn=drawn)
         training.run()
         assert load_agent(training.out / POLICY).about["randomize"] == drawn
-        with np.load(training.out / SEEN) as kept:
-            seen[drawn] = kept["vector"]
-    assert seen[True].shape == seen[False].shape
-    plain = seen[False].reshape(-1, recipe.num_envs, seen[False].shape[1])
-    first, second = seen[True].reshape(2, len(plain), recipe.num_envs // 2, -1)
-    assert np.array_equal(first, plain[:, :2]) and not np.array_equal(second, plain[:, :2])
-    with pytest.raises(InvalidValueError, match="another training"):
+    plain, first, second = (each.vector for each in seen)
+    plain = plain.reshape(-1, recipe.num_envs, plain.shape[1])[:, : recipe.num_envs // 2].reshape(first.shape)
+    assert np.array_equal(first, plain) and not np.array_equal(second, plain)
+    with pytest.raises(InvalidValueError, match=r"\(randomize differ\)"):
         Training(brief("grasp"), tmp_path / "True", recipe=recipe, resume=True)
 
 
@@ -204,11 +203,3 @@ def test_with_everything_drawn_the_grasping_teacher_fails_only_where_its_forces_
     soft = np.array([force_window(body)[1] < 40.0 for body in bodies])
     assert 0 < (~won).sum() < 12
     assert np.all(least[~won] > np.where(soft[~won], 9.5, 38.0))
-
-
-def test_a_randomized_training_is_told_from_another(tmp_path: Path) -> None:
-    drawn = Training(brief("identify").drawn(), tmp_path, recipe=replace(TINY, taught=1.0, rounds=1))
-    drawn.run()
-    assert load_agent(tmp_path / POLICY).about["randomize"]
-    with pytest.raises(InvalidValueError, match=r"\(randomize differ\)"):
-        Training(brief("identify"), tmp_path, recipe=replace(TINY, taught=1.0, rounds=1), resume=True)
