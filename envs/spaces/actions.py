@@ -29,7 +29,7 @@ def action_space() -> gymnasium.spaces.Box:
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
     array = checked_action(action, 3, "opening, force limit, lift rate", np.float32)  # as the space's
-    command = (np.minimum(np.maximum(array, -1.0), 1.0) + _MIDDLE) * _HALF_RANGE
+    command = (np.minimum(np.maximum(array.astype(float), -1.0), 1.0) + _MIDDLE) * _HALF_RANGE
     return Command(command[:, 0], command[:, 1], command[:, 2])
 
 

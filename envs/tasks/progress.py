@@ -29,12 +29,14 @@ def lift_progress(pressing: np.ndarray, share: np.ndarray, held: np.ndarray, pre
 def step_reward(
     before: np.ndarray,
     after: np.ndarray,
-    success: np.ndarray,
+    ended: np.ndarray,
     failed: np.ndarray,
     elapsed: np.ndarray,
     limit: float,
 ) -> np.ndarray:
-    """(B,), what a step pays that took progress from `before` to `after`. elapsed: s of the time limit, gone by."""
-    if not np.count_nonzero(success | failed):  # as in most steps
+    """(B,), what a step pays that took progress from `before` to `after`. ended: by a success or a failure. elapsed: s
+    of the time limit, which is `limit` s."""
+    if not np.count_nonzero(ended):  # as in most steps
         return after - before
+    success = ended & ~failed
     return np.where(failed, FAILURE, after) - before + success * (SUCCESS * (1 - LATE * (elapsed / limit)))

@@ -91,7 +91,7 @@ class SortTask:
         )
         ended = success | failed
         outcome = Outcome(
-            reward=step_reward(state["progress"], progress, success, failed, elapsed, self.seconds),
+            reward=step_reward(state["progress"], progress, ended, failed, elapsed, self.seconds),
             success=success,
             terminated=ended,
             truncated=~ended & (elapsed >= self.seconds - dt / 2),
