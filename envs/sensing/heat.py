@@ -161,7 +161,8 @@ class GraspHeat:
         normal, middles = np.ascontiguousarray(force, dtype=float), np.ascontiguousarray(place, dtype=float)
         boxed = len(self._boxed)
         strayed = self._boxes.strayed(normal, middles, self._samples) if boxed else []
-        starts = sorted({0, *(sample for sample, *_ in (*strayed, *carried, *moved))})
+        changes = (*strayed, *carried, *moved)
+        starts = sorted({0, *(sample for sample, *_ in changes)}) if changes else (0,)
         for first, last in pairwise((*starts, self._samples)):
             now = [(row, tips) for sample, row, tips in strayed if sample == first]
             if now:
