@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -21,6 +22,7 @@ import pytest
 
 from thermograsp.errors import InvalidValueError, MissingDependencyError, ThermograspError
 from thermograsp.thermal import IDEAL, Thermostat
+from thermograsp.thermal.stack import Held, Off, Pid, Place, heated_stack
 from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch, install, load_plugin
 
 pytestmark = pytest.mark.skipif(
@@ -40,6 +42,8 @@ _spec.loader.exec_module(hand)
 
 PADS = {name: f"{name}_pad" for name in hand.FINGERS}
 OBJECTS = {"can": ThermalBody("aluminium", 5.0), "ball": "glass"}
+HEATED, WARM_CORE = heated_stack("heated_thermistor"), heated_stack("biotac_like")
+CONTROLLER = Pid(setpoint=36.0, proportional=2e3, integral=500.0, derivative=5e3, limit=10.0)
 ORDERS = (10.0, 0.0, 0.0), (10.0, 0.015, 0.0), (-5.0, 0.0, 0.0), (10.0, -0.015, 0.01), (6.0, 0.0, -0.005)
 """Forces N, and places m of the palm, each for a while: touches, slips, lets go, comes back elsewhere."""
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -74,6 +78,33 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     return data.sensor("heat").data.copy()
 
 
+def sent(touch: ThermalTouch) -> np.ndarray:
+    """(S,) V that the sensors send to their electronics."""
+    sensors = (*touch._pads, *touch._glued)
+    return touch._heat.sent[0] * [1.0 if pad.heated else pad.stack.seebeck for pad in sensors]
+
+
+def per_kelvin(touch: ThermalTouch) -> np.ndarray:
+    """(S,) V/K of the sensors, about."""
+    return np.array([pad.stack.seebeck for pad in (*touch._pads, *touch._glued)])
+
+
+def with_backs(*each: dict) -> dict:
+    """The hand with a fingertip of each of these."""
+    return {
+        "fingertips": {
+            name: Fingertip(pad, **words) for (name, pad), words in zip(PADS.items(), each, strict=True)
+        }
+    }
+
+
+EVERYTHING = {
+    **with_backs({"sensor": HEATED}, {"thermostat": Thermostat(power_limit=0.3)}, {"sensor": None}),
+    "objects": OBJECTS,
+}
+"""Of what may be behind an element, and of what may be on an object."""
+
+
 @NEEDS_SPECS
 @pytest.mark.parametrize(
     "case",
@@ -83,15 +114,40 @@ def voltages(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
             "fingertips": {name: Fingertip(pad, skin="filled_silicone") for name, pad in PADS.items()},
             "objects": {"can": ThermalBody("rubber", 5.0), "ball": "glass"},
         },
+        EVERYTHING,
         pytest.param({"tolerance": 0.02}, marks=TIER),
+        pytest.param(
+            with_backs(  # too weak, no lag and no losses, ideal in another room
+                {"thermostat": Thermostat(power_limit=0.05, loss=0.1, ambient=40.0), "temperature": 50.0},
+                {"thermostat": Thermostat(power_limit=0.3, sensor_lag=0.0, loss=0.0)},
+                {"thermostat": Thermostat(heat_capacity=np.inf, ambient=10.0)},
+            ),
+            marks=TIER,
+        ),
+        pytest.param(
+            with_backs(
+                {"sensor": replace(WARM_CORE, law=replace(CONTROLLER, cut=8.0)), "skin": "filled_silicone"},
+                {"sensor": replace(HEATED, law=Held())},
+                {"sensor": None, "skin": "filled_silicone", "thermostat": Thermostat(heat_capacity=5.0)},
+            ),
+            marks=TIER,
+        ),
+        pytest.param(
+            with_backs(  # read and heated in the depth of other layers
+                {"sensor": replace(WARM_CORE, readout=Place(0, 0.5), heater=Place(1, 0.5), law=CONTROLLER)},
+                {"sensor": replace(WARM_CORE, readout=Place(0, 0.0), heater=Place(1, 0.0), law=Off())},
+                {"sensor": WARM_CORE, "temperature": 30.0},
+            ),
+            marks=TIER,
+        ),
     ],
-    ids=["bare", "soft", "finer"],
+    ids=["bare", "soft", "backs", "finer", "plates", "laws", "cores"],
 )
 def test_its_voltages_are_those_of_thermal_touch(case: dict) -> None:
     words = {"fingertips": PADS, "objects": OBJECTS, **case}
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
-    seebeck = np.array([pad.stack.seebeck for pad in touch._pads])
+    assert np.array_equal(voltages(model, data) != 0, [pad.heated is not None for pad in touch._pads])
     touching, places = set(), 0
     for number, (force, x, z) in enumerate(ORDERS):
         order(data, force, x, z, hand.FINGERS[: 2 + number % 2])
@@ -105,8 +161,8 @@ def test_its_voltages_are_those_of_thermal_touch(case: dict) -> None:
                 plugin_touches = data.plugin_state[1 : 1 + touches.size].reshape(touches.shape)
                 np.testing.assert_allclose(plugin_touches, touches, rtol=1e-12, atol=1e-15)
             if n % 10 == 9:
-                drop = voltages(model, data) / seebeck
-                assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
+                apart = voltages(model, data) - sent(touch)
+                assert np.abs(apart / per_kelvin(touch)).max() < ROUND_OFF
                 touching.add(reading.touching)
         places = max(places, *(len(field.places) for field in touch._heat._fields[0]))
     assert len(touching) > 2 and places == len(PADS) + 2  # places have gone again
@@ -281,6 +337,31 @@ def test_a_state_that_comes_back_goes_on_alike(model: mujoco.MjModel) -> None:
     assert np.array_equal(first.plugin_state, mujoco.MjData(model).plugin_state)
 
 
+@NEEDS_SPECS
+def test_what_is_behind_elements_is_in_the_state_too() -> None:
+    model = install(mujoco.MjSpec.from_string(hand.scene()), **EVERYTHING)
+    first, kind = mujoco.MjData(model), mujoco.mjtState.mjSTATE_INTEGRATION
+    start, begun, controls = states(model, first), voltages(model, first), orders(40)
+    for row in controls[:100]:
+        first.ctrl[:] = row
+        mujoco.mj_step(model, first)
+    saved, second, third = states(model, first, kind), mujoco.MjData(model), copy.copy(first)
+    mujoco.mj_setState(model, second, saved, kind)
+    for data in (first, second, third):
+        for row in controls[100:]:
+            data.ctrl[:] = row
+            mujoco.mj_step(model, data)
+    assert np.array_equal(states(model, first), states(model, second))
+    assert np.array_equal(states(model, first), states(model, third))
+    rooms = [mujoco.MjData(model) for _ in range(8)]
+    ends, _ = mujoco.rollout.rollout(model, rooms, np.tile(start, (16, 1)), np.tile(controls, (16, 1, 1)))
+    assert all(np.array_equal(end, states(model, first)) for end in np.asarray(ends)[:, -1])
+    assert begun.any() and np.abs(voltages(model, first) - begun).max() > 1e-4
+    mujoco.mj_resetData(model, first)
+    assert np.array_equal(first.plugin_state, mujoco.MjData(model).plugin_state)
+    assert np.array_equal(voltages(model, first), begun)
+
+
 def test_the_model_is_written_and_read_again(model: mujoco.MjModel, tmp_path: Path) -> None:
     spec = mujoco.MjSpec.from_string(hand.scene())
     install(spec, fingertips=PADS, objects=OBJECTS)
@@ -314,9 +395,9 @@ def broken() -> Iterator[dict[str, str]]:
     yield {**good, "numbers": numbers[:-16]}
     yield {**good, "numbers": numbers + numbers[:16]}
     yield {**good, "numbers": numbers.replace("0", "O", 1)}
-    for at in range(16):  # what says how much there is, and the first roles
+    for at in range(17):  # what says how much there is, and the first roles
         for value in (huge, "0" * 16, "7ff8" + "0" * 12, "bff0" + "0" * 12, "3fe0" + "0" * 12):
-            if (at, value) == (14, "0" * 16):
+            if (at, value) == (15, "0" * 16):
                 continue  # the first fingertip is number 0
             if at not in (8, 9, 10) or value[:2] in ("7f", "bf"):
                 yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}
@@ -335,6 +416,30 @@ def test_broken_attributes_are_refused() -> None:
             mujoco.MjData(spec.compile())
         tried += 1
     assert tried > 50
+
+
+@NEEDS_SPECS
+@pytest.mark.parametrize("tries", [20, pytest.param(300, marks=TIER)])
+def test_wrong_numbers_crash_nothing(tries: int) -> None:
+    """They are refused, or give wrong temperatures."""
+    rng, spec = np.random.default_rng(tries), mujoco.MjSpec.from_string(hand.scene())
+    install(spec, **EVERYTHING)
+    good = np.frombuffer(bytes.fromhex(spec.plugins[-1].config["numbers"]), ">f8")
+    nonsense, stepped = np.array([1e300, -1e300, 1e-300, -1.0, 0.0, 0.5, 2.0, 3.0, 255.0, 1e9]), 0
+    for _ in range(tries):
+        numbers, count = good.copy(), int(10 ** rng.uniform(0.0, 3.5))
+        hit = np.unique(rng.integers(15, len(good), count))
+        hit = hit[hit >= len(good) * rng.choice([0.0, 0.9])]  # tables of what is curved are most of it
+        numbers[hit] = rng.choice(nonsense, len(hit))
+        spec.plugins[-1].config = {**spec.plugins[-1].config, "numbers": numbers.tobytes().hex()}
+        try:
+            data = mujoco.MjData(spec.compile())
+        except (ValueError, mujoco.FatalError):
+            continue
+        hand.press(data, 10.0)
+        mujoco.mj_step(data.model, data, 40)
+        stepped += 1
+    assert stepped > tries / 10
 
 
 def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
@@ -363,9 +468,6 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"fingertips": {"tip": Fingertip("thumb_pad", sensor="heated_thermistor")}}, "heater of its own"),
-        ({"fingertips": {"tip": Fingertip("thumb_pad", sensor=None)}}, "bare thermostat"),
-        ({"fingertips": {"tip": Fingertip("thumb_pad", thermostat=Thermostat())}}, "finite power"),
         ({"dt": 0.0031}, "whole number"),
         ({"air": -1.0}, "air"),
         (

@@ -32,6 +32,14 @@ enum { VIEW = 11 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
 enum { TURN_BY, SOFT, FIRM, APART, RADIUS, HALF_ROD, HALF_PAD, HALF_FACE, TILT };
 
+/* what is behind an element, see engine/backs.py: its controller, what its last change keeps back, W of the room, what it
+reads, and a divider's numbers, supply 0 where its sensor sends a drop */
+typedef struct {
+  double setpoint, proportional, integral, derivative, limit, cut, answering, room, read, supply, ratio, beta, zero;
+} Back;
+/* what it remembers: K read, now and before, W, whether it is cut, K of its last change; behind them the chain */
+enum { READING, PREVIOUS, INTEGRAL, CUT, CHANGE, CHAIN };
+
 typedef struct {
   double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
       spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
@@ -53,10 +61,13 @@ typedef struct {
   int rates, places, states;     /* K, P, and most states of an object */
   int tips, objects, geoms, targets, things, patterns, tip_states, sample_steps;
   int tables, sides;             /* of curved contacts; axes or, of meshes, views of a thing, at most */
+  int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
   const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
-  const double *seebeck, *warm;  /* V/K; K above the air */
+  const double* seebeck;         /* V/K */
+  const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
+  const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */
   const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
   const double *laws, *curved;   /* Law of each pad on each thing, by the axis of its frame, and its table's number or -1 */
   const double *views, *viewed;  /* VIEW of each thing by its side, and how many: 0 of what is no mesh */
@@ -96,7 +107,7 @@ typedef struct {
 
 /* The state of an instance, numbers in MuJoCo's plugin_state. */
 typedef struct {
-  double *count, *touches, *places, *used, *current, *narrow, *x, *voltages;
+  double *count, *touches, *places, *used, *current, *narrow, *x, *voltages, *backs;
 } State;
 
 /* As fmin and fmax of numbers, which compilers call; where the first is none the second is taken. */
@@ -114,6 +125,14 @@ void heat_reset(const Numbers* numbers, double* at);
 bool heat_valid(const Numbers* numbers, const State* state);
 void heat_settle(const Numbers* numbers, Work* work, State* state);
 bool heat_march(const Numbers* numbers, Work* work, State* state);
+
+/* K above the air behind element f; whether that stays; V that its sensor sends. */
+double heat_warm(const Numbers* numbers, const State* state, int f);
+bool heat_stays(const Numbers* numbers, int f);
+double heat_voltage(const Numbers* numbers, const State* state, int f, double drop);
+/* A sample of what is behind element f. drawn: W. force: N. drop: K. x: the element's states, which are then seen from where
+its back has gone. */
+void heat_behind(const Numbers* numbers, const State* state, int f, double drawn, double force, double drop, double* x);
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);

@@ -38,8 +38,8 @@ def install(
 
     The arguments are those of ThermalTouch, and so are the voltages'. The pads, objects and the timestep are those that
     the spec has now: install after everything else. Geoms without a name get one. Raises what ThermalTouch and
-    load_plugin do, and InvalidValueError for what the plugin does not serve: sensors with heaters of their own,
-    thermostats that are bare or of finite power, and glued elements. MissingDependencyError below MuJoCo 3.3.2."""
+    load_plugin do, and InvalidValueError for glued elements, which the plugin does not serve. MissingDependencyError
+    below MuJoCo 3.3.2."""
     if not hasattr(mujoco.MjSpec, "activate_plugin"):
         raise MissingDependencyError(
             "install adds a plugin to the spec, which MuJoCo's Python can do from 3.3.2 on; this is "
@@ -66,19 +66,6 @@ def install(
     substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
-    for pad in found:
-        if pad.heated is not None or pad.bare or pad.thermostat is not None:
-            what = (
-                "a sensor with a heater of its own"
-                if pad.heated is not None
-                else "a thermostat of finite power"
-            )
-            if pad.bare:
-                what = "a bare thermostat"
-            raise InvalidValueError(
-                f"fingertip {pad.label!r}: {what} is not served inside MuJoCo's step; give it a sensor on an "
-                "ideal thermostat, or use ThermalTouch"
-            )
     for shape in shapes:
         if shape.elements:
             raise InvalidValueError(

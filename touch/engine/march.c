@@ -190,6 +190,13 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
   }
 }
 
+/* What a fingertip's states x tell, by one of its rows. */
+static double row(const Numbers* numbers, const double* rows, int f, const double* x) {
+  double total = 0;
+  for (int k = 0; k < numbers->tip_states; k++) total += rows[f * numbers->tip_states + k] * x[k];
+  return total;
+}
+
 /* Fills root with the b_k of a narrow contact; false where it is as wide as the face. */
 static bool spread(const Numbers* numbers, int pair, const double* touch, double* root) {
   if (!(touch[AREA] > 0)) return false;
@@ -227,7 +234,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : 0, 1);
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
     resistance[i] = lesser(numbers->sample_steps / touch[CONDUCTANCE], MOST);
-    difference[i] = numbers->warm[f] - (t >= objects ? numbers->warm[t - objects] : 0);
+    difference[i] = heat_warm(numbers, state, f) - (t >= objects ? heat_warm(numbers, state, t - objects) : 0);
     if (!spread(numbers, pair[i], touch, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
@@ -235,6 +242,8 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
       resistance[i] += root[k] * root[k] * (1 - part) / numbers->decay[k];
     }
   }
+  double drawn[tips];
+  for (int f = 0; f < tips; f++) drawn[f] = heat_stays(numbers, f) ? 0 : -row(numbers, numbers->tip_element, f, field(numbers, state, objects + f));
   if (!has_room(work, (size_t)pairs * numbers->patterns)) return false;
   step(numbers, work, state, pairs, sides, resistance, difference, through);
   for (int i = 0; i < tips * targets; i++)
@@ -243,9 +252,16 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     for (int k = 0; k < rates; k++)
       state->narrow[pair[i] * rates + k] += work->grown[k] * roots[i * rates + k] * through[i];
   for (int f = 0; f < tips; f++) {
-    const double *x = field(numbers, state, objects + f), *row = numbers->tip_drop + f * numbers->tip_states;
-    state->voltages[f] = 0;
-    for (int k = 0; k < numbers->tip_states; k++) state->voltages[f] += numbers->seebeck[f] * row[k] * x[k];
+    double *x = field(numbers, state, objects + f), drop = row(numbers, numbers->tip_drop, f, x), force = 0;
+    if (!heat_stays(numbers, f)) {
+      drawn[f] = (drawn[f] + row(numbers, numbers->tip_element, f, x)) / numbers->dt;
+      for (int i = 0; i < pairs; i++)
+        drawn[f] += through[i] * ((pair[i] / targets == f) - (pair[i] % targets == objects + f));
+      for (int t = 0; t < targets; t++) force += state->touches[(f * targets + t) * COLUMNS + FORCE];
+      for (int g = 0; g < tips; g++) force += state->touches[(g * targets + objects + f) * COLUMNS + FORCE];
+      heat_behind(numbers, state, f, drawn[f], force / numbers->sample_steps, drop, x);
+    }
+    state->voltages[f] = heat_voltage(numbers, state, f, drop);
   }
   return true;
 }

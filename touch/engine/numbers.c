@@ -8,8 +8,8 @@
 
 #include "heat.h"
 
-enum { VERSION = 7, HEADER = 14, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
-       MOST_TABLES = 4096, MOST_VIEWS = 256 };
+enum { VERSION = 8, HEADER = 15, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+       MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256 };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;
@@ -28,17 +28,18 @@ static bool within(const double* values, size_t count, size_t stride, double mos
   return true;
 }
 
-/* Whether all are -1 or numbers of tables. */
-static bool numbered(const double* values, size_t count, int tables) {
+/* Whether all are -1 or numbers of so many things. */
+static bool numbered(const double* values, size_t count, int things) {
   for (; count; count--, values++)
-    if (*values != -1 && !within(values, 1, 1, tables - 1)) return false;
+    if (*values != -1 && !within(values, 1, 1, things - 1)) return false;
   return true;
 }
 
 /* Fills the numbers, whose `all` is to be freed. Returns what is wrong with the text, or NULL. */
 const char* heat_parse(Numbers* n, const char* text) {
   static const double most[HEADER] = {VERSION,    MOST_TIPS, MOST_OBJECTS, MOST_GEOMS, PATTERNS, MOST_RATES,
-                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES, MOST_VIEWS};
+                                      MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES, MOST_VIEWS,
+                                      MOST_LINKS};
   memset(n, 0, sizeof *n);
   size_t length = text ? strlen(text) : 0;
   double* at = n->all = malloc(length / 2 + sizeof(double));
@@ -58,6 +59,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   n->named = (int)at[11];
   n->tables = (int)at[12];
   n->sides = (int)at[13];
+  n->links = (int)at[14];
   n->targets = tips + objects;
   n->places = tips + 2;
   n->states = 1 + n->rates * patterns * n->places;
@@ -79,11 +81,16 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->bends, (size_t)tips * BEND},
       {&n->curves, (size_t)things * 3 * CURVES},
       {&n->seebeck, tips},
-      {&n->warm, tips},
+      {&n->backs, (size_t)tips * (sizeof(Back) / sizeof(double))},
+      {&n->back_first, (size_t)tips * (CHAIN + n->links)},
+      {&n->back_decay, (size_t)tips * n->links * n->links},
+      {&n->back_heat, (size_t)tips * n->links},
       {&n->tip_area, tips},
       {&n->tip_rates, (size_t)tips * states},
       {&n->tip_ports, (size_t)tips * patterns * states},
       {&n->tip_drop, (size_t)tips * states},
+      {&n->tip_element, (size_t)tips * states},
+      {&n->tip_uniform, (size_t)tips * states},
       {&n->tip_basis, (size_t)tips * PATTERNS * patterns},
       {&n->tip_weight, (size_t)tips * MOMENTS},
       {&n->decay, n->rates},
@@ -110,6 +117,8 @@ const char* heat_parse(Numbers* n, const char* text) {
   if (total != length / 16) return "the attribute \"numbers\" has another length than it says itself";
   size_t law = sizeof(Law) / sizeof(double), laws = (size_t)tips * things * 3;
   const double* across = n->laws + offsetof(Law, across) / sizeof(double);
+  for (int f = 0; f < tips; f++)
+    if (!numbered(&((const Back*)n->backs)[f].read, 1, n->links)) return "the attribute \"numbers\" reads what is not there";
   /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
   if (!within(n->roles, n->named, 1, things - 1) || !within(n->owner, geoms, 1, objects - 1) ||
       !within(across, laws, law, 2) || !within(across + 1, laws, law, 2) ||

@@ -20,8 +20,9 @@ from ...thermal.numerics import HIGH, LOW
 from ..contacts import bends, curves, pair_laws
 from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
+from .backs import back_rows
 
-_VERSION = 7
+_VERSION = 8
 
 
 def packed(
@@ -37,18 +38,20 @@ def packed(
     """The attribute "numbers". steps: of the model in a sample of heat. tolerance: K. film: W/(m2 K) of the air at
     `ambient` °C."""
     level = resolution(tolerance)
-    tips = [tip_field(pad, level).tip for pad in pads]
-    most = max(len(tip.side.rates) for tip in tips)
+    fields = [tip_field(pad, level) for pad in pads]
+    tips = [field.tip for field in fields]
+    most = max(1, *(len(tip.side.rates) for tip in tips))
     owner = [o for o, shape in enumerate(shapes) for _ in shape.geoms]
     roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
     roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
     timestep = float(model.opt.timestep)
+    nodes, backs = back_rows(pads, fields, timestep * steps, ambient)
     found = pair_laws(model, pads, shapes)
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
     header = (
         *(_VERSION, len(pads), len(shapes), len(owner), level.patterns, level.rates, most, steps),
-        *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1]),
+        *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1], nodes),
     )
     every = (
         header,
@@ -66,11 +69,12 @@ def packed(
         bends(pads),
         curves(model, pads, shapes),
         [pad.stack.seebeck for pad in pads],
-        [pad.temperature - ambient for pad in pads],
+        *backs,
         [tip.area for tip in tips],
         [_row(tip.side.rates, most) for tip in tips],
         *([_row(port, most) for port in tip.side.ports.T] for tip in tips),
-        [_row(tip.side.outputs["drop"], most) for tip in tips],
+        *([_row(tip.side.outputs[name], most) for tip in tips] for name in ("drop", "element")),
+        [_row(field.uniform, most) for field in fields],
         *(tip.basis for tip in tips),
         *(tip.weight for tip in tips),
         level.decay,

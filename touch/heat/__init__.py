@@ -1,7 +1,7 @@
 """Heat of fingertips and objects as separate passive fields that contacts join."""
 
 from .array_narrow import ArrayNarrow, array_narrow
-from .fields import AFTERWARDS, resolution, tip_field, untouched
+from .fields import AFTERWARDS, TipField, resolution, tip_field, untouched
 from .fixed_networks import FixedNetworks
 from .fixed_places import FixedPlaces, network_tables
 from .joined import HeatBalance, HeatState, JoinedHeat
@@ -16,6 +16,7 @@ __all__ = [
     "HeatBalance",
     "HeatState",
     "JoinedHeat",
+    "TipField",
     "array_narrow",
     "narrow_of",
     "network_tables",
