@@ -97,16 +97,15 @@ def scene(name: str, skin: str | None) -> tuple[mujoco.MjModel, PairLaws, np.nda
     return model, laws, laws.all_tables
 
 
-def found(name: str, skin: str | None, force: float, aside: float = 0.0) -> tuple[float, float]:
-    """W/K and m2 of steel from above, the pad's middle that far m from the mesh's along x."""
+def found(name: str, skin: str | None, force: float, aside: float = 0.0) -> tuple[float, float, float]:
+    """W/K, m2 and m of steel from above, the pad's middle that far m from the mesh's along x."""
     model, laws, tables = scene(name, skin)
     rotation = np.zeros(9)  # the mesh's geom may have other axes than its body
     mujoco.mju_quat2Mat(rotation, model.geom_quat[0])
     turned = rotation.reshape(3, 3).T
     place = turned @ (np.array([aside, 0.0, MESHES[name][1] / 2]) - model.geom_pos[0])
     k, u, v = viewed(laws.views[0], laws.viewed[0], turned @ [0.0, 0.0, -1.0], place, PAD.face / 2)
-    conducts, area, _ = curved_contact(tables[laws.curved[0, 0, k]], force, u, v)
-    return conducts, area
+    return curved_contact(tables[laws.curved[0, 0, k]], force, u, v)
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.002, 0.004, 0.006])
@@ -123,9 +122,18 @@ def test_rods_and_balls_are_those_of_the_closed_forms(aside: float) -> None:
         assert found("ball", None, force, aside)[1] == pytest.approx(ball, abs=0.25 * whole)
 
 
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_rod_is_a_strip_and_a_ball_a_square_to_the_heat(skin: str | None) -> None:
+    """The lengths of their patches: a rod is touched along the whole face."""
+    for force in (3.0, 10.0):
+        assert found("rod", skin, force)[2] == pytest.approx(PAD.face, rel=0.05)
+    _, area, long = found("ball", skin, 10.0)
+    assert area < 0.5 * PAD.face**2 and long == pytest.approx(math.sqrt(area), rel=0.05)
+
+
 @pytest.mark.parametrize("aside", np.linspace(0.0, 0.024, 9).tolist())
 def test_a_face_counts_up_to_its_edge(aside: float) -> None:
-    _, area = found("box", None, 10.0, aside)
+    _, area, _ = found("box", None, 10.0, aside)
     assert area == pytest.approx(0.009 * min(max(0.0245 - aside, 0.0), 0.009), abs=0.02 * PAD.face**2)
 
 

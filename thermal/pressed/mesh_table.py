@@ -2,9 +2,10 @@
 
 The mesh sinks into the pad's elastic foundation (thermal/contact/area.py) along that direction, without a tilt, until
 the springs under it take the force. Area counts where there is pressure and the mesh covers the face: the crests of a
-thread, the teeth of a gear, a face up to its edge. The tables are those of curved bodies
-(thermal/contact/curved_table.py): W/K, m2 and m at FORCES and at places of the pad's middle, whose sides lie along the
-mesh's. Places are counted from where the face begins to meet the mesh, so that they are never below 0.
+thread, the teeth of a gear, a face up to its edge. Its length tells a strip from a square, in which heat is more
+constricted. The tables are those of curved bodies (thermal/contact/curved_table.py): W/K, m2 and m at FORCES and at
+places of the pad's middle, whose sides lie along the mesh's. Places are counted from where the face begins to meet the
+mesh, so that they are never below 0.
 """
 
 from __future__ import annotations
@@ -66,7 +67,8 @@ class PressedMesh:
 
 class PressedView(NamedTuple):
     """places: (2, PLACES) m of the pad's middle along the two axes across the direction, from where the face begins to
-    meet the mesh. touched: (FORCES, PLACES, PLACES, 2), m2 of the face in contact and its share of the force."""
+    meet the mesh. touched: (FORCES, PLACES, PLACES, 3), m2 of the face in contact, its share of the force, and m, the
+    length of a rectangle of that area that is as long to broad as the contact."""
 
     places: np.ndarray
     touched: np.ndarray
@@ -82,7 +84,7 @@ def pressed_view(pad: Pad, vertices: bytes, faces: bytes, axes: bytes) -> Presse
     across = corners @ seen.axes[1:].T
     low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
     places = np.stack([_places(pad.face, float(span)) for span in high - low])
-    touched = np.zeros((FORCES, PLACES, PLACES, 2))
+    touched = np.zeros((FORCES, PLACES, PLACES, 3))
     loads = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)) * pad.thickness / pad.foundation_modulus
     _press(*seen, low, places, *_points(pad), loads, touched)
     for array in (places, touched):
@@ -120,7 +122,7 @@ def _conducting(view: PressedView, law: np.void) -> np.ndarray:
     table = np.empty(CURVED_TABLE)
     table[: 2 * PLACES] = view.places.ravel()
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    _conduct(law, forces, view.touched, table[2 * PLACES :].reshape((*view.touched.shape[:3], 3)))
+    _conduct(law, forces, view.touched, table[2 * PLACES :].reshape(view.touched.shape))
     table.flags.writeable = False
     return table
 
@@ -153,14 +155,32 @@ def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness,
                         area += cover[i]
                         held += cover[i] * stiffness[i] * (depth - heights[i])
                 touched[n, a, b, 0], touched[n, a, b, 1] = area, held / loads[n]
+                touched[n, a, b, 2] = _long(points, heights, cover, areas[0], on_face, depth)
             # between forces a power of them is taken, which must not begin at nothing
             for n in range(len(loads) - 4, -1, -2):
-                for k in range(2):
-                    touched[n, a, b, k] = max(touched[n, a, b, k], _FADED * touched[n + 2, a, b, k])
+                for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
+                    touched[n, a, b, k] = max(touched[n, a, b, k], faded * touched[n + 2, a, b, k])
             for n in range(1, len(loads), 2):
                 above = min(n + 1, len(loads) - 2)
                 touched[n, a, b, 0] = math.sqrt(touched[n - 1, a, b, 0] * touched[above, a, b, 0])
-                touched[n, a, b, 1] = (touched[n - 1, a, b, 1] + touched[above, a, b, 1]) / 2
+                for k in range(1, 3):
+                    touched[n, a, b, k] = (touched[n - 1, a, b, k] + touched[above, a, b, k]) / 2
+
+
+@njit(cache=True, error_model="numpy")
+def _long(points, heights, cover, square, on_face, depth):
+    """m, by the contact's second moments; each point counts as a square of that area m2."""
+    s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(on_face):
+        if heights[i] < depth:
+            w, y, z = cover[i], points[i, 0], points[i, 1]
+            s, sy, sz = s + w, sy + w * y, sz + w * z
+            syy, syz, szz = syy + w * y * y, syz + w * y * z, szz + w * z * z
+    if s == 0.0:
+        return 0.0
+    yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
+    middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
+    return math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
 
 
 @njit(cache=True, error_model="numpy")
@@ -195,4 +215,4 @@ def _conduct(law, forces, touched, values):
                 area = touched[n, a, b, 0]
                 load = touched[n, a, b, 1] * forces[n]
                 values[n, a, b, 0] = conductance(law, load / area) * area if load > 0.0 else 0.0
-                values[n, a, b, 1], values[n, a, b, 2] = area, math.sqrt(area)
+                values[n, a, b, 1], values[n, a, b, 2] = area, touched[n, a, b, 2]

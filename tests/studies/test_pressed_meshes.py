@@ -1,0 +1,42 @@
+"""The springs that a mesh's tables are compared with, beside closed forms; a table beside them."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from thermograsp.thermal import cylinder_contact
+from thermograsp.thermal.contact import skinned
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def study() -> Iterator[ModuleType]:
+    sys.path.insert(0, str(ROOT / "studies"))
+    yield importlib.import_module("pressed_meshes")
+    sys.path.remove(str(ROOT / "studies"))
+    del sys.modules["pressed_meshes"]
+
+
+def test_point_by_point_a_rod_is_touched_as_the_closed_form_s_cylinder(study: ModuleType) -> None:
+    sheet = skinned(study.PAD, study.SKIN)
+    expected = cylinder_contact(sheet, np.array(study.FORCE_N), 0.01, 0.05)
+    pressure = study.pressures("rod", 0.0, 0.0)
+    met = study.direct(pressure)
+    borne = pressure.mean() * study.PAD.face**2
+    assert borne == pytest.approx(float(expected.face_force), rel=0.02)
+    assert met.area == pytest.approx(float(expected.face), rel=0.08)  # facets of .35 mm, points of .05 mm
+    assert met.long == pytest.approx(study.PAD.face, rel=0.01)
+
+
+def test_a_table_makes_a_rod_as_cold_as_its_springs_point_by_point(study: ModuleType) -> None:
+    row = study.row("rod", 0.0, 0.0)
+    assert row.drop[0] > 9.0
+    assert row.drop[1] == pytest.approx(row.drop[2], abs=0.2)
