@@ -16,12 +16,13 @@ from thermograsp.errors import celsius, non_negative, positive
 class Drive(NamedTuple):
     """A law for touches (B,) of n steps. power: (B, n) W/m2 whatever is read. controller: (setpoint °C, proportional,
     integral, derivative, limit) in W/m2 and K, limit 0 for none. until: (B,) step at which the controller is cut. held:
-    whether the heater's place keeps its temperature whatever that takes."""
+    whether the heater's place keeps its temperature whatever that takes. ends: N at which either ends for good."""
 
     power: np.ndarray
     controller: tuple[float, float, float, float, float]
     until: np.ndarray
     held: bool
+    ends: float = np.inf
 
 
 class HeaterMemory(NamedTuple):
@@ -99,7 +100,7 @@ class CutAtContact:
         """See Off.drive."""
         constant = ConstantPower(self.power).drive(force, before)
         on = np.arange(force.shape[1] - 1) < cut_step(force, self.force)[:, None]
-        return constant._replace(power=constant.power * on)
+        return constant._replace(power=constant.power * on, ends=self.force)
 
     def power_now(
         self, memory: HeaterMemory, force: np.ndarray, reading: np.ndarray, dt: float
@@ -143,8 +144,9 @@ class Pid:
     def drive(self, force: np.ndarray, before: np.ndarray) -> Drive:
         """See Off.drive."""
         gains = (self.setpoint, self.proportional, self.integral, self.derivative, self.limit)
-        until = _never(force) if self.cut is None else cut_step(force, self.cut)
-        return Drive(np.repeat(before[:, None], force.shape[1] - 1, axis=1), gains, until, False)
+        ends = np.inf if self.cut is None else self.cut
+        power = np.repeat(before[:, None], force.shape[1] - 1, axis=1)
+        return Drive(power, gains, cut_step(force, ends), False, ends)
 
     def power_now(
         self, memory: HeaterMemory, force: np.ndarray, reading: np.ndarray, dt: float

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...thermal import Thermostat, settled_thermostat
-from ...thermal.stack import CutAtContact, HeatedStack, Pid, heated_core
+from ...thermal.stack import HeatedStack, heated_core
 from ..heat import TipField
 from ..scene import PadPlace
 
@@ -99,11 +99,10 @@ def _core(sensor: HeatedStack, temperature: float, dt: float, ambient: float) ->
     """thermal/stack/core.py."""
     core = heated_core(sensor, dt)
     begun, area = core.settled(np.array([temperature]), ambient), core.element.face_area
-    law, divider, zero = sensor.law, sensor.divider, ambient + _KELVIN
-    drive = law.drive(np.zeros((1, 2)), begun.before)
+    divider, zero = sensor.divider, ambient + _KELVIN
+    drive = sensor.law.drive(np.zeros((1, 2)), begun.before)
     _, *gains, limit = drive.controller
     power = float(drive.power[0, 0])
-    cut = law.force if isinstance(law, CutAtContact) else law.cut if isinstance(law, Pid) else None
     reading = float(begun.reading[0]) - ambient
     ratio = (divider.supply / float(divider.voltage(np.array(ambient))) - 1) * np.exp(-divider.beta / zero)
     return Chain(
@@ -116,7 +115,7 @@ def _core(sensor: HeatedStack, temperature: float, dt: float, ambient: float) ->
         setpoint=reading,
         gains=(gains[0] * area, gains[1] * area * dt, gains[2] * area / dt),
         limit=(limit or power) * area,
-        cut=_NEVER if cut is None else cut,
+        cut=min(drive.ends, _NEVER),
         answering=core.answering / dt,
         divider=(divider.supply, ratio, divider.beta, zero),
     )
