@@ -98,11 +98,23 @@ def with_backs(*each: dict) -> dict:
     }
 
 
-EVERYTHING = {
-    **with_backs({"sensor": HEATED}, {"thermostat": Thermostat(power_limit=0.3)}, {"sensor": None}),
-    "objects": OBJECTS,
-}
-"""Of what may be behind an element, and of what may be on an object."""
+BACKS = with_backs({"sensor": HEATED}, {"thermostat": Thermostat(power_limit=0.3)}, {"sensor": None})
+BOXED = hand.scene().replace('type="cylinder" size="0.03 .05"', 'type="box" size=".03 .03 .05"')
+GLUED = SensorElement((0.03, 0.001, 0.002), (1, 0, 0)), SensorElement((-0.015, 0.03, 0.0), (0, 1, 0))
+EVERYTHING = {**BACKS, "objects": {"can": ThermalBody("glass", 60.0, elements=GLUED), "ball": "wood"}}
+"""In the scene where the can is a box: of what may be behind an element, and elements on an object."""
+
+
+def furthest(model: mujoco.MjModel, data: mujoco.MjData, touch: ThermalTouch) -> float:
+    """K between the two in the next steps."""
+    most = 0.0
+    for n in range(150):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+        if n % 10 == 9:
+            apart = voltages(model, data) - sent(touch)
+            most = max(most, float(np.abs(apart / per_kelvin(touch)).max()))
+    return most
 
 
 @NEEDS_SPECS
@@ -114,7 +126,7 @@ EVERYTHING = {
             "fingertips": {name: Fingertip(pad, skin="filled_silicone") for name, pad in PADS.items()},
             "objects": {"can": ThermalBody("rubber", 5.0), "ball": "glass"},
         },
-        EVERYTHING,
+        BACKS,
         pytest.param({"tolerance": 0.02}, marks=TIER),
         pytest.param(
             with_backs(  # too weak, no lag and no losses, ideal in another room
@@ -191,19 +203,31 @@ def test_after_long_slides_its_voltages_are_still_those_of_thermal_touch(
     }
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
-    seebeck, places = np.array([pad.stack.seebeck for pad in touch._pads]), set()
+    places = set()
     for number in range(14):
         force, x, z = ORDERS[rng.integers(len(ORDERS))]
         aside = rng.uniform(-0.004, 0.004, 2)
         order(data, force * rng.uniform(0.5, 1.5), x + aside[0], z + aside[1], hand.FINGERS[: 2 + number % 2])
-        for n in range(150):
-            mujoco.mj_step(model, data)
-            reading = touch.update(data)
-            if n % 10 == 9:
-                drop = voltages(model, data) / seebeck
-                assert np.abs(drop - reading.temperature_drop).max() < ROUND_OFF
+        assert furthest(model, data, touch) < ROUND_OFF
         places.update(place for field in touch._heat._fields[0] for place in field.places)
     assert len(places) > len(PADS) + 2
+
+
+@NEEDS_SPECS
+@pytest.mark.parametrize("skin", [None, pytest.param("filled_silicone", marks=TIER)])
+def test_elements_on_an_object_are_those_of_thermal_touch(skin: str | None) -> None:
+    words = dict(EVERYTHING)
+    words["fingertips"] = {name: replace(tip, skin=skin) for name, tip in words["fingertips"].items()}
+    model = install(mujoco.MjSpec.from_string(BOXED), **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    on_elements = []
+    for number, (force, x, z) in enumerate(ORDERS):
+        order(data, force, x, z, hand.FINGERS[: 2 + number % 2])
+        assert furthest(model, data, touch) < ROUND_OFF
+        drops = touch.reading.element_drop
+        assert np.allclose(data.sensor("heat").data[3:] / per_kelvin(touch)[3:], drops, atol=1e-9)
+        on_elements.append(drops)
+    assert np.ptp(on_elements, axis=0).min() > 0.1  # both were touched and let go
 
 
 @NEEDS_SPECS
@@ -339,7 +363,7 @@ def test_a_state_that_comes_back_goes_on_alike(model: mujoco.MjModel) -> None:
 
 @NEEDS_SPECS
 def test_what_is_behind_elements_is_in_the_state_too() -> None:
-    model = install(mujoco.MjSpec.from_string(hand.scene()), **EVERYTHING)
+    model = install(mujoco.MjSpec.from_string(BOXED), **EVERYTHING)
     first, kind = mujoco.MjData(model), mujoco.mjtState.mjSTATE_INTEGRATION
     start, begun, controls = states(model, first), voltages(model, first), orders(40)
     for row in controls[:100]:
@@ -395,9 +419,9 @@ def broken() -> Iterator[dict[str, str]]:
     yield {**good, "numbers": numbers[:-16]}
     yield {**good, "numbers": numbers + numbers[:16]}
     yield {**good, "numbers": numbers.replace("0", "O", 1)}
-    for at in range(17):  # what says how much there is, and the first roles
+    for at in range(18):  # what says how much there is, and the first roles
         for value in (huge, "0" * 16, "7ff8" + "0" * 12, "bff0" + "0" * 12, "3fe0" + "0" * 12):
-            if (at, value) == (15, "0" * 16):
+            if (at, value) == (16, "0" * 16):
                 continue  # the first fingertip is number 0
             if at not in (8, 9, 10) or value[:2] in ("7f", "bf"):
                 yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}
@@ -422,13 +446,13 @@ def test_broken_attributes_are_refused() -> None:
 @pytest.mark.parametrize("tries", [20, pytest.param(300, marks=TIER)])
 def test_wrong_numbers_crash_nothing(tries: int) -> None:
     """They are refused, or give wrong temperatures."""
-    rng, spec = np.random.default_rng(tries), mujoco.MjSpec.from_string(hand.scene())
+    rng, spec = np.random.default_rng(tries), mujoco.MjSpec.from_string(BOXED)
     install(spec, **EVERYTHING)
     good = np.frombuffer(bytes.fromhex(spec.plugins[-1].config["numbers"]), ">f8")
     nonsense, stepped = np.array([1e300, -1e300, 1e-300, -1.0, 0.0, 0.5, 2.0, 3.0, 255.0, 1e9]), 0
     for _ in range(tries):
         numbers, count = good.copy(), int(10 ** rng.uniform(0.0, 3.5))
-        hit = np.unique(rng.integers(15, len(good), count))
+        hit = np.unique(rng.integers(16, len(good), count))
         hit = hit[hit >= len(good) * rng.choice([0.0, 0.9])]  # tables of what is curved are most of it
         numbers[hit] = rng.choice(nonsense, len(hit))
         spec.plugins[-1].config = {**spec.plugins[-1].config, "numbers": numbers.tobytes().hex()}
@@ -442,7 +466,12 @@ def test_wrong_numbers_crash_nothing(tries: int) -> None:
     assert stepped > tries / 10
 
 
-def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
+@NEEDS_SPECS
+@pytest.mark.parametrize(
+    ("scene", "words"), [(hand.scene(), {}), (BOXED, EVERYTHING)], ids=["plain", "everything"]
+)
+def test_a_state_of_nonsense_starts_anew(scene: str, words: dict) -> None:
+    model = install(mujoco.MjSpec.from_string(scene), **{"fingertips": PADS, "objects": OBJECTS, **words})
     rng, data = np.random.default_rng(1), mujoco.MjData(model)
     for scale in (1.0, 10.0, 1e9, np.nan, np.inf):
         for share in (0.02, 1.0):
@@ -460,7 +489,7 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
     for each in (data, fresh):
         hand.press(each, 10.0)
         mujoco.mj_step(model, each, 200)
-    assert np.abs(voltages(model, fresh)).min() > 1e-4
+    assert np.median(np.abs(voltages(model, fresh))) > 1e-4
     assert np.array_equal(data.plugin_state, fresh.plugin_state)
 
 
@@ -471,8 +500,8 @@ def test_a_state_of_nonsense_starts_anew(model: mujoco.MjModel) -> None:
         ({"dt": 0.0031}, "whole number"),
         ({"air": -1.0}, "air"),
         (
-            {"objects": {"crate": ThermalBody("glass", elements=(SensorElement((0, 0, 0.02), (0, 0, 1)),))}},
-            "glued",
+            {"objects": {"crate": ThermalBody("glass", elements=(SensorElement((0, 0, 0.03), (0, 0, 1)),))}},
+            "off the face",
         ),
         (
             {"objects": {"can": ["glass", "wood"]}},

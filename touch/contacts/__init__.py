@@ -2,7 +2,7 @@
 
 from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_contacts
 from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
-from .glued import GluedContacts
+from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
 from .pointers import called, called_two, chains, complexes, entry, flags, floats, integers, table, words
 from .reader import ContactReader, read_contacts
@@ -11,6 +11,7 @@ from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
 
 __all__ = [
     "AREA",
+    "BOND",
     "CLOSED",
     "COLUMNS",
     "ArrayContacts",

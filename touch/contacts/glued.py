@@ -31,13 +31,15 @@ class GluedContacts:
         self, fingertips: Sequence[PadPlace], elements: Sequence[PadPlace], objects: int, worlds: int
     ) -> None:
         tips, sensors = len(fingertips), len(fingertips) + len(elements)
-        self._laws = np.zeros((tips, len(elements)), CONTACT_LAW)
-        self._small = np.zeros(len(elements))
+        self.laws = np.zeros((tips, len(elements)), CONTACT_LAW)
+        """Of each fingertip on each element."""
+        self.small = np.zeros(len(elements))
+        """m K/W, of contacts narrower than an element, by the inverse of their side."""
         self._places = np.zeros((len(elements), 14))
         self._bends, self._curves = bends(fingertips), np.zeros((len(elements), CURVES))
         for e, element in enumerate(elements):
             width = element.stack.width
-            self._small[e] = SQUARE / element.stack.layers[0].conductivity
+            self.small[e] = SQUARE / element.stack.layers[0].conductivity
             self._curves[e, 2:] = width / 2
             self._places[e] = (element.glued, width, *element.position, *element.axes.ravel())
             for f, tip in enumerate(fingertips):
@@ -45,7 +47,7 @@ class GluedContacts:
                 faces = joint(LAPPED_ALUMINA, THERMOSTAT_FACE if metal else tip.face)
                 side = float(np.sqrt(tip.size.prod()))
                 pad = Pad(width=side, face=min(tip.stack.width, side))
-                self._laws[f, e] = flat_law(pad, faces, (width, width), (1, 2))
+                self.laws[f, e] = flat_law(pad, faces, (width, width), (1, 2))
         self._redirected = np.zeros((worlds, sensors, objects + sensors, COLUMNS))
 
     def redirected(self, touches: np.ndarray, substeps: int) -> np.ndarray:
@@ -57,8 +59,8 @@ class GluedContacts:
             touches,
             substeps,
             self._places,
-            self._laws,
-            self._small,
+            self.laws,
+            self.small,
             self._bends,
             self._curves,
             self._redirected,

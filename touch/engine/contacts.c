@@ -136,7 +136,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
 /* Adds the contacts of the step that was just taken to the touches. A force that is not finite is left out: MuJoCo resets
 the simulation then. */
 void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches) {
-  int tips = numbers->tips, things = numbers->things;
+  int tips = numbers->fingers, things = numbers->things;
   bool any = false;
   double* pushed = work->room; /* (F, N, 3) */
   Pose poses[tips];

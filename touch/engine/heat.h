@@ -23,6 +23,8 @@ enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, FIRS
 /* a place: face of the box, middle m along its two axes, fingertip */
 enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
 enum { SHAPE_CYLINDER = 1 };
+/* an element that is glued on: object, resistance m K/W of a small contact, W/K of the glue */
+enum { ON, SMALL, BOND, GLUED };
 /* a table of a curved contact: places along two axes, forces, and of each W/K, m2 and m */
 enum { PLACES = 16, FORCES = 14, VALUES = 3, CURVED = 2 * PLACES + VALUES * FORCES * PLACES * PLACES };
 /* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
@@ -59,13 +61,16 @@ enum {
 
 typedef struct {
   int rates, places, states;     /* K, P, and most states of an object */
-  int tips, objects, geoms, targets, things, patterns, tip_states, sample_steps;
+  int tips, fingers;             /* fingertips and the elements that are glued on objects behind them; without these */
+  int faces;                     /* of a network of either: 2 where elements have one for their object and one for pads */
+  int objects, geoms, targets, things, patterns, tip_states, sample_steps;
   int tables, sides;             /* of curved contacts; axes or, of meshes, views of a thing, at most */
   int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
   const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double* seebeck;         /* V/K */
+  const double *glued, *glued_laws, *first; /* GLUED of each element, Law of each pad on it; K above the air at first */
   const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
   const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */
   const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
@@ -123,6 +128,7 @@ size_t heat_states(const Numbers* numbers);
 State heat_state(const Numbers* numbers, double* at);
 void heat_reset(const Numbers* numbers, double* at);
 bool heat_valid(const Numbers* numbers, const State* state);
+void heat_redirect(const Numbers* numbers, double* touches);
 void heat_settle(const Numbers* numbers, Work* work, State* state);
 bool heat_march(const Numbers* numbers, Work* work, State* state);
 

@@ -12,7 +12,7 @@ import mujoco
 from thermograsp.errors import InvalidValueError, MissingDependencyError, celsius, non_negative, positive
 
 from ...thermal import Material
-from ..scene import Fingertip, ThermalBody, bodies, pads
+from ..scene import Fingertip, ThermalBody, bodies, glued_elements, pads
 from ..thermal_touch import samples_in, whole_steps
 from .library import load_plugin
 from .numbers import packed
@@ -32,14 +32,13 @@ def install(
     ambient: float = 24.0,
     air: float = 5.0,
 ) -> mujoco.MjModel:
-    """Adds a sensor of that name to the spec and returns the compiled model: its data are the fingertips' voltages (F,)
-    V, in their order, before low-pass, noise and converter. The heat is advanced in mj_step, and what it remembers is
-    part of the simulation's state (mjSTATE_PLUGIN).
+    """Adds a sensor of that name to the spec and returns the compiled model: its data are the voltages (S,) V of the
+    fingertips and then of the elements on objects, in ThermalTouch's orders, before low-pass, noise and converter. The
+    heat is advanced in mj_step, and what it remembers is part of the simulation's state (mjSTATE_PLUGIN).
 
     The arguments are those of ThermalTouch, and so are the voltages'. The pads, objects and the timestep are those that
     the spec has now: install after everything else. Geoms without a name get one. Raises what ThermalTouch and
-    load_plugin do, and InvalidValueError for glued elements, which the plugin does not serve. MissingDependencyError
-    below MuJoCo 3.3.2."""
+    load_plugin do, and MissingDependencyError below MuJoCo 3.3.2."""
     if not hasattr(mujoco.MjSpec, "activate_plugin"):
         raise MissingDependencyError(
             "install adds a plugin to the spec, which MuJoCo's Python can do from 3.3.2 on; this is "
@@ -66,14 +65,10 @@ def install(
     substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
-    for shape in shapes:
-        if shape.elements:
-            raise InvalidValueError(
-                f"object {shape.name!r}: glued elements are not served inside MuJoCo's step; use ThermalTouch"
-            )
     numbers = packed(
         model,
         found,
+        glued_elements(model, shapes, ambient),
         shapes,
         steps=substeps // samples_in(substeps, dt),
         tolerance=tolerance,

@@ -231,7 +231,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     int f = pair[i] / targets, t = pair[i] % targets;
     const double *touch = state->touches + pair[i] * COLUMNS, *own = state->narrow + pair[i] * rates;
     double* root = roots + i * rates;
-    sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : 0, 1);
+    sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : numbers->faces - 1, 1);
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
     resistance[i] = lesser(numbers->sample_steps / touch[CONDUCTANCE], MOST);
     difference[i] = heat_warm(numbers, state, f) - (t >= objects ? heat_warm(numbers, state, t - objects) : 0);

@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 8, HEADER = 15, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 8, HEADER = 16, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256 };
 
 static bool decode(const char* text, size_t count, double* out) {
@@ -39,7 +39,7 @@ static bool numbered(const double* values, size_t count, int things) {
 const char* heat_parse(Numbers* n, const char* text) {
   static const double most[HEADER] = {VERSION,    MOST_TIPS, MOST_OBJECTS, MOST_GEOMS, PATTERNS, MOST_RATES,
                                       MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES, MOST_VIEWS,
-                                      MOST_LINKS};
+                                      MOST_LINKS,  MOST_TIPS};
   memset(n, 0, sizeof *n);
   size_t length = text ? strlen(text) : 0;
   double* at = n->all = malloc(length / 2 + sizeof(double));
@@ -50,7 +50,8 @@ const char* heat_parse(Numbers* n, const char* text) {
     if (!(at[i] >= (i > 7 && i < 11 ? DBL_MIN : 1) && at[i] <= most[i] && (at[i] == floor(at[i]) || (i > 7 && i < 11))))
       return "the attribute \"numbers\" is of another version or broken: write it with thermograsp.touch.install";
   int tips = n->tips = (int)at[1], objects = n->objects = (int)at[2], geoms = n->geoms = (int)at[3];
-  int patterns = n->patterns = (int)at[4], states = n->tip_states = (int)at[6], things = n->things = tips + geoms;
+  int patterns = n->patterns = (int)at[4], states = n->tip_states = (int)at[6], fingers = n->fingers = (int)at[15];
+  int elements = tips - fingers, things = n->things = fingers + geoms;
   n->rates = (int)at[5];
   n->sample_steps = (int)at[7];
   n->timestep = at[8];
@@ -60,6 +61,8 @@ const char* heat_parse(Numbers* n, const char* text) {
   n->tables = (int)at[12];
   n->sides = (int)at[13];
   n->links = (int)at[14];
+  if (elements < 0) return "the attribute \"numbers\" has more fingertips than sensors";
+  n->faces = elements ? 2 : 1;
   n->targets = tips + objects;
   n->places = tips + 2;
   n->states = 1 + n->rates * patterns * n->places;
@@ -71,15 +74,18 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->owner, geoms},
       {&n->pads, (size_t)tips * PAD},
       {&n->boxes, (size_t)objects * BOX},
-      {&n->laws, (size_t)tips * things * 3 * (sizeof(Law) / sizeof(double))},
-      {&n->curved, (size_t)tips * things * n->sides},
+      {&n->laws, (size_t)fingers * things * 3 * (sizeof(Law) / sizeof(double))},
+      {&n->curved, (size_t)fingers * things * n->sides},
       {&n->views, (size_t)things * n->sides * VIEW},
       {&n->viewed, things},
-      {&n->tilts, (size_t)tips * things * 3 * TILT},
+      {&n->tilts, (size_t)fingers * things * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
-      {&n->bends, (size_t)tips * BEND},
+      {&n->bends, (size_t)fingers * BEND},
       {&n->curves, (size_t)things * 3 * CURVES},
+      {&n->glued, (size_t)elements * GLUED},
+      {&n->glued_laws, (size_t)fingers * elements * (sizeof(Law) / sizeof(double))},
+      {&n->first, tips},
       {&n->seebeck, tips},
       {&n->backs, (size_t)tips * (sizeof(Back) / sizeof(double))},
       {&n->back_first, (size_t)tips * (CHAIN + n->links)},
@@ -87,7 +93,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->back_heat, (size_t)tips * n->links},
       {&n->tip_area, tips},
       {&n->tip_rates, (size_t)tips * states},
-      {&n->tip_ports, (size_t)tips * patterns * states},
+      {&n->tip_ports, (size_t)tips * n->faces * patterns * states},
       {&n->tip_drop, (size_t)tips * states},
       {&n->tip_element, (size_t)tips * states},
       {&n->tip_uniform, (size_t)tips * states},
@@ -115,14 +121,16 @@ const char* heat_parse(Numbers* n, const char* text) {
     if (total > length / 16) break;
   }
   if (total != length / 16) return "the attribute \"numbers\" has another length than it says itself";
-  size_t law = sizeof(Law) / sizeof(double), laws = (size_t)tips * things * 3;
-  const double* across = n->laws + offsetof(Law, across) / sizeof(double);
+  size_t law = sizeof(Law) / sizeof(double), laws = (size_t)fingers * things * 3;
+  const double *across = n->laws + offsetof(Law, across) / sizeof(double), *glued_across = n->glued_laws + (across - n->laws);
   for (int f = 0; f < tips; f++)
     if (!numbered(&((const Back*)n->backs)[f].read, 1, n->links)) return "the attribute \"numbers\" reads what is not there";
   /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
   if (!within(n->roles, n->named, 1, things - 1) || !within(n->owner, geoms, 1, objects - 1) ||
       !within(across, laws, law, 2) || !within(across + 1, laws, law, 2) ||
-      !numbered(n->curved, (size_t)tips * things * n->sides, n->tables) || n->sides < 3 ||
+      !numbered(n->curved, (size_t)fingers * things * n->sides, n->tables) || n->sides < 3 ||
+      !within(n->glued + ON, elements, GLUED, objects - 1) ||
+      !within(glued_across, (size_t)fingers * elements, law, 2) || !within(glued_across + 1, (size_t)fingers * elements, law, 2) ||
       !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;

@@ -9,6 +9,7 @@ F: fingertips, O: objects, G: geoms of the objects, N = G + F: what a pad may me
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 
 import mujoco
 import numpy as np
@@ -17,8 +18,8 @@ from ...thermal.contact import FIRST_FORCE, FORCE_STEP, LEAST_CURVED, LOG_LEAST,
 from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES, TO_MOMENTS, before
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
-from ..contacts import bends, curves, pair_laws
-from ..heat import AFTERWARDS, narrow_of, resolution, tip_field, untouched
+from ..contacts import BOND, GluedContacts, bends, curves, pair_laws
+from ..heat import AFTERWARDS, TipField, narrow_of, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
@@ -28,6 +29,7 @@ _VERSION = 8
 def packed(
     model: mujoco.MjModel,
     pads: Sequence[PadPlace],
+    glued: Sequence[PadPlace],
     shapes: Sequence[BodyShape],
     *,
     steps: int,
@@ -36,43 +38,54 @@ def packed(
     ambient: float,
 ) -> str:
     """The attribute "numbers". steps: of the model in a sample of heat. tolerance: K. film: W/(m2 K) of the air at
-    `ambient` °C."""
-    level = resolution(tolerance)
-    fields = [tip_field(pad, level) for pad in pads]
+    `ambient` °C. glued: the elements on objects, sensors behind the fingertips'."""
+    level, sensors = resolution(tolerance), (*pads, *glued)
+    fields = [tip_field(pad, level) for pad in sensors]
     tips = [field.tip for field in fields]
     most = max(1, *(len(tip.side.rates) for tip in tips))
     owner = [o for o, shape in enumerate(shapes) for _ in shape.geoms]
     roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
     roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
     timestep = float(model.opt.timestep)
-    nodes, backs = back_rows(pads, fields, timestep * steps, ambient)
+    nodes, backs = back_rows(sensors, fields, timestep * steps, ambient)
     found = pair_laws(model, pads, shapes)
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
+    met = GluedContacts(pads, glued, len(shapes), 1)
     header = (
-        *(_VERSION, len(pads), len(shapes), len(owner), level.patterns, level.rates, most, steps),
-        *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1], nodes),
+        *(_VERSION, len(sensors), len(shapes), len(owner), level.patterns, level.rates, most, steps),
+        *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1], nodes, len(pads)),
     )
     every = (
         header,
         roles,
         owner,
-        *((*pad.position, *pad.axes.T.ravel(), *(pad.size / 2), pad.stack.width) for pad in pads),
+        *((*pad.position, *pad.axes.T.ravel(), *(pad.size / 2), pad.stack.width) for pad in sensors),
         *(_box(shape, film, ambient) for shape in shapes),
-        np.concatenate([laws[name].reshape(laws.size, -1) for name in laws.dtype.names or ()], axis=1),
+        _columns(laws),
         curved,
         views,
         viewed,
         tilts,
         tables,
-        *(narrow_of(pad, other, level) for pad in pads for other in (*(s.material for s in shapes), *pads)),
+        *(
+            narrow_of(pad, other, level)
+            for pad in sensors
+            for other in (*(s.material for s in shapes), *sensors)
+        ),
         bends(pads),
         curves(model, pads, shapes),
-        [pad.stack.seebeck for pad in pads],
+        [
+            (each.glued or 0, small, BOND * each.stack.width**2)
+            for each, small in zip(glued, met.small, strict=True)
+        ],
+        _columns(met.laws),
+        [0.0 if pad.glued is None else shapes[pad.glued].temperature - ambient for pad in sensors],
+        [pad.stack.seebeck for pad in sensors],
         *backs,
         [tip.area for tip in tips],
         [_row(tip.side.rates, most) for tip in tips],
-        *([_row(port, most) for port in tip.side.ports.T] for tip in tips),
+        *(_row(port, most) for field in fields for side in _faces(field, glued) for port in side.T),
         *([_row(tip.side.outputs[name], most) for tip in tips] for name in ("drop", "element")),
         [_row(field.uniform, most) for field in fields],
         *(tip.basis for tip in tips),
@@ -95,6 +108,17 @@ def _box(shape: BodyShape, film: float, ambient: float) -> tuple[float, ...]:
         *(bare.rates[0], (shape.temperature - ambient) * bare.heat[0]),
         before(diffusivity) / matter.volumetric_heat_capacity,
     )
+
+
+def _faces(field: TipField, glued: Sequence[PadPlace]) -> tuple[np.ndarray, ...]:
+    """The ports of a sensor's network: for what it is on, and where there are elements for what is on it."""
+    return (field.tip.side.ports, field.face) if glued else (field.tip.side.ports,)
+
+
+def _columns(laws: np.ndarray) -> np.ndarray:
+    """(laws, numbers) of records."""
+    parts = [laws[name] for name in laws.dtype.names or ()]
+    return np.concatenate([part.reshape(laws.size, prod(part.shape[laws.ndim :])) for part in parts], axis=1)
 
 
 def _row(values: np.ndarray, length: int) -> np.ndarray:

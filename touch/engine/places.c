@@ -40,7 +40,11 @@ void heat_reset(const Numbers* numbers, double* at) {
   for (int i = 0; i < numbers->tips * numbers->objects; i++) state.current[i] = -1;
   for (int o = 0; o < numbers->objects; o++) state.x[o * numbers->states] = numbers->boxes[o * BOX + FIRST];
   memcpy(state.backs, numbers->back_first, sizeof(double) * numbers->tips * (CHAIN + numbers->links));
-  for (int f = 0; f < numbers->tips; f++) state.voltages[f] = heat_voltage(numbers, &state, f, 0);
+  for (int f = 0; f < numbers->tips; f++) {
+    state.voltages[f] = heat_voltage(numbers, &state, f, 0);
+    for (int k = 0, s = numbers->tip_states; k < s; k++)
+      state.x[numbers->objects * numbers->states + f * s + k] = numbers->first[f] * numbers->tip_uniform[f * s + k];
+  }
 }
 
 static bool whole(double value, int least, int most) { return value >= least && value <= most && value == floor(value); }

@@ -1,4 +1,4 @@
-/* thermograsp.heat: a sensor plugin of MuJoCo. Its data are the voltages of a model's fingertips, V before low-pass, noise
+/* thermograsp.heat: a sensor plugin of MuJoCo. Its data are the voltages of a model's fingertips and glued elements, V before low-pass, noise
 and converter; its state holds the fields and the places of all fingertips and objects.
 
 Attributes: "geoms", names with commas between, and "numbers", see numbers.c; thermograsp.touch.install writes both. What
@@ -29,7 +29,7 @@ static int failed(const char* what) {
 /* Says where the parts of the work stand in the block, and returns its size in doubles; each part begins on a line of the
 processor's cache. */
 static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* block) {
-  size_t used = 0, wide = (size_t)n->places * n->patterns;
+  size_t used = 0, wide = (size_t)n->places * n->patterns, faced = (size_t)n->faces * n->patterns;
   size_t size = n->places * SLOT + n->states * (3 + wide) + (n->states + wide * wide) * (sizeof(Complex) / sizeof(double));
   size_t aside = ASIDE / (size * n->objects);
   work->aside = aside < 1 ? 1 : aside > MOST_ASIDE ? MOST_ASIDE : (int)aside;
@@ -49,8 +49,8 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
     PART(network->fade, states, double);
     PART(network->kept, states, double);
     PART(network->scale, states, Complex);
-    PART(network->gram, tip ? (size_t)n->patterns * n->patterns : wide * wide, Complex);
-    PART(network->ports, (tip ? 1 : n->places) * n->patterns * states, double);
+    PART(network->gram, tip ? faced * faced : wide * wide, Complex);
+    PART(network->ports, (tip ? n->faces : n->places) * n->patterns * states, double);
   }
   PART(work->turn, n->objects, int);
   PART(work->kept, n->rates, double);
@@ -58,7 +58,7 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
   PART(work->role, m->ngeom, int);
   PART(work->geom, n->things, int);
   PART(work->body, n->things, int);
-  size_t room = heat_network_room(n), other = heat_carry_room(n), forces = (size_t)n->tips * n->things * 3;
+  size_t room = heat_network_room(n), other = heat_carry_room(n), forces = (size_t)n->fingers * n->things * 3;
   room = room > other ? room : other;
   PART(work->room, room > forces ? room : forces, double);
 #undef PART
@@ -83,10 +83,10 @@ static const char* find(const Numbers* n, Work* work, const mjModel* m, const ch
     int geom = mj_name2id(m, mjOBJ_GEOM, name), role = (int)n->roles[i];
     if (geom < 0) return "the attribute \"geoms\" names a geom that the model does not have: install after all other changes";
     if (work->role[geom] >= 0) return "the attribute \"geoms\" names a geom twice";
-    int thing = role < n->tips ? n->geoms + role : role - n->tips;
+    int thing = role < n->fingers ? n->geoms + role : role - n->fingers;
     work->role[geom] = role;
     work->body[thing] = m->geom_bodyid[geom];
-    if (role >= n->tips) work->geom[thing] = geom;
+    if (role >= n->fingers) work->geom[thing] = geom;
   }
   if (*names) return "the attribute \"geoms\" has more names than there are numbers for";
   for (int g = 0; g < n->things; g++)
@@ -144,8 +144,8 @@ static int init(const mjModel* m, mjData* d, int instance) {
   for (int t = 0; t < n->targets + 1 + n->objects * heat->work.aside; t++) heat->work.networks[t].count = -1;
   for (int f = 0; f < n->tips; f++) {
     Network* network = &heat->work.networks[n->objects + f];
-    network->count = 1;
-    int states = network->n = n->tip_states, ports = n->patterns * states;
+    network->count = n->faces;
+    int states = network->n = n->tip_states, ports = n->faces * n->patterns * states;
     memcpy(network->rates, n->tip_rates + f * states, sizeof(double) * states);
     memcpy(network->ports, n->tip_ports + f * ports, sizeof(double) * ports);
     heat_pace(n, network);
@@ -195,6 +195,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   if (++*state.count < n->sample_steps) return;
   *state.count = 0;
   if (heat_valid(n, &state)) {
+    heat_redirect(n, state.touches);
     heat_settle(n, &heat->work, &state);
     if (!heat_march(n, &heat->work, &state)) failed("there is no memory: a sample of heat is left out");
     memset(state.touches, 0, sizeof(double) * n->tips * n->targets * COLUMNS);
