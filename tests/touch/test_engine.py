@@ -335,10 +335,13 @@ def test_worlds_of_a_batch_keep_their_networks(model: mujoco.MjModel) -> None:
         many.step(nstep=300)
         for _ in range(3):
             many.step(nstep=5)
-        begun = time.process_time()
-        for _ in range(30):
-            many.step(nstep=5)
-        times.append(time.process_time() - begun)
+        rounds = []  # the quickest counts: the process may have other work in one
+        for _ in range(5):
+            begun = time.process_time()
+            for _ in range(10):
+                many.step(nstep=5)
+            rounds.append(time.process_time() - begun)
+        times.append(min(rounds))
     assert times[1] < 2 * times[0]
 
 
