@@ -38,11 +38,8 @@ from .teachers import TEACHERS
 VALIDATION = 900_000_000
 """Seed of the first episode that chooses among a training's checkpoints. Training itself uses seeds below 1e8."""
 MOST_SEED = 999
-_ROUND, _HALF, _PPO = (
-    1_000,
-    500,
-    50_000,
-)  # seeds of a round and of half of it, and PPO's first, within a training's 1e5
+_ROUND, _HALF, _PPO = 1_000, 500, 50_000
+"""Seeds of a round and of half of it, and PPO's first, within a training's 1e5."""
 POLICY, STATE, MODEL, SEEN = "policy.npz", "state.json", "model.zip", "seen.npz"
 
 
