@@ -26,7 +26,7 @@ class Chain:
     (N, N), and heat: (N,) K/W, over a step. reading: at the start, of node `read`, or -1 for what the element's drop
     leaves. power: W at the start. The controller: setpoint, gains W/K, W/K of a step and W/K of a step's change, limit
     W, and the force N that cuts it. answering: W/K of a step's change. room: W from surroundings that are warmer than
-    the air. divider: supply V, ratio, K and K."""
+    the air. voltage: V at the start, of the divider: supply V, ratio, K and K."""
 
     nodes: np.ndarray
     decay: np.ndarray
@@ -40,6 +40,7 @@ class Chain:
     cut: float = _NEVER
     answering: float = 0.0
     room: float = 0.0
+    voltage: float = 0.0
     divider: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -66,8 +67,10 @@ def back_rows(
         capacity = 0.0 if pad.bare else pad.stack.heat_capacity
         unknown = capacity - float(field.tip.side.outputs["element"] @ field.uniform)
         control = chain.setpoint, *chain.gains, chain.limit, chain.cut
-        rows.append((*control, chain.answering - unknown / dt, chain.room, read, *chain.divider))
-        first.append((chain.reading, chain.reading, chain.power, 0.0, 0.0, *np.zeros(behind), *chain.nodes))
+        moves = pad.heated is not None or pad.thermostat is not None
+        rows.append((moves, *control, chain.answering - unknown / dt, chain.room, read, *chain.divider))
+        record = chain.voltage, chain.reading, chain.reading, chain.power, 0.0, 0.0
+        first.append((*record, *np.zeros(behind), *chain.nodes))
     return most, [np.array(rows), np.array(first), decay, heat]
 
 
@@ -117,5 +120,6 @@ def _core(sensor: HeatedStack, temperature: float, dt: float, ambient: float) ->
         limit=(limit or power) * area,
         cut=min(drive.ends, _NEVER),
         answering=core.answering / dt,
+        voltage=float(divider.voltage(begun.reading)[0]),
         divider=(divider.supply, ratio, divider.beta, zero),
     )

@@ -34,13 +34,14 @@ enum { VIEW = 11 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
 enum { TURN_BY, SOFT, FIRM, APART, RADIUS, HALF_ROD, HALF_PAD, HALF_FACE, TILT };
 
-/* what is behind an element, see engine/backs.py: its controller, what its last change keeps back, W of the room, what it
+/* what is behind an element, see engine/backs.py: whether it moves, its controller, what its last change keeps back, W of the room, what it
 reads, and a divider's numbers, supply 0 where its sensor sends a drop */
 typedef struct {
-  double setpoint, proportional, integral, derivative, limit, cut, answering, room, read, supply, ratio, beta, zero;
+  double moves, setpoint, proportional, integral, derivative, limit, cut, answering, room, read, supply, ratio, beta, zero;
 } Back;
-/* what it remembers: K read, now and before, W, whether it is cut, K of its last change; behind them the chain */
-enum { READING, PREVIOUS, INTEGRAL, CUT, CHANGE, CHAIN };
+/* what is remembered: V that the sensor sends, K read, now and before, W, whether it is cut, K of the last change; behind
+them the chain */
+enum { VOLTAGE, READING, PREVIOUS, INTEGRAL, CUT, CHANGE, CHAIN };
 
 typedef struct {
   double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
@@ -112,7 +113,7 @@ typedef struct {
 
 /* The state of an instance, numbers in MuJoCo's plugin_state. */
 typedef struct {
-  double *count, *touches, *places, *used, *current, *narrow, *x, *voltages, *backs;
+  double *count, *touches, *places, *used, *current, *narrow, *x, *backs; /* backs: CHAIN + links of each sensor */
 } State;
 
 /* As fmin and fmax of numbers, which compilers call; where the first is none the second is taken. */
@@ -132,13 +133,9 @@ void heat_redirect(const Numbers* numbers, double* touches);
 void heat_settle(const Numbers* numbers, Work* work, State* state);
 bool heat_march(const Numbers* numbers, Work* work, State* state);
 
-/* K above the air behind element f; whether that stays; V that its sensor sends. */
-double heat_warm(const Numbers* numbers, const State* state, int f);
-bool heat_stays(const Numbers* numbers, int f);
-double heat_voltage(const Numbers* numbers, const State* state, int f, double drop);
-/* A sample of what is behind element f. drawn: W. force: N. drop: K. x: the element's states, which are then seen from where
-its back has gone. */
-void heat_behind(const Numbers* numbers, const State* state, int f, double drawn, double force, double drop, double* x);
+/* A sample of what is behind element f. drawn: W. force: N. drop: K. at: what it remembers. x: the element's states, which are
+then seen from where its back has gone. */
+void heat_behind(const Numbers* numbers, int f, double drawn, double force, double drop, double* at, double* x);
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);

@@ -190,6 +190,11 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
   }
 }
 
+/* K above the air behind an element. */
+static double warm(const Numbers* numbers, const State* state, int f) {
+  return state->backs[(f + 1) * (CHAIN + numbers->links) - 1];
+}
+
 /* What a fingertip's states x tell, by one of its rows. */
 static double row(const Numbers* numbers, const double* rows, int f, const double* x) {
   double total = 0;
@@ -222,6 +227,7 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, double
 bool heat_march(const Numbers* numbers, Work* work, State* state) {
   int tips = numbers->tips, objects = numbers->objects, targets = numbers->targets, rates = numbers->rates, pairs = 0;
   int pair[tips * targets];
+  const Back* backs = (const Back*)numbers->backs;
   for (int i = 0; i < tips * targets; i++)
     if (state->touches[i * COLUMNS + CONDUCTANCE] > 0) pair[pairs++] = i;
   Side sides[2 * pairs + 1]; /* never empty */
@@ -234,7 +240,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : numbers->faces - 1, 1);
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
     resistance[i] = lesser(numbers->sample_steps / touch[CONDUCTANCE], MOST);
-    difference[i] = heat_warm(numbers, state, f) - (t >= objects ? heat_warm(numbers, state, t - objects) : 0);
+    difference[i] = warm(numbers, state, f) - (t >= objects ? warm(numbers, state, t - objects) : 0);
     if (!spread(numbers, pair[i], touch, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
@@ -243,7 +249,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     }
   }
   double drawn[tips];
-  for (int f = 0; f < tips; f++) drawn[f] = heat_stays(numbers, f) ? 0 : -row(numbers, numbers->tip_element, f, field(numbers, state, objects + f));
+  for (int f = 0; f < tips; f++) drawn[f] = backs[f].moves != 0 ? -row(numbers, numbers->tip_element, f, field(numbers, state, objects + f)) : 0;
   if (!has_room(work, (size_t)pairs * numbers->patterns)) return false;
   step(numbers, work, state, pairs, sides, resistance, difference, through);
   for (int i = 0; i < tips * targets; i++)
@@ -253,15 +259,16 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
       state->narrow[pair[i] * rates + k] += work->grown[k] * roots[i * rates + k] * through[i];
   for (int f = 0; f < tips; f++) {
     double *x = field(numbers, state, objects + f), drop = row(numbers, numbers->tip_drop, f, x), force = 0;
-    if (!heat_stays(numbers, f)) {
+    double* at = state->backs + f * (CHAIN + numbers->links);
+    at[VOLTAGE] = numbers->seebeck[f] * drop;
+    if (backs[f].moves != 0) {
       drawn[f] = (drawn[f] + row(numbers, numbers->tip_element, f, x)) / numbers->dt;
       for (int i = 0; i < pairs; i++)
         drawn[f] += through[i] * ((pair[i] / targets == f) - (pair[i] % targets == objects + f));
       for (int t = 0; t < targets; t++) force += state->touches[(f * targets + t) * COLUMNS + FORCE];
       for (int g = 0; g < tips; g++) force += state->touches[(g * targets + objects + f) * COLUMNS + FORCE];
-      heat_behind(numbers, state, f, drawn[f], force / numbers->sample_steps, drop, x);
+      heat_behind(numbers, f, drawn[f], force / numbers->sample_steps, drop, at, x);
     }
-    state->voltages[f] = heat_voltage(numbers, state, f, drop);
   }
   return true;
 }

@@ -17,8 +17,7 @@ enum { IDLE = 2 };    /* places that an object remembers besides those in use */
 size_t heat_states(const Numbers* numbers) {
   size_t tips = numbers->tips, objects = numbers->objects, fields = numbers->targets;
   return 1 + tips * fields * COLUMNS + objects * (numbers->places * SLOT + 1) + tips * objects +
-         tips * fields * numbers->rates + objects * numbers->states + tips * numbers->tip_states + tips +
-         tips * (CHAIN + numbers->links);
+         tips * fields * numbers->rates + objects * numbers->states + tips * (numbers->tip_states + CHAIN + numbers->links);
 }
 
 State heat_state(const Numbers* numbers, double* at) {
@@ -29,8 +28,7 @@ State heat_state(const Numbers* numbers, double* at) {
   state.current = state.used + objects;
   state.narrow = state.current + tips * objects;
   state.x = state.narrow + tips * numbers->targets * numbers->rates;
-  state.voltages = state.x + objects * numbers->states + tips * numbers->tip_states;
-  state.backs = state.voltages + tips;
+  state.backs = state.x + objects * numbers->states + tips * numbers->tip_states;
   return state;
 }
 
@@ -40,11 +38,9 @@ void heat_reset(const Numbers* numbers, double* at) {
   for (int i = 0; i < numbers->tips * numbers->objects; i++) state.current[i] = -1;
   for (int o = 0; o < numbers->objects; o++) state.x[o * numbers->states] = numbers->boxes[o * BOX + FIRST];
   memcpy(state.backs, numbers->back_first, sizeof(double) * numbers->tips * (CHAIN + numbers->links));
-  for (int f = 0; f < numbers->tips; f++) {
-    state.voltages[f] = heat_voltage(numbers, &state, f, 0);
-    for (int k = 0, s = numbers->tip_states; k < s; k++)
-      state.x[numbers->objects * numbers->states + f * s + k] = numbers->first[f] * numbers->tip_uniform[f * s + k];
-  }
+  double* tip = state.x + numbers->objects * numbers->states;
+  for (int i = 0; i < numbers->tips * numbers->tip_states; i++)
+    tip[i] = numbers->first[i / numbers->tip_states] * numbers->tip_uniform[i];
 }
 
 static bool whole(double value, int least, int most) { return value >= least && value <= most && value == floor(value); }

@@ -177,11 +177,13 @@ static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance
 static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   (void)capability;
   const Heat* heat = heat_of(d, instance);
-  State state = heat_state(&heat->numbers, d->plugin_state + m->plugin_stateadr[instance]);
+  const Numbers* n = &heat->numbers;
+  State state = heat_state(n, d->plugin_state + m->plugin_stateadr[instance]);
+  bool known = on_time(n, m);
   for (int s = 0; s < m->nsensor; s++) {
     if (m->sensor_type[s] != mjSENS_PLUGIN || m->sensor_plugin[s] != instance) continue;
-    for (int f = 0; f < heat->numbers.tips; f++)
-      d->sensordata[m->sensor_adr[s] + f] = on_time(&heat->numbers, m) ? state.voltages[f] : NAN;
+    for (int f = 0; f < n->tips; f++)
+      d->sensordata[m->sensor_adr[s] + f] = known ? state.backs[f * (CHAIN + n->links) + VOLTAGE] : NAN;
   }
 }
 
