@@ -37,7 +37,7 @@ from ..matter import Material, Skin
 from .height_map import height_map, map_heights
 
 _POINTS = 40  # along the pad's side, of the foundation
-_FINER = 3  # times as many on the face
+_FINER = 4  # times as many on the face
 _STEPS = 50
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 _TOLERANCE = 1e-12  # of the force
@@ -133,6 +133,7 @@ def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness,
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
+    slopes, touching = np.zeros(on_face), np.zeros(on_face)
     for a in range(1, places.shape[1] - 1):  # nothing is touched at the ends
         for b in range(1, places.shape[1] - 1):
             for k in range(3):
@@ -147,15 +148,16 @@ def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness,
             heights -= least
             if cover[:on_face].max() == 0.0:
                 continue
+            _slope(heights, cover, slopes)
             for n in range(0, len(loads), 2):
                 depth = _sunk(heights, cover, stiffness, loads[n])
-                area, held = 0.0, 0.0
+                held = 0.0
                 for i in range(on_face):
-                    if heights[i] < depth:
-                        area += cover[i]
-                        held += cover[i] * stiffness[i] * (depth - heights[i])
-                touched[n, a, b, 0], touched[n, a, b, 1] = area, held / loads[n]
-                touched[n, a, b, 2] = _long(points, heights, cover, areas[0], on_face, depth)
+                    sunk = depth - heights[i]
+                    touching[i] = cover[i] * _part(sunk, slopes[i])
+                    held += cover[i] * stiffness[i] * max(sunk, 0.0)
+                touched[n, a, b, 0], touched[n, a, b, 1] = touching.sum(), held / loads[n]
+                touched[n, a, b, 2] = _long(points, touching, areas[0])
             # between forces a power of them is taken, which must not begin at nothing
             for n in range(len(loads) - 4, -1, -2):
                 for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
@@ -168,14 +170,38 @@ def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness,
 
 
 @njit(cache=True, error_model="numpy")
-def _long(points, heights, cover, square, on_face, depth):
-    """m, by the contact's second moments; each point counts as a square of that area m2."""
+def _slope(heights, cover, slopes):
+    """Writes by how many m the surface rises over the square of each of the face's points, the gentler of the two ways
+    along both axes: a point at the edge of a crest is on it."""
+    side = round(math.sqrt(len(slopes)))
+    for i in range(len(slopes)):
+        slopes[i] = 0.0
+        for step, at in ((1, i % side), (side, i // side)):
+            least = np.inf
+            if at > 0 and cover[i - step] > 0.0:
+                least = abs(heights[i] - heights[i - step])
+            if at < side - 1 and cover[i + step] > 0.0:
+                least = min(least, abs(heights[i + step] - heights[i]))
+            if least < np.inf:
+                slopes[i] += least
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _part(sunk, slope):
+    """Of a point's square, what touches where its middle has sunk in by so many m."""
+    if slope == 0.0:
+        return 1.0 if sunk > 0.0 else 0.0
+    return min(max(0.5 + sunk / slope, 0.0), 1.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _long(points, touching, square):
+    """m, by the second moments of what of each point touches, m2; a point counts as a square of that area m2."""
     s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(on_face):
-        if heights[i] < depth:
-            w, y, z = cover[i], points[i, 0], points[i, 1]
-            s, sy, sz = s + w, sy + w * y, sz + w * z
-            syy, syz, szz = syy + w * y * y, syz + w * y * z, szz + w * z * z
+    for i in range(len(touching)):
+        w, y, z = touching[i], points[i, 0], points[i, 1]
+        s, sy, sz = s + w, sy + w * y, sz + w * z
+        syy, syz, szz = syy + w * y * y, syz + w * y * z, szz + w * z * z
     if s == 0.0:
         return 0.0
     yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
