@@ -25,7 +25,7 @@ from thermograsp.envs import (
 )
 from thermograsp.errors import InvalidValueError, ThermograspError, UnknownNameError
 from thermograsp.hardware import open_gripper
-from thermograsp.thermal import Identifier, Thermostat, TouchSetup
+from thermograsp.thermal import Identifier, Thermostat, TouchSetup, sensor
 from thermograsp.touch import Fingertip
 
 Call = Callable[[Any], Any]
@@ -133,4 +133,5 @@ def test_samples_that_are_no_numbers() -> None:
 def test_a_thermostat_keeps_all_but_its_setpoint() -> None:
     from thermograsp.thermal.readout import thermostat_at
 
-    assert thermostat_at(30.0, Thermostat(power_limit=2.0)) == Thermostat(setpoint=30.0, power_limit=2.0)
+    found = thermostat_at(30.0, Thermostat(power_limit=2.0), sensor("seed"), 0.01)
+    assert found == Thermostat(setpoint=30.0, power_limit=2.0)

@@ -86,7 +86,8 @@ class SimulatedPlant:
             num_envs, config.chain, per_kelvin, SAMPLE_PERIOD, config.samples, config.most_delay
         )
         if heated is None:
-            self._thermostats = Thermostats(num_envs, config.heater, starts, self.dt)
+            before = self._stack if config.mode == "T" else None
+            self._thermostats = Thermostats(num_envs, config.heater, starts, before, self.dt)
             self._rest_voltage = np.zeros(2)
         else:
             self._thermostats = HeatedCores(num_envs, heated, starts, config.room, self.dt)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...thermal import (
     TOO_HOT,
+    SensorStack,
     Thermostat,
     ThermostatState,
     settled_thermostat,
@@ -25,17 +26,22 @@ _OFF = -273.15  # °C, a setpoint at which no heater works
 
 class Thermostats:
     """Of `num_envs` environments. model: of finite power, None for ideal ones. setpoints: °C of the left and the right
-    one; one of finite power has the left one's. dt: s, the control step.
+    one; one of finite power has the left one's. stack: in front of them, None in O mode. dt: s, the control step.
 
     They protect themselves as the device does (docs/protocol.md, LATCHED_OFF): from the moment that one of an
     environment's two measures TOO_HOT both heaters are off, however far it cools, until a reset sets them anew. An
     ideal one stays at its setpoint and never gets there."""
 
     def __init__(
-        self, num_envs: int, model: Thermostat | None, setpoints: tuple[float, float], dt: float
+        self,
+        num_envs: int,
+        model: Thermostat | None,
+        setpoints: tuple[float, float],
+        stack: SensorStack | None,
+        dt: float,
     ) -> None:
         self.setpoints = np.tile(setpoints, (num_envs, 1))
-        self._model = None if model is None else thermostat_at(setpoints[0], model)
+        self._model = None if model is None else thermostat_at(setpoints[0], model, stack, dt)
         self._dt = dt
         self._hot = np.zeros(num_envs, bool)
         self._tripped = np.zeros((num_envs, 2), bool)

@@ -23,6 +23,7 @@ from thermograsp.thermal import (
     joint,
     material,
     press,
+    sensor,
 )
 from thermograsp.thermal.contact import Pad, face_joint, flat_contact, skinned
 from thermograsp.thermal.stack import heated_core, heated_stack
@@ -635,6 +636,27 @@ def test_a_fingertip_that_starts_inside_its_object_is_refused() -> None:
     mujoco.mj_step(model, data)
     with pytest.raises(InvalidValueError, match="inside object 'block'"):
         touch.update(data)
+
+
+def test_a_plate_that_is_too_light_is_refused_and_the_lightest_one_is_stable() -> None:
+    """Element and plate answer each other a step late, and would push each other further and further."""
+    model = mujoco.MjModel.from_xml_string(ONE_PRESS.format(cone="elliptic"))
+    least = sensor("seed").answering(0.01)
+
+    def touching(heat_capacity: float) -> ThermalTouch:
+        tip = Fingertip("tip", thermostat=Thermostat(heat_capacity=heat_capacity))
+        return ThermalTouch(model, fingertips={"tip": tip}, objects={"block": "aluminium"})
+
+    with pytest.raises(
+        InvalidValueError, match=r"a plate of 0.03 J/K is lighter .* give it 0.0\d+ J/K or more"
+    ):
+        touching(0.03)
+    touch, data = touching(1.001 * least), mujoco.MjData(model)
+    data.ctrl[0] = 10.0
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    assert 1.0 < touch.reading.temperature_drop[0] < 12.0
 
 
 @pytest.mark.parametrize(("name", "mode"), [("glass", "T"), ("aluminium", "T"), ("aluminium", "O")])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -22,6 +23,7 @@ _HEADER = (
     "Layers run from the thermostat side to the object side.",
     "Thickness m, conductivity W/(m K), density kg/m3, specific_heat J/(kg K), width m, seebeck V/K.",
 )
+_REACH = 2.0  # diffusion lengths within a step, up to which layers answer to a change at their back
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,16 @@ class SensorStack:
     def heat_capacity(self) -> float:
         """J/K."""
         return self.face_area * sum(layer.thickness * layer.volumetric_heat_capacity for layer in self.layers)
+
+    def answering(self, dt: float) -> float:
+        """J/K: what it takes within dt s when its back is suddenly 1 K warmer, or somewhat more."""
+        reached, depth = 0.0, 0.0
+        for layer in self.layers:
+            if depth > _REACH * math.sqrt(dt):
+                break
+            reached = max(reached, math.sqrt(layer.conductivity * layer.volumetric_heat_capacity))
+            depth += layer.thickness * math.sqrt(layer.volumetric_heat_capacity / layer.conductivity)
+        return 2 / math.sqrt(math.pi) * reached * math.sqrt(dt) * self.face_area
 
 
 @cache

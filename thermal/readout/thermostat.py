@@ -11,6 +11,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, non_negative, positive
 
+from ..matter import SensorStack
+
 # The seed's plate, 20 x 20 x 1.74 mm, in aluminium: 2700 kg/m3 x 897 J/(kg K); in copper it is 2.40 J/K.
 _PLATE_HEAT_CAPACITY = 0.020 * 0.020 * 1.74e-3 * 2700.0 * 897.0
 
@@ -51,11 +53,21 @@ class Thermostat:
             non_negative(f"thermostat: {name}", getattr(self, name))
 
 
-def thermostat_at(setpoint: float, thermostat: Thermostat) -> Thermostat:
-    """The thermostat with that setpoint, °C. Raises InvalidValueError for what is none, such as a temperature."""
+def thermostat_at(
+    setpoint: float, thermostat: Thermostat, stack: SensorStack | None, dt: float
+) -> Thermostat:
+    """The thermostat with that setpoint, °C, stepped every dt s, behind that element, or bare.
+
+    Raises InvalidValueError for what is none, such as a temperature, and for a plate that is lighter than what of the
+    element follows it within a step: each would push the other further from step to step."""
     if not isinstance(thermostat, Thermostat):
         raise InvalidValueError(
             f"thermostat must be a thermal.Thermostat, or None for an ideal one, got {thermostat!r}"
+        )
+    if stack is not None and thermostat.heat_capacity < (least := stack.answering(dt)):
+        raise InvalidValueError(
+            f"thermostat: a plate of {thermostat.heat_capacity:g} J/K is lighter than what of the sensor {stack.name} "
+            f"follows it within a step of {dt:g} s, {least:.3g} J/K: give it {least:.3g} J/K or more, or a shorter step"
         )
     return replace(thermostat, setpoint=setpoint)
 

@@ -145,7 +145,8 @@ def _back(problem: PressProblem, fingertips: int, dt: float) -> tuple[_Back, _Fo
 
         return first, core_after
     assert problem.thermostat is not None
-    thermostat = thermostat_at(problem.sensor_temperature, problem.thermostat)
+    stack = problem.stack if problem.mode == "T" else None
+    thermostat = thermostat_at(problem.sensor_temperature, problem.thermostat, stack, dt)
 
     def plate_after(
         state: ThermostatState, drawn: np.ndarray, drop: np.ndarray, time: float

@@ -25,7 +25,6 @@ from .design import HeatedStack, Place
 from .laws import HeaterMemory, Held
 
 _LEAST_PIECE = 1e-6  # of a layer's thickness: what a cut leaves beside it is no layer
-_REACH = 2.0  # diffusion lengths within a step, up to which layers answer to a change at their back
 _SLOPE = np.array([24.5, 25.5])  # °C, between which a divider's slope is taken
 
 
@@ -147,20 +146,9 @@ def heated_core(sensor: HeatedStack, dt: float) -> HeatedCore:
     element = SensorStack(sensor.name, (*between, *front), sensor.width, 0, slope)
     area = element.face_area
     held = isinstance(sensor.law, Held)
-    answering = _answering(element, dt)
+    answering = element.answering(dt)
     decay, heat, room = _unmoved(chain) if held else _propagator(chain, area, dt, answering)
     return HeatedCore(sensor, element, readout, dt, decay, heat, room, answering, chain)
-
-
-def _answering(element: SensorStack, dt: float) -> float:
-    """J/K: what an element takes within dt s when its back is suddenly 1 K warmer, or somewhat more."""
-    reached, depth = 0.0, 0.0
-    for layer in element.layers:
-        if depth > _REACH * np.sqrt(dt):
-            break
-        reached = max(reached, float(np.sqrt(layer.conductivity * layer.volumetric_heat_capacity)))
-        depth += layer.thickness * float(np.sqrt(layer.volumetric_heat_capacity / layer.conductivity))
-    return 2 / np.sqrt(np.pi) * reached * np.sqrt(dt) * element.face_area
 
 
 def _propagator(

@@ -7,11 +7,12 @@ controller of both is one: whatever has none heats with the integral that it sta
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...thermal import Thermostat, settled_thermostat
+from ...thermal.readout import thermostat_at
 from ...thermal.stack import HeatedStack, heated_core
 from ..heat import TipField
 from ..scene import PadPlace
@@ -47,7 +48,9 @@ class Chain:
 def chain_of(pad: PadPlace, dt: float, ambient: float) -> Chain:
     """What is behind a pad's element, in steps of dt s in air at `ambient` °C."""
     if pad.thermostat is not None:
-        return _plate(replace(pad.thermostat, setpoint=pad.temperature), dt, ambient)
+        return _plate(
+            thermostat_at(pad.temperature, pad.thermostat, None if pad.bare else pad.stack, dt), dt, ambient
+        )
     if pad.heated is not None:
         return _core(pad.heated, pad.temperature, dt, ambient)
     return Chain(np.array([pad.temperature - ambient]), np.eye(1), np.zeros(1))

@@ -107,7 +107,7 @@ class ThermostatBack(_Back[ThermostatState]):
 
     def __init__(self, pad: PadPlace, number: int, element: TipField, *, worlds: int, dt: float) -> None:
         assert pad.thermostat is not None
-        self._thermostat = thermostat_at(pad.temperature, pad.thermostat)
+        self._thermostat = thermostat_at(pad.temperature, pad.thermostat, None if pad.bare else pad.stack, dt)
         super().__init__(pad, number, element, dt, settled_thermostat(self._thermostat, worlds))
 
     def _after(self, drawn: np.ndarray, drop: np.ndarray, force: np.ndarray) -> ThermostatState:
