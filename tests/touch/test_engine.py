@@ -689,3 +689,23 @@ def test_a_timestep_that_changes_later_gives_no_wrong_voltages() -> None:
     assert np.isnan(data.sensor("heat").data).all()
     with pytest.raises((ValueError, mujoco.FatalError)):
         mujoco.MjData(model)
+
+
+@NEEDS_SPECS
+def test_a_copy_to_a_model_of_other_materials_is_as_its_state() -> None:
+    first, second = (
+        install(
+            mujoco.MjSpec.from_string(hand.scene()), fingertips=PADS, objects={"can": name, "ball": "glass"}
+        )
+        for name in ("aluminium", "wood")
+    )
+    data, copied, restored = mujoco.MjData(first), mujoco.MjData(second), mujoco.MjData(second)
+    order(data, *ORDERS[0])
+    mujoco.mj_step(first, data, 200)
+    mujoco.mj_copyData(copied, second, data)
+    mujoco.mj_setState(second, restored, states(first, data), FULL)
+    restored.ctrl[:], restored.qacc_warmstart[:] = data.ctrl, data.qacc_warmstart
+    for each in (copied, restored):
+        mujoco.mj_step(second, each, 300)
+    apart = copied.sensor("heat").data - restored.sensor("heat").data
+    assert np.abs(apart).max() < 1e-9

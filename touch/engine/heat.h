@@ -82,6 +82,7 @@ typedef struct {
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
   const double *separation, *separation_range;
   double* all; /* what the others point into */
+  size_t length; /* of all */
 } Numbers;
 
 /* Complex numbers at all poles, two at once; behind the poles is one that weighs nothing. */

@@ -46,6 +46,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   if (!at) return "there is no memory";
   if (length % 16 || length < 16 * HEADER || !decode(text, length / 16, at))
     return "the attribute \"numbers\" is broken or missing: write it with thermograsp.touch.install";
+  if (at[0] != VERSION) return "the attribute \"numbers\" is of another version: write it with thermograsp.touch.install";
   for (int i = 0; i < HEADER; i++)
     if (!(at[i] >= (i > 7 && i < 11 ? DBL_MIN : 1) && at[i] <= most[i] && (at[i] == floor(at[i]) || (i > 7 && i < 11))))
       return "the attribute \"numbers\" is of another version or broken: write it with thermograsp.touch.install";
@@ -115,6 +116,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->separation_range, 4},
   };
   size_t total = HEADER;
+  n->length = length / 16;
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i].part = n->all + total;
     total += parts[i].size;

@@ -164,13 +164,14 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
   if (heat) heat_reset(&heat->numbers, plugin_state);
 }
 
-/* The networks go with a copy: making them again would take milliseconds. */
+/* The networks go with a copy, as making them again would take milliseconds, but not to a model of other numbers. */
 static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance) {
   (void)m;
   const Heat* from = heat_of(src, instance);
   Heat* to = heat_of(dest, instance);
   if (!from || !to) return;
-  const Numbers* n = &from->numbers;
+  const Numbers *n = &from->numbers, *other = &to->numbers;
+  if (n->length != other->length || memcmp(n->all, other->all, n->length * sizeof(double))) return;
   for (int o = 0; o < n->objects; o++) heat_copy_network(n, &from->work.networks[o], &to->work.networks[o]);
 }
 
