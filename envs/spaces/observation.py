@@ -67,8 +67,9 @@ class Observer:
         if np.count_nonzero(self._fresh):
             begins = self._fresh & seen
             voltage[begins], self._fresh[begins] = samples[begins, :, :1], False
-        voltage[:, :, : -samples.shape[2]] = voltage[:, :, samples.shape[2] :]
-        voltage[:, :, -samples.shape[2] :] = samples
+        kept = HISTORY - samples.shape[2]
+        voltage[:, :, :kept] = voltage[:, :, samples.shape[2] :]
+        voltage[:, :, kept:] = samples
         gripper[:, 0], gripper[:, 1] = reading.opening, reading.opening_rate
         gripper[:, 2], gripper[:, 3] = reading.height, force_limit
         force[:], thermostat[:] = reading.force, reading.thermostat
