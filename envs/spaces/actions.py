@@ -16,9 +16,10 @@ from thermograsp.plant import Command
 
 from ..limits import MAX_FORCE, MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
 
-# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE.
+# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE, within _LOW .. _HIGH.
 _MIDDLE = np.array([1.0, 1.0, 0.0])
 _HALF_RANGE = np.array([MAX_OPENING / 2, MAX_FORCE / 2, MAX_LIFT_RATE])
+_LOW, _HIGH = (_MIDDLE - 1.0) * _HALF_RANGE, (_MIDDLE + 1.0) * _HALF_RANGE
 
 
 def action_space() -> gymnasium.spaces.Box:
@@ -29,26 +30,29 @@ def action_space() -> gymnasium.spaces.Box:
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
     array = checked_action(action, 3, "opening, force limit, lift rate", np.float32)  # as the space's
-    command = (np.minimum(np.maximum(array.astype(float), -1.0), 1.0) + _MIDDLE) * _HALF_RANGE
+    command = np.minimum(np.maximum((array + _MIDDLE) * _HALF_RANGE, _LOW), _HIGH)
     return Command(command[:, 0], command[:, 1], command[:, 2])
 
 
 def checked_action(action: Any, numbers: int, parts: str, kind: type = float) -> np.ndarray:
     """Actions as an array (B, numbers) of that kind. Raises InvalidValueError, which names the parts of an action, for
     another shape, what is no number, and numbers that are not finite."""
-    wanted = f"an action is ({numbers},): {parts}, each -1 .. 1; got"
     try:
         array = np.ascontiguousarray(action, kind)
     except (TypeError, ValueError):
-        raise InvalidValueError(f"{wanted} {np.asarray(action, object)[0]!r}") from None
+        raise _not_an_action(numbers, parts, repr(np.asarray(action, object)[0])) from None
     if array.ndim != 2 or array.shape[1] != numbers:
-        raise InvalidValueError(f"{wanted} shape {np.shape(action)[1:]}")
+        raise _not_an_action(numbers, parts, f"shape {np.shape(action)[1:]}")
     if np.count_nonzero(np.isfinite(array)) < array.size:
         row = int(np.argmin(np.isfinite(array).all(axis=1)))
         raise InvalidValueError(
             f"action {array[row]} of environment {row} is not finite: give numbers in -1 .. 1"
         )
     return array
+
+
+def _not_an_action(numbers: int, parts: str, got: str) -> InvalidValueError:
+    return InvalidValueError(f"an action is ({numbers},): {parts}, each -1 .. 1; got {got}")
 
 
 def sliding_action_space() -> gymnasium.spaces.Box:
