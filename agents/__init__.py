@@ -6,7 +6,7 @@ from thermograsp.doors import opened
 
 if TYPE_CHECKING:
     from thermograsp.agents.episodes import rollout
-    from thermograsp.agents.gripper_check import FELT_AFTER, check_gripper
+    from thermograsp.agents.gripper_check import REPORTED_AFTER, check_gripper
     from thermograsp.agents.learning import Agent
     from thermograsp.agents.policies import POLICIES, Policy, load_policy, policy
     from thermograsp.agents.recording import LONGEST, Recording, columns_of, record
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from thermograsp.agents.stopwatch import Stopwatch
 
 __all__ = [
-    "FELT_AFTER",
+    "REPORTED_AFTER",
     "LONGEST",
     "POLICIES",
     "Agent",

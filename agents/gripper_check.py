@@ -21,7 +21,7 @@ from thermograsp.errors import positive
 MATERIALS = ("glass", "aluminium")
 WIDTH = 0.04  # m, of the object where the gripper opens that wide
 MOST_SLIP = 0.0005  # m, along the pads while held
-FELT_AFTER = 1.0  # s of contact, at which the temperature drops are reported
+REPORTED_AFTER = 1.0  # s of contact, at which the temperature drops are reported
 _ROOM, _GAP = (
     0.008,
     0.003,
@@ -150,8 +150,8 @@ class _Watch:
         slip = float(np.linalg.norm(inside[-1] - inside[-held]))
         drop = (math.nan, math.nan)
         both = np.flatnonzero((forces > 0).all(axis=1))
-        if len(both) and both[0] + round(FELT_AFTER / dt) < len(drops):
-            left, right = drops[both[0] + round(FELT_AFTER / dt)].tolist()
+        if len(both) and both[0] + round(REPORTED_AFTER / dt) < len(drops):
+            left, right = drops[both[0] + round(REPORTED_AFTER / dt)].tolist()
             drop = left, right
         left, right = forces[-held:].mean(axis=0).tolist()
         return Trial(material, (left, right), slip, drop, float(places[-1, 2] - places[0, 2]), "")

@@ -116,7 +116,7 @@ class ThermalTouch:
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
         self._ambient = ambient
-        self._own = {
+        self._made_with = {
             "fingertips": self.fingertips,
             "objects": self.objects,
             "elements": self.elements,
@@ -406,7 +406,7 @@ class ThermalTouch:
             (electronics.pressed.copy(), electronics.off.copy(), int(self._taken[0])),
             tuple(electronics.noise.state(w) for w in range(len(self._time))),
             self._reading,
-            dict(self._own),
+            dict(self._made_with),
         )
 
     def set_state(self, state: TouchState) -> None:
@@ -414,11 +414,11 @@ class ThermalTouch:
         reader, electronics = self._reader, self._electronics
         if not isinstance(state, TouchState):
             raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
-        for name, own in self._own.items():
-            if state.of[name] != own:
+        for name, expected in self._made_with.items():
+            if state.of[name] != expected:
                 raise InvalidValueError(
-                    f"the state is of another ThermalTouch, whose {name} are {state.of[name]!r} in place of {own!r}: "
-                    "make this one alike"
+                    f"the state is of another ThermalTouch, whose {name} are {state.of[name]!r} in place of "
+                    f"{expected!r}: make this one alike"
                 )
         self._near = _NOBODY
         self._time[:], self._started, self._reading = state.time, state.started, state.reading

@@ -42,8 +42,8 @@ class GraspTeacher(FeelingGrasp):
     """Closes with little force until something touches, for heavy fingers would hit it with more than they press with.
     Then gently, and firmly on an object that needs it and bears it, also while one fingertip has to push it."""
 
-    _closing, _felt = 2.0, 0.5  # N, until something touches, and what a touch gives at least
-    _met = 0.15  # s of touch, after which both fingers have come to rest
+    _closing, _touch_force = 2.0, 0.5  # N, until something touches, and what a touch gives at least
+    _settling_time = 0.15  # s of touch, after which both fingers have come to rest
     _firm = 38.0  # N, near the gripper's 40: drawn metals need up to 57 N
     _known = 0.3  # s of touch, after which an agent can tell what it touches
 
@@ -60,11 +60,13 @@ class GraspTeacher(FeelingGrasp):
 
     def action(self, observation: dict[str, np.ndarray], learner: np.ndarray | None = None) -> np.ndarray:
         """As the script's, but firm as soon as an object that needs it has been touched for long enough."""
-        touching = np.any(observation["force"][:, :, 0] > self._felt, axis=1)
+        touching = np.any(observation["force"][:, :, 0] > self._touch_force, axis=1)
         self._touched = np.where(touching, self._touched + self._dt, 0.0)
         firm = (self._touched > self._known) & self._heavy(observation)
-        met = np.where(self._touched > self._met, np.maximum(self._force, self._gentle), self._force)
-        self._force = np.where(firm, self._firm, met)
+        settled = np.where(
+            self._touched > self._settling_time, np.maximum(self._force, self._gentle), self._force
+        )
+        self._force = np.where(firm, self._firm, settled)
         return super().action(observation)
 
     def _decide(self, observation: dict[str, np.ndarray], rows: np.ndarray) -> None:

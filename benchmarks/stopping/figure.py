@@ -58,8 +58,8 @@ def _windows(axes: Axes, record: Record) -> None:
 
 
 def _declared(axes: Axes, record: Record) -> None:
-    own, fixed = record["declared"], record["fixed"]
-    last = 2 * own["contact_s"]
+    declared, fixed = record["declared"], record["fixed"]
+    last = 2 * declared["contact_s"]
     axes.plot(
         fixed["contact_s"],
         [100 * each for each in fixed["right"]],
@@ -69,8 +69,8 @@ def _declared(axes: Axes, record: Record) -> None:
         label="always at the same decision",
     )
     axes.plot(
-        [own["contact_s"]],
-        [100 * own["right"]],
+        [declared["contact_s"]],
+        [100 * declared["right"]],
         "*",
         color=_LOOKS["agent"][0],
         ms=13,

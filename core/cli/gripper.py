@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     """Checks, draws and prints; 1 where the gripper is not fit."""
     output, picture = Output(args.json), target(args.render, (".png",))
     load_mujoco(output)
-    from thermograsp.agents import FELT_AFTER, check_gripper
+    from thermograsp.agents import REPORTED_AFTER, check_gripper
     from thermograsp.envs import load_gripper
 
     gripper = load_gripper(
@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     check = check_gripper(gripper, shape=args.shape, force=args.force)
     output.line(
         f"grasps of a {check.shape}, {1e3 * check.width:.0f} mm wide, at a limit of {check.limit:.1f} N; drops after "
-        f"{FELT_AFTER:g} s of contact:"
+        f"{REPORTED_AFTER:g} s of contact:"
     )
     header = ("material", "left N", "right N", "left K", "right K", "lifted mm", "slip mm")
     output.table(

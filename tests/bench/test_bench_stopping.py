@@ -92,5 +92,7 @@ def test_the_shipped_agent_knows_its_materials_in_the_quick_run(written: tuple[P
     for name in ("stopping.png", "stopping.svg"):
         assert str(folder / name) in document["figures"]
     assert found["right"]["agent"][2] >= 0.9  # after .3 s
-    own = found["declared"]
-    assert 0 < own["contact_s"] < 1 and own["right"] >= own["fixed_right"] - 0.1  # two of twenty
+    by_agent = found["declared"]
+    assert (
+        0 < by_agent["contact_s"] < 1 and by_agent["right"] >= by_agent["fixed_right"] - 0.1
+    )  # two of twenty

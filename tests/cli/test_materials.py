@@ -8,7 +8,7 @@ import pytest
 from thermograsp import thermal
 from thermograsp.cli import main
 
-OWN = """
+TABLE = """
 [sources]
 guess = "A guess"
 [materials.soap]
@@ -42,7 +42,7 @@ def test_a_comparison_names_its_sources(capsys: pytest.CaptureFixture[str]) -> N
 
 def test_ones_own_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = tmp_path / "own.toml"
-    table.write_text(OWN)
+    table.write_text(TABLE)
     assert main(["materials", "--materials", str(table), "--sort", "name", "--json"]) == 0
     assert [one["name"] for one in json.loads(capsys.readouterr().out)["materials"]] == ["soap"]
     assert main(["press", "soap", "--materials", str(table), "--seconds", "1", "--json"]) == 0

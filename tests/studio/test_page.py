@@ -48,12 +48,12 @@ def serving(port: int = 0) -> Iterator[tuple[subprocess.Popen[str], str]]:
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=heed)
     try:
         assert process.stdout is not None
-        told = ""
-        while not told.endswith("}\n"):
+        printed = ""
+        while not printed.endswith("}\n"):
             line = process.stdout.readline()
             assert line, "the studio ended before it told its address"
-            told += line
-        yield process, json.loads(told)["url"]
+            printed += line
+        yield process, json.loads(printed)["url"]
     finally:
         process.kill()
         process.wait()

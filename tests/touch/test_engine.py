@@ -112,8 +112,8 @@ def furthest(model: mujoco.MjModel, data: mujoco.MjData, touch: ThermalTouch) ->
         mujoco.mj_step(model, data)
         touch.update(data)
         if n % 10 == 9:
-            apart = voltages(model, data) - sent(touch)
-            most = max(most, float(np.abs(apart / per_kelvin(touch)).max()))
+            difference = voltages(model, data) - sent(touch)
+            most = max(most, float(np.abs(difference / per_kelvin(touch)).max()))
     return most
 
 
@@ -173,8 +173,8 @@ def test_its_voltages_are_those_of_thermal_touch(case: dict) -> None:
                 plugin_touches = data.plugin_state[1 : 1 + touches.size].reshape(touches.shape)
                 np.testing.assert_allclose(plugin_touches, touches, rtol=1e-12, atol=1e-15)
             if n % 10 == 9:
-                apart = voltages(model, data) - sent(touch)
-                assert np.abs(apart / per_kelvin(touch)).max() < ROUND_OFF
+                difference = voltages(model, data) - sent(touch)
+                assert np.abs(difference / per_kelvin(touch)).max() < ROUND_OFF
                 touching.add(reading.touching)
         places = max(places, *(len(field.places) for field in touch._heat._fields[0]))
     assert len(touching) > 2 and places == len(PADS) + 2  # places have gone again
@@ -707,5 +707,5 @@ def test_a_copy_to_a_model_of_other_materials_is_as_its_state() -> None:
     restored.ctrl[:], restored.qacc_warmstart[:] = data.ctrl, data.qacc_warmstart
     for each in (copied, restored):
         mujoco.mj_step(second, each, 300)
-    apart = copied.sensor("heat").data - restored.sensor("heat").data
-    assert np.abs(apart).max() < 1e-9
+    difference = copied.sensor("heat").data - restored.sensor("heat").data
+    assert np.abs(difference).max() < 1e-9

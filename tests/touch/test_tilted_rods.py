@@ -114,8 +114,8 @@ def test_what_silicone_and_skin_take_is_that_of_springs_cell_by_cell(degrees: fl
     own, cell = sheet.foundation_modulus / sheet.thickness, (PAD.width / 200) ** 2
     found = np.zeros(len(places))
     pressure_map(coarse[2].ravel(), (stiff / own).ravel(), places, cell, own, 0.02, force, middle, found)
-    theirs = found.reshape(200, 200)
-    assert theirs[coarse[4]].sum() * cell == pytest.approx(load, abs=0.03 * force)
+    pressures = found.reshape(200, 200)
+    assert pressures[coarse[4]].sum() * cell == pytest.approx(load, abs=0.03 * force)
 
 
 @pytest.mark.parametrize("name", ["aluminium", "wood"])
@@ -155,7 +155,7 @@ def test_arrays_do_as_compiled_code_does() -> None:
             assert (share[:20] == 1.0).all() and (pressed[:20] == force[:20]).all()
 
 
-def felt(degrees: float, half: float = 0.01, name: str = "glass", skin: str | None = None) -> float:
+def drop(degrees: float, half: float = 0.01, name: str = "glass", skin: str | None = None) -> float:
     model = mujoco.MjModel.from_xml_string(scene(degrees, half))
     data = mujoco.MjData(model)
     tips = {"tip": Fingertip("tip", skin=skin)}
@@ -171,11 +171,11 @@ def felt(degrees: float, half: float = 0.01, name: str = "glass", skin: str | No
 @pytest.mark.parametrize("skin", [None, "filled_silicone"])
 @pytest.mark.parametrize("half", [0.004, 0.03])
 def test_the_more_it_is_tilted_the_less_is_felt(half: float, skin: str | None) -> None:
-    drops = [felt(degrees, half, skin=skin) for degrees in (0.0, 0.5, 3.0, 10.0)]
+    drops = [drop(degrees, half, skin=skin) for degrees in (0.0, 0.5, 3.0, 10.0)]
     assert drops[1] == pytest.approx(drops[0], rel=0.02)  # the pad turns with it
     assert all(less <= more for more, less in zip(drops[1:], drops[2:], strict=False))
     assert drops[-1] < 0.5 * drops[0]
-    assert felt(-10.0, half, skin=skin) == pytest.approx(drops[3], rel=0.02)
+    assert drop(-10.0, half, skin=skin) == pytest.approx(drops[3], rel=0.02)
 
 
 @pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler")

@@ -236,17 +236,17 @@ class ArrayContacts:
         cylinder across it, and to its own middle along it; and the tangent of its angle to the pad, 0 of a ball. off:
         (B, F, G, 2) m."""
         xp = namespace_of(off)
-        own_axis = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])
-        line = own_axis[..., 1:]  # a cylinder's axis along y and z
+        rod_axis = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])
+        line = rod_axis[..., 1:]  # a cylinder's axis along y and z
         length = (line * line).sum(-1) ** 0.5
         turned = off[..., 0] * line[..., 1] - off[..., 1] * line[..., 0]
         safe = xp.where(length > 0, length, length + 1)
         across = (turned / safe)[..., None]
         lies = law.cylinder > 0
         normal = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # in the geom's frame
-        slope = xp.where(length > 0, own_axis[..., 0] / safe, 0.0 * length)
+        slope = xp.where(length > 0, rod_axis[..., 0] / safe, 0.0 * length)
         away = (from_geom * normal).sum(-1)
-        middle = xp.where(length > 0, (from_geom[..., 2] - own_axis[..., 0] * away) / safe, 0.0 * length)
+        middle = xp.where(length > 0, (from_geom[..., 2] - rod_axis[..., 0] * away) / safe, 0.0 * length)
         return (
             xp.where(lies, across, off[..., 0][..., None]),
             xp.where(lies, middle[..., None], off[..., 1][..., None]),

@@ -33,7 +33,7 @@ from ...thermal.contact import FIRST_FORCE, cylinder_footprint, face_joint, skin
 from ...thermal.numerics import Array, namespace_of
 from ..scene import BodyShape, PadPlace
 
-TURN, SOFT, FIRM, APART, RADIUS, HALF, HALF_PAD, HALF_FACE, TILT = range(9)
+TURN, SOFT, FIRM, GAP, RADIUS, HALF, HALF_PAD, HALF_FACE, TILT = range(9)
 """Of a rod under a pad: rad/N that turn the face, N/m^2.5 of the silicone and of the skin on the face (0 without one),
 m of the gap (0 under a skin), the rod's radius m, half its length and half the pad's and the face's sides m."""
 _LEAST = math.exp(FIRST_FORCE)  # N, of a face that the rod does not press: what gas conducts alone
@@ -86,8 +86,8 @@ def tilted(tilt, force, slope, middle):
             long = max(long - (held - force) / rate, 0.0) if pressed > 0 else 0.0
         share, pressed = min(long / width, 1.0), min(firm * long**2.5, pressed)
     else:
-        near, far = math.sqrt(1 + gap / tilt[APART]), math.sqrt(1 + (gap + angle * width) / tilt[APART])
-        wide = tilt[HALF_FACE] / math.sqrt(2 * tilt[RADIUS] * tilt[APART])
+        near, far = math.sqrt(1 + gap / tilt[GAP]), math.sqrt(1 + (gap + angle * width) / tilt[GAP])
+        wide = tilt[HALF_FACE] / math.sqrt(2 * tilt[RADIUS] * tilt[GAP])
         # the integral of 1/sqrt(1 + gap/d) over the line
         share = min((math.atan(wide / near) + math.atan(wide / far)) / math.atan(wide) / (near + far), 1.0)
     return share, max(pressed, min(force, _LEAST * share))
@@ -114,10 +114,10 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     gap = angle * (reach - (load / soft) ** 0.4).clip(0.0, None)
     pressed = (load - soft * reach**2.5).clip(0.0, None)
     skinned_face = tilt[..., FIRM] > 0
-    firm, apart = xp.where(skinned_face, tilt[..., FIRM], one), tilt[..., APART]
-    radius, apart = xp.where(apart > 0, tilt[..., RADIUS], one), xp.where(apart > 0, apart, one)
-    near, far = (1 + gap / apart) ** 0.5, (1 + (gap + angle * width) / apart) ** 0.5
-    wide = xp.where(face > 0, face, one) / (2 * radius * apart) ** 0.5
+    firm, gas_gap = xp.where(skinned_face, tilt[..., FIRM], one), tilt[..., GAP]
+    radius, gas_gap = xp.where(gas_gap > 0, tilt[..., RADIUS], one), xp.where(gas_gap > 0, gas_gap, one)
+    near, far = (1 + gap / gas_gap) ** 0.5, (1 + (gap + angle * width) / gas_gap) ** 0.5
+    wide = xp.where(face > 0, face, one) / (2 * radius * gas_gap) ** 0.5
     bare = (xp.arctan(wide / near) + xp.arctan(wide / far)) / xp.arctan(wide) / (near + far)
     # a power of 0 has no gradient
     firm, reached = firm * steep, pressed > 0

@@ -29,7 +29,7 @@ from ...thermal.pressed import height_map, map_heights, pressure_map
 VIEW = 11
 """Of a view: three axes, the first into the mesh, and m along the others where the mesh begins, all in the geom's
 frame."""
-_APART = math.cos(math.radians(35))  # views
+_DISTINCT = math.cos(math.radians(35))  # views
 _ALIKE = math.cos(math.radians(20))  # faces whose areas count together
 _FEW = 0.01  # of the hull's area
 _DIGITS = 3  # of a direction
@@ -71,7 +71,7 @@ def _views(vertex: bytes, face: bytes, triangle: bytes) -> np.ndarray:
     directions, areas = cross[first] / twice[first, None], np.bincount(which.ravel(), weights=twice)
     chosen: list[np.ndarray] = []
     for n in np.argsort(-np.round(areas / areas.sum(), 6), kind="stable"):
-        if all(directions[n] @ other < _APART for other in chosen):
+        if all(directions[n] @ other < _DISTINCT for other in chosen):
             if areas[directions @ directions[n] > _ALIKE].sum() > _FEW * areas.sum():
                 chosen.append(directions[n])
     views = []

@@ -51,7 +51,7 @@ def packed(
     found = pair_laws(model, pads, shapes)
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
-    met = GluedContacts(pads, glued, len(shapes), 1)
+    glued_contacts = GluedContacts(pads, glued, len(shapes), 1)
     header = (
         *(_VERSION, len(sensors), len(shapes), len(owner), level.patterns, level.rates, most, steps),
         *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1], nodes, len(pads)),
@@ -77,9 +77,9 @@ def packed(
         curves(model, pads, shapes),
         [
             (each.glued or 0, small, BOND * each.stack.width**2)
-            for each, small in zip(glued, met.small, strict=True)
+            for each, small in zip(glued, glued_contacts.small, strict=True)
         ],
-        _columns(met.laws),
+        _columns(glued_contacts.laws),
         [0.0 if pad.glued is None else shapes[pad.glued].temperature - ambient for pad in sensors],
         [pad.stack.seebeck for pad in sensors],
         *backs,

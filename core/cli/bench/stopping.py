@@ -28,9 +28,9 @@ def report(record: Record, output: Output) -> None:
         ],
     )
     output.line()
-    own = record["declared"]
+    declared = record["declared"]
     output.line(
-        f"the agent declares after {own['contact_s']:.3f} s of contact in the mean, and is right in "
-        f"{100 * own['right']:.1f} %; always at the same decision, after as long in the mean: "
-        f"{100 * own['fixed_right']:.1f} %"
+        f"the agent declares after {declared['contact_s']:.3f} s of contact in the mean, and is right in "
+        f"{100 * declared['right']:.1f} %; always at the same decision, after as long in the mean: "
+        f"{100 * declared['fixed_right']:.1f} %"
     )

@@ -51,15 +51,15 @@ def test_more_force_is_more_heat(skin: Skin | None, body: str) -> None:
     for name in materials():
         made = material(name)
         for radius in RADII * rng.uniform(0.8, 1.25, len(RADII)):
-            own = round_footprint(PAD, skin, Surface.of(made), float(radius), BODIES[body])
+            body_law = round_footprint(PAD, skin, Surface.of(made), float(radius), BODIES[body])
             middle = 0.0
             for place in PLACES:
-                felt = over_forces(own, place)
-                middle = middle or felt.max()
-                assert np.isfinite(felt).all() and (felt >= 0).all()
+                conducts = over_forces(body_law, place)
+                middle = middle or conducts.max()
+                assert np.isfinite(conducts).all() and (conducts >= 0).all()
                 on_it = max(place) <= PAD.face / 2 and radius > 2 * PAD.face
                 rounding = 1e-9 if on_it else 1e-3
-                falls = (np.maximum.accumulate(felt) - felt).max()
+                falls = (np.maximum.accumulate(conducts) - conducts).max()
                 assert falls <= rounding * middle, (name, radius, place)
 
 
@@ -110,15 +110,19 @@ def test_nothing_jumps_as_a_body_slides_over_the_sensor_s_edge_and_the_pad_s(
     for _ in range(12):
         made = material(str(rng.choice(names)))
         radius, force = np.exp(rng.uniform(np.log([2e-3, 0.05]), np.log([1.0, 50.0])))
-        own, turn = (
+        body_law, turn = (
             round_footprint(PAD, skin, Surface.of(made), float(radius), BODIES[body]),
             rng.uniform(0, np.pi / 2),
         )
         way = np.array([0.0, np.cos(turn), np.sin(turn)])
         largest = []
         for steps in (500, 2000):
-            felt = [conduction(own, force, at * way) for at in np.linspace(-0.0095, 0.0095, steps + 1)]
-            largest.append(np.abs(np.diff([watts for _, watts in felt])).max() / max(w for _, w in felt))
+            conducts = [
+                conduction(body_law, force, at * way) for at in np.linspace(-0.0095, 0.0095, steps + 1)
+            ]
+            largest.append(
+                np.abs(np.diff([watts for _, watts in conducts])).max() / max(w for _, w in conducts)
+            )
         assert largest[1] <= 0.5 * largest[0] + 1e-4, (made.name, radius, force, turn)
 
 
@@ -128,10 +132,10 @@ def test_what_touches_and_its_force_are_never_more_than_there_is() -> None:
     for _ in range(400):
         made, skin = material(str(rng.choice(names))), (None, SKIN)[rng.integers(2)]
         radius, force = np.exp(rng.uniform(np.log([1e-3, 1e-3]), np.log([100.0, 1e3])))
-        own = round_footprint(
+        body_law = round_footprint(
             PAD, skin, Surface.of(made), float(radius), list(BODIES.values())[rng.integers(3)]
         )
-        area, load = footprint(own, force, np.append(0.0, rng.uniform(-0.02, 0.02, 2)))
+        area, load = footprint(body_law, force, np.append(0.0, rng.uniform(-0.02, 0.02, 2)))
         assert 0 <= area <= PAD.face**2 * (1 + 1e-9)
         assert 0 <= load <= force * (1 + 1e-9)
 
@@ -149,8 +153,8 @@ def test_in_tables_more_force_is_more_heat_too() -> None:
         table = curved_table(PAD, skin, made, radius, float(length) or None)
         most = curved_contact(table, FORCES[-1], 0.0, 0.0)[0]
         for place in rng.uniform(-0.012, 0.012, (5, 2)):
-            felt = np.array([curved_contact(table, force, *place)[0] for force in FORCES])
-            assert (np.maximum.accumulate(felt) - felt <= 1e-3 * most).all(), (
+            conducts = np.array([curved_contact(table, force, *place)[0] for force in FORCES])
+            assert (np.maximum.accumulate(conducts) - conducts <= 1e-3 * most).all(), (
                 made.name,
                 radius,
                 length,
