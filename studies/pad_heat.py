@@ -1,12 +1,14 @@
 """What the silicone around the sensor does to a touch, by axisymmetric finite elements with scikit-fem.
 
 The package takes the sensor's sides as adiabatic and lets nothing but the sensor touch. Here the sensor is a disc of
-its face's area in a pad of silicone as deep, which lies on the same thermostat and touches the object too; both start
-warm. Beside it the same elements without the pad. The object is a disc of 40 x 40 x 10 mm. Biquadratic elements, a
-conductance between the two meshes, SDIRK2 in time.
+its face's area in a pad of silicone as deep, which lies on the same thermostat and touches the object too; a skin
+covers both. Beside it the same elements without the pad. Flat faces, conductances by the package's law of contact;
+the object is a disc, by itself and without air. Biquadratic elements, a conductance between the two meshes, SDIRK2.
 
     python studies/pad_heat.py           the change of the temperature drop, K of 12, for five materials
-    python studies/pad_heat.py --json
+    python studies/pad_heat.py --all     the largest change for every material
+    python studies/pad_heat.py --cases   by force, width of the pad, size of the object, pads that start cooler
+    python studies/pad_heat.py --json    the first of these as one JSON object
 
 Needs scikit-fem.
 """
@@ -17,6 +19,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,15 +29,53 @@ from skfem import Basis, BilinearForm, ElementQuad2, FacetBasis, LinearForm, Mes
 from skfem.element import DiscreteField
 from skfem.helpers import dot
 
-from thermograsp.thermal import Pad
-from thermograsp.thermal.matter import Material, material, sensor
+from thermograsp.thermal import Pad, Surface, contact_conductance, flat_contact, joint, materials
+from thermograsp.thermal.contact import face_joint, skinned
+from thermograsp.thermal.matter import USUAL_SKIN, material, sensor
+from thermograsp.thermal.matter import skin as named_skin
 
 MATERIALS = ("wood", "plastic", "glass", "stainless_steel", "aluminium")
 TIMES = (0.5, 1.0, 2.0, 5.0, 10.0)
 """s after the touch."""
 DIFFERENCE = 12.0
-_OBJECT = 0.040, 0.010  # m, side and thickness
-_FACE, _PAD = Pad().face / np.sqrt(np.pi), Pad().width / np.sqrt(np.pi)  # m, radii of discs as large
+SKINS_WORN = (None, USUAL_SKIN)
+_FACE = Pad().face / np.sqrt(np.pi)  # m, radius of a disc as large
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A flat touch in the middle of an object that is as wide and as thick as `size`, m. skin: a name, or None. force:
+    N on a pad of that width, m. conductances: W/(m2 K) of the sensor's contact and of the pad's around it, None for
+    the package's law. cooled: K by which the silicone is colder at its front at first, and less in proportion deeper.
+    sides, front: whether the silicone exchanges heat with the sensor, and with the object."""
+
+    material: str
+    skin: str | None = None
+    force: float = 10.0
+    width: float = Pad().width
+    size: tuple[float, float] = (0.040, 0.010)
+    conductances: tuple[float, float] | None = None
+    cooled: float = 0.0
+    sides: bool = True
+    front: bool = True
+
+    @property
+    def alone(self) -> Touch:
+        """As the package has it."""
+        return replace(self, sides=False, front=False)
+
+    def through(self) -> tuple[float, float]:
+        """W/(m2 K) of the two contacts."""
+        if self.conductances is not None:
+            return self.conductances
+        skin, other = named_skin(self.skin), Surface.of(material(self.material))
+        flat = flat_contact(skinned(Pad(width=self.width), skin), self.force)
+        around = joint(Surface.of(material("silicone")), other) if skin is None else face_joint(skin, other)
+        pressure = (self.force - flat.face_force) / (flat.pad - flat.face)
+        return (
+            float(contact_conductance(face_joint(skin, other), flat.face_pressure)),
+            float(contact_conductance(around, pressure)),
+        )
 
 
 @BilinearForm
@@ -61,30 +102,34 @@ def pieces(bounds: Sequence[float], counts: Sequence[int]) -> np.ndarray:
     return np.concatenate(lines)
 
 
-def drops(name: str, padded: bool, conductance: float = 1e4, refine: float = 1.0) -> np.ndarray:
-    """(5,) K, the sensor's temperature drop at TIMES. padded: whether the silicone is there and conducts. conductance:
-    W/(m2 K) of both contacts."""
+def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
+    """(5,) K, the sensor's temperature drop at TIMES."""
 
     def cells(*counts: int) -> list[int]:
         return [max(2, round(refine * count)) for count in counts]
 
-    stack, silicone = sensor("seed"), material("silicone")
+    skin, stack, silicone = named_skin(touch.skin), sensor("seed"), material("silicone")
+    pad = len(stack.layers)  # as deep as these
+    stack = stack if skin is None else skin.over(stack)
     heights = np.concatenate([[0.0], np.cumsum([layer.thickness for layer in stack.layers])])
-    r = pieces((0.0, _FACE, _PAD, _OBJECT[0] / np.sqrt(np.pi)), cells(12, 10, 6))
-    below = pieces(heights.tolist(), cells(4, 6, 6))
-    above = heights[-1] + np.concatenate([[0.0], np.geomspace(2e-5, _OBJECT[1], cells(20)[0])])
-    lower = Basis(MeshQuad.init_tensor(r[r <= _PAD * (1 + 1e-9)], below), ElementQuad2(), intorder=5)
+    wide, thick = touch.width / np.sqrt(np.pi), touch.size[1]
+    r = pieces((0.0, _FACE, wide, touch.size[0] / np.sqrt(np.pi)), cells(12, 10, 6))
+    below = pieces(heights.tolist(), cells(4, 6, 6, 4)[: len(stack.layers)])
+    above = heights[-1] + np.concatenate([[0.0], np.geomspace(2e-5, thick, cells(20)[0])])
+    lower = Basis(MeshQuad.init_tensor(r[r <= wide * (1 + 1e-9)], below), ElementQuad2(), intorder=5)
     upper = Basis(MeshQuad.init_tensor(r, above), ElementQuad2(), intorder=5)
     stiffness, mass = [], []
-    body: Material = material(name)
+    body, edge = material(touch.material), r[r > _FACE * (1 + 1e-9)][0]
     for basis in (lower, upper):
         x: Any = basis.global_coordinates()
         at = np.clip(np.searchsorted(heights, np.asarray(x)[1]) - 1, 0, len(stack.layers) - 1)
         k = np.array([layer.conductivity for layer in stack.layers])[at]
         c = np.array([layer.density * layer.specific_heat for layer in stack.layers])[at]
-        around = np.asarray(x)[0] > _FACE
-        k = np.where(around, silicone.conductivity if padded else 1e-9, k)
+        around = (np.asarray(x)[0] > _FACE) & (at < pad)
+        k = np.where(around, silicone.conductivity, k)
         c = np.where(around, silicone.volumetric_heat_capacity, c)
+        if not touch.sides:
+            k = np.where((np.asarray(x)[0] > _FACE) & (np.asarray(x)[0] < edge), 1e-9, k)  # a gap
         if basis is upper:
             k, c = np.full_like(k, body.conductivity), np.full_like(c, body.volumetric_heat_capacity)
         stiffness.append(_conduction.assemble(basis, value=DiscreteField(k)))
@@ -94,13 +139,15 @@ def drops(name: str, padded: bool, conductance: float = 1e4, refine: float = 1.0
             basis.mesh,
             ElementQuad2(),
             facets=basis.mesh.facets_satisfying(
-                lambda p: (abs(p[1] - heights[-1]) < 1e-9) & (p[0] < (_PAD if padded else _FACE))
+                lambda p: (abs(p[1] - heights[-1]) < 1e-9) & (p[0] < (wide if touch.front else _FACE))
             ),
             intorder=5,
         )
         for basis in (lower, upper)
     )
-    even: Any = _weighted.assemble(top, value=DiscreteField(np.full(np.shape(top.dx), conductance)))
+    inside: Any = top.global_coordinates()
+    conductance = np.where(np.asarray(inside)[0] < _FACE, *touch.through())
+    even: Any = _weighted.assemble(top, value=DiscreteField(conductance))
     ordered, other = _ordered(lower, top), _ordered(upper, bottom)
     both = np.concatenate([ordered, lower.N + other])
     link = even[ordered][:, ordered]
@@ -112,6 +159,8 @@ def drops(name: str, padded: bool, conductance: float = 1e4, refine: float = 1.0
     plate = lower.get_dofs(lambda x: x[1] < 1e-12).flatten()
     free = np.setdiff1d(np.arange(size), plate)
     u = np.where(np.arange(size) < lower.N, DIFFERENCE, 0.0)
+    around = lower.doflocs[0] > _FACE * (1 + 1e-9)
+    u[: lower.N][around] -= touch.cooled * lower.doflocs[1][around] / heights[-1]
     a, b = whole[free][:, free].tocsc(), heat[free][:, free].tocsc()
     load = -whole[free][:, plate] @ u[plate]
     face = [_mean(lower, height) for height in heights[1:3]]
@@ -150,16 +199,63 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description="What the pad around the sensor does to the temperature drop."
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--all", action="store_true", help="the largest change for every material")
+    parser.add_argument("--cases", action="store_true", help="by force, width, size and first temperature")
     options = parser.parse_args(arguments)
-    curves = {name: [drops(name, padded).tolist() for padded in (False, True)] for name in MATERIALS}
-    if options.json:
-        json.dump(curves, sys.stdout, indent=1)
-        return 0
-    print("drop without a pad, and what the pad changes, K, at " + ", ".join(f"{t:g}" for t in TIMES) + " s")
-    for name, (alone, padded) in curves.items():
-        changes = (f"{a:6.3f} {b - a:+.3f}" for a, b in zip(alone, padded, strict=True))
-        print(f"{name:16}" + "   ".join(changes))
+    if options.all:
+        _every()
+    elif options.cases:
+        _cases()
+    else:
+        _usual(options.json)
     return 0
+
+
+def _change(touch: Touch, refine: float = 0.8) -> np.ndarray:
+    return drops(touch, refine) - drops(touch.alone, refine)
+
+
+def _usual(as_json: bool) -> None:
+    curves = {
+        (name, skin): [drops(touch).tolist() for touch in (Touch(name, skin).alone, Touch(name, skin))]
+        for skin in SKINS_WORN
+        for name in MATERIALS
+    }
+    if as_json:
+        json.dump({f"{name}/{skin}": both for (name, skin), both in curves.items()}, sys.stdout, indent=1)
+        return
+    print("drop without a pad, and what the pad changes, K, at " + ", ".join(f"{t:g}" for t in TIMES) + " s")
+    for (name, skin), (alone, padded) in curves.items():
+        changes = (f"{a:6.3f} {b - a:+.3f}" for a, b in zip(alone, padded, strict=True))
+        print(f"{name:16} {skin or 'bare':16}" + "   ".join(changes))
+
+
+def _every() -> None:
+    print("largest change of the drop at these times, K: bare, with a skin")
+    for name in materials():
+        found = [_change(Touch(name, skin)) for skin in SKINS_WORN]
+        print(f"{name:24}" + "  ".join(f"{change[np.argmax(np.abs(change))]:+.3f}" for change in found))
+
+
+def _cases() -> None:
+    print("what the pad changes, K, at " + ", ".join(f"{t:g}" for t in TIMES) + " s")
+    variants: dict[str, dict[str, Any]] = {
+        "as usual": {},
+        "silicone beside the sensor alone": {"front": False},
+        "silicone against the object alone": {"sides": False},
+        **{f"{force:g} N": {"force": force} for force in (1.0, 30.0)},
+        **{f"pad {1e3 * width:g} mm wide": {"width": width} for width in (0.010, 0.012, 0.015, 0.025, 0.030)},
+        "sheet of 1 mm": {"size": (0.040, 0.001)},
+        "plate of 3 mm": {"size": (0.040, 0.003)},
+        "piece of 24 x 24 x 20 mm": {"size": (0.024, 0.020)},
+        "plate of 100 x 100 x 20 mm": {"size": (0.100, 0.020)},
+        **{f"front {cooled:g} K cooler at first": {"cooled": cooled} for cooled in (1.1, 6.0)},
+    }
+    for skin in SKINS_WORN:
+        for name in MATERIALS:
+            for told, given in variants.items():
+                change = _change(Touch(name, skin, **given))
+                print(f"{name:16} {skin or 'bare':16} {told:36}" + " ".join(f"{c:+.3f}" for c in change))
 
 
 if __name__ == "__main__":

@@ -66,20 +66,20 @@ class SimulationConfig:
     from per episode (density and friction are the material's where a shape gives none). scene: objects that are all
     there in place of one, the first is the one to grasp; where they have no material of their own it is drawn for each.
     tolerance: K of temperature drop that the thermal network keeps; what air at the object's mean temperature adds is
-    left out (docs/environments.md). air: W/(m2 K). Temperatures in °C, that of the sensors one or each fingertip's; an
-    object with a temperature of its own has that, and the room is as warm as object_temperature unless
-    ambient_temperature is given. thermostat: one of finite power (its setpoint is sensor_temperature, its ambient the
-    room where that is given), None for an ideal one. placement: m and degree; the object lies within +- these of its
-    own place, drawn per episode.
-    randomize: what else differs from episode to episode, records of randomization.py. fingertips: how many carry a
-    sensor (1: the left one). anywhere: heat knows where it enters boxes, cylinders and spheres, as it always does of
-    meshes in mode T; without, each patch is the middle of a face. gripper: an MJCF file, an MjSpec or what
-    load_gripper makes of them, None for the shipped one. solver: MuJoCo's time step and settings. substeps: of
-    MuJoCo in a control step, which must be a whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache:
-    keep thermal networks on disk. skin: over the fingertips, a name of thermal.SKINS or a Skin, None for bare ones, or
-    "auto": bare where all objects are boxes whose material is `material`'s, in mode O, and where the sensor has a
-    heater of its own, else filled_silicone. taxels: (n, m) of the map of pressure over each pad, None for none.
-    face_temperature: (n, m) of the map of temperature over each sensor's face (T mode), None for none."""
+    left out (docs/environments.md), and so is what the pad around the sensor does (docs/physics.md). air: W/(m2 K).
+    Temperatures in °C, that of the sensors one or each fingertip's; an object with a temperature of its own has that,
+    and the room is as warm as object_temperature unless ambient_temperature is given. thermostat: one of finite power
+    (its setpoint is sensor_temperature, its ambient the room where that is given), None for an ideal one. placement: m
+    and degree; the object lies within +- these of its own place, drawn per episode. randomize: what else differs from
+    episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one). anywhere:
+    heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; without, each patch
+    is the middle of a face. gripper: an MJCF file, an MjSpec or what load_gripper makes of them, None for the shipped
+    one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of
+    10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a
+    name of thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose material is
+    `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n, m) of the
+    map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each sensor's
+    face (T mode), None for none."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
