@@ -154,9 +154,10 @@ from thermograsp.envs.sensing.kernel import advance_boxes as step, advance_fixed
 from thermograsp.envs.sensing.places import strayed
 from thermograsp.thermal.batch import fixed_rates
 from thermograsp.thermal.kernels import touched
-from thermograsp.thermal.numerics import port_residues
+from thermograsp.thermal.numerics import free_residues, port_residues
 inner = [advance_fixed, fixed_room]
-entries = [port_residues, strayed, touched._at_moments, touched._shielded, touched._warmed, fixed_rates._gram]
+entries = [port_residues, free_residues, strayed, fixed_rates._gram]
+entries += [touched._at_moments, touched._shielded, touched._warmed, touched._beside]
 """
 
 

@@ -25,7 +25,7 @@ from ...thermal.batch import (
     set_gram,
 )
 from ...thermal.contact import FOOTPRINT_LAW, footprint, gas_conduction, solid_conduction
-from ...thermal.kernels import Patches, TouchedBox, tip, touched_boxes
+from ...thermal.kernels import Patches, TouchedBox, tip, touched_box
 from ...thermal.network import workspace
 from ...thermal.numerics import port_residues
 from ...thermal.readout import CHAIN_NUMBERS, measure_rows
@@ -67,11 +67,10 @@ def compile_boxes_ahead() -> None:
     )
     stack, middle = sensor("seed"), np.full((1, 2), _SIDE / 2)
     worn = tip(stack, ((0.0, stack.width), (0.0, stack.width)), FIXED_LEVEL)
-    patches = Patches(np.zeros(1, int), middle, np.full((1, 2), stack.width / 2))
-    box = TouchedBox(material("glass"), (_SIDE, _SIDE, _SIDE), 5.0, patches, (worn,), 1)
-    tables = fixed_tables(1, 1, 1, FIXED_LEVEL.patterns, worn.side, 0.01)
-    (found,) = touched_boxes([box], FIXED_LEVEL)
-    set_body(tables, 0, found, (0,))
+    patches = Patches(np.array([0, 1]), np.tile(middle, (2, 1)), np.full((2, 2), stack.width / 2))
+    box = TouchedBox(material("glass"), (_SIDE, _SIDE, _SIDE), 5.0, patches, (worn, worn), 1)
+    tables = fixed_tables(1, 1, 2, FIXED_LEVEL.patterns, worn.side, 0.01)
+    set_body(tables, 0, touched_box(box, FIXED_LEVEL), (0, 1))
     tables.links[0, 2:] = 0
     set_gram(tables, 0)
 

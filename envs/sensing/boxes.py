@@ -8,9 +8,9 @@ B: rows, F: fingertips, S: substeps.
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -38,15 +38,16 @@ from ...thermal.batch import (
 from ...thermal.kernels import (
     GRAM,
     THIN,
-    BodyResidues,
     Footprint,
     Patches,
     Spot,
     Tip,
     TouchedBox,
+    UnderTips,
     tip,
     tip_at,
-    touched_boxes,
+    touched_box,
+    under_tips,
 )
 from ..bodies import ObjectSpec
 from ..footprint import GraspBody
@@ -61,7 +62,12 @@ sensors wide, as a share of the difference: 1.9e-3 of 300 drawn boxes of any mat
 whose own is thermal/network/boxes.py's SHARE."""
 _CLEAR, _LEAST_SIDE = 1.2, 0.01  # m
 _SOON = 1.0  # s, how warm a place will be then decides whether it is remembered
-_KEPT = 512  # networks
+_GAPS, _STEPS = (0.45, 0.67, 1.1), (0.0, 1 / 18, 1 / 9, 2 / 9)
+_DEPTHS, _OFFS = (1.0, 2.0), (0.0, 1 / 18, 2 / 9)
+"""Of the sensor's width: from a contact to its face's end; how far apart the places are which stand for those that are
+so far from it; and those of the two fingertips beside each other. What flows under a fingertip at such a place differs
+by .15 % at most, of any material, and half as much as a rule."""
+_KEPT = 1024  # networks of what is under fingertips
 
 _BLAS = ThreadpoolController()
 
@@ -270,16 +276,12 @@ class BoxHeat:
 
     def _make(self, touched: Mapping[int, Touched]) -> None:
         """The tables of the rows' boxes and elements are those of these places."""
-        tables, box_touches = self.tables, {}
         for row, now in touched.items():
             if now != self._touched[row]:
                 self._prints[row] = self._pressed(row, now)
-                box_touches[row] = self._box_touch(row, now)
-        for row, found in zip(box_touches, _networks(list(box_touches.values())), strict=True):
-            set_body(tables, row, found, touched[row].numbers())
-        for row, now in touched.items():
+                self._set_box(row, now)
             self._set_contacts(row, now)
-            set_gram(tables, row)
+            set_gram(self.tables, row)
 
     def _pressed(self, row: int, touched: Touched) -> tuple[_Print, ...]:
         """What is pressed on each of the places; those that it knows already are the same."""
@@ -295,12 +297,21 @@ class BoxHeat:
             found.append(each or _print(body.material, size, place, behind, stack, shared))
         return tuple(found)
 
-    def _box_touch(self, row: int, touched: Touched) -> _BoxTouch:
-        """The row's box as it is touched there."""
-        body, film = self._bodies[row]
-        prints = tuple(self._prints[row][number] for number in touched.numbers())
-        under = sum(number >= 0 for number in touched.contacts)
-        return _BoxTouch(body.material, body.spec.size, film, prints, under)
+    def _set_box(self, row: int, touched: Touched) -> None:
+        """The row's box is touched there."""
+        (body, film), numbers = self._bodies[row], touched.numbers()
+        material, size, prints = body.material, body.spec.size, self._prints[row]
+        count = sum(number >= 0 for number in touched.contacts)
+        under = _under(material, size, film, _stand_ins(prints, numbers[:count], size, body.stack.width))
+        feet = [(prints[number].place.face, prints[number].foot) for number in numbers]
+        patches = Patches(
+            np.array([face for face, _ in feet]),
+            np.array([foot.centre for _, foot in feet]),
+            np.array([foot.half for _, foot in feet]),
+        )
+        tips = tuple(prints[number].tip for number in numbers)
+        box = TouchedBox(material, size, film, patches, tips, count)
+        set_body(self.tables, row, touched_box(box, FIXED_LEVEL, under), numbers)
 
     def _set_contacts(self, row: int, touched: Touched) -> None:
         """The row's fingertips are on those places."""
@@ -391,46 +402,41 @@ def _element(one: Tip) -> np.ndarray:
     return tip_residues(one.side)
 
 
-class _BoxTouch(NamedTuple):
-    """A box of that size, in air of W/(m2 K), on whose first `touched` prints fingertips are."""
+_Placed = tuple[int, tuple[float, float], tuple[float, float], Tip]
+"""A sensor's patch as in Patches, and the element on it."""
 
-    material: Material
-    size: tuple[float, float, float]
-    film: float
-    prints: tuple[_Print, ...]
-    touched: int
 
-    def key(self) -> tuple:
-        """Of what its network depends on."""
-        made = self.material.conductivity, self.material.volumetric_heat_capacity
-        prints = tuple((each.place.face, each.foot, each.tip) for each in self.prints)
-        return made, self.size, self.film, self.touched, prints
+@lru_cache(maxsize=_KEPT)
+def _under(
+    material: Material, size: tuple[float, float, float], film: float, placed: tuple[_Placed, ...]
+) -> UnderTips:
+    """What is under fingertips on a box in air of W/(m2 K)."""
+    face, centre, half, tips = zip(*placed, strict=True)
+    patches = Patches(np.array(face), np.array(centre), np.array(half))
+    return under_tips(TouchedBox(material, size, film, patches, tips, len(tips)), FIXED_LEVEL)
 
-    def box(self) -> TouchedBox:
-        feet = [each.foot for each in self.prints]
-        patches = Patches(
-            np.array([each.place.face for each in self.prints]),
-            np.array([foot.centre for foot in feet]),
-            np.array([foot.half for foot in feet]),
+
+def _stand_ins(
+    prints: Sequence[_Print], numbers: Sequence[int], size: tuple[float, float, float], width: float
+) -> tuple[_Placed, ...]:
+    """Few places that serve for those of fingertips: further from the face's ends by less than they tell, and in a
+    thick box over each other nearly as these."""
+    first, *rest = (prints[number] for number in numbers)
+    axes = []
+    for axis, side in enumerate(first.place.sides(size)):
+        middles = [first.foot.centre[axis], *(each.foot.centre[axis] for each in rest)]
+        gap = min(
+            min(middle, side - middle) - prints[number].foot.half[axis]
+            for middle, number in zip(middles, numbers, strict=True)
         )
-        tips = tuple(each.tip for each in self.prints)
-        return TouchedBox(self.material, self.size, self.film, patches, tips, self.touched)
-
-
-_made: dict[tuple, BodyResidues] = {}
-_making = Lock()
-
-
-def _networks(box_touches: Sequence[_BoxTouch]) -> list[BodyResidues]:
-    """Of each; the _KEPT that were made last are known."""
-    keys = [each.key() for each in box_touches]
-    found = {key: _made.get(key) for key in keys}
-    new = {key: each.box() for key, each in zip(keys, box_touches, strict=True) if found[key] is None}
-    if new:
-        made = dict(zip(new, touched_boxes(list(new.values()), FIXED_LEVEL), strict=True))
-        found.update(made)
-        with _making:
-            _made.update(made)
-            while len(_made) > _KEPT:
-                del _made[next(iter(_made))]
-    return [network for key in keys if (network := found[key]) is not None]
+        step = width * _STEPS[bisect(_GAPS, gap / width)]
+        if step > 0:
+            begun = side / 2 + step * round((middles[0] - side / 2) / step)
+            fine = width * _OFFS[bisect(_DEPTHS, size[first.place.face // 2] / width)]
+            off = (middle - middles[0] for middle in middles)
+            middles = [begun + (fine * round(each / fine) if fine > 0 else each) for each in off]
+        axes.append([round(middle, 9) for middle in middles])
+    return tuple(
+        (prints[number].place.face, centre, prints[number].foot.half, prints[number].tip)
+        for number, centre in zip(numbers, zip(*axes, strict=True), strict=True)
+    )

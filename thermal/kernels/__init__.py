@@ -17,8 +17,8 @@ What other rooms build on:
   `Spot`: its errors are half as large, or less. The even pattern is the same everywhere.
 - `touch_sides` makes both for one touch alone: rates and patterns are its own, so that fewer serve and errors are a
   tenth. Nothing of its fields but the elements' slowest states means anything to another touch.
-- `touched_boxes` makes residues at fixed rates for steps that ask for no more than what is under fingertips: of many
-  boxes at once, with places that were touched before.
+- `touched_box` makes residues at fixed rates for steps that ask for no more than what is under fingertips, with places
+  that were touched before; `under_tips` makes what does not depend on these.
 - `glued_element` is the element of O mode: glued on the object, touched by a thermostat on its other face.
 - Outputs are rows on the states: a stack of other layers, read out across any of them, is another `SensorStack`.
 
@@ -35,7 +35,7 @@ from .glued import GluedElement, glued_element
 from .patterns import ALONG, GRAM, JUMPS, NODES
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
 from .touch import Detail, touch_sides
-from .touched import BodyResidues, TouchedBox, touched_boxes
+from .touched import BodyResidues, TouchedBox, UnderTips, touched_box, under_tips
 
 __all__ = [
     "ALONG",
@@ -60,6 +60,7 @@ __all__ = [
     "Spot",
     "Tip",
     "TouchedBox",
+    "UnderTips",
     "before",
     "box_samples",
     "box_side",
@@ -70,5 +71,6 @@ __all__ = [
     "tip",
     "tip_at",
     "touch_sides",
-    "touched_boxes",
+    "touched_box",
+    "under_tips",
 ]

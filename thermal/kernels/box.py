@@ -9,6 +9,7 @@ N: patches, P: patterns of each (patterns.py), T: times, S: moments.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from .axis import MODES, SWITCH, images, overlaps, wave_numbers
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
+_FADED = 1e-17  # of an eigenfunction, from which on it counts for nothing
 _UNSEEN = 160.0  # squared distance over diffusion length squared: exp(-40)
 
 
@@ -98,10 +100,12 @@ def box_kernel(
     terms: np.ndarray,
     wanted: int,
     times: np.ndarray,
+    first: int = 0,
 ) -> tuple[np.ndarray, float, np.ndarray, float, np.ndarray | None]:
-    """Kernel (T, wanted P, N P) K/J at times (T,) s, of the temperatures of the first `wanted` patches, less the
-    slowest eigenfunction's part; rate, port and held as in BoxSamples; kernel (T, N P) of the heat in the box, likewise
-    without it, None where no film takes any. jumps, terms: along_axes's."""
+    """Kernel (T, wanted P, L P) K/J at times (T,) s, ascending, of the temperatures of the first `wanted` patches by
+    the L from number `first` on, less the slowest eigenfunction's part; rate, port and held as in BoxSamples; kernel
+    (T, L P) of the heat in the box, likewise without it, None where no film takes any. jumps, terms: along_axes's.
+    first: 0, or wanted where these are known."""
     diffusivity = conductivity / heat_capacity
     kernel, slowest, port, held, whole = _kernel(
         np.asarray(size, float),
@@ -115,13 +119,14 @@ def box_kernel(
         jumps,
         terms,
         wanted,
+        first,
     )
     return kernel, float(slowest * diffusivity), port, float(held), whole if film > 0 else None
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, terms, wanted):
-    """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, N P) of the
+def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, terms, wanted, start):
+    """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, L P) of the
     heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. jumps:
     (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one
     function along either axis, -1 for none."""
@@ -132,7 +137,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
     ends, step, inside = np.empty(2), np.array([[-1.0, 1.0]]), np.empty((1, MODES))
     point = np.ones((1, 1))
     overlap = np.zeros((3, count, functions, MODES))
-    room = np.empty(len(nodes))
+    room, fading = np.empty(len(nodes)), np.empty(MODES)
     table = np.empty((len(nodes), len(nodes)))
     half_done = np.empty((functions, len(nodes)))
     between = np.zeros((3, count, functions, count, functions, len(taus)))
@@ -143,6 +148,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
     for axis in range(3):
         length = size[axis]
         waves = wave_numbers(length, film)
+        begun, seen = 0, 1  # the first time that eigenfunctions serve, and how many are left by then
+        while begun < len(taus) and taus[begun] <= SWITCH * length * length:
+            begun += 1
+        while begun < len(taus) and seen < MODES and _fading(waves[seen], taus[begun]) >= _FADED:
+            seen += 1
+        waves = waves[:seen]
         slowest += waves[0] ** 2
         ends[0], ends[1] = 0.0, length
         overlaps(ends, step, 1, length, waves, room, inside)
@@ -160,7 +171,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
             which[axis, n] = w
             for k in range(len(nodes)):
                 places[n, k] = centre[n, w] + half[n, w] * nodes[k]
-            for m in range(n):
+            for m in range(start if n >= start else 0, n):
                 if order[m] == 1 and alike[n] == n:
                     same = True
                     for k in range(len(nodes)):
@@ -173,13 +184,19 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                 overlaps(places[n], jumps[n, w], 1, length, waves, room, overlap[axis, n])
                 continue
             for f in range(functions):
-                for m in range(MODES):
+                for m in range(seen):
                     overlap[axis, n, f, m] = overlap[axis, alike[n], f, m]
         for t in range(len(taus)):
             tau = taus[t]
-            late = tau > SWITCH * length * length
+            late = t >= begun
+            left = 0
+            while late and left < seen:
+                fading[left] = _fading(waves[left], tau)
+                if fading[left] < _FADED:
+                    break
+                left += 1
             now, all_over = between[axis], everywhere[axis]
-            for n in range(count):
+            for n in range(start, count):
                 across = order[n] == 1
                 axis_functions = functions if across else 1
                 a = places[n] if across else places[n, :1]
@@ -198,15 +215,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                                     now[n, f, m, g, t] = now[alike[m], g, alike[n], f, t]
                         continue
                     if late:
-                        for w in range(MODES):
-                            decay = np.exp(-waves[w] * waves[w] * tau)
-                            if decay < 1e-17:
-                                break
-                            for f in range(axis_functions):
-                                for g in range(others):
-                                    now[n, f, m, g, t] += (
-                                        decay * overlap[axis, n, f, w] * overlap[axis, m, g, w]
-                                    )
+                        for f in range(axis_functions):
+                            for g in range(others):
+                                value = 0.0
+                                for w in range(left):
+                                    value += fading[w] * overlap[axis, n, f, w] * overlap[axis, m, g, w]
+                                now[n, f, m, g, t] = value
                         continue
                     b = places[m] if order[m] == 1 else places[m, :1]
                     beside = jumps[m, which[axis, m]] if order[m] == 1 else point
@@ -228,15 +242,14 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                         if alike[n] < n:
                             value = all_over[alike[n], f, t]
                         elif late:
-                            for w in range(MODES):
-                                decay = np.exp(-waves[w] * waves[w] * tau)
-                                value += decay * overlap[axis, n, f, w] * inside[0, w]
+                            for w in range(left):
+                                value += fading[w] * overlap[axis, n, f, w] * inside[0, w]
                         else:
                             for k in range(len(a)):
                                 value += by[f, k] * (table[k, 1] - table[k, 0])
                         all_over[n, f, t] = value
-    rows = wanted * patterns
-    kernel, whole, port = np.zeros((len(taus), rows, total)), np.zeros((len(taus), total)), np.zeros(total)
+    rows, told = wanted * patterns, total - start * patterns
+    kernel, whole, port = np.zeros((len(taus), rows, told)), np.zeros((len(taus), told)), np.zeros(total)
     sums = np.empty(len(taus))
     for n in range(count):
         for i in range(patterns):
@@ -246,10 +259,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                     continue
                 f0, f1, f2 = _functions(terms[i, x], orders, which, n)
                 port[at] += overlap[0, n, f0, 0] * overlap[1, n, f1, 0] * overlap[2, n, f2, 0]
+                if n < start:
+                    continue
                 for t in range(len(taus)):
                     air = everywhere[0, n, f0, t] * everywhere[1, n, f1, t]
-                    whole[t, at] += air * everywhere[2, n, f2, t]
-            for m in range(min(n + 1, wanted)):
+                    whole[t, at - start * patterns] += air * everywhere[2, n, f2, t]
+            for m in range(min(n + 1, wanted) if n >= start else 0):
                 for j in range(patterns):
                     for t in range(len(taus)):
                         sums[t] = 0.0
@@ -264,24 +279,31 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                             for t in range(len(taus)):
                                 sums[t] += first[t] * second[t] * third[t]
                     for t in range(len(taus)):
-                        kernel[t, m * patterns + j, at] = sums[t]
+                        kernel[t, m * patterns + j, at - start * patterns] = sums[t]
     # from integrals over patterns to means, and without the slowest eigenfunction, which is even where no film is
     slowest = slowest if film > 0.0 else 0.0
     held *= np.sqrt(heat_capacity)
+    areas = np.empty(total)
     for i in range(total):
-        each = i // patterns
-        port[i] /= 4 * half[each, 0] * half[each, 1] * np.sqrt(heat_capacity)
+        areas[i] = 4 * half[i // patterns, 0] * half[i // patterns, 1]
+        port[i] /= areas[i] * np.sqrt(heat_capacity)
     for t in range(len(taus)):
-        fading = np.exp(-slowest * taus[t])
-        for j in range(total):
-            area_j = 4 * half[j // patterns, 0] * half[j // patterns, 1]
-            whole[t, j] = whole[t, j] / area_j - fading * port[j] * held
-            for i in range(min(j + 1, rows)):
-                area = 4 * half[i // patterns, 0] * half[i // patterns, 1] * area_j
-                kernel[t, i, j] = kernel[t, i, j] / (area * heat_capacity) - fading * port[i] * port[j]
-                if j < rows:
+        left_over = np.exp(-slowest * taus[t])
+        for j in range(told):
+            whole[t, j] = (
+                whole[t, j] / areas[start * patterns + j] - left_over * port[start * patterns + j] * held
+            )
+            for i in range(min(start * patterns + j + 1, rows)):
+                area = areas[i] * areas[start * patterns + j] * heat_capacity
+                kernel[t, i, j] = kernel[t, i, j] / area - left_over * port[i] * port[start * patterns + j]
+                if start == 0 and j < rows:
                     kernel[t, j, i] = kernel[t, i, j]
     return kernel, slowest, port, held, whole
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _fading(wave, tau):
+    return math.exp(-wave * wave * tau)
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numerics import passive_residues, port_residues
+from ..numerics import free_residues, passive_residues, port_residues
 from .samples import GRASP
 
 
@@ -22,10 +22,14 @@ def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np
 
 
 def touched_residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """(A, N, K) of the temperatures of A ports: by what flows through these, the first of N, positive semidefinite; and
-    by what flowed once through the others, where nothing flows any more: no power has to balance, and no sign is asked
-    for. impedance: (S, A, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
+    """The same as (N, N, K)."""
     return port_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
+
+
+def free_fit(rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(S, K), by which impedances at GRASP are turned into residues that need not be passive: of flow that was once,
+    through places where nothing flows any more, so that no power has to balance. weight: (S,) of their errors, W/K."""
+    return weight[:, None] * free_residues(weight[:, None] / (GRASP[:, None] + rates))
 
 
 def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:

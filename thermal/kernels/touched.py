@@ -1,17 +1,17 @@
 """Boxes under fingertips as residues at rates that all share, as they are touched.
 
 Fixed-rate steps ask how warm a box is under the fingertips that are on it. Those patches are fitted together, their
-residues positive semidefinite. What flowed through another place once is the past: how warm it leaves them is a sum of
-fades that needs no constraint, and between two such places nothing is asked. So a box that remembers many places costs
-hardly more than one that is touched for the first time. The film of air covers what lies under no fingertip.
+residues positive semidefinite (`under_tips`). What flowed through another place once is the past: how warm it leaves
+them is a sum of fades that needs no constraint, and between two such places nothing is asked (`touched_box`). So a box
+that remembers many places costs hardly more than one that is touched for the first time. The film of air covers what
+lies under no fingertip.
 
-N: patches, A: those under fingertips, M: patterns of each, T: times, S: moments, K: rates.
+N: patches, A: those under fingertips, L: the others, M: patterns of each, T: times, S: moments, K: rates.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from thermograsp.compiled import njit
 from ..matter import Material
 from .box import Patches, box_kernel
 from .contact import Resolution, Tip
-from .exponentials import touched_residues
+from .exponentials import free_fit, touched_residues
 from .patterns import basis_jumps, basis_terms
 from .samples import GRASP
 
@@ -63,54 +63,105 @@ class BodyResidues(NamedTuple):
     still: np.ndarray
 
 
-class _Samples(NamedTuple):
-    """impedance (S, A M, N M) K/W and heat (S, N M) J/W, zeros without a film, both less the slowest eigenfunction's
-    part; that one's rate, port (N M,) and held."""
+class UnderTips(NamedTuple):
+    """What of a box follows from the places under its fingertips alone. own: the box with no other place. For others,
+    at GRASP: opened (S, A M, A M), what the temperatures are that flow elsewhere would bring about if the film covered
+    the fingertips too, by these; returned (S, A M) J/K, heat that it does not take there, by what they are. slowest:
+    1/s, the rate under such a film. fit (S, K): an impedance's residues."""
 
-    impedance: np.ndarray
+    own: BodyResidues
+    opened: np.ndarray
+    returned: np.ndarray
+    slowest: float
+    fit: np.ndarray
+
+
+class _Kernel(NamedTuple):
+    """kernel (T, A M, L M) K/J of what is touched and heat (T, L M) J/J, both less the slowest eigenfunction's part;
+    that one's rate, port (N M,) and held. times (T,) s; to_grasp, early: _transform's."""
+
+    kernel: np.ndarray
     heat: np.ndarray
     rate: float
     port: np.ndarray
     held: float
+    times: np.ndarray
+    to_grasp: np.ndarray
+    early: np.ndarray
 
 
-def touched_boxes(boxes: Sequence[TouchedBox], level: Resolution) -> list[BodyResidues]:
-    """Each box's residues at the level's rates."""
-    return [_residues(box, level) for box in boxes]
+def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = None) -> BodyResidues:
+    """A box's residues at the level's rates. under: what is known of its places under fingertips, or of others so near
+    to these that it serves."""
+    count = box.touched
+    if under is None:
+        under = under_tips(
+            box._replace(patches=Patches(*(each[:count] for each in box.patches)), tips=box.tips[:count]),
+            level,
+        )
+    own = under.own
+    if len(box.tips) == count:
+        return own
+    known, touched = _kernel_of(box, count), len(own.ports)
+    port = np.concatenate((own.ports, known.port[touched:]))
+    residues, heat = np.empty((touched, len(port), level.rates)), np.zeros((len(port), level.rates))
+    residues[:, :touched], heat[:touched] = own.residues, own.heat
+    total = np.concatenate([one.even for one in box.tips[count:]]) if box.film > 0 else np.zeros(0)
+    _beside(
+        known.kernel,
+        known.heat,
+        known.port,
+        known.to_grasp,
+        known.early,
+        port,
+        own.held,
+        own.rate,
+        under.slowest,
+        under.opened,
+        under.returned,
+        under.fit,
+        GRASP,
+        total,
+        *_heat_fit(level),
+        residues,
+        heat,
+    )
+    return BodyResidues(own.rate, port, own.held, residues, heat, own.still)
 
 
-def _residues(box: TouchedBox, level: Resolution) -> BodyResidues:
-    rest, heat, rate, port, held = _samples(box)
-    under = box.tips[: box.touched]
-    back = np.array([box.film * one.area for one in under])
-    weight, rate = _shielded(
-        GRASP, rest, heat, rate, port, held, back, np.array([one.weight for one in under])
+def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
+    """Of a box all of whose patches are under fingertips."""
+    known, material, areas = _kernel_of(box, 0), box.material, box.patches.areas
+    capacity = material.volumetric_heat_capacity
+    # before the first time a patch by itself is on a half-space
+    alone = 1 / (capacity * areas * math.sqrt(math.pi * material.conductivity / capacity * known.times[0]))
+    port, held = known.port, known.held
+    rest, warmth = _at_moments(known.kernel, known.heat, port, alone, known.to_grasp, known.early)
+    weights = np.array([one.weight for one in box.tips])
+    weight, rate, opened, returned = _shielded(
+        GRASP, rest, warmth, known.rate, port, held, box.film * areas, weights
     )
     found = touched_residues(rest, level.decay, weight)
-    if box.film == 0:
-        warmed, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
-    else:
+    heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
+    if box.film > 0:
         total = np.concatenate([one.even for one in box.tips]) - held * port
-        capacity = box.material.volumetric_heat_capacity * math.prod(box.size)
-        warmed, still = _warmed(found, heat, total, capacity - held**2, *_heat_fit(level))
-    return BodyResidues(rate, port, held, found, warmed, still)
+        whole = capacity * math.prod(box.size)
+        heat, still = _warmed(found, warmth, total, whole - held**2, *_heat_fit(level))
+    own = BodyResidues(rate, port, held, found, heat, still)
+    return UnderTips(own, opened, returned, known.rate, free_fit(level.decay, weight))
 
 
-def _samples(box: TouchedBox) -> _Samples:
-    """Of a box with its film on the patches too."""
+def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
+    """Of a box with its film on the patches too, by those from number `first` on."""
     material, size, film, patches, tips, touched = box
     capacity = material.volumetric_heat_capacity
     jumps, terms = np.array([_jumps(one) for one in tips]), basis_terms(tips[0].basis.shape[1])
-    diffusivity = material.conductivity / capacity
-    times, to_grasp, early = _transform(diffusivity)
+    times, to_grasp, early = _transform(material.conductivity / capacity)
     kernel, rate, port, held, heat = box_kernel(
-        size, material.conductivity, capacity, film, patches, jumps, terms, touched, times
+        size, material.conductivity, capacity, film, patches, jumps, terms, touched, times, first
     )
-    # before the first time a patch by itself is on a half-space
-    alone = 1 / (capacity * patches.areas[:touched] * math.sqrt(math.pi * diffusivity * times[0]))
-    heat = np.zeros((len(times), len(port))) if heat is None else heat
-    impedance, heat = _at_moments(kernel, heat, port, alone, to_grasp, early)
-    return _Samples(impedance, heat, rate, port, held)
+    heat = np.zeros((len(times), kernel.shape[2])) if heat is None else heat
+    return _Kernel(kernel, heat, rate, port, held, times, to_grasp, early)
 
 
 @lru_cache(maxsize=1024)
@@ -134,9 +185,9 @@ def _transform(diffusivity: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @njit(cache=True, error_model="numpy")
 def _at_moments(kernel, heat, port, alone, to_grasp, early):
-    """Impedance (S, A M, N M) K/W of a kernel (T, A M, N M) K/J that falls as 1 / sqrt(t) before the first time: of a
-    patch by itself as alone (A,) K/J says, of one that it overlaps all of it; and (S, N M) J/W of heat (T, N M) J/J.
-    port (N M,): of the slowest eigenfunction, left out of the kernel. to_grasp, early: _transform's."""
+    """Impedance (S, A M, A M) K/W of a kernel (T, A M, A M) K/J that falls as 1 / sqrt(t) before the first time: of a
+    patch by itself as alone (A,) K/J says, of one that it overlaps all of it; and (S, A M) J/W of heat (T, A M) J/J.
+    port (A M,): of the slowest eigenfunction, left out of the kernel. to_grasp, early: _transform's."""
     count, rows, ports = kernel.shape
     patterns = rows // len(alone)
     found, warmed = np.zeros((len(early), rows, ports)), np.zeros((len(early), ports))
@@ -158,13 +209,14 @@ def _at_moments(kernel, heat, port, alone, to_grasp, early):
 
 @njit(cache=True, error_model="numpy")
 def _shielded(moments, rest, heat, rate, port, held, back, weight):
-    """Puts back into the samples rest (S, A M, N M) and heat (S, N M), in proportion to the temperature, what a film
+    """Puts back into the samples rest (S, A M, A M) and heat (S, A M), in proportion to the temperature, what a film
     takes from under the fingertips, back (A,) W/K. Returns what an error of impedance counts (S,) W/K, beside weight
-    (A, S) of the tips and the box as it was; and the slowest rate, as it is."""
-    rows, ports = rest.shape[1:]
+    (A, S) of the tips and the box as it was; the slowest rate, as it is; and UnderTips' opened and returned."""
+    rows = rest.shape[1]
     patterns = rows // len(back)
-    counts, whole = np.empty(len(moments)), np.empty((rows, ports))
+    counts, whole = np.empty(len(moments)), np.empty((rows, rows))
     square, lasting = np.empty((rows, rows)), rate
+    opened, returned = np.zeros((len(moments), rows, rows)), np.zeros((len(moments), rows))
     for i in range(rows):
         lasting -= back[i // patterns] * port[i] * port[i]
     lasting = max(lasting, 0.0)
@@ -175,12 +227,14 @@ def _shielded(moments, rest, heat, rate, port, held, back, weight):
             at = n * patterns
             alone = rest[s, at, at] + slow * port[at] * port[at]
             counts[s] = min(counts[s], 1 / (1 / weight[n, s] + alone))
+        inverse = opened[s]
+        for i in range(rows):
+            inverse[i, i] = 1.0
         if back[0] == 0.0:
             continue
         for i in range(rows):
-            for j in range(ports):
-                whole[i, j] = rest[s, i, j] + slow * port[i] * port[j]
             for j in range(rows):
+                whole[i, j] = rest[s, i, j] + slow * port[i] * port[j]
                 square[i, j] = (1.0 if i == j else 0.0) - whole[i, j] * back[j // patterns]
         # T = Z (q + back T): no pivot is small, as the film would be one of a passive body
         for p in range(rows):
@@ -188,28 +242,93 @@ def _shielded(moments, rest, heat, rate, port, held, back, weight):
                 factor = square[i, p] / square[p, p]
                 for j in range(p, rows):
                     square[i, j] -= factor * square[p, j]
-                for j in range(ports):
-                    whole[i, j] -= factor * whole[p, j]
+                for j in range(rows):
+                    inverse[i, j] -= factor * inverse[p, j]
         for p in range(rows - 1, -1, -1):
             for i in range(p + 1, rows):
-                for j in range(ports):
-                    whole[p, j] -= square[p, i] * whole[i, j]
-            for j in range(ports):
-                whole[p, j] /= square[p, p]
-        for j in range(ports):
-            heat[s, j] += slow * held * port[j]
+                for j in range(rows):
+                    inverse[p, j] -= square[p, i] * inverse[i, j]
+            for j in range(rows):
+                inverse[p, j] /= square[p, p]
         for i in range(rows):
-            square[0, i] = heat[s, i] * back[i // patterns]
+            heat[s, i] += slow * held * port[i]
+            returned[s, i] = heat[s, i] * back[i // patterns]
         now = 1 / (moments[s] + lasting)
-        for j in range(ports):
+        for i in range(rows):
+            for j in range(rows):
+                square[i, j] = 0.0
+                for m in range(rows):
+                    square[i, j] += inverse[i, m] * whole[m, j]
+        for j in range(rows):
             for i in range(rows):
-                heat[s, j] += square[0, i] * whole[i, j]
+                heat[s, j] += returned[s, i] * square[i, j]
             heat[s, j] -= now * held * port[j]
         for i in range(rows):
-            for j in range(ports):
-                both = whole[i, j] if j >= rows else (whole[i, j] + whole[j, i]) / 2
-                rest[s, i, j] = both - now * port[i] * port[j]
-    return counts, lasting
+            for j in range(rows):
+                rest[s, i, j] = (square[i, j] + square[j, i]) / 2 - now * port[i] * port[j]
+    return counts, lasting, opened, returned
+
+
+@njit(cache=True, error_model="numpy")
+def _beside(
+    kernel,
+    heat,
+    exact,
+    to_grasp,
+    early,
+    port,
+    held,
+    rate,
+    slowest,
+    opened,
+    returned,
+    fit,
+    moments,
+    total,
+    seen,
+    share,
+    residues,
+    rows,
+):
+    """Fills residues (A M, N M, K) and heat rows (N M, K) of the places under no fingertip. exact, port (N M,): of the
+    slowest eigenfunction where the kernel is exact, and as it is in the network. total (L M,): even heats; empty where
+    no film takes any heat. The rest as in _Kernel, BodyResidues, UnderTips and _heat_fit."""
+    times, touched, others = kernel.shape
+    found, whole = np.empty((touched, others)), np.empty((touched, others))
+    for i in range(touched):
+        for j in range(touched, touched + others):
+            for k in range(len(share)):
+                residues[i, j, k] = 0.0
+    for s in range(len(early)):
+        slow, now = 1 / (moments[s] + slowest), 1 / (moments[s] + rate)
+        for i in range(touched):
+            for j in range(others):
+                both = exact[i] * exact[touched + j]
+                found[i, j] = slow * both + early[s] * (kernel[0, i, j] + both)
+        for t in range(times):
+            for i in range(touched):
+                for j in range(others):
+                    found[i, j] += to_grasp[s, t] * kernel[t, i, j]
+        for i in range(touched):
+            for j in range(others):
+                whole[i, j] = 0.0
+            for m in range(touched):
+                for j in range(others):
+                    whole[i, j] += opened[s, i, m] * found[m, j]
+            for j in range(others):
+                left = whole[i, j] - now * port[i] * port[touched + j]
+                for k in range(len(share)):
+                    residues[i, touched + j, k] += left * fit[s, k]
+        for j in range(len(total)):
+            gained = (slow * exact[touched + j] - now * port[touched + j]) * held
+            for t in range(times):
+                gained += to_grasp[s, t] * heat[t, j]
+            for i in range(touched):
+                gained += returned[s, i] * whole[i, j]
+            for k in range(len(share)):
+                rows[touched + j, k] += gained * seen[s, k]
+    for j in range(len(total)):
+        _balanced(rows[touched + j], total[j] - held * port[touched + j], share)
 
 
 @lru_cache(maxsize=8)
@@ -225,25 +344,31 @@ def _heat_fit(level: Resolution) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray((inverse[:-1, :-1] @ (columns * GRASP[:, None]).T).T), inverse[:-1, -1].copy()
 
 
+@njit(cache=True, inner=True, error_model="numpy")
+def _balanced(row, total, share):
+    """Gives a row (K,) of heat its share of the total."""
+    for _ in range(2):  # the second time it is what rounding has left of the total
+        left = total
+        if _ == 1:
+            for k in range(len(share)):
+                left -= row[k]
+        for k in range(len(share)):
+            row[k] += left * share[k]
+
+
 @njit(cache=True, error_model="numpy")
 def _warmed(found, heat, total, stored, seen, share):
-    """Rows (N M, K) of the heat (S, N M) that follows each port's flow, whose sums are the total (N M,): all heat that
+    """Rows (A M, K) of the heat (S, A M) that follows each port's flow, whose sums are the total (A M,): all heat that
     goes in is in. And (K,) J/K of what follows the air, and not the box's slowest state, whose sum is what is stored
     (J/K): a rate's share is what the touched ports tell, its heat row squared over its resistance, as in a state.
-    found: (A M, N M, K). seen, share: _heat_fit's."""
+    found: (A M, A M, K). seen, share: _heat_fit's."""
     rates, count = len(share), len(found)
     rows, still = np.zeros((len(total), rates)), np.zeros(rates)
     for j in range(len(total)):
         for s in range(len(heat)):
             for k in range(rates):
                 rows[j, k] += heat[s, j] * seen[s, k]
-        for _ in range(2):  # the second time it is what rounding has left of the total
-            left = total[j]
-            if _ == 1:
-                for k in range(rates):
-                    left -= rows[j, k]
-            for k in range(rates):
-                rows[j, k] += left * share[k]
+        _balanced(rows[j], total[j], share)
     least, whole = 0.0, 0.0
     for i in range(count):
         for k in range(rates):

@@ -7,7 +7,7 @@ from .grid_contact import BOTTOM, OBJECT, SENSOR, TOP, Grid, Interface, Stage, r
 from .laplace import invert
 from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
-from .passive_residues import passive_residues, port_residues
+from .passive_residues import free_residues, passive_residues, port_residues
 
 __all__ = [
     "BOTTOM",
@@ -29,6 +29,7 @@ __all__ = [
     "as_integers",
     "as_like",
     "erfc_inverse",
+    "free_residues",
     "graded_cells",
     "invert",
     "invert_many",

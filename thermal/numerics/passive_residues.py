@@ -30,51 +30,66 @@ def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
 @njit(cache=True, error_model="numpy")
 def port_residues(columns, wanted):
-    """(A, N, K), whose sum with the columns (S, K) is nearest to what is wanted (S, A, N) of A ports: by flow through
-    these themselves, which come first among the N, positive semidefinite; by flow through others, once, of any sign,
-    but for a ridge that keeps them small."""
+    """(N, N, K) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N)."""
     samples, rates = columns.shape
-    rows, ports = wanted.shape[1:]
-    scaled, size = np.empty((samples, rates)), np.zeros(rates)
+    ports = wanted.shape[1]
+    scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((2, rates, rates))
+    _inverses(columns, (_RIDGE, _PENALTY), scaled, size, inverse)
+    seen, inside = np.zeros((ports, ports, rates)), np.zeros((ports, ports, rates))
     for s in range(samples):
-        for k in range(rates):
-            size[k] += columns[s, k] * columns[s, k]
+        for i in range(ports):
+            for j in range(ports):
+                for k in range(rates):
+                    seen[i, j, k] += wanted[s, i, j] * scaled[s, k]
+    for i in range(ports):
+        for j in range(ports):
+            for m in range(rates):
+                for k in range(rates):
+                    inside[i, j, k] += seen[i, j, m] * inverse[0, m, k]
+    _in_cone(inverse[1], seen, inside)
+    for i in range(ports):
+        for j in range(ports):
+            for k in range(rates):
+                inside[i, j, k] /= size[k]
+    return inside
+
+
+@njit(cache=True, error_model="numpy")
+def free_residues(columns):
+    """(S, K), which turns what is wanted (S,) into residues (K,) of any sign, whose sum with the columns (S, K) is
+    nearest to it but for a ridge that keeps them small."""
+    samples, rates = columns.shape
+    scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((1, rates, rates))
+    _inverses(columns, (_FREE_RIDGE,), scaled, size, inverse)
+    found = np.zeros((samples, rates))
     for s in range(samples):
+        for m in range(rates):
+            for k in range(rates):
+                found[s, k] += scaled[s, m] * inverse[0, m, k]
         for k in range(rates):
-            scaled[s, k] = columns[s, k] / np.sqrt(size[k])
-    normal, inverse = np.zeros((rates, rates)), np.empty((3, rates, rates))
+            found[s, k] /= size[k]
+    return found
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _inverses(columns, ridges, scaled, size, inverse):
+    """Fills scaled (S, K) with the columns (S, K) at unit length, size (K,) with their lengths, and inverse (n, K, K)
+    with those of the normal equations with each ridge."""
+    samples, rates = columns.shape
+    normal = np.zeros((rates, rates))
+    for k in range(rates):
+        square = 0.0
+        for s in range(samples):
+            square += columns[s, k] * columns[s, k]
+        size[k] = np.sqrt(square)
+        for s in range(samples):
+            scaled[s, k] = columns[s, k] / size[k]
     for s in range(samples):
         for k in range(rates):
             for m in range(rates):
                 normal[k, m] += scaled[s, k] * scaled[s, m]
-    seen, found = np.zeros((rows, ports, rates)), np.zeros((rows, ports, rates))
-    for s in range(samples):
-        for i in range(rows):
-            for j in range(ports):
-                for k in range(rates):
-                    seen[i, j, k] += wanted[s, i, j] * scaled[s, k]
-    square, inside = np.empty((rows, rows, rates)), np.zeros((rows, rows, rates))
-    for which in range(3):  # one call of it compiles sooner than three
-        _inverse(normal, (_RIDGE, _PENALTY, _FREE_RIDGE)[which], inverse[which])
-    for i in range(rows):
-        for j in range(rows):
-            for k in range(rates):
-                square[i, j, k] = seen[i, j, k]
-            for m in range(rates):
-                for k in range(rates):
-                    inside[i, j, k] += seen[i, j, m] * inverse[0, m, k]
-    _in_cone(inverse[1], square, inside)
-    for i in range(rows):
-        for j in range(ports):
-            for k in range(rates):
-                found[i, j, k] = inside[i, j, k] if j < rows else 0.0
-            if j >= rows:
-                for m in range(rates):
-                    for k in range(rates):
-                        found[i, j, k] += seen[i, j, m] * inverse[2, m, k]
-            for k in range(rates):
-                found[i, j, k] /= np.sqrt(size[k])
-    return found
+    for which in range(len(ridges)):  # one call of it compiles sooner than three
+        _inverse(normal, ridges[which], inverse[which])
 
 
 @njit(cache=True, inner=True, error_model="numpy")

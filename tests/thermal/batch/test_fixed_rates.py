@@ -24,7 +24,7 @@ from thermograsp.thermal.batch import (
     set_gram,
     tip_residues,
 )
-from thermograsp.thermal.kernels import Patches, Resolution, TouchedBox, box_side, tip, touched_boxes
+from thermograsp.thermal.kernels import Patches, Resolution, TouchedBox, box_side, tip, touched_box
 from thermograsp.thermal.network import POLES, WEIGHTS
 
 DT = 0.01
@@ -52,7 +52,7 @@ def scene(name: str, film: float) -> FixedTables:
         np.array([[0.0045, 0.0045], [0.0045, 0.00275]]),
     )
     patches = Patches(np.array([0, 1]), centre, half)
-    [box] = touched_boxes([TouchedBox(material(name), SIZE, film, patches, tips, 2)], LEVEL)
+    box = touched_box(TouchedBox(material(name), SIZE, film, patches, tips, 2), LEVEL)
     tables = fixed_tables(1, 2, 3, LEVEL.patterns, tips[0].side, DT)
     set_body(tables, 0, box, [0, 1])
     tables.tips[2] = tip_residues(tips[1].side)
@@ -131,7 +131,7 @@ def test_residues_are_the_network_and_keep_its_heat():
     tips = tip(STACK, WHOLE, LEVEL)
     patches = Patches(np.array([0]), np.array([[0.01, 0.006]]), np.full((1, 2), 0.0045))
     box = box_side(material("glass"), SIZE, 0.0, patches, (tips,), LEVEL)
-    [found] = touched_boxes([TouchedBox(material("glass"), SIZE, 0.0, patches, (tips,), 1)], LEVEL)
+    found = touched_box(TouchedBox(material("glass"), SIZE, 0.0, patches, (tips,), 1), LEVEL)
     s = np.geomspace(0.03, 100, 30)[:, None]
     fitted = np.einsum("sk,ijk->sij", 1 / (s + SHARED), found.residues)
     exact = np.einsum("sn,ni,nj->sij", 1 / (s + box.rates[1:]), box.ports[1:], box.ports[1:])

@@ -14,7 +14,8 @@ from thermograsp.thermal.kernels import (
     TouchedBox,
     box_samples,
     tip,
-    touched_boxes,
+    touched_box,
+    under_tips,
 )
 from thermograsp.thermal.kernels import touched as touched_module
 
@@ -31,30 +32,21 @@ def touched(name: str, film: float, places: int = 4, fingertips: int = 2) -> Tou
     return TouchedBox(material(name), SIZE, film, patches, (TIP,) * places, fingertips)
 
 
-def test_a_box_s_numbers_do_not_depend_on_the_others():
-    boxes = [
-        touched(name, film, places, fingertips)
-        for name, film, places, fingertips in (
-            ("glass", 5.0, 4, 2),
-            ("aluminium", 5.0, 4, 2),
-            ("wood", 0.0, 4, 2),
-            ("glass", 5.0, 2, 1),
-            ("stainless_steel", 5.0, 4, 2),
-        )
-    ]
-    together = touched_boxes(boxes, LEVEL)
-    for box, found in zip(boxes, together, strict=True):
-        [alone] = touched_boxes([box], LEVEL)
-        assert all(np.array_equal(one, other) for one, other in zip(alone, found, strict=True))
-    assert touched_boxes([], LEVEL) == []
+def test_what_is_under_fingertips_may_be_known():
+    box = touched("stainless_steel", 5.0)
+    known = under_tips(touched("stainless_steel", 5.0, 2), LEVEL)
+    for one, other in zip(touched_box(box, LEVEL), touched_box(box, LEVEL, known), strict=True):
+        assert np.array_equal(one, other)
+    alone = touched_box(touched("stainless_steel", 5.0, 2), LEVEL)
+    assert all(np.array_equal(one, other) for one, other in zip(alone, known.own, strict=True))
 
 
 @pytest.mark.parametrize("name", ["glass", "aluminium", "cotton"])
 def test_what_flowed_elsewhere_is_told_as_the_kernels_have_it(name):
     """Beside what a contact's own impedance is, to a hundredth; and places that are remembered change nothing of it."""
     known = material(name)
-    [found] = touched_boxes([touched(name, 0.0)], LEVEL)
-    [without] = touched_boxes([touched(name, 0.0, 2)], LEVEL)
+    found = touched_box(touched(name, 0.0), LEVEL)
+    without = touched_box(touched(name, 0.0, 2), LEVEL)
     assert np.abs(found.residues[:, :6] - without.residues).max() < 1e-9 * without.residues.max()
     patches = touched(name, 0.0).patches
     exact = box_samples(
@@ -70,27 +62,41 @@ def test_what_flowed_elsewhere_is_told_as_the_kernels_have_it(name):
 def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
     """Of patches by themselves and of those that they overlap, which feel each other at once, beside many times from
     very early on."""
-    box = touched(name, 15.0)
-    few = touched_module._samples(box)
+    few, few_beside = impedances(name)
     touched_module._transform.cache_clear()
     monkeypatch.setattr(touched_module, "_SPACING", 0.6)
     monkeypatch.setattr(touched_module, "_UNFELT", 1e-14)
     monkeypatch.setattr(touched_module, "_FIRST", 1e-9)
-    many = touched_module._samples(box)
+    many, many_beside = impedances(name)
     touched_module._transform.cache_clear()
-    exact = many.impedance
-    whole = np.abs(exact[:, 0, 0] + many.port[0] ** 2 / (GRASP + many.rate) + TIP.impedance)
-    difference = np.abs(few.impedance - exact) / whole[:, None, None]
-    assert difference[..., :6].max() < 5e-4
-    assert difference.max() < 1e-2  # of what flowed elsewhere once, at the fastest moments
-    assert (np.abs(few.heat - many.heat) * GRASP[:, None]).max() < 1e-3
+    rate, port = many_beside.rate, many_beside.port
+    whole = np.abs(many[0][:, 0, 0] + port[0] ** 2 / (GRASP + rate) + TIP.impedance)[:, None, None]
+    assert (np.abs(few[0] - many[0]) / whole).max() < 5e-4
+    assert (np.abs(few[1] - many[1]) * GRASP[:, None]).max() < 1e-3
+    # of what flowed elsewhere once, at the fastest moments
+    assert (np.abs(transformed(few_beside) - transformed(many_beside)) / whole).max() < 1e-2
+
+
+def impedances(name: str):
+    """Of patches under fingertips, with the heat's; and the kernel of others."""
+    box = touched(name, 15.0, 2)
+    under, areas = touched_module._kernel_of(box, 0), box.patches.areas
+    capacity, conductivity = box.material.volumetric_heat_capacity, box.material.conductivity
+    alone = 1 / (areas * np.sqrt(np.pi * conductivity * capacity * under.times[0]))
+    own = touched_module._at_moments(under.kernel, under.heat, under.port, alone, under.to_grasp, under.early)
+    return own, touched_module._kernel_of(touched(name, 15.0), 2)
+
+
+def transformed(beside) -> np.ndarray:
+    first = beside.kernel[0] + np.outer(beside.port[:6], beside.port[6:])
+    return np.tensordot(beside.to_grasp, beside.kernel, axes=1) + beside.early[:, None, None] * first
 
 
 @pytest.mark.parametrize("film", [5.0, 300.0])
 def test_all_heat_that_goes_in_is_in(film):
     """At once, wherever it goes in; and a box that follows the air holds its whole capacity."""
     box = touched("wood", film)
-    [found] = touched_boxes([box], LEVEL)
+    found = touched_box(box, LEVEL)
     even = np.concatenate([one.even for one in box.tips])
     assert found.heat.sum(axis=1) + found.held * found.ports == pytest.approx(even, abs=1e-13)
     assert found.still.min() >= 0
