@@ -28,8 +28,18 @@ from scipy.optimize import brentq
 
 from thermograsp import Fingertip, ThermalTouch
 from thermograsp.thermal import SKINS, Pad, Surface, material
-from thermograsp.thermal.contact import conductance, contact, curved_contact, face_joint, flat_law, skinned
-from thermograsp.touch.contacts import AREA, CLOSED, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
+from thermograsp.thermal.contact import (
+    conductance,
+    contact,
+    curved_contact,
+    curved_shares,
+    face_joint,
+    flat_law,
+    patch_ends,
+    patch_offset,
+    skinned,
+)
+from thermograsp.touch.contacts import AREA, ASIDE, CLOSED, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from thermograsp.touch.contacts.views import viewed
 
 FORCE_N, TIME, WARM, COOL = 10.0, 2.0, 36.0, 24.0
@@ -107,11 +117,13 @@ CASES = (
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """conducts: W/K; area: m2 on the face; long: m, the patch's length."""
+    """conducts: W/K; area: m2 on the face; long: m, the patch's length; shares: (4,) by which it lies at an end of the
+    face along both sides, and of the mesh (thermal/contact/patch_place.py)."""
 
     conducts: float
     area: float
     long: float
+    shares: tuple[float, ...]
 
 
 @lru_cache
@@ -144,7 +156,7 @@ def _law() -> np.void:
 def flat() -> Contact:
     """As a face without an end."""
     area, share = contact(_law(), FORCE_N, np.zeros(3))
-    return Contact(float(conductance(_law(), share / area) * area), float(area), math.sqrt(area))
+    return Contact(float(conductance(_law(), share / area) * area), float(area), math.sqrt(area), (0.0,) * 4)
 
 
 def _place(name: str, aside: float, turn: float) -> np.ndarray:
@@ -164,7 +176,10 @@ def tabled(name: str, aside: float, turn: float) -> Contact:
     view, u, v = viewed(reader._views[0], reader._parts[0, 3], turned @ [0.0, 0.0, -1.0], place, PAD.face / 2)
     number = int(reader._curved[0, 0, 0, view])
     table = next(mesh for mesh, known in reader._meshes.items() if known == number).table()
-    return Contact(*map(float, curved_contact(table, FORCE_N, u, v)))
+    shares = np.zeros(4)
+    curved_shares(table, FORCE_N, u, v, shares)
+    conducts, area, long = (float(each) for each in curved_contact(table, FORCE_N, u, v))
+    return Contact(conducts, area, long, tuple(shares.tolist()))
 
 
 def heights(mesh: Mesh, frame: np.ndarray, places: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
@@ -229,15 +244,21 @@ def pressures(name: str, aside: float, turn: float) -> np.ndarray:
     return on_face * np.maximum(brentq(held, least, least + 0.01, xtol=1e-15) - fine, 0.0)  # pyright: ignore
 
 
-def direct(pressure: np.ndarray) -> Contact:
-    """Of those pressures. The patch is as long to broad as the contact's moments."""
+def direct(pressure: np.ndarray, aside: float, side: float) -> Contact:
+    """Of those pressures. The patch is as long to broad as the contact's moments. aside: m; side: m, the mesh's."""
     law, each = _law(), (PAD.face / _FINE) ** 2
     on = pressure > 0
     through = sum(conductance(law, p) * each for p in pressure[on].tolist())
     area = float(on.sum()) * each
+    middle = (np.argwhere(on).mean(axis=0) + 0.5) * PAD.face / _FINE - PAD.face / 2
     at = np.argwhere(on) - np.argwhere(on).mean(axis=0)
-    spread = np.linalg.eigvalsh(at.T @ at)
-    return Contact(float(through), area, math.sqrt(area * math.sqrt(spread[1] / spread[0])))
+    moments = at.T @ at
+    spread = np.linalg.eigvalsh(moments)
+    longer = math.sqrt(area * math.sqrt(spread[1] / spread[0]))
+    sides = (area / longer, longer) if moments[1, 1] >= moments[0, 0] else (longer, area / longer)
+    offsets = [patch_offset(off, each, PAD.face) for off, each in zip(middle, sides, strict=True)]
+    end = patch_ends(aside + middle[0], aside, sides[0], side, PAD.face)
+    return Contact(float(through), area, sides[1], (*offsets, end, 0.0))
 
 
 def by_network(name: str, aside: float, turn: float, met: Contact) -> float:
@@ -246,7 +267,7 @@ def by_network(name: str, aside: float, turn: float, met: Contact) -> float:
     reader, data = touch._reader, mujoco.MjData(touch._model)
     row = np.zeros(reader.touches.shape[-1])
     row[[CONDUCTANCE, AREA, LENGTH]] = met.conducts, met.area, met.area * met.long
-    row[[CLOSED, FORCE]] = 1.0, FORCE_N
+    row[[CLOSED, FORCE]], row[ASIDE:] = (1.0, FORCE_N), met.area * np.array(met.shares)
 
     def read(data: mujoco.MjData, weight: int = 1) -> None:
         reader.counted += weight
@@ -277,7 +298,8 @@ class Row:
 
 def row(name: str, aside: float, turn: float) -> Row:
     """Of a case."""
-    every = flat(), tabled(name, aside, turn), direct(pressures(name, aside, turn))
+    side = float(np.ptp(meshes()[name][0][0][:, 0]))
+    every = flat(), tabled(name, aside, turn), direct(pressures(name, aside, turn), aside, side)
     return Row(
         *(name, aside, turn),
         tuple(met.area for met in every),  # pyright: ignore[reportArgumentType]

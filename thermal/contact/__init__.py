@@ -1,7 +1,7 @@
 """From normal force to contact: area, conductance, and both as one compiled law."""
 
 from .area import ContactArea, Pad, cylinder_contact, flat_contact, sphere_contact
-from .array_law import ArrayLaws, array_conductance, array_contact, array_laws
+from .array_law import ArrayLaws, array_conductance, array_contact, array_flat_patch, array_laws
 from .curved_table import (
     CURVED_TABLE,
     FIRST_FORCE,
@@ -10,9 +10,12 @@ from .curved_table import (
     LEAST_CURVED,
     PLACES,
     array_curved_contact,
+    array_curved_shares,
     curved_contact,
+    curved_shares,
     curved_table,
     even_places,
+    table_values,
 )
 from .fingertip import face_joint, skinned, touching
 from .footprint import (
@@ -41,9 +44,11 @@ from .law import (
     contact,
     cylinder_law,
     flat_law,
+    flat_patch,
     solid_conduction,
     sphere_law,
 )
+from .patch_place import NARROW, patch_ends, patch_offset
 from .rigid import RigidContact, rigid_cylinder, rigid_sphere
 from .rough_faces import (
     AIR,
@@ -75,6 +80,7 @@ __all__ = [
     "LEAST_CURVED",
     "LOG_LEAST",
     "LOG_MOST",
+    "NARROW",
     "PLACES",
     "SEPARATION",
     "TABLE_FORCES",
@@ -87,7 +93,9 @@ __all__ = [
     "Surface",
     "array_conductance",
     "array_contact",
+    "array_flat_patch",
     "array_curved_contact",
+    "array_curved_shares",
     "array_laws",
     "bare_footprint",
     "bared",
@@ -97,6 +105,7 @@ __all__ = [
     "conduction",
     "contact",
     "curved_contact",
+    "curved_shares",
     "curved_table",
     "contact_conductance",
     "covered_share",
@@ -108,9 +117,12 @@ __all__ = [
     "flat_contact",
     "flat_footprint",
     "flat_law",
+    "flat_patch",
     "footprint",
     "gas_conduction",
     "joint",
+    "patch_ends",
+    "patch_offset",
     "face_joint",
     "rigid_cylinder",
     "rigid_sphere",
@@ -122,6 +134,7 @@ __all__ = [
     "sphere_law",
     "stack_joints",
     "table_footprint",
+    "table_values",
     "touching",
     "typical_slope",
 ]

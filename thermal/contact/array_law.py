@@ -13,6 +13,7 @@ import numpy as np
 
 from ..numerics import HIGH, LOW, Array, as_like, namespace_of
 from .law import CYLINDER, LOG_LEAST, LOG_MOST, SEPARATION
+from .patch_place import NARROW, array_patch_ends, array_patch_offset
 
 _COEFFICIENTS = tuple(SEPARATION[::-1].tolist())  # highest power first, as numbers that compilers can see
 _LEAST_FORCE = 1e-9  # N, of a contact that is apart: any at which the law has a value
@@ -76,6 +77,22 @@ def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, A
     carried = xp.where(laws.follows > 0, part, laws.share) * pressed
     touching = force > 0
     return area * touching, carried * touching
+
+
+def array_flat_patch(laws: ArrayLaws, area: Array, place: Array) -> tuple[Array, Array]:
+    """flat_patch: m, and shares (..., 4), as a pure function of arrays. area: m2, of the laws' shape; place: (..., 3)
+    m."""
+    xp = namespace_of(area)
+    half = laws.half_face[..., None]
+    pad, size = (laws.select * place[..., None, :]).sum(-1), laws.size
+    low, high = xp.maximum(-half, -pad - size / 2), xp.minimum(half, size / 2 - pad)
+    length, middle = high - low, (low + high) / 2
+    width = 2 * laws.half_face
+    covers = (laws.follows > 0) & (area < width * width * NARROW)
+    offset = array_patch_offset(middle, length, 2 * half + 0.0 * length)
+    ends = array_patch_ends(pad + middle, pad, length, size, 2 * half + 0.0 * length)
+    shares = xp.where(covers[..., None], xp.concatenate((offset, ends), -1), 0.0 * area[..., None])
+    return xp.where(covers, length[..., 1], area**0.5), shares
 
 
 def array_conductance(laws: ArrayLaws, pressure: Array) -> Array:

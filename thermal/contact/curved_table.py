@@ -3,7 +3,9 @@
 What a footprint conducts, gas beside it with it, and the patch that stands for it (footprint.py, spread.py), at FORCES
 and at places of the body's crown, or of its middle along a cylinder, from the pad's middle. In between it is taken
 evenly by the places, and the conductance as a power of the force. A table is a row of numbers: PLACES distances m along
-the pad's two axes each, then W/K, m2 and m (the patch's length) by force and both places.
+the pad's two axes each; then W/K, m2 and m (the patch's length along the second) by force and both places; then by the
+same the shares by which the patch lies at an end of the face along both axes, and at an end of the body
+(patch_place.py).
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from .area import Pad
 from .fingertip import touching
 from .footprint import round_footprint
 from .law import CYLINDER
+from .patch_place import patch_ends, patch_offset
 from .rough_faces import Surface
 from .spread import beneath, even_contact
 
@@ -30,7 +33,8 @@ FIRST_FORCE, FORCE_STEP = math.log(0.02), math.log(2.2)
 """Logarithms of the first force N and of the ratio of two that follow one another."""
 LEAST_CURVED = 1e-9
 """W/K: less is none."""
-CURVED_TABLE = 2 * PLACES + 3 * FORCES * PLACES * PLACES
+_SHARES = 2 * PLACES + 3 * FORCES * PLACES * PLACES
+CURVED_TABLE = _SHARES + 4 * FORCES * PLACES * PLACES
 _RIM = 0.001  # m beyond a pad's sides, where a contact may be named
 _INSIDE = np.array([0.0, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98, 1.0])  # of the face's half width
 _NEAR = 1e-6  # m: places of a table are further apart, in single precision too
@@ -48,7 +52,7 @@ def curved_table(
     along = aside if length is None else _along(pad, length)
     table = np.empty(CURVED_TABLE)
     table[:PLACES], table[PLACES : 2 * PLACES] = aside, along
-    values = table[2 * PLACES :].reshape(FORCES, PLACES, PLACES, 3)
+    values, shares = table_values(table)
     _fill(
         law,
         beneath(body, face),
@@ -56,9 +60,16 @@ def curved_table(
         aside,
         along,
         values,
+        shares,
     )
     table.flags.writeable = False
     return table
+
+
+def table_values(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Views of a table: (FORCES, PLACES, PLACES, 3) W/K, m2 and m, and (FORCES, PLACES, PLACES, 4) shares."""
+    grid = FORCES, PLACES, PLACES
+    return table[2 * PLACES : _SHARES].reshape(*grid, 3), table[_SHARES:].reshape(*grid, 4)
 
 
 def _aside(pad: Pad) -> np.ndarray:
@@ -90,17 +101,27 @@ def even_places(first: float, last: float, edges: Iterable[float]) -> np.ndarray
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(law, resistance, forces, aside, along, values):
-    place = np.zeros(3)
+def _fill(law, resistance, forces, aside, along, values, shares):
+    place, width = np.zeros(3), 2 * law.half_face
     for i in range(len(aside)):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]
             for k in range(len(forces)):
                 conducts, area = even_contact(law, resistance, forces[k], place)
                 long = math.sqrt(area)
+                beside = along[j]
                 if law.shape == CYLINDER:
                     half, other = law.half_face, law.length / 2
-                    long = max(min(half, other - along[j]) + min(half, other + along[j]), 0.0)
+                    low, high = max(-half, -along[j] - other), min(half, other - along[j])
+                    long, beside = max(high - low, 0.0), (low + high) / 2
+                    middle = along[j] + beside
+                    shares[k, i, j, 3] = patch_ends(middle, along[j], long, law.length, width)
+                else:
+                    shares[k, i, j, 3] = 0.0
+                broad = area / long if long > 0.0 else 0.0
+                shares[k, i, j, 0] = patch_offset(aside[i], broad, width)
+                shares[k, i, j, 1] = patch_offset(beside, long, width)
+                shares[k, i, j, 2] = 0.0
                 values[k, i, j, 0], values[k, i, j, 1], values[k, i, j, 2] = conducts, area, long
 
 
@@ -123,6 +144,24 @@ def curved_contact(table, force, aside, along):
     area, more = _even(table, low + 1, u, v), _even(table, high + 1, u, v)
     long, longer = _even(table, low + 2, u, v), _even(table, high + 2, u, v)
     return conducts, area + w * (more - area), long + w * (longer - long)
+
+
+@njit(cache=True, error_model="numpy")
+def curved_shares(table, force, aside, along, shares):
+    """Fills shares (4,): by how much such a contact lies at an end of the face along both axes, and of the body."""
+    i, u = _between(table[:PLACES], abs(aside))
+    j, v = _between(table[PLACES : 2 * PLACES], abs(along))
+    at = (math.log(force) - FIRST_FORCE) / FORCE_STEP
+    k = min(max(int(at), 0), FORCES - 2)
+    w = min(max(at - k, 0.0), 1.0)
+    for n in range(4):
+        shares[n] = 0.0
+    for corner in range(8):
+        a, b, c = corner & 1, corner >> 1 & 1, corner >> 2
+        weight = (w if a else 1 - w) * (u if b else 1 - u) * (v if c else 1 - v)
+        first = _SHARES + 4 * (((k + a) * PLACES + i + b) * PLACES + j + c)
+        for n in range(4):
+            shares[n] += weight * table[first + n]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -174,6 +213,30 @@ def array_curved_contact(
     closed = (force > 0) & (conducts > 2 * LEAST_CURVED)
     none = 0.0 * force
     return xp.where(closed, conducts, none), xp.where(closed, area, none), xp.where(closed, long, none)
+
+
+def array_curved_shares(tables: Array, number: Array, force: Array, aside: Array, along: Array) -> Array:
+    """curved_shares, (..., 4), as a pure function of arrays."""
+    xp = namespace_of(force)
+    start = number * CURVED_TABLE
+    i, u = _array_between(xp, tables, start, abs(aside))
+    j, v = _array_between(xp, tables, start + PLACES, abs(along))
+    at = (xp.log(force.clip(1e-9, None)) - FIRST_FORCE) / FORCE_STEP
+    k = as_integers(at.clip(0.0, FORCES - 2.0))
+    w = (at - k).clip(0.0, 1.0)
+    first = start + _SHARES + 4 * ((k * PLACES + i) * PLACES + j)
+
+    def value(n: int) -> Array:
+        def along_places(at: Array) -> Array:
+            one = tables[at] + v * (tables[at + 4] - tables[at])
+            at = at + 4 * PLACES
+            other = tables[at] + v * (tables[at + 4] - tables[at])
+            return one + u * (other - one)
+
+        low, high = along_places(first + n), along_places(first + n + 4 * PLACES * PLACES)
+        return low + w * (high - low)
+
+    return xp.stack([value(n) for n in range(4)], -1)
 
 
 def _array_between(xp, tables, start, at):

@@ -22,6 +22,7 @@ from ..numerics import (
     SERIES,
 )
 from .area import Pad, flat_contact
+from .patch_place import NARROW, patch_ends, patch_offset
 from .rough_faces import Joint, solid_conductance
 
 FLAT, CYLINDER, SPHERE = range(3)
@@ -141,6 +142,25 @@ def contact(law, force, place):
         return math.nan, math.nan
     area, share = _overlap(law, place)
     return area, force * share
+
+
+@njit(cache=True, error_model="numpy")
+def flat_patch(law, area, place, shares):
+    """m, the second side of a flat contact of that area m2 on the face; fills shares (4,) by which it lies at an end of
+    the face along both sides, and at an end of the object (patch_place.py). place: as contact's."""
+    width = 2 * law.half_face
+    for side in range(4):
+        shares[side] = 0.0
+    if law.size[0] == 0 or area >= width * width * NARROW:
+        return math.sqrt(area)
+    length = 0.0
+    for side in range(2):
+        pad, size = place[law.across[side]], law.size[side]
+        low, high = max(-law.half_face, -pad - size / 2), min(law.half_face, size / 2 - pad)
+        length = high - low
+        shares[side] = patch_offset((low + high) / 2, length, width)
+        shares[2 + side] = patch_ends(pad + (low + high) / 2, pad, length, size, width)
+    return length
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)

@@ -3,10 +3,10 @@
 The mesh sinks into the pad's elastic foundation (thermal/contact/area.py) along that direction, without a tilt, until
 the springs under it take the force. Area counts where there is pressure and the mesh covers the face: the crests of a
 thread, the teeth of a gear, a face up to its edge. Its length tells a strip from a square, in which heat is more
-constricted. The tables are those of curved bodies (thermal/contact/curved_table.py): W/K, m2 and m at FORCES and at
-places of the pad's middle, whose sides lie along the mesh's. Places are counted from where the face begins to meet the
-mesh, so that they are never below 0.
-"""
+constricted, and so it is at the ends of the face and of the mesh, which ends where its outline does. The tables are
+those of curved bodies (thermal/contact/curved_table.py): W/K, m2 and m at FORCES and at places of the pad's middle,
+whose sides lie along the mesh's. Places are counted from where the face begins to meet the mesh, so that they are never
+below 0."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ from ..contact import (
     even_places,
     face_joint,
     flat_law,
+    patch_ends,
+    patch_offset,
     skinned,
+    table_values,
 )
 from ..matter import Material, Skin
 from .height_map import height_map, map_heights
@@ -41,6 +44,7 @@ _FINER = 4  # times as many on the face
 _STEPS = 50
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 _TOLERANCE = 1e-12  # of the force
+_WHOLE = 0.98  # of the face: what is longer covers it, to its points
 _FADED = 0.1  # of what a force five times as large touches, at least
 
 
@@ -67,8 +71,9 @@ class PressedMesh:
 
 class PressedView(NamedTuple):
     """places: (2, PLACES) m of the pad's middle along the two axes across the direction, from where the face begins to
-    meet the mesh. touched: (FORCES, PLACES, PLACES, 3), m2 of the face in contact, its share of the force, and m, the
-    length of a rectangle of that area that is as long to broad as the contact."""
+    meet the mesh. touched: (FORCES, PLACES, PLACES, 7), m2 of the face in contact, its share of the force, m, the
+    length along the second axis of a rectangle of that area that is as long to broad as the contact, and the shares by
+    which it lies at an end of the face along both axes, and of the mesh (thermal/contact/patch_place.py)."""
 
     places: np.ndarray
     touched: np.ndarray
@@ -84,9 +89,9 @@ def pressed_view(pad: Pad, vertices: bytes, faces: bytes, axes: bytes) -> Presse
     across = corners @ seen.axes[1:].T
     low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
     places = np.stack([_places(pad.face, float(span)) for span in high - low])
-    touched = np.zeros((FORCES, PLACES, PLACES, 3))
+    touched = np.zeros((FORCES, PLACES, PLACES, 7))
     loads = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)) * pad.thickness / pad.foundation_modulus
-    _press(*seen, low, places, *_points(pad), loads, touched)
+    _press(*seen, low, places, *_points(pad), loads, high - low, pad.face, touched)
     for array in (places, touched):
         array.flags.writeable = False
     return PressedView(places, touched)
@@ -122,14 +127,17 @@ def _conducting(view: PressedView, law: np.void) -> np.ndarray:
     table = np.empty(CURVED_TABLE)
     table[: 2 * PLACES] = view.places.ravel()
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    _conduct(law, forces, view.touched, table[2 * PLACES :].reshape(view.touched.shape))
+    _conduct(law, forces, view.touched, *table_values(table))
     table.flags.writeable = False
     return table
 
 
 @njit(cache=True, error_model="numpy")
-def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness, on_face, loads, touched):
-    """Fills touched. on_face: how many points. loads: m3, forces over the stiffness of springs around the face."""
+def _press(
+    axes, corner, height, pitch, begin, places, points, areas, stiffness, on_face, loads, spans, face, touched
+):  # fmt: skip
+    """Fills touched. on_face: how many points. loads: m3, forces over the stiffness of springs around the face. spans:
+    (2,) m of places, the mesh's outline and the face's side."""
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
@@ -157,16 +165,26 @@ def _press(axes, corner, height, pitch, begin, places, points, areas, stiffness,
                     touching[i] = cover[i] * _part(sunk, slopes[i])
                     held += cover[i] * stiffness[i] * max(sunk, 0.0)
                 touched[n, a, b, 0], touched[n, a, b, 1] = touching.sum(), held / loads[n]
-                touched[n, a, b, 2] = _long(points, touching, areas[0])
+                _lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, touched[n, a, b])
             # between forces a power of them is taken, which must not begin at nothing
             for n in range(len(loads) - 4, -1, -2):
                 for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
-                    touched[n, a, b, k] = max(touched[n, a, b, k], faded * touched[n + 2, a, b, k])
+                    if touched[n, a, b, k] < faded * touched[n + 2, a, b, k]:
+                        touched[n, a, b, k] = faded * touched[n + 2, a, b, k]
+                        touched[n, a, b, 3:] = touched[n + 2, a, b, 3:]
             for n in range(1, len(loads), 2):
                 above = min(n + 1, len(loads) - 2)
                 touched[n, a, b, 0] = math.sqrt(touched[n - 1, a, b, 0] * touched[above, a, b, 0])
-                for k in range(1, 3):
+                for k in range(1, 7):
                     touched[n, a, b, k] = (touched[n - 1, a, b, k] + touched[above, a, b, k]) / 2
+    # where a contact vanishes it is a strip at both ends
+    last = places.shape[1] - 1
+    for a, beside in ((0, 1), (last, last - 1)):
+        touched[:, a, :, 2:] = touched[:, beside, :, 2:]
+        touched[:, a, :, 3], touched[:, a, :, 5] = 1.0, 1.0
+    for b, beside in ((0, 1), (last, last - 1)):
+        touched[:, :, b, 3:] = touched[:, :, beside, 3:]
+        touched[:, :, b, 2], touched[:, :, b, 4], touched[:, :, b, 6] = 0.0, 1.0, 1.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -195,18 +213,27 @@ def _part(sunk, slope):
 
 
 @njit(cache=True, error_model="numpy")
-def _long(points, touching, square):
-    """m, by the second moments of what of each point touches, m2; a point counts as a square of that area m2."""
+def _lie(points, touching, square, aside, along, spans, face, touched):
+    """Writes a contact's length m and its shares to touched[2:], by the moments of what of each point touches, m2; a
+    point counts as a square of that area m2. aside, along: m, the pad's place."""
     s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(touching)):
         w, y, z = touching[i], points[i, 0], points[i, 1]
         s, sy, sz = s + w, sy + w * y, sz + w * z
         syy, syz, szz = syy + w * y * y, syz + w * y * z, szz + w * z * z
     if s == 0.0:
-        return 0.0
+        return
     yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
     middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
-    return math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
+    longer = math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
+    touched[2] = longer if zz >= yy else s / longer
+    for axis in range(2):
+        length = touched[2] if axis == 1 else s / touched[2]
+        pad, off = (along, sz / s) if axis == 1 else (aside, sy / s)
+        pad -= spans[axis] / 2
+        length = face if length > _WHOLE * face else length
+        touched[3 + axis] = patch_offset(off, length, face)
+        touched[5 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)
 
 
 @njit(cache=True, error_model="numpy")
@@ -234,7 +261,7 @@ def _sunk(heights, cover, stiffness, load):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(law, forces, touched, values):
+def _conduct(law, forces, touched, values, shares):
     for n in range(touched.shape[0]):
         for a in range(touched.shape[1]):
             for b in range(touched.shape[2]):
@@ -242,3 +269,5 @@ def _conduct(law, forces, touched, values):
                 load = touched[n, a, b, 1] * forces[n]
                 values[n, a, b, 0] = conductance(law, load / area) * area if load > 0.0 else 0.0
                 values[n, a, b, 1], values[n, a, b, 2] = area, touched[n, a, b, 2]
+                for k in range(4):
+                    shares[n, a, b, k] = touched[n, a, b, 3 + k]

@@ -20,7 +20,15 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ...thermal.contact import ArrayLaws, array_conductance, array_contact, array_curved_contact, array_laws
+from ...thermal.contact import (
+    ArrayLaws,
+    array_conductance,
+    array_contact,
+    array_curved_contact,
+    array_curved_shares,
+    array_flat_patch,
+    array_laws,
+)
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .array_round import array_round_contact
@@ -48,12 +56,15 @@ class TouchContacts(NamedTuple):
 
 
 class StepContacts(NamedTuple):
-    """Of a step, (B, F, O) each: conductance W/K, its mean; area m2 and length m of the contact while there was one, 0
-    without; force N on the pad, its mean. beside: (B, F) N off the pads, its mean."""
+    """Of a step, (B, F, O) each: conductance W/K, its mean; area m2 and length m, along the second of two axes, of the
+    contact while there was one, 0 without; force N on the pad, its mean. shares: (B, F, O, 4) by which the contact lies
+    at an end of the sensor's face along both axes, and of the object (thermal/contact/patch_place.py). beside: (B, F) N
+    off the pads, its mean."""
 
     conductance: Array
     area: Array
     length: Array
+    shares: Array
     force: Array
     beside: Array
 
@@ -120,15 +131,19 @@ class ArrayContacts:
             of = (values[..., None] * of_object).sum(-2)
             return of.reshape((worlds, substeps, *of.shape[1:]))
 
-        conducts, area, long = (each[..., 0] for each in found)
-        areas = summed(area)
+        conducts, area, long = (each[..., 0] for each in found[:3])
+        areas, placed = summed(area), (area[..., None] * found[3][..., 0, :])
+        placed = (placed[..., None, :] * of_object[:, :, None]).sum(-3)
+        placed = placed.reshape((worlds, substeps, *placed.shape[1:])).sum(1)
         closed = xp.where(areas > 0, 1.0 + 0.0 * areas, 0.0 * areas).sum(1)
         areas = areas.sum(1)
+        over = xp.where(areas > 0, areas, 1.0 + areas)
         broken = total[:, None, None]
         return StepContacts(
             summed(conducts).mean(1) + broken,
             areas / xp.where(closed > 0, closed, 1.0 + closed),
-            summed(area * long).sum(1) / xp.where(areas > 0, areas, 1.0 + areas),
+            summed(area * long).sum(1) / over,
+            placed / over[..., None],
             summed(whole).mean(1) + broken,
             beside.reshape((worlds, substeps, -1)).mean(1) + total[:, None],
         )
@@ -142,10 +157,10 @@ class ArrayContacts:
         geom_position: Array,
         geom_turn: Array,
         material: Array,
-    ) -> tuple[Array, Array, Array]:
+    ) -> tuple[Array, Array, Array, Array]:
         """(conductance W/K of a contact of the whole face's spread, area m2, length m), (B, F, G, H) each, 0 where
-        nothing conducts. pressed: (B, F, G, H) N on the pads, which acts at off (B, F, G, 2) m from the middle (B, F,
-        3) m of a pad with axes (B, F, 3, 3)."""
+        nothing conducts, and shares (B, F, G, H, 4). pressed: (B, F, G, H) N on the pads, which acts at off (B, F, G,
+        2) m from the middle (B, F, 3) m of a pad with axes (B, F, 3, 3)."""
         xp = namespace_of(pressed)
         tips, geoms = self.numbers.shape
         looking = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # (B, F, G, 3) in the geom's frame
@@ -155,9 +170,14 @@ class ArrayContacts:
         which = as_integers(pair * 3 + axis)
         law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
+        long, shares = array_flat_patch(law, area, from_geom[..., None, :])
         kept = longer = 1.0 + 0.0 * area
         if self.any_bulging:
             area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
+            bulging = self.bulging[:, None, None] > 0
+            safe = xp.where(area > 0, area * kept * longer, 1.0 + 0.0 * area)
+            long = xp.where(bulging, safe**0.5, long)
+            shares = xp.where(bulging[..., None], 0.0 * shares, shares)
         width = self.width[:, None, None]
         pressure = share / xp.where(area > 0, area, area + width**2)
         area = area * kept
@@ -166,9 +186,9 @@ class ArrayContacts:
         h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
         none = 0.0 * pressed
-        flat = tuple(xp.where(closed, each, none) for each in (h * safe, area, (safe * longer) ** 0.5))
+        flat = tuple(xp.where(closed, each, none) for each in (h * safe, area, long))
         if not self.any_curved:
-            return flat
+            return *flat, shares
         aside, along, slope = self._crown(law, off, from_geom, axes, geom_turn)
         side = axis
         if self.any_meshed:
@@ -184,12 +204,14 @@ class ArrayContacts:
         whole, lying = array_tilted(self.tilts[which][..., None, :], pressed, slope + none, along + none)
         lies = whole > 0
         share = xp.where(lies, whole, 1.0 + 0.0 * whole)
-        found = array_curved_contact(self.tables, number, lying / share, aside + none, along + none)
+        lying = lying / share
+        found = array_curved_contact(self.tables, number, lying, aside + none, along + none)
+        placed = array_curved_shares(self.tables, number, lying, aside + none, along + none)
         conducts, area, long = (
             xp.where(table >= 0, xp.where(lies, share * bent, none), even)
             for bent, even in zip(found, flat, strict=True)
         )
-        return conducts, area, long
+        return conducts, area, long, xp.where((table >= 0)[..., None], placed, shares)
 
     def _of_round(
         self,

@@ -1,5 +1,18 @@
 """Columns of what is noted of a fingertip on a target, sums over substeps: conductance W/K and force N on the pad, and
 at the last substep that touched the pad's middle m (3) and the way it looks (3), both in the object's frame. Sums
-again: the substeps that touched, the area m2 in contact, and it times its length m; 0 stand for the whole face."""
+again: the substeps that touched, the area m2 in contact, and it times: its length m along the second of two axes; and
+along each axis the shares by which it lies aside on the sensor's face (2) and at an end of the object
+(2, thermal/contact/patch_place.py). 0 stand for the whole face."""
 
-CONDUCTANCE, FORCE, PLACE, NORMAL, CLOSED, AREA, LENGTH, COLUMNS = 0, 1, 2, 5, 8, 9, 10, 11
+CONDUCTANCE, FORCE, PLACE, NORMAL, CLOSED, AREA, LENGTH, ASIDE, ENDS, COLUMNS = (
+    0,
+    1,
+    2,
+    5,
+    8,
+    9,
+    10,
+    11,
+    13,
+    15,
+)

@@ -23,10 +23,18 @@ from thermograsp.compiled import njit
 from thermograsp.errors import SimulationError
 
 from ...thermal import CONTACT_LAW, Material
-from ...thermal.contact import CURVED_TABLE, CYLINDER, conductance, contact, curved_contact
+from ...thermal.contact import (
+    CURVED_TABLE,
+    CYLINDER,
+    conductance,
+    contact,
+    curved_contact,
+    curved_shares,
+    flat_patch,
+)
 from ...thermal.pressed import PressedMesh
 from ..scene import BodyShape, PadPlace
-from .columns import AREA, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
+from .columns import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .laws import pair_laws, stacked
 from .memory import (
     CONTACTS,
@@ -60,7 +68,7 @@ _AXES, _HALF, _WIDTH, _PAD = 3, 12, 14, 15
 """Where a pad's axes, half sides m and its sensor's width m stand behind its position m in the frame of its body."""
 _KNOWN, _FRAME = 12, 13
 """Of a pad in the world: its middle m, normal, y and z, and behind them whether these are of this substep."""
-_SPOT = 7  # numbers of a contact under way: a place and two axes of the pad
+_SPOT = 11  # numbers of a contact under way: a place, two axes of the pad, and by how much it lies at ends
 
 
 class ContactReader:
@@ -526,7 +534,7 @@ def _feel(
 ):  # fmt: skip
     """Adds what presses on the pads to the touches. Returns whether every table that it needs could be made."""
     tips, part_count = len(pads), len(parts)
-    place, sides = spot[:3], spot[3:]
+    place, sides, shares = spot[:3], spot[3:7], spot[7:]
     for f in range(tips):
         if frames[f, _KNOWN] == 0.0:
             continue  # nothing has met it
@@ -565,7 +573,9 @@ def _feel(
             bulging = bend[f, 0] + bend[f, 1] > 0
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
-            conducts, area, share, kept, longer, long = 0.0, 0.0, 0.0, 1.0, 1.0, 0.0
+            conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
+            for k in range(4):
+                shares[k] = 0.0
             if not bulging and parts[g, 3] > 0:
                 for i in range(3):
                     one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
@@ -575,6 +585,7 @@ def _feel(
                 if tables[number, 1] == 0.0 and asked(make, number) == 0:
                     return False
                 conducts, area, long = curved_contact(tables[number], force, first, second)
+                curved_shares(tables[number], force, first, second, shares)
             elif not bulging and curved[f, g, axis] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
                 first, second, lying, whole = pushed[f, g, 1] / force, pushed[f, g, 2] / force, force, 1.0
@@ -600,25 +611,29 @@ def _feel(
                         )
                     whole, lying = tilted(tilts[f, g, axis], force, slope, second)
                 if whole > 0:
-                    conducts, area, long = curved_contact(
-                        tables[curved[f, g, axis]], lying / whole, first, second
-                    )
+                    table = tables[curved[f, g, axis]]
+                    conducts, area, long = curved_contact(table, lying / whole, first, second)
+                    curved_shares(table, lying / whole, first, second, shares)
                     conducts, area, long = whole * conducts, whole * area, whole * long
             elif bulging:
                 _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
                 area, share, kept, longer = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
+                long = math.sqrt(area * kept * longer)
             else:
                 area, share = contact(law, force, place)
+                if area > 0:
+                    long = flat_patch(law, area, place, shares)
             if share > 0 and area > 0:
                 conducts, area = conductance(law, share / area) * area * kept, area * kept
-                long = math.sqrt(area * longer)
             touch = touches[f, target]
             if conducts > 0:
                 touch[CONDUCTANCE] += weight * conducts
                 touch[AREA] += weight * area
                 touch[LENGTH] += weight * area * long
+                for k in range(4):
+                    touch[ASIDE + k] += weight * area * shares[k]
                 if target != last:
                     touch[CLOSED] += weight
                     last = target

@@ -67,7 +67,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   const Pose* at = pose(numbers, work, d, f, poses);
   int geom = work->geom[g], body = work->body[g], axis = 0;
   double force = pushed[0], first = pushed[1] / force, second = pushed[2] / force;
-  double away[3], place[3], looking[3], area = 0, share = 0, length = 0, conducts = 0;
+  double away[3], place[3], looking[3], area = 0, share = 0, length = 0, conducts = 0, shares[4] = {0};
   const Pose* other = geom < 0 ? pose(numbers, work, d, g - numbers->geoms, poses) : NULL;
   double facing[3][3]; /* axes of what it meets */
   for (int i = 0; i < 3; i++)
@@ -81,9 +81,9 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
   bool bulging = bend[0] + bend[1] > 0 || (other && curve[0] + curve[1] > 0);
-  double on_face = 1, longer = 1;
+  double on_face = 1;
   int side = axis, views = other ? 0 : (int)numbers->viewed[g];
-  double seen[2];
+  double seen[2] = {0};
   if (views && !bulging)
     side = viewed(numbers->views + g * numbers->sides * VIEW, views, looking, place, law->half_face, seen);
   int table = other ? -1 : (int)numbers->curved[(f * numbers->things + g) * numbers->sides + side];
@@ -101,28 +101,30 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       whole = heat_tilted(tilt, exp(numbers->grid[0]), force, line > 0 ? looking[2] / line : 0, second, &lying);
     }
     if (whole > 0)
-      conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length);
+      conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length, shares);
     area *= whole;
     length *= whole;
   } else if (bulging) {
-    double sides[4];
+    double sides[4], longer;
     for (int i = 0, n = 0; i < 3; i++) {
       if (i == axis) continue;
       for (int k = 1; k < 3; k++) sides[n++] = dot(facing[i], at->axes[k]);
     }
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
+    length = sqrt(area * on_face * longer);
   } else {
     heat_contact(law, force, place, &area, &share);
+    if (area > 0) length = heat_flat_patch(law, area, place, shares);
   }
   if (area > 0 && share > 0) {
     conducts = heat_conductance(law, numbers, share / area) * area * on_face;
     area *= on_face;
-    length = sqrt(area * longer);
   }
   if (conducts > 0) {
     touch[CONDUCTANCE] += conducts;
     touch[AREA] += area;
     touch[LENGTH] += area * length;
+    for (int k = 0; k < 4; k++) touch[ASIDE + k] += area * shares[k];
     if (!again) touch[CLOSED] += 1;
     again = true;
   }

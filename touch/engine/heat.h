@@ -14,8 +14,8 @@ fields, M: patterns of a contact, K: rates, P: places of an object. */
 #include <stddef.h>
 
 /* columns of a touch: conductance W/K and force N, sums over substeps; place m and normal, of the last one; sums again:
-substeps that touched, area m2 in contact, and it times its length m */
-enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, AREA, LENGTH, COLUMNS };
+substeps that touched, area m2 in contact, and it times its length m and shares of it that are at ends */
+enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, AREA, LENGTH, ASIDE, COLUMNS = ASIDE + 4 };
 /* a pad: position m, axes, half sides m and its sensor's width m */
 enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
 /* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air, first state, early K s^.5 */
@@ -25,8 +25,9 @@ enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
 enum { SHAPE_CYLINDER = 1 };
 /* an element that is glued on: object, resistance m K/W of a small contact, W/K of the glue */
 enum { ON, SMALL, BOND, GLUED };
-/* a table of a curved contact: places along two axes, forces, and of each W/K, m2 and m */
-enum { PLACES = 16, FORCES = 14, VALUES = 3, CURVED = 2 * PLACES + VALUES * FORCES * PLACES * PLACES };
+/* a table of a curved contact: places along two axes, forces, and of each W/K, m2 and m, then shares */
+enum { PLACES = 16, FORCES = 14, VALUES = 3, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES * PLACES * PLACES,
+       CURVED = SHARES + ENDS * FORCES * PLACES * PLACES };
 /* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
 enum { BEND = 7, CURVES = 4 };
 /* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
@@ -56,7 +57,8 @@ enum {
   MOMENTS = 16,   /* at which networks are fitted */
   POLES = 3,      /* pairs, of a step */
   SERIES = 13,    /* terms of the separation of rough faces */
-  WIDTHS = 9,      /* widths in a table of narrow contacts */
+  WIDTHS = 9,     /* widths in a table of narrow contacts */
+  SPREAD = 4 * WIDTHS * WIDTHS, /* and contacts of which it tells */
   AFTERWARDS = 15 /* times over which a field is followed to a new place */
 };
 
@@ -66,11 +68,13 @@ typedef struct {
   int faces;                     /* of a network of either: 2 where elements have one for their object and one for pads */
   int objects, geoms, targets, things, patterns, tip_states, sample_steps;
   int tables, sides;             /* of curved contacts; axes or, of meshes, views of a thing, at most */
+  int spreads;                   /* tables of narrow contacts */
   int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
-  const double *roles, *pads, *boxes, *owner, *narrow, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
+  const double *roles, *pads, *boxes, *owner, *narrow, *spread, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double* seebeck;         /* V/K */
+  /* narrow: (spreads, SPREAD, K), and spread: the numbers of both sides of each pair */
   const double *glued, *glued_laws, *first; /* GLUED of each element, Law of each pad on it; K above the air at first */
   const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
   const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */
@@ -140,12 +144,13 @@ void heat_behind(const Numbers* numbers, int f, double drawn, double force, doub
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
+double heat_flat_patch(const Law* law, double area, const double place[3], double shares[4]);
 double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
                           double* area, double* share, double* longer);
 
 double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed);
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
-                   double* length);
+                   double* length, double shares[4]);
 
 void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches);
 

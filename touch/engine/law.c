@@ -6,6 +6,7 @@
 
 #define LEVEL 1e-7 /* rad, below which there is no angle */
 #define STEPS 4    /* Newton's */
+#define HALF_TURN 3.141592653589793
 
 static double overlap(double reach, double offset, double half) {
   return greater(lesser(reach, half - offset) + lesser(reach, half + offset), 0);
@@ -25,6 +26,35 @@ void heat_contact(const Law* law, double force, const double place[3], double* a
   *share = on_pad > 0 ? force * (law->ratio * on_face / (on_pad + (law->ratio - 1) * on_face)) : 0;
 }
 
+/* Both as thermal/contact/patch_place.py. */
+static bool is_narrow(double length, double width) { return length > 0 && length < width * (1 - 1e-9); }
+
+static double patch_offset(double offset, double length, double width) {
+  if (!is_narrow(length, width)) return 1;
+  double near = sin(HALF_TURN * length / (2 * width)), aside = cos(HALF_TURN * lesser(fabs(offset), (width - length) / 2) / width);
+  return lesser(log(aside) / log(near), 1);
+}
+
+static double patch_ends(double middle, double pad, double length, double side, double width) {
+  if (!is_narrow(length, width)) return 1;
+  double whole = greater(side / 2 - fabs(pad), lesser(side, width) / 2), near = greater(side / 2 - fabs(middle), length / 2);
+  return lesser(greater(log(whole / near) / log(width / length), 0), 1);
+}
+
+double heat_flat_patch(const Law* law, double area, const double place[3], double shares[4]) {
+  double width = 2 * law->half_face, length = 0;
+  for (int side = 0; side < 4; side++) shares[side] = 0;
+  if (law->size[0] == 0 || area >= width * width * (1 - 1e-9)) return sqrt(area);
+  for (int side = 0; side < 2; side++) {
+    double pad = place[(int)law->across[side]], size = law->size[side];
+    double low = greater(-law->half_face, -pad - size / 2), high = lesser(law->half_face, size / 2 - pad);
+    length = high - low;
+    shares[side] = patch_offset((low + high) / 2, length, width);
+    shares[2 + side] = patch_ends(pad + (low + high) / 2, pad, length, size, width);
+  }
+  return length;
+}
+
 /* The place of a table before `at` m, and the share of the way to the next. */
 static int between(const double* places, double at, double* share) {
   int k = 0;
@@ -39,9 +69,9 @@ static double even(const double* value, double u, double v) {
   return one + u * (other - one);
 }
 
-/* W/K, and the patch's area m2 and length m, by a table, as thermal/contact/curved_table.py. */
+/* W/K, and the patch's area m2, length m and shares, by a table, as thermal/contact/curved_table.py. */
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
-                   double* length) {
+                   double* length, double shares[4]) {
   double u, v;
   int i = between(table, fabs(aside), &u), j = between(table + PLACES, fabs(along), &v);
   double at = (log(force) - grid[0]) / grid[1];
@@ -57,6 +87,15 @@ double heat_curved(const double* table, const double grid[3], double force, doub
   *area += w * (even(high + 1, u, v) - *area);
   *length = even(low + 2, u, v);
   *length += w * (even(high + 2, u, v) - *length);
+  const double* first = table + SHARES + ENDS * ((k * PLACES + i) * PLACES + j);
+  for (int n = 0; n < ENDS; n++) {
+    shares[n] = 0;
+    for (int corner = 0; corner < 8; corner++) {
+      int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+      double weight = (a ? w : 1 - w) * (b ? u : 1 - u) * (c ? v : 1 - v);
+      shares[n] += weight * first[ENDS * ((a * PLACES + b) * PLACES + c) + n];
+    }
+  }
   return conducts;
 }
 

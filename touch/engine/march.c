@@ -202,24 +202,35 @@ static double row(const Numbers* numbers, const double* rows, int f, const doubl
   return total;
 }
 
+/* The width of a table before one that is a ratio-th of the sensor's, and the share of the way to the next. */
+static int before(double ratio, double* share) {
+  double narrow = lesser(2 * log2(ratio), WIDTHS - 1);
+  int at = (int)lesser(narrow, WIDTHS - 2);
+  *share = (exp2((narrow - at) / 2) - 1) / (sqrt(2) - 1);
+  return at;
+}
+
 /* Fills root with the b_k of a narrow contact; false where it is as wide as the face. */
 static bool spread(const Numbers* numbers, int pair, const double* touch, double* root) {
   if (!(touch[AREA] > 0)) return false;
   double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
-  double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = area / first;
-  double across = lesser(first, second), along = lesser(greater(first, second), width);
-  if (!(across > 0 && across < width * (1 - 1e-9))) return false; /* any number may have been written to the state */
-  int rates = numbers->rates;
-  double narrow = lesser(2 * log2(width / across), WIDTHS - 1);
-  int at = (int)lesser(narrow, WIDTHS - 2);
-  double of_squares = exp2(narrow - at) - 1, of_strips = (exp2((narrow - at) / 2) - 1) / (sqrt(2) - 1);
-  double square = lesser((width / along - 1) / (exp2(narrow / 2) - 1), 1);
-  const double *one = numbers->narrow + ((size_t)pair * 2 * WIDTHS + at) * rates, *other = one + WIDTHS * rates;
-  for (int k = 0; k < rates; k++) {
-    double of_square = one[k] + of_squares * (one[rates + k] - one[k]);
-    double of_strip = other[k] + of_strips * (other[rates + k] - other[k]);
-    root[k] = sqrt(square * of_square + (1 - square) * of_strip);
+  double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = lesser(area / first, width), u, v;
+  if (!(first > 0 && second > 0 && lesser(first, second) < width * (1 - 1e-9))) return false; /* any number may have been written to the state */
+  int rates = numbers->rates, i = before(width / first, &u), j = before(width / second, &v);
+  memset(root, 0, sizeof(double) * rates);
+  for (int side = 0; side < 2; side++) {
+    const double* table = numbers->narrow + (size_t)numbers->spread[2 * pair + side] * SPREAD * rates;
+    double one = lesser(greater(touch[ASIDE + 2 * side] / touch[AREA], 0), 1);
+    double other = lesser(greater(touch[ASIDE + 2 * side + 1] / touch[AREA], 0), 1);
+    for (int corner = 0; corner < 16; corner++) {
+      int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2 & 1, d = corner >> 3;
+      double weight = (a ? one : 1 - one) * (b ? other : 1 - other) * (c ? u : 1 - u) * (d ? v : 1 - v);
+      if (!(weight > 0)) continue;
+      const double* row = table + (((2 * a + b) * WIDTHS + i + c) * WIDTHS + j + d) * rates;
+      for (int k = 0; k < rates; k++) root[k] += weight * row[k];
+    }
   }
+  for (int k = 0; k < rates; k++) root[k] = sqrt(root[k]);
   return true;
 }
 

@@ -8,8 +8,9 @@
 
 #include "heat.h"
 
-enum { VERSION = 8, HEADER = 16, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
-       MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256 };
+enum { VERSION = 9, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+       MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
+       MOST_SPREADS = 2 * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;
@@ -39,7 +40,7 @@ static bool numbered(const double* values, size_t count, int things) {
 const char* heat_parse(Numbers* n, const char* text) {
   static const double most[HEADER] = {VERSION,    MOST_TIPS, MOST_OBJECTS, MOST_GEOMS, PATTERNS, MOST_RATES,
                                       MOST_STATES, 1e6,      DBL_MAX,      DBL_MAX,    DBL_MAX,  MOST_GEOMS, MOST_TABLES, MOST_VIEWS,
-                                      MOST_LINKS,  MOST_TIPS};
+                                      MOST_LINKS,  MOST_TIPS, MOST_SPREADS};
   memset(n, 0, sizeof *n);
   size_t length = text ? strlen(text) : 0;
   double* at = n->all = malloc(length / 2 + sizeof(double));
@@ -62,6 +63,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   n->tables = (int)at[12];
   n->sides = (int)at[13];
   n->links = (int)at[14];
+  n->spreads = (int)at[16];
   if (elements < 0) return "the attribute \"numbers\" has more fingertips than sensors";
   n->faces = elements ? 2 : 1;
   n->targets = tips + objects;
@@ -81,7 +83,8 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->viewed, things},
       {&n->tilts, (size_t)fingers * things * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
-      {&n->narrow, (size_t)tips * n->targets * 2 * WIDTHS * n->rates},
+      {&n->narrow, (size_t)n->spreads * SPREAD * n->rates},
+      {&n->spread, (size_t)tips * n->targets * 2},
       {&n->bends, (size_t)fingers * BEND},
       {&n->curves, (size_t)things * 3 * CURVES},
       {&n->glued, (size_t)elements * GLUED},
@@ -133,7 +136,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       !numbered(n->curved, (size_t)fingers * things * n->sides, n->tables) || n->sides < 3 ||
       !within(n->glued + ON, elements, GLUED, objects - 1) ||
       !within(glued_across, (size_t)fingers * elements, law, 2) || !within(glued_across + 1, (size_t)fingers * elements, law, 2) ||
-      !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
+      !within(n->spread, (size_t)tips * n->targets * 2, 1, n->spreads - 1) || !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

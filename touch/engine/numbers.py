@@ -19,11 +19,11 @@ from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
 from ..contacts import BOND, GluedContacts, bends, curves, pair_laws
-from ..heat import AFTERWARDS, TipField, narrow_of, resolution, tip_field, untouched
+from ..heat import AFTERWARDS, TipField, narrow_tables, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 8
+_VERSION = 9
 
 
 def packed(
@@ -51,10 +51,13 @@ def packed(
     found = pair_laws(model, pads, shapes)
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
+    targets = (*(shape.material for shape in shapes), *sensors)
+    narrow, spread = narrow_tables([(pad, other) for pad in sensors for other in targets], level)
     glued_contacts = GluedContacts(pads, glued, len(shapes), 1)
     header = (
         *(_VERSION, len(sensors), len(shapes), len(owner), level.patterns, level.rates, most, steps),
         *(timestep, timestep * steps, level.least, len(roles), len(tables), views.shape[1], nodes, len(pads)),
+        len(narrow),
     )
     every = (
         header,
@@ -68,11 +71,8 @@ def packed(
         viewed,
         tilts,
         tables,
-        *(
-            narrow_of(pad, other, level)
-            for pad in sensors
-            for other in (*(s.material for s in shapes), *sensors)
-        ),
+        narrow,
+        spread,
         bends(pads),
         curves(model, pads, shapes),
         [

@@ -6,7 +6,7 @@ from .fixed_networks import FixedNetworks
 from .fixed_places import FixedPlaces, network_tables
 from .joined import HeatBalance, HeatState, JoinedHeat
 from .march import sample
-from .narrow import narrow_of
+from .narrow import narrow_tables
 
 __all__ = [
     "AFTERWARDS",
@@ -18,7 +18,7 @@ __all__ = [
     "JoinedHeat",
     "TipField",
     "array_narrow",
-    "narrow_of",
+    "narrow_tables",
     "network_tables",
     "resolution",
     "sample",

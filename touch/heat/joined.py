@@ -38,7 +38,7 @@ from .fields import (
 from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
-from .narrow import STEPS, narrow_of
+from .narrow import Side, narrow_sides, narrow_table, narrow_tables
 from .systems import Pair, SystemPool, groups
 
 MOST_SYSTEMS = 4096
@@ -129,10 +129,10 @@ class JoinedHeat:
         self._x = np.zeros((worlds, fields, max(self._rows.shape[1], 1)))
         self._started = np.zeros((worlds, objects))
         self._narrow = np.zeros((worlds, count, fields, self._level.rates))
-        # narrow contacts: of each fingertip and what it meets, a material or a fingertip, by number, the table's number
-        self._table_of: dict[tuple[int, Material | int], int] = {}
-        self._tables = np.zeros((1, 2, STEPS, self._level.rates))
-        self._kinds = np.zeros((worlds, count, fields), np.int64)
+        # narrow contacts: the numbers of the tables of the two sides of each
+        self._table_of: dict[tuple[Side, float], int] = {}
+        self._tables = narrow_table((None, 0.0), 0.0, self._level)[None]
+        self._kinds = np.zeros((worlds, count, fields, 2), np.int64)
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face. It stays where it is."""
         self.warmth = np.zeros((worlds, objects))
@@ -310,7 +310,8 @@ class JoinedHeat:
         kinds = [
             [choices[min(v, len(choices) - 1)] for v in range(most) for _ in poses] for choices in materials
         ]
-        tables = [narrow_of(pad, one, level) for pad in pads for each in kinds for one in each]
+        pairs = [(pad, one) for pad in pads for each in kinds for one in each]
+        tables, number = narrow_tables(pairs, level)
         return fixed_networks(
             self._dt,
             level.patterns,
@@ -318,7 +319,8 @@ class JoinedHeat:
             after,
             current,
             self._warm[w],
-            np.array(tables),
+            tables,
+            number,
             np.repeat(self._widths[:tips], objects),
             level.decay,
             states,
@@ -493,13 +495,15 @@ class JoinedHeat:
         self._table = None
         for f, pad in enumerate(self._pads):
             for t, target in enumerate((*self._materials[w], *range(len(self._pads)))):
-                if (f, target) not in self._table_of:
-                    number = self._table_of[f, target] = len(self._table_of)
-                    if number == len(self._tables):
-                        self._tables = np.concatenate((self._tables, np.zeros_like(self._tables)))
-                    other = target if isinstance(target, Material) else self._pads[target]
-                    self._tables[number] = narrow_of(pad, other, self._level)
-                self._kinds[w, f, t] = self._table_of[f, target]
+                other = target if isinstance(target, Material) else self._pads[target]
+                for s, side in enumerate(narrow_sides(pad, other)):
+                    key = side, pad.stack.width
+                    if key not in self._table_of:
+                        number = self._table_of[key] = len(self._table_of)
+                        if number == len(self._tables):
+                            self._tables = np.concatenate((self._tables, np.zeros_like(self._tables)))
+                        self._tables[number] = narrow_table(*key, self._level)
+                    self._kinds[w, f, t, s] = self._table_of[key]
 
     def _renumber(self, w: int) -> None:
         """Which networks a world's fields have."""

@@ -13,6 +13,7 @@ from thermograsp.compiled import njit
 from ...thermal.network import POLES, StepArrays, advance, workspace
 from ..contacts import (
     AREA,
+    ASIDE,
     CLOSED,
     COLUMNS,
     CONDUCTANCE,
@@ -147,8 +148,8 @@ def sample(entries_at, touches_at, substeps, settled):
         carray(floats(entries[19]), (tips, entries[43])),
         carray(words(entries[20]), (worlds, targets)),
         carray(floats(entries[21]), rates),
-        carray(floats(entries[22]), (entries[44], 2, STEPS, rates)),
-        carray(words(entries[23]), (worlds, tips, targets)),
+        carray(floats(entries[22]), (entries[44], 2, 2, STEPS, STEPS, rates)),
+        carray(words(entries[23]), (worlds, tips, targets, 2)),
         widths,
         carray(floats(entries[24]), (worlds, targets, states)),
         carray(floats(entries[25]), (worlds, tips, targets, rates)),
@@ -174,10 +175,10 @@ def _march(
     J and air: (W,) J go on in place; drop: (W, F) K and warmth: (W, O) K, the objects' means, are filled. busy: room
     (T,).
 
-    Narrow contacts (narrow.py): decay (R,) 1/s their rates, tables (N, 2, J, R), kinds (W, F, T) which of these each
-    contact has, widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Within a step
-    these follow the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses
-    in a resistance is least where it is even."""
+    Narrow contacts (narrow.py): decay (R,) 1/s their rates, tables (N, 2, 2, J, J, R), kinds (W, F, T, 2) which of
+    these the sides of each contact have, widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on
+    in place. Within a step these follow the mean flow, which takes no heat from anywhere and leaves them passive: the
+    power that a flow loses in a resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
     most, wide = 1, 1
     for w in range(worlds):
@@ -189,6 +190,7 @@ def _march(
     room = workspace(most, wide)
     state = np.empty(most)
     tips, targets, rates = narrow.shape[1], narrow.shape[2], len(decay)
+    placed = np.empty(4)
     roots = np.zeros((tips * targets, rates))  # of a group's contacts, 0 where they are not narrow
     kept = np.exp(-dt * decay)  # of a state, in a step
     grown = (1 - kept) / decay  # s, of a flow, in a state after a step
@@ -238,8 +240,12 @@ def _march(
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
                 touch, root = touches[w, f, t], roots[i]
                 conducts, behind = touch[CONDUCTANCE] / substeps, 0.0
-                area, length = touch[AREA] / touch[CLOSED], touch[LENGTH] / touch[AREA]
-                if spread(tables[kinds[w, f, t]], widths[f], area, length, root):
+                area = touch[AREA] / touch[CLOSED]
+                for j in range(4):
+                    placed[j] = touch[ASIDE + j] / touch[AREA]
+                own, other = tables[kinds[w, f, t, 0]], tables[kinds[w, f, t, 1]]
+                length = touch[LENGTH] / touch[AREA]
+                if spread(own, other, widths[f], area, length, placed[:2], placed[2:], root):
                     resists = 0.0
                     for k in range(rates):
                         mean = grown[k] / dt  # of a state that fades, over the step

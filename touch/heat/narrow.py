@@ -1,17 +1,22 @@
 """Contacts narrower than the sensor's face: what heat has still to spread there.
 
 The networks of fields.py know patches of the sensor's whole face. Under a contact of p by q that is narrower the two
-bodies have more impedance, Z(p, q) - Z(width, width) of even flows, which builds up as heat spreads. It is taken from
-the heat kernels of the element (thermal/kernels/element.py) and of a half-space and put on the networks' rates:
-Z = sum b_k^2 / (s + rate_k). Its states, c_k' = -rate_k c_k + b_k q with q W through the contact, put the difference
-sum b_k c_k between its faces. They hold no heat, they tell where it is. As the same b_k send and receive, they are
-passive whatever the widths do.
+bodies have more impedance, Z(p, q) - Z(width, width), which builds up as heat spreads. It is taken from the heat
+kernels of the element (thermal/kernels/element.py) and of a half-space and put on the networks' rates: Z = sum b_k^2 /
+(s + rate_k). Its states, c_k' = -rate_k c_k + b_k q with q W through the contact, put the difference sum b_k c_k
+between its faces. They hold no heat, they tell where it is. As the same b_k send and receive, they are passive whatever
+the widths do.
 
-J: widths of a table, K: rates, S: moments.
+Each side has a table of its own, for contacts in the middle of a face and at its ends: a half-space ends there, which
+its mirror image stands for, twice as broad a contact that twice the heat flows through. In between the shares of
+thermal/contact/patch_place.py count, and along both axes alike.
+
+J: widths of a table, K: rates, S: moments, T: times.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -20,7 +25,10 @@ from scipy.special import erf
 from thermograsp.compiled import njit
 
 from ...thermal import Material, SensorStack
+from ...thermal.contact import NARROW
 from ...thermal.kernels import (
+    GRAM,
+    GRASP,
     OF_GRASP,
     TIMES,
     TO_MOMENTS,
@@ -36,76 +44,141 @@ STEPS = 9
 _FINEST = 3e4
 """W/(m2 K) of the contact beside which errors of the impedance are weighed."""
 
+_CONFORMING, _LAPPED = 1e5, 1e4
+"""W/(m2 K) of contacts with a skin and without, roughly: the more, the less even is the flow through a narrow one."""
 
-def narrow_of(pad: PadPlace, target: Material | PadPlace, level: Resolution) -> np.ndarray:
-    """(2, J, K) K/J, the b_k^2 of squares and of strips as long as the face, by their width. target: an object's
-    material or another fingertip. Bare thermostats have no impedance; glued elements are met with their whole faces."""
+_EVEN_TEMPERATURE = 0.08
+"""By which a square source of even temperature has less resistance than one of even flow has on the mean: .433 and .473
+over k times its side (Yovanovich & Marotta, Thermal spreading and contact resistances, in Bejan & Kraus, Heat Transfer
+Handbook, 2003)."""
+
+Side = tuple[Material | SensorStack | None, float]
+"""What spreads heat on one side of a contact, None for nothing, and W/(m2 K) of the contact if that matters."""
+
+
+def narrow_sides(pad: PadPlace, target: Material | PadPlace) -> tuple[Side, Side]:
+    """What spreads heat on either side of a pad's contact with an object's material or another fingertip: None for
+    bare thermostats, which have no impedance, and where an element is glued on, which is met with its whole face."""
     if pad.glued is not None or (isinstance(target, PadPlace) and target.glued is not None):
-        return np.zeros((2, STEPS, level.rates))
-    other = target if isinstance(target, Material) else None if target.bare else target.stack
-    return _table(None if pad.bare else pad.stack, other, pad.stack.width, level)
+        return (None, 0.0), (None, 0.0)
+    own = _side(pad)
+    return own, (target, own[1]) if isinstance(target, Material) else _side(target)
+
+
+def _side(pad: PadPlace) -> Side:
+    return (None if pad.bare else pad.stack, _LAPPED if pad.skin is None else _CONFORMING)
 
 
 @lru_cache(maxsize=4096)
-def _table(
-    stack: SensorStack | None, target: Material | SensorStack | None, width: float, level: Resolution
-) -> np.ndarray:
-    table, sides = np.zeros((2, STEPS, level.rates)), [each for each in (stack, target) if each is not None]
-    if not sides:
+def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
+    """(2, 2, J, J, K) K/J, the b_k^2 of one side under a sensor of that width m: in the middle or at an end along each
+    axis, by the contact's width along each."""
+    matter, conducts = side
+    table = np.zeros((2, 2, STEPS, STEPS, level.rates))
+    if matter is None:
         return table
-    whole = np.sum([_impedance(side, width, width) for side in sides], axis=0)
-    for strip in range(2):
-        for step in range(1, STEPS):
-            p = width * 2.0 ** (-step / 2)
-            q = width if strip else p
-            series = np.sum([_impedance(side, p, q) for side in sides], axis=0)
-            weight = 1 / (series + 1 / (_FINEST * p * q))
-            table[strip, step] = residues((series - whole)[:, None, None], level.decay, weight)[:, 0, 0]
+    widths = width * 2.0 ** (-np.arange(STEPS) / 2)
+    if isinstance(matter, SensorStack):
+        known = _of_stack(matter, conducts, widths)
+    else:
+        known = _of_half_space(matter, conducts, widths)
+    area = np.outer(widths, widths)
+    for first, second, i, j in np.ndindex(table.shape[:-1]):
+        each, whole = known[first, second, i, j], known[first, second, 0, 0]
+        weight = 1 / (each + 1 / (_FINEST * area[i, j]))
+        found = residues((each - whole)[:, None, None], level.decay, weight)
+        table[first, second, i, j] = found[:, 0, 0]
+    table.setflags(write=False)
     return table
 
 
-def _impedance(side: Material | SensorStack, p: float, q: float) -> np.ndarray:
-    """(S,) K/W at GRASP: mean temperature of p by q m in the middle of an element's face, or on a half-space, per even
-    flow through it."""
-    if isinstance(side, SensorStack):
-        ends = [
-            ((side.width - min(each, side.width)) / 2, (side.width + min(each, side.width)) / 2)
-            for each in (p, q)
-        ]
-        return element_samples(side, (ends[0], ends[1])).value[OF_GRASP, 0, 0]
-    capacity = side.volumetric_heat_capacity
-    diffusivity = side.conductivity / capacity
+def narrow_tables(
+    pairs: Sequence[tuple[PadPlace, Material | PadPlace]], level: Resolution
+) -> tuple[np.ndarray, np.ndarray]:
+    """Every narrow_table that pairs need (N, 2, 2, J, J, K), and the numbers (pairs, 2) of those of their sides."""
+    keys = [(side, pad.stack.width) for pad, target in pairs for side in narrow_sides(pad, target)]
+    numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
+    tables = np.array([narrow_table(*key, level) for key in numbers])
+    return tables, np.array([numbers[key] for key in keys]).reshape(-1, 2)
+
+
+def _of_stack(stack: SensorStack, conducts: float, widths: np.ndarray) -> np.ndarray:
+    """(2, 2, J, J, S) K/W at GRASP: mean temperature of contacts of these widths m on the element's face, per flow
+    through them, beside a contact that conducts so many W/(m2 K)."""
+    whole, count = stack.width, len(widths)
+    ends = [[((whole - p) / 2, (whole + p) / 2), (0.0, p)] for p in np.minimum(widths, whole).tolist()]
+    known = np.empty((2, 2, count, count, len(range(*OF_GRASP.indices(len(TO_MOMENTS))))))
+    for first, second, i, j in np.ndindex(known.shape[:-1]):
+        if (first, i) <= (second, j):  # the face is square
+            value = element_samples(stack, (ends[i][first], ends[j][second])).value[OF_GRASP]
+            # of all flows the one that loses the least power in the element and the contact
+            loose = 1 / (conducts * widths[i] * widths[j])
+            flow = np.linalg.solve(value + loose * GRAM, GRAM[0])
+            value = 1 / (flow @ GRAM[0]) - loose
+            known[first, second, i, j] = known[second, first, j, i] = value
+    return known
+
+
+def _of_half_space(material: Material, conducts: float, widths: np.ndarray) -> np.ndarray:
+    """As _of_stack, on a half-space, or beside where it ends. It is known of even flow; under an even temperature it
+    ends lower."""
+    capacity = material.volumetric_heat_capacity
+    diffusivity = material.conductivity / capacity
     reached = np.sqrt(np.pi * diffusivity * TIMES)
-    kernel = _shared(p, diffusivity) * _shared(q, diffusivity) / reached
-    return (TO_MOMENTS[OF_GRASP] @ kernel + before(diffusivity)) / (capacity * p * q)
+    shared = np.stack([_shared(factor * widths[:, None], diffusivity) for factor in (1, 2)])
+    kernel = shared[:, None, :, None] * shared[None, :, None, :] / reached
+    area = np.outer(widths, widths)[..., None]
+    even = (kernel @ TO_MOMENTS[OF_GRASP].T + before(diffusivity)) / (capacity * area)
+    deep = 1 / (material.effusivity * np.sqrt(GRASP) * area)  # before heat has spread at all
+    loose = material.conductivity / (conducts * np.sqrt(area))
+    return even * (1 - _EVEN_TEMPERATURE / (1 + loose) * (1 - even / deep))
 
 
-def _shared(length: float, diffusivity: float) -> np.ndarray:
+def _shared(length: np.ndarray, diffusivity: float) -> np.ndarray:
     """Share of the heat on a line of that length m that is still on it at TIMES (Carslaw & Jaeger, section 10.3)."""
     u = length / (2 * np.sqrt(diffusivity * TIMES))
     return erf(u) + np.expm1(-(u**2)) / (u * np.sqrt(np.pi))
 
 
 @njit(cache=True, error_model="numpy")
-def spread(table, width, area, length, root):
-    """Fills root (K,) with the b_k of a contact of that area m2 and length m under a sensor of that width m. table: of
-    narrow_of. Returns whether there are any: not where the contact is as wide as the face or its area is not told."""
+def spread(own, other, width, area, length, aside, ends, root):
+    """Fills root (K,) with the b_k of a contact of that area m2 and length m, along the second axis, under a sensor of
+    that width m. own, other: of narrow_table, of the pad and of what it touches; aside, ends: (2,) the shares by which
+    the contact lies at an end of either. Returns whether there are any: not where the contact is as wide as the face
+    or its area is not told."""
     if not area > 0.0:
         return False
     first = min(area / length, width)
-    second = area / first
-    short, long = min(first, second), min(max(first, second), width)
-    if not short < width * (1 - 1e-9):
+    second = min(area / first, width)
+    if not min(first, second) < width * NARROW:
         return False
-    steps = table.shape[1]
-    narrow = min(2 * np.log2(width / short), steps - 1.0)
-    at = min(int(narrow), steps - 2)
-    # in between, evenly by the inverse of the area, to which the impedance is proportional at first
-    of_squares = 2.0 ** (narrow - at) - 1
-    of_strips = (2.0 ** ((narrow - at) / 2) - 1) / (2.0**0.5 - 1)
-    square = min((width / long - 1) / (2.0 ** (narrow / 2) - 1), 1.0)
-    for k in range(table.shape[2]):
-        one = table[0, at, k] + of_squares * (table[0, at + 1, k] - table[0, at, k])
-        other = table[1, at, k] + of_strips * (table[1, at + 1, k] - table[1, at, k])
-        root[k] = np.sqrt(square * one + (1 - square) * other)
+    i, u = _between(width / first)
+    j, v = _between(width / second)
+    for k in range(len(root)):
+        root[k] = 0.0
+    for side in range(2):
+        table, shares = (own, aside) if side == 0 else (other, ends)
+        for corner in range(16):
+            a, b, c, d = corner & 1, corner >> 1 & 1, corner >> 2 & 1, corner >> 3
+            weight = _of(shares[0], a) * _of(shares[1], b) * _of(u, c) * _of(v, d)
+            if weight > 0.0:
+                for k in range(len(root)):
+                    root[k] += weight * table[a, b, i + c, j + d, k]
+    for k in range(len(root)):
+        root[k] = np.sqrt(root[k])
     return True
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _between(ratio):
+    """(number of the width before, share of the way to the next) of a width that is a ratio-th of the sensor's: evenly
+    by its inverse, to which the impedance is proportional at first."""
+    narrow = min(2 * np.log2(ratio), STEPS - 1.0)
+    at = min(int(narrow), STEPS - 2)
+    return at, (2.0 ** ((narrow - at) / 2) - 1) / (2.0**0.5 - 1)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _of(share, end):
+    share = min(max(share, 0.0), 1.0)
+    return share if end == 1 else 1 - share
