@@ -24,6 +24,9 @@ from .perceiving import Perceiving
 from .recipe import Recipe
 from .teachers import Teacher
 
+_STILL = 0.01
+"""Added to an input's deviation, so that one that never changes counts little."""
+
 
 @dataclass(frozen=True, slots=True)
 class Seen:
@@ -80,12 +83,20 @@ def watched(
 
 def imitate(policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int) -> float:
     """Fits a policy of stable-baselines3, its mean actions to the teacher's and its values to what was gained; returns
-    the mean squared error of the actions over the last pass."""
+    the mean squared error of the actions over the last pass.
+
+    Descent works on inputs of mean 0 and deviation 1: what the voltages do late in a touch is small, but tells most."""
     generator = torch.Generator().manual_seed(seed)
     count = len(seen.vector)
+    mean = seen.vector.mean(axis=0)
+    scale = 1.0 / (seen.vector.std(axis=0) + _STILL)
+    first = policy.mlp_extractor.policy_net[0], policy.mlp_extractor.value_net[0]
+    for layer in first:
+        _of_other_inputs(layer, -mean * scale, 1.0 / scale)
     optimizer = torch.optim.Adam(policy.parameters(), lr=recipe.imitation_rate)
     falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, minibatches)
-    vector, right, gained = (torch.from_numpy(each) for each in (seen.vector, seen.right, seen.gained))
+    vector = torch.from_numpy((seen.vector - mean) * scale)
+    right, gained = torch.from_numpy(seen.right), torch.from_numpy(seen.gained)
     errors = []
     for _ in range(minibatches):
         chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
@@ -102,4 +113,13 @@ def imitate(policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int
         optimizer.step()
         falling.step()
         errors.append(error.item())
+    for layer in first:
+        _of_other_inputs(layer, mean, scale)
     return float(np.mean(errors[-max(count // recipe.batch, 1) :]))
+
+
+def _of_other_inputs(layer: Any, mean: np.ndarray, scale: np.ndarray) -> None:
+    """A linear layer of (x - mean) scale becomes one of x that does the same."""
+    with torch.no_grad():
+        layer.weight *= torch.from_numpy(scale)
+        layer.bias -= layer.weight @ torch.from_numpy(mean)

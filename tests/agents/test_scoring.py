@@ -13,7 +13,7 @@ import pytest
 from thermograsp.agents import learning
 from thermograsp.agents.learning import Agent, learning_task, load_agent, score
 from thermograsp.agents.learning.agent import Acting
-from thermograsp.agents.learning.inputs import AGES, FRAME, REPEAT, Inputs, Memory
+from thermograsp.agents.learning.inputs import AGES, CLOSING, FRAME, REPEAT, Inputs, Memory
 from thermograsp.agents.learning.scoring import wilson
 from thermograsp.agents.policies import load_policy
 from thermograsp.assets import asset
@@ -210,6 +210,33 @@ def test_the_newest_frame_comes_first_and_the_first_stands_for_all_before() -> N
     assert (second[:, 0, 0] == -1.0).all()
     np.testing.assert_array_equal(second[:, 1:], frames[:, 1:])
     np.testing.assert_array_equal(first[:, -10:], observation["goal"])
+
+
+def test_what_voltages_do_while_fingers_close_has_a_fixed_place() -> None:
+    """Until they open again, and whatever their level is."""
+    env = learning_task("identify").make(1)
+    observation, _ = env.reset(seed=0)
+    memory = Memory(Inputs(closing=True), 1)
+    memory.restart(np.arange(1))
+
+    def felt(opening: float, volts: float, rise: float) -> np.ndarray:
+        """(CLOSING, 2, 2) by fingertip and half of a frame, as a voltage rises in the newer half."""
+        observation["gripper"][0, 0] = opening
+        observation["voltage"][0, :, -10:-5], observation["voltage"][0, :, -5:] = volts, volts + rise
+        start = FRAME * len(AGES)
+        return memory.vector(observation)[0, start : start + 4 * CLOSING].reshape(CLOSING, 2, 2)
+
+    felt(0.085, 1e-3, 0.0)
+    felt(0.06, 1e-3, 0.0)
+    touched = felt(0.04, 1e-3, 2e-3)
+    assert (touched[2, :, 1] > 1.0).all() and not touched[1].any() and not touched[3:].any()
+    for _ in range(CLOSING):
+        still = felt(0.04, 3e-3, 0.0)
+    np.testing.assert_array_equal(still[:3], touched[:3])  # pyright: ignore[reportPossiblyUnboundVariable]
+    assert not still[3:].any()  # pyright: ignore[reportPossiblyUnboundVariable]
+    opened = felt(0.085, 3e-3, 0.0)
+    assert (opened[0, :, 0] > 1.0).all() and not opened[1:].any()
+    assert not felt(0.06, 3e-3, 0.0)[1:].any()
 
 
 def test_wilsons_interval_is_that_of_the_literature() -> None:

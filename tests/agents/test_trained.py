@@ -61,6 +61,13 @@ def test_shipped_agents_do_their_task(task: str, most_failures: int) -> None:
     assert score(learning_task(task), "trained", 16, load=False).successes >= 16 - most_failures
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("task", "most_failures"), [("grasp", 5), ("identify", 5)])
+def test_shipped_agents_do_it_with_everything_drawn(task: str, most_failures: int) -> None:
+    """In about nine of ten episodes."""
+    assert score(learning_task(task).drawn(), "trained", 32, load=False).successes >= 32 - most_failures
+
+
 def test_what_no_shipped_agent_was_trained_for_is_refused() -> None:
     env = gymnasium.make_vec(
         "thermograsp/Identify-v0",

@@ -176,6 +176,14 @@ def test_the_shipped_agent_grasps_with_what_it_has_never_met(name: str):
     assert score(replace(task, keywords=keywords), "trained", 16, load=False).successes >= 15
 
 
+@pytest.mark.parametrize("name", ["Robotiq 2F-140", "Fetch, the whole robot", "Adroit hand"])
+def test_the_shipped_agent_identifies_with_what_it_has_never_met(name: str):
+    """Fingers that touch some milliseconds earlier than its own make steel no aluminium."""
+    task = learning_task("identify")
+    keywords = {**task.keywords, "gripper": loaded(name)}
+    assert score(replace(task, keywords=keywords), "trained", 32, load=False).successes >= 30
+
+
 def test_the_force_of_a_franka_hand_is_that_of_its_joints():
     """Each of its fingers slides with the force of its own actuator, 20 N at most."""
     gripper = loaded("Franka hand")

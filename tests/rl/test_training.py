@@ -22,7 +22,7 @@ from stable_baselines3 import PPO  # pyright: ignore[reportMissingImports]
 
 from thermograsp.agents.learning import TASKS, LearningTask, Recipe, learning_task, load_agent
 from thermograsp.agents.learning import training as training_module
-from thermograsp.agents.learning.imitation import watched
+from thermograsp.agents.learning.imitation import Seen, imitate, watched
 from thermograsp.agents.learning.inputs import REPEAT
 from thermograsp.agents.learning.perceiving import Perceiving
 from thermograsp.agents.learning.teachers import TEACHERS
@@ -89,6 +89,19 @@ def test_the_file_acts_as_the_network_that_was_trained(tmp_path: Path) -> None:
     vector = np.random.default_rng(0).standard_normal((5, agent.inputs.size)).astype(np.float32)
     predicted, _ = PPO.load(tmp_path / MODEL).predict(vector, deterministic=True)
     np.testing.assert_allclose(agent.decide(vector), predicted, atol=1e-2)  # weights of float16
+
+
+def test_scaled_inputs_change_nothing_but_the_descent(tmp_path: Path) -> None:
+    """What a network does before imitation it does afterwards where nothing is learned."""
+    training = Training(brief("identify"), tmp_path, recipe=TINY)
+    policy, rng = training._model.policy, np.random.default_rng(0)
+    size = training._env.inputs.size
+    vector = (rng.standard_normal((64, size)) * rng.uniform(0.0, 3.0, size) + 1.0).astype(np.float32)
+    seen = Seen(vector, np.zeros((64, 12), np.float32), np.zeros(64, np.float32))
+    before, _ = policy.predict(vector, deterministic=True)
+    imitate(policy, seen, 1, replace(TINY, imitation_rate=0.0), seed=0)
+    after, _ = policy.predict(vector, deterministic=True)
+    np.testing.assert_allclose(after, before, atol=1e-5)
 
 
 def test_a_killed_run_goes_on_from_its_checkpoint(tmp_path: Path) -> None:
