@@ -47,7 +47,7 @@ _LOG = logging.getLogger(__name__)
 _REPORTED: list[str] = []
 """The first function that this process has compiled."""
 
-_FIXED_OPTIONS = {"fastmath": False, "error_model": "python", "forceinline": False}
+_FIXED_OPTIONS = {"fastmath": False, "error_model": "python", "forceinline": False, "_nrt": True}
 """Options that a function would otherwise take from the caller for which it is first compiled, and keep for all."""
 
 _ENVIRONMENT = "_ZN08NumbaEnv"
@@ -69,7 +69,12 @@ _BELOW = ("numpy", "numba", "scipy")
 
 
 def njit(
-    *, cache: bool = False, inner: bool = False, short_loops: bool = False, **options: Any
+    *,
+    cache: bool = False,
+    inner: bool = False,
+    short_loops: bool = False,
+    borrows: bool = False,
+    **options: Any,
 ) -> Callable[[Callable[..., Any]], Any]:
     """A decorator as numba.njit is, whose functions compile sooner.
 
@@ -78,8 +83,12 @@ def njit(
     raises TypeError. Every other function has an inner twin, which compiled code calls; its entry is compiled when
     Python first calls it. A number written into a call is an argument as others are: numba would compile the function
     once more for each. short_loops: the innermost loops run over few elements, so the processor's vectors are not used
-    for them. The results have the same bits, and the function compiles and runs in less time.
+    for them. The results have the same bits, and the function compiles and runs in less time. borrows: it makes no
+    arrays, it only looks at those that it is given: nothing counts who holds them, which takes a call for each part of
+    one. It may return a part to others that borrow, not to a function that counts.
     """
+    if borrows:
+        options["_nrt"] = False
 
     def compiled(function: Callable[..., Any]) -> Any:
         entries: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}

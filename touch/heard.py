@@ -1,5 +1,6 @@
-"""What a ThermalTouch does after nearly every step of one MjData, as one call of compiled code with one address: it
-looks whether one step has passed, adds its contacts, and at a sample's end advances heat and electronics."""
+"""What a ThermalTouch does after nearly every step of one MjData, or with nearly every record of many worlds, as one
+call of compiled code with one address: it looks whether one step has passed, adds its contacts, and at a sample's end
+advances heat and electronics."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
-from .contacts import called, called_two, entry, floats, integers, read_contacts, table, words
+from .contacts import called, called_two, entry, floats, integers, read_contacts, sense_contacts, table, words
 from .heat import sample
 from .readings import close_sample
 
@@ -41,7 +42,76 @@ class Hearing:
 
 @cache
 def _functions() -> tuple[int, int, int]:
-    return entry(read_contacts, 4), entry(sample, 4), entry(close_sample, 2)
+    return entry(read_contacts, 4), *_of_samples()
+
+
+@cache
+def _of_samples() -> tuple[int, int]:
+    return entry(sample, 4), entry(close_sample, 2)
+
+
+@cache
+def _sensing() -> int:
+    return entry(sense_contacts, 4)
+
+
+class RecordHearing:
+    """arrays: last (W,) s, step (2,) s, substeps (1,) and taken (1,), which must stay where they are. addresses: of
+    what `sense_contacts` takes, of heat and touches (0 for none), and of the electronics. sizes: substeps of a sample,
+    samples of a reading. address: for `hear_record`, as long as this lives."""
+
+    def __init__(
+        self, arrays: tuple[np.ndarray, ...], addresses: tuple[int, ...], sizes: tuple[int, int]
+    ) -> None:
+        self._heard = np.zeros(1, np.int64)
+        self._arrays = *arrays, self._heard
+        functions = _sensing(), *_of_samples()
+        self._table = table(self._arrays, (len(arrays[0]), *addresses, *sizes, *functions))
+        self.address = self._table.ctypes.data
+
+    @property
+    def heard(self) -> int:
+        """Substeps of the record that have been heard."""
+        return int(self._heard[0])
+
+
+@njit(cache=True, error_model="numpy")
+def _close(advance, heat, touches, substeps, taken, of_reading, close, electronics):
+    """What hear returns at a sample's end. Addresses and sizes as in Hearing."""
+    if heat == 0 or called(advance, heat, touches, substeps[0], 0) != 0:
+        return FULL
+    substeps[0] = 0
+    taken[0] += 1
+    due = 0
+    if taken[0] == of_reading:
+        due, taken[0] = 1, 0
+    return DUE * due + SPENT * called_two(close, electronics, due)
+
+
+@njit(cache=True, error_model="numpy")
+def hear_record(at, record_at, first, count):
+    """The substeps first to count - 1 of a record at that address, or those up to the end of the first sample after
+    which something is to be done, as `hear` tells it. at: a RecordHearing's address."""
+    entries = carray(words(at), 15)
+    last, step = carray(floats(entries[0]), entries[5]), carray(floats(entries[1]), 2)
+    substeps, taken = carray(words(entries[2]), 1), carray(words(entries[3]), 1)
+    heard = carray(words(entries[4]), 1)
+    heard[0] = first
+    while heard[0] < count:
+        begun, heard[0] = heard[0], min(heard[0] + entries[10] - substeps[0], count)
+        substeps[0] += heard[0] - begun
+        if called(entries[12], record_at, begun, heard[0], entries[6]) == 0:
+            return BROKEN
+        for _ in range(heard[0] - begun):
+            for w in range(len(last)):
+                last[w] += step[0]
+        if substeps[0] == entries[10]:
+            found = _close(
+                entries[13], entries[7], entries[8], substeps, taken, entries[11], entries[14], entries[9]
+            )
+            if found != NOTHING:
+                return found
+    return NOTHING
 
 
 @njit(cache=True, error_model="numpy")
@@ -63,14 +133,13 @@ def hear(at):
         return BROKEN
     if substeps[0] < entries[_OF_SAMPLE]:
         return NOTHING
-    if (
-        entries[_HEAT] == 0
-        or called(entries[_ADVANCE], entries[_HEAT], entries[_TOUCHES], substeps[0], 0) != 0
-    ):
-        return FULL
-    substeps[0] = 0
-    taken[0] += 1
-    due = 0
-    if taken[0] == entries[_OF_READING]:
-        due, taken[0] = 1, 0
-    return DUE * due + SPENT * called_two(entries[_CLOSE], entries[_ELECTRONICS], due)
+    return _close(
+        entries[_ADVANCE],
+        entries[_HEAT],
+        entries[_TOUCHES],
+        substeps,
+        taken,
+        entries[_OF_READING],
+        entries[_CLOSE],
+        entries[_ELECTRONICS],
+    )

@@ -26,7 +26,7 @@ from ..thermal.stack import converter
 from .contacts import ContactReader, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
-from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, hear
+from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, RecordHearing, hear, hear_record
 from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
 from .readings import SAMPLES, Electronics, Layout, Noise, TouchReading
 from .scene import (
@@ -165,6 +165,7 @@ class ThermalTouch:
         # the data whose steps one call hears, and what it takes; nobody's until all is known, and after each change
         self._near: object = _NOBODY
         self._hearing: Hearing | None = None
+        self._recorded: RecordHearing | None = None
         self._near_at = 0
         self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
         self._heat.reset(range(count), self._first)
@@ -495,14 +496,27 @@ class ThermalTouch:
                 f"{found.shape}"
             )
         found, done = found.reshape(worlds, -1, size), 0
-        while done < found.shape[1]:
-            first, done = done, min(done + self._sample_steps - self._reader.substeps, found.shape[1])
-            self._reader.sense(found, first, done, self._sensors)
-            for _ in range(first, done):
-                self._time += self._step
-            if self._reader.substeps == self._sample_steps:
-                self._sample()
+        at, count, reader = found.ctypes.data, found.shape[1], self._reader
+        while done < count:
+            sensing = reader.sensing(self._sensors, count)
+            recorded = self._recorded
+            if recorded is None or self._near is not self._sensors:
+                self._recorded = recorded = self._record_hearing(sensing)
+                self._near = self._sensors
+            heard = hear_record(recorded.address, at, done, count)
+            done = recorded.heard
+            if heard != NOTHING:
+                self._finish(heard)
         return self._reading
+
+    def _record_hearing(self, sensing: int) -> RecordHearing:
+        """For records, until something else than `hear_record` changes what is heard."""
+        reader = self._reader
+        return RecordHearing(
+            (self._time, self._steps, reader.counted, self._taken),
+            (sensing, *self._heat.hearing(reader.touches), self._electronics.address),
+            (self._sample_steps, self._samples),
+        )
 
     def _passed(self, data: mujoco.MjData | np.ndarray) -> int:
         """Substeps since the last call."""
@@ -592,7 +606,7 @@ class ThermalTouch:
     def _finish(self, heard: int) -> TouchReading:
         """What is left to do where `hear` found something to do."""
         if heard == BROKEN:
-            raise self._reader.failure(self._time.item())
+            raise self._reader.failure(float(self._time[0]))
         if heard == FULL:
             self._sample()
             self._listen()
@@ -606,7 +620,7 @@ class ThermalTouch:
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
         self.__dict__.update(state)
-        self._near, self._hearing = _NOBODY, None
+        self._near, self._hearing, self._recorded = _NOBODY, None, None
 
     def _read(self) -> TouchReading:
         return self._electronics.reading(self._time, self._reader.broken)

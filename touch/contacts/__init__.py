@@ -4,8 +4,8 @@ from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_co
 from .columns import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FORCE, LENGTH, NORMAL, PLACE
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
-from .pointers import called, called_two, chains, complexes, entry, flags, floats, integers, table, words
-from .reader import ContactReader, read_contacts
+from .pointers import called, called_two, chains, entry, flags, floats, integers, table, words
+from .reader import ContactReader, read_contacts, sense_contacts
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
 
@@ -34,7 +34,6 @@ __all__ = [
     "called",
     "called_two",
     "chains",
-    "complexes",
     "curves",
     "entry",
     "flags",
@@ -43,6 +42,7 @@ __all__ = [
     "pair_laws",
     "prepare",
     "read_contacts",
+    "sense_contacts",
     "sensor_places",
     "stacked",
     "table",

@@ -35,10 +35,6 @@ def _floats(context, address):
     return types.CPointer(types.float64)(types.int64), _pointer
 
 
-def _complexes(context, address):
-    return types.CPointer(types.complex128)(types.int64), _pointer
-
-
 def _integers(context, address):
     return types.CPointer(types.int32)(types.int64), _pointer
 
@@ -92,13 +88,12 @@ def _ask(context, builder, signature, arguments):
 
 
 floats: Any = intrinsic(_floats)
-complexes: Any = intrinsic(_complexes)
 integers: Any = intrinsic(_integers)
 words: Any = intrinsic(_words)
 flags: Any = intrinsic(_flags)
 laws: Any = intrinsic(_laws)
 chains: Any = intrinsic(_chains)
-"""Of an address, what numba.carray takes: of floating-point and complex numbers, of integers of 32 and 64 bits, of
+"""Of an address, what numba.carray takes: of floating-point numbers, of integers of 32 and 64 bits, of
 booleans, of CONTACT_LAW and of CHAIN_NUMBERS."""
 called_two: Any = intrinsic(_called_two)
 called: Any = intrinsic(_called)

@@ -112,7 +112,7 @@ class ContactReader:
         self._frames, self._spot = np.zeros((count, _FRAME)), np.zeros(_SPOT)
         self._poses = tuple(np.zeros((many, size)) for many in (model.nbody, model.ngeom) for size in (3, 9))
         self._places: SensorPlaces | None = None
-        self._sensed = np.zeros(0, np.int64)
+        self._sensed, self._sensed_at = np.zeros(0, np.int64), 0
         self._bend, self._curve = bends(pads), curves(model, pads, shapes)
         self.set_materials(range(worlds), [tuple(shape.material for shape in shapes)] * worlds)
         self._of: mujoco.MjData | None = None
@@ -196,11 +196,16 @@ class ContactReader:
         a number that is not finite are `broken` from then on, and nothing more is added to them. Raises what went wrong
         where a mesh's table could not be made."""
         self.counted += last - first
+        if not sense_contacts(record.ctypes.data, first, last, self.sensing(places, record.shape[1])):
+            raise self._failed.pop()
+
+    def sensing(self, places: SensorPlaces, substeps: int) -> int:
+        """The address of what `sense_contacts` takes for records of so many substeps, until a call of set_materials."""
         if places is not self._places:
             self._places, self._sensed = places, self._sensing(places)
-        at = record.ctypes.data
-        if not sense_contacts(at, record.shape[1], first, last, self._sensed.ctypes.data):
-            raise self._failed.pop()
+            self._sensed_at = self._sensed.ctypes.data
+        self._sensed[-1] = substeps
+        return self._sensed_at
 
     def failure(self, time: float) -> BaseException:
         """What to raise where `read_contacts` has returned 0, at `time` s."""
@@ -211,7 +216,7 @@ class ContactReader:
         )
 
     def _sensing(self, places: SensorPlaces) -> np.ndarray:
-        """What `sense_contacts` takes of it: all addresses and sizes, until a call of set_materials."""
+        """All addresses and sizes, and room for the record's substeps."""
         sensed = places.pairs, places.poses, places.geoms, places.turns, places.offsets
         arrays = *sensed, self._pads, self._parts, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
@@ -219,7 +224,7 @@ class ContactReader:
         sums += self._frames, self._spot, self._tilts, self._views
         sizes = len(self.beside), places.size, *map(len, sensed[:3]), *self._pushed.shape[:2]
         make = self._views.shape[1], ctypes.cast(self._make, ctypes.c_void_p).value or 0
-        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables), *make))
+        return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables), *make, 0))
 
     def clear(self) -> None:
         """Sums start anew, with the model's kind of friction cones as it is now."""
@@ -353,14 +358,14 @@ def read_contacts(count, substeps, memory_at, entries_at):
 
 
 @njit(cache=True, error_model="numpy")
-def sense_contacts(record_at, substeps, first, last, entries_at):
+def sense_contacts(record_at, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
-    sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `_sensing`.
+    sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `sensing`.
     Returns 1, and 0 where a table could not be made."""
-    entries = carray(words(entries_at), 36)
+    entries = carray(words(entries_at), 37)
     worlds, size, pairs, poses, geoms = entries[25], entries[26], entries[27], entries[28], entries[29]
     tips, part_count, targets, sides = entries[30], entries[31], entries[32], entries[34]
-    record = carray(floats(record_at), (worlds, substeps, size))
+    record = carray(floats(record_at), (worlds, entries[36], size))
     pair, pose, placed = (
         carray(words(entries[0]), (pairs, 3)),
         carray(words(entries[1]), (poses, 3)),
@@ -385,67 +390,82 @@ def sense_contacts(record_at, substeps, first, last, entries_at):
     touches = carray(floats(entries[16]), (worlds, tips, targets, COLUMNS))
     beside, broken = carray(floats(entries[17]), (worlds, tips)), carray(flags(entries[18]), worlds)
     for w in range(worlds):
-        for n in range(first, last):
-            if broken[w]:
-                break
-            data, total, any_touch = record[w, n], 0.0, False
-            for p in range(pairs):
-                at = pair[p, 2]
-                total += (
-                    (data[at + PLACE_AT] + data[at + PLACE_AT + 1])
-                    + (data[at + PLACE_AT + 2] + data[at + FORCE_AT])
-                    + (data[at + FORCE_AT + 1] + data[at + FORCE_AT + 2])
-                    + data[at]
-                )
-                any_touch = any_touch or data[at] > 0
-            for p in range(poses):
-                at, quat = pose[p, 1], pose[p, 2]
-                total += data[at] + data[at + 1] + data[at + 2]
-                total += (data[quat] + data[quat + 1]) + (data[quat + 2] + data[quat + 3])
-            if not math.isfinite(total):
-                broken[w] = True
-                break
-            if not any_touch:
-                continue
-            for p in range(poses):
-                body, at, quat = pose[p, 0], pose[p, 1], pose[p, 2]
-                a, b, c, d = data[quat], data[quat + 1], data[quat + 2], data[quat + 3]
-                for k in range(3):
-                    xpos[body, k] = data[at + k]
-                turn = xmat[body]
-                turn[0], turn[4], turn[8] = (
-                    a * a + b * b - c * c - d * d,
-                    a * a - b * b + c * c - d * d,
-                    a * a - b * b - c * c + d * d,
-                )
-                turn[1], turn[3] = 2 * (b * c - a * d), 2 * (b * c + a * d)
-                turn[2], turn[6] = 2 * (b * d + a * c), 2 * (b * d - a * c)
-                turn[5], turn[7] = 2 * (c * d - a * b), 2 * (c * d + a * b)
-            for g in range(geoms):
-                geom, body = placed[g, 0], placed[g, 1]
-                for i in range(3):
-                    x, y, z = xmat[body, 3 * i], xmat[body, 3 * i + 1], xmat[body, 3 * i + 2]
-                    geom_xpos[geom, i] = xpos[body, i] + (
-                        x * offsets[g, 0] + y * offsets[g, 1] + z * offsets[g, 2]
-                    )
-                    for k in range(3):
-                        geom_xmat[geom, 3 * i + k] = (
-                            x * turns[g, k] + y * turns[g, 3 + k] + z * turns[g, 6 + k]
-                        )
-            _begin(pushed, frames)
-            for p in range(pairs):
-                if data[pair[p, 2]] > 0:
-                    first_tip, part = pair[p, 0], pair[p, 1]
-                    _frame(pads, parts, xpos, xmat, frames, first_tip)
-                    if part >= part_count - tips:
-                        _frame(pads, parts, xpos, xmat, frames, part - (part_count - tips))
-                    _press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside[w])
-            if not _feel(
-                xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law[which[w]], curved[which[w]], tables,
-                tilts[which[w]], bend, curve, pushed, touches[w], 1.0, spot, views, entries[35],
-            ):  # fmt: skip
-                return 0
+        kind = which[w]
+        if not _sense_world(
+            record, w, first, last, pair, pose, placed, turns, offsets, pads, parts, law[kind], curved[kind], tables,
+            tilts[kind], views, bend, curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches[w],
+            beside[w], broken, entries[35],
+        ):  # fmt: skip
+            return 0
     return 1
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _sense_world(
+    record, w, first, last, pair, pose, placed, turns, offsets, pads, parts, laws, curved, tables, tilts, views, bend,
+    curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches, beside, broken, make,
+):  # fmt: skip
+    """sense_contacts of one world. Returns whether every table that it needs could be made."""
+    pairs, poses, geoms, tips, part_count = len(pair), len(pose), len(placed), len(pads), len(parts)
+    for n in range(first, last):
+        if broken[w]:
+            break
+        data, total, any_touch = record[w, n], 0.0, False
+        for p in range(pairs):
+            at = pair[p, 2]
+            total += (
+                (data[at + PLACE_AT] + data[at + PLACE_AT + 1])
+                + (data[at + PLACE_AT + 2] + data[at + FORCE_AT])
+                + (data[at + FORCE_AT + 1] + data[at + FORCE_AT + 2])
+                + data[at]
+            )
+            any_touch = any_touch or data[at] > 0
+        for p in range(poses):
+            at, quat = pose[p, 1], pose[p, 2]
+            total += data[at] + data[at + 1] + data[at + 2]
+            total += (data[quat] + data[quat + 1]) + (data[quat + 2] + data[quat + 3])
+        if not math.isfinite(total):
+            broken[w] = True
+            break
+        if not any_touch:
+            continue
+        for p in range(poses):
+            body, at, quat = pose[p, 0], pose[p, 1], pose[p, 2]
+            a, b, c, d = data[quat], data[quat + 1], data[quat + 2], data[quat + 3]
+            for k in range(3):
+                xpos[body, k] = data[at + k]
+            turn = xmat[body]
+            turn[0], turn[4], turn[8] = (
+                a * a + b * b - c * c - d * d,
+                a * a - b * b + c * c - d * d,
+                a * a - b * b - c * c + d * d,
+            )
+            turn[1], turn[3] = 2 * (b * c - a * d), 2 * (b * c + a * d)
+            turn[2], turn[6] = 2 * (b * d + a * c), 2 * (b * d - a * c)
+            turn[5], turn[7] = 2 * (c * d - a * b), 2 * (c * d + a * b)
+        for g in range(geoms):
+            geom, body = placed[g, 0], placed[g, 1]
+            for i in range(3):
+                x, y, z = xmat[body, 3 * i], xmat[body, 3 * i + 1], xmat[body, 3 * i + 2]
+                geom_xpos[geom, i] = xpos[body, i] + (
+                    x * offsets[g, 0] + y * offsets[g, 1] + z * offsets[g, 2]
+                )
+                for k in range(3):
+                    geom_xmat[geom, 3 * i + k] = x * turns[g, k] + y * turns[g, 3 + k] + z * turns[g, 6 + k]
+        _begin(pushed, frames)
+        for p in range(pairs):
+            if data[pair[p, 2]] > 0:
+                first_tip, part = pair[p, 0], pair[p, 1]
+                _frame(pads, parts, xpos, xmat, frames, first_tip)
+                if part >= part_count - tips:
+                    _frame(pads, parts, xpos, xmat, frames, part - (part_count - tips))
+                _press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside)
+        if not _feel(
+            xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed,
+            touches, 1.0, spot, views, make,
+        ):  # fmt: skip
+            return False
+    return True
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -459,7 +479,7 @@ def _begin(pushed, frames):
             pushed[f, g, 2] = 0.0
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _frame(pads, parts, xpos, xmat, frames, f):
     """Fills frames[f] with where pad f is in the world, unless it is known in this substep."""
     if frames[f, _KNOWN] > 0.0:
@@ -527,7 +547,7 @@ def _within(pad, x, y, z, sunk):
     return abs(x) <= DEPTH + sunk and abs(y) <= pad[_HALF] + RIM and abs(z) <= pad[_HALF + 1] + RIM
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _feel(
     xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
     weight, spot, views, make,

@@ -39,6 +39,7 @@ from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
 from .narrow import Side, narrow_sides, narrow_table, narrow_tables
+from .step import room_size
 from .systems import Pair, SystemPool, groups
 
 MOST_SYSTEMS = 4096
@@ -141,6 +142,9 @@ class JoinedHeat:
             self._back(f, pad, worlds) for f, pad in enumerate(pads) if pad.heated or pad.thermostat
         )
         self._busy, self._seconds, self._reach = np.zeros(fields, bool), np.array([dt]), NEAR * self._widths
+        kept = np.exp(-dt * self._level.decay)
+        self._decay = np.array([self._level.decay, kept, (1 - kept) / self._level.decay])
+        self._roots, self._placed = np.zeros((count * fields, self._level.rates)), np.zeros(4)
         self._touches, self._touches_at = np.zeros(0), 0
         self._table: np.ndarray | None = None
         self._forget()
@@ -211,21 +215,22 @@ class JoinedHeat:
         """Of the table of all arrays that `sample` takes."""
         if self._table is None:
             pool = self._pool
+            self._room = np.zeros(room_size(pool.most, self._level.patterns))
             arrays = (
                 *(self._boxes, self._widths, self._reach, self._faces, self._middles),
                 *(self._sought_faces, self._sought_middles, self._new_faces, self._new_middles),
                 *(self._closed, self._stale, self._warm, self._plan),
-                *(pool.starts, pool.integers, pool.numbers, pool.grams),
-                *(self._fade, self._held_by, self._rows, self._nets, self._level.decay, self._tables),
+                *(pool.starts, pool.integers, pool.ports, pool.grams, pool.paces),
+                *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._tables),
                 *(self._kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
-                *(self.warmth, self._seconds),
+                *(self.warmth, self._seconds, self._roots, self._room, self._placed),
             )
             worlds, tips, objects = self._current.shape
             sizes = (
                 *(worlds, tips, objects, self._level.patterns, self._plan.shape[1]),
-                *(len(pool.starts), len(pool.integers), len(pool.numbers), len(pool.grams)),
+                *(len(pool.starts), len(pool.integers), len(pool.ports), len(pool.grams)),
                 *(len(self._fade), self._x.shape[2], self._rows.shape[1], len(self._tables)),
-                len(self._level.decay),
+                *(self._level.rates, len(pool.paces), len(self._room), pool.most),
             )
             self._pointed = arrays  # which must live as long as their addresses are in use
             self._table = np.zeros(TABLE, np.int64)

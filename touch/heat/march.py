@@ -10,7 +10,6 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
-from ...thermal.network import POLES, StepArrays, advance, workspace
 from ..contacts import (
     AREA,
     ASIDE,
@@ -20,17 +19,15 @@ from ..contacts import (
     LENGTH,
     NORMAL,
     PLACE,
-    complexes,
     flags,
     floats,
     words,
 )
 from .narrow import STEPS, spread
-from .systems import ALONE, CONTACTS, FIELDS, FLOATS, GRAM, HEADER, PORTS, SHARED, STATES
+from .step import CONTACTS, HEADER, PACE, room_of, step
 
-_PAIRS = len(POLES)
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
-TABLE = 46
+TABLE = 53
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
 _TIE = 1e-6
@@ -56,8 +53,7 @@ def settle(
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):
-                touch = touches[w, f, t]
-                now = touch[CONDUCTANCE] > 0
+                now = touches[w, f, t, CONDUCTANCE] > 0
                 if now != closed[w, f, t]:
                     closed[w, f, t], stale[w] = now, True
                 if t >= objects:
@@ -65,7 +61,7 @@ def settle(
                 new_faces[w, f, t] = -1
                 if not now:
                     continue
-                box, most = boxes[t], 0
+                touch, box, most = touches[w, f, t], boxes[t], 0
                 for i in range(3):
                     looking[i], position[i] = 0.0, 0.0
                     for k in range(3):
@@ -108,7 +104,7 @@ def sample(entries_at, touches_at, substeps, settled):
     were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
     many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
     entries = carray(words(entries_at), TABLE)
-    worlds, tips, objects = entries[32], entries[33], entries[34]
+    worlds, tips, objects = entries[36], entries[37], entries[38]
     targets = tips + objects
     touches, widths = (
         carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
@@ -131,69 +127,69 @@ def sample(entries_at, touches_at, substeps, settled):
         )
         if moved or stale:
             return moved + stale
-    states, rates = entries[42], entries[45]
+    states, rates = entries[46], entries[49]
+    decays = carray(floats(entries[22]), (3, rates))
     _march(
-        carray(floats(entries[31]), 1)[0],
+        carray(floats(entries[32]), 1)[0],
         substeps,
-        entries[35],
+        entries[39],
         touches,
         carray(floats(entries[11]), (worlds, tips)),
-        carray(words(entries[12]), (worlds, entries[36])),
-        carray(words(entries[13]), entries[37]),
-        carray(words(entries[14]), entries[38]),
-        carray(floats(entries[15]), entries[39]),
-        carray(complexes(entries[16]), entries[40]),
-        carray(floats(entries[17]), (entries[41], states)),
-        carray(floats(entries[18]), (worlds, objects)),
-        carray(floats(entries[19]), (tips, entries[43])),
-        carray(words(entries[20]), (worlds, targets)),
-        carray(floats(entries[21]), rates),
-        carray(floats(entries[22]), (entries[44], 2, 2, STEPS, STEPS, rates)),
-        carray(words(entries[23]), (worlds, tips, targets, 2)),
+        carray(words(entries[12]), (worlds, entries[40])),
+        carray(words(entries[13]), entries[41]),
+        carray(words(entries[14]), entries[42]),
+        carray(floats(entries[15]), entries[43]),
+        carray(floats(entries[16]), entries[44]),
+        carray(floats(entries[17]), entries[50] * PACE),
+        carray(floats(entries[18]), (entries[45], states)),
+        carray(floats(entries[19]), (worlds, objects)),
+        carray(floats(entries[20]), (tips, entries[47])),
+        carray(words(entries[21]), (worlds, targets)),
+        decays[0],
+        decays[1],
+        decays[2],
+        carray(floats(entries[23]), (entries[48], 2, 2, STEPS, STEPS, rates)),
+        carray(words(entries[24]), (worlds, tips, targets, 2)),
         widths,
-        carray(floats(entries[24]), (worlds, targets, states)),
-        carray(floats(entries[25]), (worlds, tips, targets, rates)),
-        carray(floats(entries[26]), (worlds, tips, targets)),
-        carray(floats(entries[27]), worlds),
-        carray(floats(entries[28]), (worlds, tips)),
-        carray(flags(entries[29]), targets),
-        carray(floats(entries[30]), (worlds, objects)),
+        carray(floats(entries[25]), (worlds, targets, states)),
+        carray(floats(entries[25]), worlds * targets * states),
+        carray(floats(entries[26]), (worlds, tips, targets, rates)),
+        carray(floats(entries[27]), (worlds, tips, targets)),
+        carray(floats(entries[28]), worlds),
+        carray(floats(entries[29]), (worlds, tips)),
+        carray(flags(entries[30]), targets),
+        carray(floats(entries[31]), (worlds, objects)),
+        carray(floats(entries[33]), (tips * targets, rates)),
+        carray(floats(entries[34]), entries[51]),
+        carray(floats(entries[35]), 4),
+        entries[52],
     )
     return 0
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _march(
-    dt, substeps, patterns, touches, warm, plan, starts, integers, numbers, grams, fade, held, rows, nets,
-    decay, tables, kinds, widths, x, narrow, given, air, drop, busy, warmth,
+    dt, substeps, patterns, touches, warm, plan, starts, integers, ports, grams, paces, fade, held, rows, nets,
+    decay, kept, grown, tables, kinds, widths, x, states, narrow, given, air, drop, busy, warmth, roots, numbers,
+    placed, most,
 ):  # fmt: skip
     """One step of dt s of every world.
 
     touches: (W, F, T, columns), sums over so many substeps. warm: (W, F) K, the thermostats above the air. plan: (W, C)
     the groups' systems, -1 behind the last. fade: (networks, K), what a state keeps in a step alone; nets: (W, T) which
     of them each field is. held: (W, O) J of the mean's state. rows: (F, K) of the drop. x: (W, T, K), given: (W, F, T)
-    J and air: (W,) J go on in place; drop: (W, F) K and warmth: (W, O) K, the objects' means, are filled. busy: room
-    (T,).
+    J and air: (W,) J go on in place; drop: (W, F) K and warmth: (W, O) K, the objects' means, are filled. Room: busy
+    (T,), roots (F T, R), placed (4,) and numbers, for groups of most contacts (step.py).
 
-    Narrow contacts (narrow.py): decay (R,) 1/s their rates, tables (N, 2, 2, J, J, R), kinds (W, F, T, 2) which of
-    these the sides of each contact have, widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on
-    in place. Within a step these follow the mean flow, which takes no heat from anywhere and leaves them passive: the
-    power that a flow loses in a resistance is least where it is even."""
+    Narrow contacts (narrow.py): decay (R,) 1/s their rates, kept and grown (R,) what of a state is there after a
+    step, and s of a flow, tables (N, 2, 2, J, J, R), kinds (W, F, T, 2) which of these the sides of each contact have,
+    widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Within a step these follow
+    the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses in a
+    resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
-    most, wide = 1, 1
-    for w in range(worlds):
-        for c in range(plan.shape[1]):
-            if plan[w, c] < 0:
-                break
-            start = starts[plan[w, c]]
-            most, wide = max(most, integers[start + STATES]), max(wide, integers[start + PORTS])
-    room = workspace(most, wide)
-    state = np.empty(most)
     tips, targets, rates = narrow.shape[1], narrow.shape[2], len(decay)
-    placed = np.empty(4)
-    roots = np.zeros((tips * targets, rates))  # of a group's contacts, 0 where they are not narrow
-    kept = np.exp(-dt * decay)  # of a state, in a step
-    grown = (1 - kept) / decay  # s, of a flow, in a state after a step
+    room = room_of(numbers, most, patterns)
+    resistances, differences, flow = room.resistance, room.difference, room.flow
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):
@@ -206,73 +202,46 @@ def _march(
             if plan[w, c] < 0:
                 break
             start = starts[plan[w, c]]
-            n, m, contacts = integers[start + STATES], integers[start + PORTS], integers[start + CONTACTS]
-            first = integers[start + FLOATS]
-            gram_at = integers[start + GRAM]
-            scales = first + 2 * n
-            ports_at = scales + 2 * _PAIRS * n
-            system = StepArrays(
-                dt,
-                numbers[first : first + n],
-                numbers[ports_at : ports_at + m * n].reshape(m, n),
-                numbers[scales : scales + _PAIRS * n].reshape(_PAIRS, n),
-                numbers[scales + _PAIRS * n : ports_at].reshape(_PAIRS, n),
-                grams[gram_at : gram_at + _PAIRS * m * m].reshape(_PAIRS, m, m),
-                integers[start + SHARED],
-                integers[start + ALONE],
-                patterns,
-                contacts,
-                numbers[first + n : first + 2 * n],
-                0.0,
-            )
-            listed = start + HEADER
-            at = 0
-            for i in range(integers[start + FIELDS]):
-                field, size = integers[listed + 2 * i], integers[listed + 2 * i + 1]
-                busy[field] = True
-                for k in range(size):
-                    state[at + k] = x[w, field, k]
-                at += size
-            joined = listed + 2 * integers[start + FIELDS]
-            for j in range(m):
-                room.drive[j] = 0.0
+            contacts, joined = integers[start + CONTACTS], start + HEADER
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
                 touch, root = touches[w, f, t], roots[i]
-                conducts, behind = touch[CONDUCTANCE] / substeps, 0.0
+                behind, resistance = 0.0, substeps / touch[CONDUCTANCE]
                 area = touch[AREA] / touch[CLOSED]
                 for j in range(4):
                     placed[j] = touch[ASIDE + j] / touch[AREA]
                 own, other = tables[kinds[w, f, t, 0]], tables[kinds[w, f, t, 1]]
                 length = touch[LENGTH] / touch[AREA]
                 if spread(own, other, widths[f], area, length, placed[:2], placed[2:], root):
-                    resists = 0.0
                     for k in range(rates):
                         mean = grown[k] / dt  # of a state that fades, over the step
                         behind += root[k] * mean * narrow[w, f, t, k]
-                        resists += root[k] * root[k] * (1 - mean) / decay[k]
-                    conducts = 1 / (1 / conducts + resists)
+                        resistance += root[k] * root[k] * (1 - mean) / decay[k]
                 else:
                     for k in range(rates):
                         root[k] = 0.0
-                for k in range(patterns):
-                    room.weight[i * patterns + k] = conducts
-                room.drive[i * patterns] = (
-                    warm[w, f] - (warm[w, t - objects] if t >= objects else 0.0) - behind
-                )
-            air[w] += dt * advance(system, state, room.weight, room.drive, room.flow, room)
+                resistances[i] = resistance
+                differences[i] = warm[w, f] - (warm[w, t - objects] if t >= objects else 0.0) - behind
+            air[w] += dt * step(
+                dt,
+                start,
+                integers,
+                ports,
+                grams,
+                paces,
+                patterns,
+                states,
+                w * fields * x.shape[2],
+                x.shape[2],
+                held[w],
+                room,
+            )
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
-                given[w, f, t] += dt * room.flow[i * patterns]
+                busy[objects + f], busy[t] = True, True
+                given[w, f, t] += dt * flow[i]
                 for k in range(rates):
-                    passing = roots[i, k] * room.flow[i * patterns]
-                    narrow[w, f, t, k] = kept[k] * narrow[w, f, t, k] + grown[k] * passing
-            at = 0
-            for i in range(integers[start + FIELDS]):
-                field, size = integers[listed + 2 * i], integers[listed + 2 * i + 1]
-                for k in range(size):
-                    x[w, field, k] = state[at + k]
-                at += size
+                    narrow[w, f, t, k] = kept[k] * narrow[w, f, t, k] + grown[k] * roots[i, k] * flow[i]
         for b in range(fields):
             if busy[b]:
                 continue

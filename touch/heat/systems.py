@@ -10,17 +10,14 @@ Contacts are pairs (tip, target); targets are the objects, then the tips. Fields
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from ...thermal.kernels import Tip
-from ...thermal.network import propagator
 from .fields import BodyField
-
-STATES, PORTS, SHARED, ALONE, FIELDS, CONTACTS, FLOATS, GRAM = range(8)
-"""Of a group's integers, the first: states, ports, states that all contacts see and those of each tip, how many fields
-and contacts, and where its numbers begin. Behind them: fields and sizes in turn, then the contacts' pairs."""
-HEADER = 8
+from .lanes import LANES
+from .step import PACE, gram, lanes, pace
 
 Pair = tuple[int, int]
 
@@ -44,7 +41,8 @@ def groups(pairs: Sequence[Pair], objects: int) -> list[tuple[Pair, ...]]:
 
 class SystemPool:
     """Systems of groups, each made once. faces: (n, patterns) ports of each tip for another that touches it. starts:
-    where each one's integers begin."""
+    where each one's integers begin (step.py), and ports, grams and paces: what these refer to. most: contacts of the
+    largest."""
 
     def __init__(
         self, tips: Sequence[Tip], faces: Sequence[np.ndarray], objects: int, patterns: int, dt: float
@@ -52,10 +50,11 @@ class SystemPool:
         self._tips, self._faces, self._objects = tuple(tips), tuple(faces), objects
         self._patterns, self._dt = patterns, dt
         self._known: dict[tuple[object, ...], int] = {}
-        self.starts = np.zeros(0, np.int64)
-        self.integers, self.numbers = np.zeros(0, np.int64), np.zeros(0)
-        self.grams = np.zeros(0, np.complex128)
-        self._used = (0, 0, 0, 0)  # of the four, what is behind it is room
+        self._rates: dict[float, int] = {}
+        self.starts, self.integers = np.zeros(0, np.int64), np.zeros(0, np.int64)
+        self.ports, self.grams, self.paces = np.zeros(0), np.zeros(0), np.zeros((0, PACE))
+        self.most = 0
+        self._used = (0, 0, 0, 0)  # of the first four, what is behind it is room
 
     def __len__(self) -> int:
         return self._used[0]
@@ -68,53 +67,53 @@ class SystemPool:
         return self._known[key]
 
     def _make(self, pairs: tuple[Pair, ...], fields: dict[int, BodyField], current: dict[Pair, int]) -> int:
-        patterns = self._patterns
+        objects, patterns, of_contact = self._objects, self._patterns, lanes(self._patterns)
         tips = list(dict.fromkeys(tip for pair in pairs for tip in self._tips_of(pair)))
-        members = [*fields, *(self._objects + tip for tip in tips)]
-        rates = [fields[o].rates for o in fields] + [self._tips[tip].side.rates for tip in tips]
-        sizes = [len(part) for part in rates]
-        begin = dict(zip(members, np.cumsum([0, *sizes]).tolist(), strict=False))
-        total = sum(sizes)
-        ports, watched = np.zeros((total, patterns * len(pairs))), np.zeros(total)
-        for number, pair in enumerate(pairs):
-            part = slice(number * patterns, (number + 1) * patterns)
-            tip, target = pair
-            given = self._tips[tip].side.ports
-            ports[begin[self._objects + tip] : begin[self._objects + tip] + len(given), part] = -given
-            taking = (
-                fields[target].port(current[pair], patterns)
-                if target < self._objects
-                else self._faces[target - self._objects]
-            )
-            ports[begin[target] : begin[target] + len(taking), part] = taking
-        for o, field in fields.items():
-            watched[begin[o] : begin[o] + len(field.loss)] = field.loss
-        # each tip by itself on what all share, where that is so
-        of_objects = sum(sizes[: len(fields)])
-        on_objects = all(target < self._objects for _, target in pairs)
-        separate = on_objects and len(tips) == len(pairs) and len(set(sizes[len(fields) :])) == 1
-        shared, alone = (of_objects, sizes[-1]) if separate else (total, 0)
-        steps = propagator(np.concatenate(rates), ports, self._dt)
-        header = [total, ports.shape[1], shared, alone, len(members), len(pairs)]
-        header += [*self._used[2:]]
-        listed = [n for member in zip(members, sizes, strict=True) for n in member]
-        flat = [header, listed, [n for pair in pairs for n in pair]]
-        numbers = (
-            steps.rates,
-            watched,
-            np.real(steps.scale).ravel(),
-            np.imag(steps.scale).ravel(),
-            steps.ports.T.ravel(),
-        )
-        count, integers, floats, grams = self._used
-        self.starts = _written(self.starts, count, np.array([integers]))
-        whole = np.concatenate(flat).astype(np.int64)
-        self.integers = _written(self.integers, integers, whole)
-        real = np.concatenate(numbers)
-        self.numbers = _written(self.numbers, floats, real)
-        self.grams = _written(self.grams, grams, steps.gram.ravel())
-        self._used = count + 1, integers + len(whole), floats + len(real), grams + steps.gram.size
+        self.most = max(self.most, len(pairs))
+        m, members = patterns * len(pairs), [*fields, *(objects + tip for tip in tips)]
+        integers, blocks = [n for pair in pairs for n in pair], []
+        heard = np.zeros((m, m, 2, LANES))
+        for member in members:
+            rates = fields[member].rates if member < objects else self._tips[member - objects].side.rates
+            seen = {}  # its ports, by contact
+            for number, (tip, target) in enumerate(pairs):
+                if member == objects + tip:
+                    seen[number] = -self._tips[tip].side.ports
+                elif member == target and target < objects:
+                    seen[number] = fields[target].port(current[tip, target], patterns)
+                elif member == target:
+                    seen[number] = self._faces[target - objects]
+            ports, padded = np.zeros((len(rates), m)), np.zeros((len(rates), len(seen), of_contact * LANES))
+            for place, (number, port) in enumerate(seen.items()):
+                ports[:, number * patterns : (number + 1) * patterns] = port
+                padded[:, place, :patterns] = port
+            heard += gram(rates, ports, self._dt)
+            blocks.append(padded.ravel())
+            # the first state of an object is its mean temperature's, whatever the others' rates
+            starts = [0, *(np.flatnonzero(np.diff(rates)) + 1).tolist(), len(rates)]
+            if member < objects and starts[1] > 1:
+                starts.insert(1, 1)
+            spans = [(start, end) for start, end in pairwise(starts) if end > start]
+            own = [number * of_contact + n for number in seen for n in range(of_contact)]
+            integers += [member, len(own), len(spans), len(rates), *own]
+            for start, end in spans:
+                integers += [self._pace(float(rates[start])), end - start]
+        count, *used = self._used
+        whole = np.array([len(pairs), len(members), *used[1:], *integers], np.int64)
+        self.starts = _written(self.starts, count, np.array(used[:1]))
+        self.integers = _written(self.integers, used[0], whole)
+        flat = np.concatenate(blocks)
+        self.ports = _written(self.ports, used[1], flat)
+        self.grams = _written(self.grams, used[2], heard.ravel())
+        self._used = count + 1, used[0] + len(whole), used[1] + len(flat), used[2] + heard.size
         return count
+
+    def _pace(self, rate: float) -> int:
+        """The row of a rate."""
+        if rate not in self._rates:
+            self.paces = _written(self.paces, len(self._rates), pace(rate, self._dt)[None])
+            self._rates[rate] = len(self._rates)
+        return self._rates[rate]
 
     def _tips_of(self, pair: Pair) -> list[int]:
         tip, target = pair
@@ -124,7 +123,7 @@ class SystemPool:
 def _written(pool: np.ndarray, first: int, values: np.ndarray) -> np.ndarray:
     """The pool, or one twice as long, with the values from there on."""
     if first + len(values) > len(pool):
-        grown = np.zeros(2 * (first + len(values)), pool.dtype)
+        grown = np.zeros((2 * (first + len(values)), *pool.shape[1:]), pool.dtype)
         grown[:first] = pool[:first]
         pool = grown
     pool[first : first + len(values)] = values

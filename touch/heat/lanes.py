@@ -1,0 +1,193 @@
+"""Numbers of contiguous arrays taken four at once in compiled code, where the compiler would not do so by itself: loops
+of four it unrolls first. The bits are those of one number after the other, save that a product and a sum may round
+once.
+
+Complex lanes are four real parts with four imaginary ones behind them.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+LANES = 4
+_ONCE = ("contract",)
+
+
+def _add_scaled(typingctx, out, i, a, j, factor):
+    """out[i:i + 4] += factor a[j:j + 4]"""
+
+    def code(context, builder, signature, values):
+        to, first, factor_four = (
+            _place(context, builder, signature, values, 0),
+            _place(context, builder, signature, values, 2),
+            _spread(builder, values[4]),
+        )
+        product = builder.fmul(_load(builder, first), factor_four, flags=_ONCE)
+        _store(builder, builder.fadd(_load(builder, to), product, flags=_ONCE), to)
+        return context.get_dummy_value()
+
+    return types.void(out, i, a, j, factor), code
+
+
+def _put_sum(typingctx, out, i, a, j, stride, factors, k, count):
+    """out[i:i + 4] is the sum over n < count of factors[k + n] times the four of a at j + n stride."""
+
+    def code(context, builder, signature, values):
+        to, first, factor = (_place(context, builder, signature, values, n) for n in (0, 2, 5))
+        total = cgutils.alloca_once_value(builder, _zeros())
+        with cgutils.for_range(builder, values[7]) as loop:
+            lane = _load(builder, _ahead(builder, first, builder.mul(loop.index, values[4])))
+            number = builder.load(_number(builder, _ahead(builder, factor, loop.index)))
+            product = builder.fmul(lane, _spread(builder, number), flags=_ONCE)
+            builder.store(builder.fadd(builder.load(total), product, flags=_ONCE), total)
+        _store(builder, builder.load(total), to)
+        return context.get_dummy_value()
+
+    return types.void(out, i, a, j, stride, factors, k, count), code
+
+
+def _dot(typingctx, a, i, b, j, count):
+    """The sum of a[i:i + 4 count] b[j:j + 4 count], lane by lane, then of the lanes."""
+
+    def code(context, builder, signature, values):
+        first, second = (_place(context, builder, signature, values, n) for n in (0, 2))
+        total = cgutils.alloca_once_value(builder, _zeros())
+        with cgutils.for_range(builder, values[4]) as loop:
+            at = builder.mul(loop.index, ir.Constant(loop.index.type, LANES))
+            one, other = (_load(builder, _ahead(builder, place, at)) for place in (first, second))
+            product = builder.fmul(one, other, flags=_ONCE)
+            builder.store(builder.fadd(builder.load(total), product, flags=_ONCE), total)
+        both = builder.load(total)
+        one, two, three, four = (
+            builder.extract_element(both, ir.Constant(ir.IntType(32), n)) for n in range(LANES)
+        )
+        return builder.fadd(builder.fadd(one, two), builder.fadd(three, four))
+
+    return types.float64(a, i, b, j, count), code
+
+
+def _put_product(typingctx, out, i, a, j, b, k):
+    """Complex lanes: out at i is a at j times b at k."""
+
+    def code(context, builder, signature, values):
+        real, imag = _product(builder, *_operands(context, builder, signature, values))
+        _put(builder, _place(context, builder, signature, values, 0), real, imag)
+        return context.get_dummy_value()
+
+    return types.void(out, i, a, j, b, k), code
+
+
+def _take_product(typingctx, out, i, a, j, b, k):
+    """Complex lanes: out at i less a at j times b at k."""
+
+    def code(context, builder, signature, values):
+        real, imag = _product(builder, *_operands(context, builder, signature, values))
+        to = _place(context, builder, signature, values, 0)
+        had_real, had_imag = _complex(builder, to)
+        _put(
+            builder,
+            to,
+            builder.fsub(had_real, real, flags=_ONCE),
+            builder.fsub(had_imag, imag, flags=_ONCE),
+        )
+        return context.get_dummy_value()
+
+    return types.void(out, i, a, j, b, k), code
+
+
+def _invert(typingctx, out, i):
+    """Complex lanes: out at i is its inverse."""
+
+    def code(context, builder, signature, values):
+        at = _place(context, builder, signature, values, 0)
+        real, imag = _complex(builder, at)
+        squares = (builder.fmul(part, part, flags=_ONCE) for part in (real, imag))
+        size = builder.fdiv(ir.Constant(_four(), [1.0] * LANES), builder.fadd(*squares, flags=_ONCE))
+        _put(builder, at, builder.fmul(real, size), builder.fmul(builder.fneg(imag), size))
+        return context.get_dummy_value()
+
+    return types.void(out, i), code
+
+
+def _zeros() -> Any:
+    return ir.Constant(_four(), [0.0] * LANES)
+
+
+def _number(builder: Any, place: Any) -> Any:
+    """A pointer to the first of four numbers."""
+    return builder.bitcast(place, ir.DoubleType().as_pointer())
+
+
+def _ahead(builder: Any, place: Any, numbers: Any) -> Any:
+    """A pointer to the four that are so many numbers ahead of a place."""
+    return builder.bitcast(builder.gep(_number(builder, place), [numbers]), _four().as_pointer())
+
+
+def _four() -> Any:
+    return ir.VectorType(ir.DoubleType(), LANES)
+
+
+def _place(context: Any, builder: Any, signature: Any, values: Any, number: int) -> Any:
+    """A pointer to where the array of that number and the index behind it say."""
+    kind, array = signature.args[number], values[number]
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [values[number + 1]]), _four().as_pointer())
+
+
+def _load(builder: Any, place: Any) -> Any:
+    return builder.load(place, align=8)
+
+
+def _store(builder: Any, value: Any, place: Any) -> None:
+    builder.store(value, place, align=8)
+
+
+def _complex(builder: Any, place: Any) -> tuple[Any, Any]:
+    return _load(builder, place), _load(builder, _behind(builder, place))
+
+
+def _put(builder: Any, place: Any, real: Any, imag: Any) -> None:
+    _store(builder, real, place)
+    _store(builder, imag, _behind(builder, place))
+
+
+def _behind(builder: Any, place: Any) -> Any:
+    return builder.gep(place, [ir.Constant(ir.IntType(64), 1)])
+
+
+def _spread(builder: Any, number: Any) -> Any:
+    one = builder.insert_element(_zeros(), number, ir.Constant(ir.IntType(32), 0))
+    return builder.shuffle_vector(
+        one, _zeros(), ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    )
+
+
+def _operands(context: Any, builder: Any, signature: Any, values: Any) -> tuple[Any, ...]:
+    """Real and imaginary parts of a and b."""
+    return tuple(
+        part for n in (2, 4) for part in _complex(builder, _place(context, builder, signature, values, n))
+    )
+
+
+def _product(builder: Any, real: Any, imag: Any, other_real: Any, other_imag: Any) -> tuple[Any, Any]:
+    def both(join: Any, one: Any, two: Any, three: Any, four: Any) -> Any:
+        first, second = builder.fmul(one, two, flags=_ONCE), builder.fmul(three, four, flags=_ONCE)
+        return join(first, second, flags=_ONCE)
+
+    return (
+        both(builder.fsub, real, other_real, imag, other_imag),
+        both(builder.fadd, real, other_imag, imag, other_real),
+    )
+
+
+add_scaled: Any = intrinsic(_add_scaled)
+put_sum: Any = intrinsic(_put_sum)
+dot: Any = intrinsic(_dot)
+put_product: Any = intrinsic(_put_product)
+take_product: Any = intrinsic(_take_product)
+invert: Any = intrinsic(_invert)

@@ -1,0 +1,195 @@
+"""The step of thermal/network/coupling.py for fields that contacts join, compiled.
+
+A field's states lie by their rates, of which there are few. How contacts see those of one rate is summed before it is
+taken to the poles, and what comes back from the poles is the same for all of them: the poles cost by the rate, not by
+the state. A sum never depends on how many worlds there are.
+
+m: ports, C: contacts, R: different rates, Q: pole pairs.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ...thermal.network import POLES, WEIGHTS
+from .lanes import LANES, add_scaled, dot, invert, put_product, put_sum, take_product
+
+CONTACTS, FIELDS, PORTS, GRAM, HEADER = range(5)
+"""Of a group's integers, the first: contacts and fields, and where its ports and its gram begin. Behind them its
+contacts' pairs; then of each field its number, how many lanes it has, how many rates and states, the lanes by number,
+and of each rate its row among the paces and how many states."""
+_RATE, _LEFT, _MEAN, _SEEN, _PUSHED, _LAGGED = 0, 1, 2, 3, 9, 15
+PACE = 21
+"""Numbers of a rate: itself 1/s; of a state left alone what is there after a step, and its mean; how it is seen at the
+poles, how flows there push it, and push its mean: real parts, then imaginary ones."""
+_PAIRS = len(POLES)
+_LAGS = WEIGHTS / POLES
+_MOST = 1e100  # K/W, of a contact
+
+
+def pace(rate: float, dt: float) -> np.ndarray:
+    """(PACE,) for steps of dt s."""
+    scale = 1 / (POLES + dt * rate)
+    seen, pushed, lagged = POLES * scale / dt, -2 * dt * WEIGHTS * scale, -2 * dt * _LAGS * scale
+    alone = [rate, 1 - rate * pushed.real.sum(), 1 - rate * lagged.real.sum()]
+    parts = [seen.real, seen.imag, pushed.real, -pushed.imag, lagged.real, -lagged.imag]
+    return np.concatenate((alone, *parts))
+
+
+def lanes(patterns: int) -> int:
+    """Of a contact."""
+    return -(-patterns // LANES)
+
+
+def gram(rates: np.ndarray, ports: np.ndarray, dt: float) -> np.ndarray:
+    """(m, m, 2, LANES) K/J, real and imaginary parts of how ports (n, m) of states of those rates (n,) hear one another
+    at the poles."""
+    heard = np.einsum("na,nq,nb->abq", ports, 1 / (POLES + dt * rates[:, None]), ports)
+    found = np.zeros((*heard.shape[:2], 2, LANES))
+    found[:, :, 0, :_PAIRS], found[:, :, 1, :_PAIRS] = heard.real, heard.imag
+    return found
+
+
+class Room(NamedTuple):
+    """Memory of `step`. Of each contact: resistance K/W, difference K and flow W. By column, a lane's port: heard and
+    flows (2 Q, columns), and into (columns,), all flat. Of the solution, complex lanes, one pole each: matrix (m, m),
+    solved and factors (m,)."""
+
+    resistance: np.ndarray
+    difference: np.ndarray
+    flow: np.ndarray
+    heard: np.ndarray
+    flows: np.ndarray
+    into: np.ndarray
+    matrix: np.ndarray
+    solved: np.ndarray
+    factors: np.ndarray
+
+
+def room_size(contacts: int, patterns: int) -> int:
+    """Numbers of which `room_of` makes a Room for so many contacts."""
+    m, columns = contacts * patterns, contacts * LANES * lanes(patterns)
+    return 3 * contacts + (4 * _PAIRS + 1) * columns + 2 * LANES * (m * m + 2 * m)
+
+
+@njit(cache=True, inner=True, borrows=True)
+def room_of(numbers, contacts, patterns):
+    """A Room for so many contacts."""
+    m, columns = contacts * patterns, contacts * LANES * ((patterns + LANES - 1) // LANES)
+    heard = 3 * contacts
+    flows, into = heard + 2 * _PAIRS * columns, heard + 4 * _PAIRS * columns
+    solved = into + columns
+    factors, matrix = solved + 2 * LANES * m, solved + 4 * LANES * m
+    return Room(
+        numbers[:contacts],
+        numbers[contacts : 2 * contacts],
+        numbers[2 * contacts : heard],
+        numbers[heard:flows],
+        numbers[flows:into],
+        numbers[into:solved],
+        numbers[matrix:],
+        numbers[solved:factors],
+        numbers[factors:matrix],
+    )
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride, held, room):
+    """One step of dt s of a group, whose integers begin at `at`. states: flat, in place; from `first` on the
+    world's fields, each `stride` behind the last. held: (O,) J
+    of the mean's state, the first of an object. ports, grams: of all groups. paces: (R PACE,). room: with the
+    contacts' resistances and differences; their mean flows are filled. Returns what the air takes of its objects, W."""
+    contacts, fields = integers[at + CONTACTS], integers[at + FIELDS]
+    objects, wide = len(held), LANES * ((patterns + LANES - 1) // LANES)
+    columns, m = contacts * wide, contacts * patterns
+    heard, flows, into, solved, matrix = room.heard, room.flows, room.into, room.solved, room.matrix
+    resistance, difference, flow = room.resistance, room.difference, room.flow
+    for c in range(2 * _PAIRS * columns):
+        heard[c] = 0.0
+    listed, port = at + HEADER + 2 * contacts, integers[at + PORTS]
+    for _ in range(fields):
+        field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]
+        of_rate, state = listed + 4 + own, first + field * stride
+        for s in range(rates):
+            row, size = PACE * integers[of_rate + 2 * s], integers[of_rate + 2 * s + 1]
+            for b in range(own):
+                put_sum(into, 0, ports, port + LANES * b, LANES * own, states, state, size)
+                column = LANES * integers[listed + 4 + b]
+                for r in range(2 * _PAIRS):
+                    add_scaled(heard, r * columns + column, into, 0, paces[row + _SEEN + r])
+            state += size
+            port += LANES * own * size
+        listed = of_rate + 2 * rates
+    row = 2 * LANES * m
+    for c in range(contacts):
+        for p in range(patterns):
+            a = c * patterns + p
+            for n in range(2 * LANES * (m - a)):
+                matrix[a * row + 2 * LANES * a + n] = grams[integers[at + GRAM] + a * row + 2 * LANES * a + n]
+            resists = min(resistance[c], _MOST) / dt
+            for q in range(LANES):
+                matrix[a * row + 2 * LANES * a + q] += resists
+            for q in range(_PAIRS):
+                real, imag = 2 * LANES * a + q, 2 * LANES * a + LANES + q
+                solved[real] = -heard[q * columns + c * wide + p]
+                solved[imag] = -heard[(_PAIRS + q) * columns + c * wide + p]
+                if p == 0:
+                    solved[real] += difference[c] / dt
+    _solve(matrix, solved, room.factors, m)
+    for c in range(contacts):
+        flow[c] = 0.0
+        for p in range(patterns):
+            for q in range(_PAIRS):
+                at_pole = 2 * LANES * (c * patterns + p) + q
+                real, imag = solved[at_pole], solved[at_pole + LANES]
+                flows[q * columns + c * wide + p], flows[(_PAIRS + q) * columns + c * wide + p] = real, imag
+                if p == 0:
+                    flow[c] -= 2 * (_LAGS[q].real * real - _LAGS[q].imag * imag)
+    listed, port, lost = at + HEADER + 2 * contacts, integers[at + PORTS], 0.0
+    for _ in range(fields):
+        field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]
+        of_rate, state = listed + 4 + own, first + field * stride
+        if field < objects:  # of the mean temperature, its first state
+            row = PACE * integers[of_rate]
+            mean = paces[row + _MEAN] * states[state]
+            for b in range(own):
+                column = LANES * integers[listed + 4 + b]
+                for r in range(2 * _PAIRS):
+                    mean += paces[row + _LAGGED + r] * dot(
+                        ports, port + LANES * b, flows, r * columns + column, 1
+                    )
+            lost += held[field] * paces[row + _RATE] * mean
+        for s in range(rates):
+            row, size = PACE * integers[of_rate + 2 * s], integers[of_rate + 2 * s + 1]
+            for b in range(own):
+                column = LANES * integers[listed + 4 + b]
+                put_sum(into, LANES * b, flows, column, columns, paces, row + _PUSHED, 2 * _PAIRS)
+            for _ in range(size):
+                states[state] = paces[row + _LEFT] * states[state] + dot(ports, port, into, 0, own)
+                state += 1
+                port += LANES * own
+        listed = of_rate + 2 * rates
+    return lost
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _solve(matrix, flows, factors, m):
+    """Solves matrix x = flows at all poles at once, the leading m of each, in place, without pivoting: the matrix is
+    symmetric, of which the upper half is looked at, and its numerical range lies in a half plane (batch/step.py)."""
+    one, row = 2 * LANES, 2 * LANES * m
+    for c in range(m):
+        pivot = c * row + c * one
+        invert(matrix, pivot)
+        for r in range(c + 1, m):
+            put_product(factors, r * one, matrix, c * row + r * one, matrix, pivot)
+            for s in range(r, m):
+                take_product(matrix, r * row + s * one, factors, r * one, matrix, c * row + s * one)
+            take_product(flows, r * one, factors, r * one, flows, c * one)
+    for c in range(m - 1, -1, -1):
+        for s in range(c + 1, m):
+            take_product(flows, c * one, matrix, c * row + s * one, flows, s * one)
+        put_product(flows, c * one, flows, c * one, matrix, c * row + c * one)
