@@ -326,7 +326,9 @@ def networks(scene: Scene, level: Resolution | Detail, times: np.ndarray = TIMES
         ]
         if level == FIXED_LEVEL:  # as the environments do
             spots = [spot.alike(scene.stack.width) for spot in spots]
-        tips = tuple(tip_at(scene.stack, spot, level) for spot in spots)
+        tips = tuple(
+            tip_at(scene.stack, spot, level, near.covered) for spot, near in zip(spots, prints, strict=True)
+        )
         box = box_side(scene.material, scene.size, scene.film, patches, tips, level)
     else:
         tips, box = touch_sides(scene.material, scene.size, scene.film, patches, elements, level)

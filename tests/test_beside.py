@@ -156,7 +156,8 @@ from thermograsp.thermal.batch import fixed_rates
 from thermograsp.thermal.kernels import touched
 from thermograsp.thermal.numerics import free_residues, port_residues
 inner = [advance_fixed, fixed_room]
-entries = [port_residues, free_residues, strayed, fixed_rates._gram]
+entries = [port_residues, free_residues, strayed]
+entries += [fixed_rates._gram, fixed_rates._body, fixed_rates._box_heat, fixed_rates._warmth]
 entries += [touched._at_moments, touched._shielded, touched._warmed, touched._beside]
 """
 

@@ -18,8 +18,10 @@ from ...thermal.batch import (
     HeatTables,
     advance_fixed,
     advance_row,
+    fixed_heat,
     fixed_room,
     fixed_tables,
+    fixed_warmth,
     no_fixed_tables,
     set_body,
     set_gram,
@@ -73,6 +75,9 @@ def compile_boxes_ahead() -> None:
     set_body(tables, 0, touched_box(box, FIXED_LEVEL), (0, 1))
     tables.links[0, 2:] = 0
     set_gram(tables, 0)
+    state = np.zeros(tables.states)
+    fixed_heat(tables, 0, state)
+    fixed_warmth(tables, 0, state, np.ones(FIXED_LEVEL.rates))
 
 
 def _contacts() -> None:

@@ -30,6 +30,7 @@ from ...thermal.batch import (
     fixed_tables,
     fixed_tip_heat,
     fixed_tip_rows,
+    fixed_warmth,
     no_fixed_tables,
     set_body,
     set_gram,
@@ -79,6 +80,7 @@ class BoxHeat:
         self._tolerance, self._dt = tolerance, dt
         self._tips = 0
         self._stack: SensorStack | None = None
+        self._whole: Tip | None = None
         self._bodies: dict[int, tuple[GraspBody, float]] = {}
         self._touched: dict[int, Touched] = {}
         self._prints: dict[int, tuple[_Print, ...]] = {}
@@ -106,9 +108,9 @@ class BoxHeat:
         if self._stack is None:
             self._stack, self._tips = body.stack, body.fingertips
             level = FIXED_LEVEL
-            whole = tip(body.stack, _whole(body.stack), level).side
+            self._whole = tip(body.stack, _whole(body.stack), level)
             self.tables = fixed_tables(
-                len(self._rows), self._tips, MOST_PLACES, level.patterns, whole, self._dt
+                len(self._rows), self._tips, MOST_PLACES, level.patterns, self._whole.side, self._dt
             )
         self._bodies[row] = body, film
         self._touched[row] = Touched((), (-1,) * self._tips)
@@ -152,36 +154,36 @@ class BoxHeat:
     ) -> None:
         """Those fingertips of each row, and those that have no place yet, are at their middles of (B, F, 3) m from now
         on. The heat of the objects and of fingertips in the state (B, n) stays to round-off."""
-        tables, moved, heat = self.tables, {}, {}
+        tables = self.tables
         for row, fingertips in strayed:
-            heat[row] = fixed_heat(tables, row, state[row]), self._elements(row)
-            touched = self._moved(row, fingertips, middles[row], state[row])
-            if touched.places:
-                moved[row] = touched
-        last = {row: (self._touched[row], self._prints.get(row, ())) for row in moved}
-        self._make(moved)
-        for row in moved:
-            self._turn(row, *last[row], state[row])
-            before, elements = heat[row]
-            for f, now in enumerate(self._elements(row)):
-                if not np.array_equal(elements[f], now):
-                    heats = (fixed_tip_heat(tables, each) for each in (elements[f], now))
-                    self._keep_heat(state[row, self.fingertip(f)], *heats)
-            state[row, 0] += (before - fixed_heat(tables, row, state[row])) / tables.slow[row, HELD]
+            own, last = state[row], self._touched[row]
+            before, prints = fixed_heat(tables, row, own), self._prints.get(row, ())
+            touched = self._moved(row, fingertips, middles[row], own)
+            if not touched.places:
+                continue
+            self._set(row, touched)
+            self._turn(row, last, prints, own)
+            for f, (number, now) in enumerate(zip(last.contacts, touched.contacts, strict=True)):
+                worn = prints[number].tip if number >= 0 else self._whole
+                if now >= 0 and worn is not self._prints[row][now].tip:
+                    heats = (
+                        fixed_tip_heat(tables, _element(one)) for one in (worn, self._prints[row][now].tip)
+                    )
+                    self._keep_heat(own[self.fingertip(f)], *heats)
+            own[0] += (before - fixed_heat(tables, row, own)) / tables.slow[row, HELD]
 
     def _moved(self, row: int, fingertips: Sequence[int], middles: np.ndarray, state: np.ndarray) -> Touched:
         """Where the row's box is touched with these fingertips at their middles of (F, 3) m; the field of a place that
         is given up, in the row's state (n,), goes to its heir."""
-        touched, record = self._touched[row], self._rows[row]
-        body, _ = self._bodies[row]
-        size, width = body.spec.size, body.stack.width
-        if record["middled"]:
+        touched, (body, _) = self._touched[row], self._bodies[row]
+        size, width, normal = body.spec.size, body.stack.width, int(self._rows["normal"][row])
+        if not body.anywhere:
             middles = self._middles(row)
         new = [f for f in range(self._tips) if touched.contacts[f] < 0 and f not in fingertips]
         for f in (*fingertips, *new):
-            place = place_of(record, width, middles[f])
+            place = place_of(size, normal, width, middles[f].tolist())
             if place is not None:
-                warmth = self._warmth(row, len(touched.places), state)
+                warmth = fixed_warmth(self.tables, row, state, self._left)[: len(touched.places)]
                 touched, given_up = touched.moved(f, place, warmth, size, width)
                 if given_up is not None:
                     gone, heir = given_up
@@ -190,10 +192,6 @@ class BoxHeat:
                     if heir >= 0:
                         state[self._field(heir)] += field
         return touched
-
-    def _elements(self, row: int) -> np.ndarray:
-        """(F, ...) of FixedTables.tips, a copy."""
-        return self.tables.tips[self.tables.links[row, WHERE + self._tips :]]
 
     def shift(self, rows: np.ndarray, state: np.ndarray, change: np.ndarray) -> None:
         """The thermostats moved by change (B, F) K: the fields above them in rows (n,) of state (B, n) are lower."""
@@ -229,7 +227,8 @@ class BoxHeat:
 
     def set_touched(self, touched: Mapping[int, Touched]) -> None:
         """The rows' networks are those of these places; their states are left alone."""
-        self._make(touched)
+        for row, now in touched.items():
+            self._set(row, now)
 
     def _middles(self, row: int) -> np.ndarray:
         """(F, 3) m of the faces that the fingers close on."""
@@ -245,15 +244,6 @@ class BoxHeat:
         each = self.tables.patterns * self.tables.rates.shape[1]
         first = 1 + self.tables.rates.shape[1] + place * each
         return slice(first, first + each)
-
-    def _warmth(self, row: int, count: int, state: np.ndarray) -> list[float]:
-        """K at each of the first places, _SOON from now, from what has flowed through it alone. A place that is being
-        made has none."""
-        tables = self.tables
-        most, rates = tables.places * tables.patterns, tables.rates.shape[1]
-        even = tables.body[row, : most * most : tables.patterns * (most + 1)][:count]
-        fields = state[1 + rates : 1 + rates + most * rates].reshape(tables.places, -1)[:count, :rates]
-        return np.abs((even * (fields * self._left)).sum(axis=1)).tolist()
 
     def _turn(self, row: int, last: Touched, prints: tuple[_Print, ...], state: np.ndarray) -> None:
         """Puts the fields of places whose patterns of flow are others now, since a fingertip has come or gone behind
@@ -274,27 +264,26 @@ class BoxHeat:
         """Puts the heat that a fingertip's states (n,) have by one row and not by the other into its slowest."""
         state[0] += ((before - after) * state).sum() / after[0]
 
-    def _make(self, touched: Mapping[int, Touched]) -> None:
-        """The tables of the rows' boxes and elements are those of these places."""
-        for row, now in touched.items():
-            if now != self._touched[row]:
-                self._prints[row] = self._pressed(row, now)
-                self._set_box(row, now)
-            self._set_contacts(row, now)
-            set_gram(self.tables, row)
+    def _set(self, row: int, touched: Touched) -> None:
+        """The tables of the row's box and elements are those of these places."""
+        if touched != self._touched[row]:
+            self._prints[row] = self._pressed(row, touched)
+            self._set_box(row, touched)
+        self._set_contacts(row, touched)
+        set_gram(self.tables, row)
 
     def _pressed(self, row: int, touched: Touched) -> tuple[_Print, ...]:
         """What is pressed on each of the places; those that it knows already are the same."""
-        body, _ = self._bodies[row]
-        size, stack, shared = body.spec.size, body.stack, bool(self._rows[row]["middled"])
-        known = {(each.place, each.behind): each for each in self._prints.get(row, ())}
-        found = []
-        for place in touched.places:
+        (body, _), known = self._bodies[row], self._prints.get(row, ())
+        size, width, shared, found = body.spec.size, body.stack.width, not body.anywhere, []
+        for number, place in enumerate(touched.places):
             # what touches the far side of a thick box shapes no pattern
-            thin = size[place.face // 2] < THIN * stack.width and not shared
-            behind = opposite(place, touched.places, stack.width) if thin else None
-            each = known.get((place, behind))
-            found.append(each or _print(body.material, size, place, behind, stack, shared))
+            thin = size[place.face // 2] < THIN * width and not shared
+            behind = opposite(place, touched.places, width) if thin else None
+            each = known[number] if number < len(known) else None
+            if each is None or each.place != place or each.behind != behind:
+                each = _print(body.material, size, place, behind, body.stack, shared)
+            found.append(each)
         return tuple(found)
 
     def _set_box(self, row: int, touched: Touched) -> None:
@@ -315,15 +304,15 @@ class BoxHeat:
 
     def _set_contacts(self, row: int, touched: Touched) -> None:
         """The row's fingertips are on those places."""
-        tables, record = self.tables, self._rows[row]
+        tables, (body, _) = self.tables, self._bodies[row]
         for f, number in enumerate(touched.contacts):
             if number >= 0:
-                element = 0 if record["middled"] else 1 + row * self._tips + f
+                element = 1 + row * self._tips + f if body.anywhere else 0
                 if element:
                     tables.tips[element] = _element(self._prints[row][number].tip)
                 tables.links[row, WHERE + f], tables.links[row, WHERE + self._tips + f] = number, element
                 place = touched.places[number]
-                record["face"][f], record["pad"][f] = place.face, place.middle
+                self._rows["face"][row, f], self._rows["pad"][row, f] = place.face, place.middle
         self._touched[row] = touched
 
 
@@ -379,13 +368,13 @@ def _print(
         None if behind is None else _footprint(behind, size, stack.width),
     )
     # few are made anew: a later touch nearly as far from the ends shares its element with this one
-    return _Print(place, behind, foot, _tip(stack, spot.alike(stack.width)))
+    return _Print(place, behind, foot, _tip(stack, foot.covered, spot.alike(stack.width)))
 
 
 @lru_cache(maxsize=1024)
-def _tip(stack: SensorStack, spot: Spot) -> Tip:
+def _tip(stack: SensorStack, covered: Rectangle, spot: Spot) -> Tip:
     with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-        return tip_at(stack, spot, FIXED_LEVEL)
+        return tip_at(stack, spot, FIXED_LEVEL, covered)
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:

@@ -142,19 +142,18 @@ def _heir(number: int, places: Sequence[Place], new: Place, width: float) -> tup
     return nearest
 
 
-def place_of(row: np.void, width: float, middle: np.ndarray) -> Place | None:
-    """Of a pad whose middle (3,) m is there in the box's frame; None where the face ends before the sensor begins.
-    row: BOX_ROW."""
-    normal, size = int(row["normal"]), row["size"]
+def place_of(size: Sequence[float], normal: int, width: float, middle: Sequence[float]) -> Place | None:
+    """Of a pad across that axis whose middle (3,) m is there in the box's frame; None where the face ends before the
+    sensor begins."""
     along = []
-    for axis in range(3):
-        if axis != normal:
-            at, side = float(middle[axis] + size[axis] / 2), float(size[axis])
-            beyond = width / 2 - min(_LEAST * width, side)
-            if not -width / 2 < at < side + width / 2:
-                return None
-            along.append(min(max(at, -beyond), side + beyond))
-    return Place(2 * normal + int(middle[normal] > 0), (along[0], along[1]))
+    for axis in _SIDES[normal]:
+        side = size[axis]
+        at = middle[axis] + side / 2
+        if not -width / 2 < at < side + width / 2:
+            return None
+        beyond = width / 2 - min(_LEAST * width, side)
+        along.append(min(max(at, -beyond), side + beyond))
+    return Place(2 * normal + (middle[normal] > 0), (along[0], along[1]))
 
 
 def _on_lattice(place: Place, size: Sequence[float], width: float, *, coarse: bool) -> Place:

@@ -133,13 +133,13 @@ def set_gram(tables: FixedTables, row: int) -> None:
 
 def fixed_heat(tables: FixedTables, row: int, state: np.ndarray) -> float:
     """J in the row's box above its first temperature; state (n,)."""
-    count, ports = tables.rates.shape[1], tables.places * tables.patterns
-    rows = tables.body[row, ports * ports :]
-    field = state[1 : 1 + count * (1 + ports)].reshape(1 + ports, count)
-    if not tables.links[row, AIRED]:
-        return float(tables.slow[row, HELD] * state[0])
-    total = tables.slow[row, HELD] * state[0] + (rows[-1] * field[0]).sum() + (rows[:-1] * field[1:]).sum()
-    return float(total)
+    parts = tables.slow[row], tables.body[row], tables.links[row]
+    return _box_heat(*parts, state, tables.patterns, tables.places)
+
+
+def fixed_warmth(tables: FixedTables, row: int, state: np.ndarray, left: np.ndarray) -> list[float]:
+    """K at each place of the row's box from what has flowed through it alone, of which so much is left (K,)."""
+    return _warmth(tables.body[row], state, left, tables.patterns, tables.places).tolist()
 
 
 def fixed_tip_rows(tables: FixedTables, number: int) -> TipRows:
@@ -185,25 +185,63 @@ def tip_residues(side: Side) -> np.ndarray:
 
 def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[int]) -> None:
     """Makes a box the row's, whose patches, those under fingertips first, are the places of these numbers."""
-    patterns, most = tables.patterns, tables.places * tables.patterns
-    slow, body = tables.slow[row], tables.body[row]
-    ports = _ports(tuple(places), patterns)
-    touched = ports[: len(box.residues)]
-    slow[:] = body[:] = 0.0
-    slow[:_RATE_ROWS] = _rate_table(np.array([box.rate]), tables.dt)[:, 0]
-    slow[HELD], slow[HELD + 1 + ports] = box.held, box.ports
-    square = body[: most * most].reshape(most, most, -1)
-    square[touched[:, None], ports] = box.residues
-    even = ports[len(touched) :: patterns]
-    square[even, even] = box.residues[0, 0]  # stands in for their own, which no step asks for
-    body[most * most + ports], body[-1] = box.heat, box.still
-    tables.links[row, USED] = len(places)
-    tables.links[row, AIRED] = box.still.any()
+    _body(
+        tables.slow[row],
+        tables.body[row],
+        tables.links[row],
+        _slow_table(box.rate, tables.dt),
+        np.array(places),
+        tables.patterns,
+        *box,
+    )
 
 
-@lru_cache(maxsize=256)
-def _ports(places: tuple[int, ...], patterns: int) -> np.ndarray:
-    return (np.array(places)[:, None] * patterns + np.arange(patterns)).ravel()
+@lru_cache(maxsize=1024)
+def _slow_table(rate: float, dt: float) -> np.ndarray:
+    return _rate_table(np.array([rate]), dt)[:, 0].copy()
+
+
+@njit(cache=True, error_model="numpy")
+def _body(slow, body, index, table, places, patterns, rate, ports, held, residues, heat, still):
+    """Fills one row's slow, body and index. table: of its slowest rate. The rest is a BodyResidues."""
+    most, touched, told = (len(slow) - HELD - 1), len(residues), len(ports)
+    slow[:], body[:] = 0.0, 0.0
+    slow[:_RATE_ROWS], slow[HELD] = table, held
+    for j in range(told):
+        at = places[j // patterns] * patterns + j % patterns
+        slow[HELD + 1 + at] = ports[j]
+        for k in range(RATES):
+            body[most * most + at, k] = heat[j, k]
+            for i in range(touched):
+                to = places[i // patterns] * patterns + i % patterns
+                body[to * most + at, k] = residues[i, j, k]
+            if j >= touched and j % patterns == 0:
+                body[at * most + at, k] = residues[0, 0, k]  # stands in for its own, which no step asks for
+    index[USED], index[AIRED] = len(places), 0
+    for k in range(RATES):
+        body[most * most + most, k] = still[k]
+        if still[k] != 0.0:
+            index[AIRED] = 1
+
+
+@njit(cache=True, error_model="numpy")
+def _box_heat(slow, body, index, x, patterns, places):
+    """See fixed_heat; of one row's slow, body and index."""
+    most = patterns * places
+    used, aired = index[USED] * patterns, index[AIRED] > 0
+    return _held(slow, body, most * most, most * most + most, x, used, aired)
+
+
+@njit(cache=True, error_model="numpy")
+def _warmth(body, x, left, patterns, places):
+    """See fixed_warmth; of one row's body."""
+    most, found = patterns * places, np.zeros(places)
+    for n in range(places):
+        even, start = n * patterns * (most + 1), 1 + RATES * (1 + n * patterns)
+        for k in range(RATES):
+            found[n] += body[even, k] * x[start + k] * left[k]
+        found[n] = abs(found[n])
+    return found
 
 
 def _slow(element: Side) -> int:

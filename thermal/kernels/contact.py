@@ -98,9 +98,10 @@ def tip(stack: SensorStack, covered: Rectangle, level: Resolution) -> Tip:
 
 
 @lru_cache(maxsize=1024)
-def tip_at(stack: SensorStack, spot: Spot, level: Resolution) -> Tip:
-    """The element under a contact, on the patterns of that place."""
-    return _tip(stack, spot.contact.covered, level, spot_patterns(stack, spot, level.patterns))
+def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle | None = None) -> Tip:
+    """The element under a contact, on the patterns of that place. covered: what it covers of its face, where that is
+    only nearly as much as there."""
+    return _tip(stack, covered or spot.contact.covered, level, spot_patterns(stack, spot, level.patterns))
 
 
 def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:

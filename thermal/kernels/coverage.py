@@ -35,6 +35,7 @@ THIN = 0.5
 _MARGIN = 0.08  # of the sensor's width, between a contact and the near edge of others
 _GAPS, _BETWEEN = (0.0, 0.05, 0.15, 0.4, 1.0), (0.01, 0.09, 0.25, 0.6)
 """Of the sensor's width: from a contact to the face's end as `alike` has it; and where it goes from one to the next."""
+_COVERED = 1 / 9  # of the sensor's width, steps of how much of it is covered
 _OPPOSITE_STEP = 0.02  # of the sensor's width, steps of an opposite contact's edges beyond this one's
 _STEPS_OF_DEPTH = 5  # a decade, of depths up to the sensor's width
 _PROPERTIES = 2  # a decade, of conductivities and heat capacities
@@ -65,20 +66,33 @@ class Spot:
 
     def alike(self, width: float) -> Spot:
         """One of few whose patterns serve this one as well, for a sensor of that width, m: what is near is nearly as
-        near, the box as deep, the material as good a conductor. The same part of the sensor's face is covered."""
-        centre, sides = [], []
-        for side, middle, half in zip(self.sides, self.contact.centre, self.contact.half, strict=True):
+        near, the box as deep, the material as good a conductor, and as much of the sensor's face is covered; exactly as
+        much where something touches a thin box from behind."""
+        thin = self.depth < THIN * width
+        exact = thin and self.opposite is not None
+        centre, sides, halves, covered = [], [], [], []
+        for axis, side in enumerate(self.sides):
+            middle, half, part = (
+                self.contact.centre[axis],
+                self.contact.half[axis],
+                self.contact.covered[axis],
+            )
             low, high = (_gap(gap, width) for gap in (middle - half, side - middle - half))
+            if not exact:
+                part = _nearly_covered(part, width)
+                half = (part[1] - part[0]) / 2
             centre.append(low + half)
             sides.append(low + high + 2 * half)
-        contact = Footprint(self.contact.covered, (centre[0], centre[1]), self.contact.half)
+            halves.append(half)
+            covered.append(part)
+        contact = Footprint((covered[0], covered[1]), (centre[0], centre[1]), (halves[0], halves[1]))
         return Spot(
             _rounded(self.conductivity, _PROPERTIES),
             _rounded(self.heat_capacity, _PROPERTIES),
             (sides[0], sides[1]),
             _rounded(min(self.depth, width), _STEPS_OF_DEPTH),
             contact,
-            self._behind(contact, sides, width) if self.depth < THIN * width else None,
+            self._behind(contact, sides, width) if thin else None,
         )
 
     def _behind(self, contact: Footprint, sides: Sequence[float], width: float) -> Footprint | None:
@@ -101,6 +115,17 @@ class Spot:
             found.append(((begun, begun + high - low), (low + high) / 2, (high - low) / 2))
         (first, x, half_x), (second, y, half_y) = found
         return Footprint((first, second), (x, y), (half_x, half_y))
+
+
+def _nearly_covered(part: tuple[float, float], width: float) -> tuple[float, float]:
+    """As much of a side of the sensor's face in steps, from where it begins or to where it ends."""
+    low, high = part
+    length = min(max(round((high - low) / width / _COVERED), 1) * _COVERED, 1.0) * width
+    if low <= 0:
+        return 0.0, length
+    return (
+        (width - length, width) if high >= width else ((low + high - length) / 2, (low + high + length) / 2)
+    )
 
 
 def _gap(gap: float, width: float) -> float:
