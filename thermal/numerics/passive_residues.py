@@ -1,7 +1,7 @@
 """Residues of a passive network by least squares: each positive semidefinite.
 
 Under that constraint the least squares are solved by alternating directions (Boyd et al., Found. Trends Mach. Learn. 3,
-2011), in the same few steps whatever the body: no search, and what comes out is passive by construction.
+2011), in few steps whatever the body: no search, and what comes out is passive by construction.
 """
 
 from __future__ import annotations
@@ -12,7 +12,10 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-_STEPS = 20
+_STEPS = 20  # at most
+_SETTLED = (
+    4e-4  # change of any residue in a step, beside columns of unit length, from which on it is the last
+)
 _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _FREE_RIDGE = 1e-6  # of residues without constraint
@@ -148,16 +151,21 @@ def _in_cone(solve, seen, inside):
             for i in range(ports):
                 for k in range(rates):
                     half[m, i, k] = max(moved[m, m, k], 0.0) * turn[m, i, k]
+        moving = 0.0
         for i in range(ports):
             for j in range(i + 1):
                 for k in range(rates):
-                    inside[i, j, k] = 0.0
+                    free[k] = 0.0
                 for m in range(ports):
                     for k in range(rates):
-                        inside[i, j, k] += turn[m, i, k] * half[m, j, k]
+                        free[k] += turn[m, i, k] * half[m, j, k]
                 for k in range(rates):
-                    dual[i, j, k] -= inside[i, j, k]
+                    moving = max(moving, abs(free[k] - inside[i, j, k]))
+                    inside[i, j, k] = free[k]
+                    dual[i, j, k] -= free[k]
                     dual[j, i, k] = dual[i, j, k]
+        if moving < _SETTLED:
+            break
     for i in range(ports):
         for j in range(i):
             for k in range(rates):
