@@ -6,6 +6,7 @@ from thermograsp.doors import opened
 
 if TYPE_CHECKING:
     from .grasp_body import PAD, GraspBody
+    from .slipped_mesh import mesh_steps
     from .taxels import MOST_PRESSURE, Taxels, checked_taxels
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "GraspBody",
     "Taxels",
     "checked_taxels",
+    "mesh_steps",
 ]
 
 __getattr__ = opened(__name__)

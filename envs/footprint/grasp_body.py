@@ -45,6 +45,7 @@ from ..bodies import ObjectSpec
 
 if TYPE_CHECKING:
     from ...thermal import Solid
+    from .slipped_mesh import ClosedMesh
 
 PAD = Pad()
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
@@ -225,6 +226,20 @@ class GraspBody:
             return flat_footprint(self.pad, self.joint, self._face, self._across if followed else None)
         assert self._mesh_table is not None
         return table_footprint(self.pad, self.joint, self._mesh_table)
+
+    @cached_property
+    def closed_mesh(self) -> ClosedMesh | None:
+        """A mesh as the pads close on it; None of what else they meet."""
+        if self.contact_shape != "mesh" or self._mesh_table is None:
+            return None
+        from .slipped_mesh import closed_mesh
+
+        return closed_mesh(self.pad, self.spec, self._mesh_table)
+
+    def slipped_law(self, step: tuple[int, ...]) -> np.void:
+        """`law` of a mesh that has slipped and turned by a step of slipped_mesh.py."""
+        assert self.closed_mesh is not None
+        return table_footprint(self.pad, self.joint, self.closed_mesh.contact_at(step))
 
     @cached_property
     def heat_capacity(self) -> float:

@@ -107,6 +107,10 @@ class GraspHeat:
         self._laws = np.zeros(num_envs, FOOTPRINT_LAW)
         self._reservoirs = np.zeros(num_envs, RESERVOIR_ROW)
         self._state = np.zeros((num_envs, 0))
+        # Meshes, whose contact follows the place: their rows, where the pads closed, and how far they have gone.
+        self._meshes: list[int] = []
+        self._closed = np.zeros((num_envs, 4))
+        self._steps = np.zeros((num_envs, 5), np.int64)
 
     def reset(
         self,
@@ -155,6 +159,8 @@ class GraspHeat:
         fingertip) of fields that go from one row to another as that sample begins, as in carry."""
         for row in [row for row in self._waiting if force[row].any()]:
             self._build(row)
+        if self._meshes:
+            self._slip(force, place)
         moved = self._moved(force, place) if self._touches else []
         drop = np.empty((len(force), self._samples, 2))
         info = np.empty(len(force), HEAT_INFO)
@@ -284,6 +290,12 @@ class GraspHeat:
     def _place(self, row: int, body: GraspBody, sensor_temperature: np.ndarray) -> None:
         self._bodies[row] = body
         self._laws[row] = body.law
+        self._steps[row] = 0
+        mesh = body.closed_mesh
+        if mesh is not None:
+            self._closed[row] = mesh.azimuth, *mesh.place
+        if (mesh is not None) != (row in self._meshes):
+            self._meshes = sorted({*self._meshes} ^ {row})
         self._touches.pop(row, None)
         inside = body.spec.reservoir
         self._reservoirs[row] = np.zeros(1, RESERVOIR_ROW)[0]
@@ -372,6 +384,18 @@ class GraspHeat:
         if sample > 0 and self._rows["touching"][row, fingertip]:
             self._rows["touching"][row, fingertip] = 0
             info["events"][row, fingertip] |= RELEASE
+
+    def _slip(self, force: np.ndarray, place: np.ndarray) -> None:
+        """What the pads touch of meshes that have slipped or turned between them."""
+        from ..footprint import mesh_steps  # nothing that meshes need is loaded without them
+
+        rows = np.array(self._meshes)
+        now = mesh_steps(place[rows], self._closed[rows, 0], self._closed[rows, 1:])
+        gone = (now != self._steps[rows]).any(axis=1) & (force[rows] > 0).any(axis=(1, 2))
+        for k in np.flatnonzero(gone).tolist():
+            row = int(rows[k])
+            self._steps[row] = now[k]
+            self._laws[row] = self._bodies[row].slipped_law(tuple(now[k].tolist()))
 
     def _moved(self, force: np.ndarray, place: np.ndarray) -> list[tuple[int, int, int]]:
         """(sample, row, fingertip) of those that begin to touch where they have not been since they were there last."""

@@ -60,7 +60,7 @@ def press(heat: GraspHeat, seconds: float, *places: np.ndarray | None, newton: f
     force, place = np.zeros((len(places), 10, 2)), np.zeros((len(places), 2, 3))
     for row, at in enumerate(places):
         if at is not None:
-            force[row, :, 0], place[row, 0] = newton, at
+            force[row, :, 0], place[row, 0], place[row, 1] = newton, at, at * [-1.0, -1.0, 1.0]
     return [heat.advance(force, place) for _ in range(round(seconds / STEP))]
 
 

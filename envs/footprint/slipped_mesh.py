@@ -1,0 +1,120 @@
+"""What pads meet of a mesh that has slipped or turned between them since they closed on it.
+
+Where they close, mesh_contact.py knows, with pads that align themselves. From there on the contact changes as that of
+pads without a tilt does (thermal/pressed/mesh_table.py): by the ratio of what these meet at the new place and where the
+grasp closed. Places and directions are those of grids, so that the contact follows from where the pads are alone.
+
+N: meshes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ...thermal import ContactArea, Pad
+from ...thermal.contact import FIRST_FORCE, FORCE_STEP, FORCES, TABLE_FORCES
+from ...thermal.pressed import PressedView, pressed_view
+from ..bodies import MeshShape, ObjectSpec
+
+GRID = 5e-4
+"""m, between places."""
+_TURN = math.radians(15)
+"""Between directions."""
+_LOADS = np.log(TABLE_FORCES), FIRST_FORCE + FORCE_STEP * np.arange(FORCES)
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedMesh:
+    """A mesh as pads close on it. azimuth: rad, of the first pad's normal in its frame, which is level there. place:
+    (3,) m in the mesh's frame, of what of the pads' middles is across that normal."""
+
+    pad: Pad
+    shape: MeshShape
+    azimuth: float
+    place: tuple[float, float, float]
+    contact: ContactArea
+
+    def contact_at(self, step: tuple[int, ...]) -> ContactArea:
+        """At TABLE_FORCES, (9,) each; the pad's area is that of closing. step: of `mesh_steps`, (5,)."""
+        if not any(step):
+            return self.contact
+        here, first = self._met(step), self._met((0, 0, 0, 0, 0))
+        face, load = (
+            np.where(was > 0, known * now / np.where(was > 0, was, 1.0), now)
+            for known, now, was in zip((self.contact.face, self._share), here, first, strict=True)
+        )
+        face = np.minimum(face, self.pad.face**2)
+        return ContactArea(self.contact.pad, face, np.minimum(load, 1.0) * TABLE_FORCES)
+
+    @property
+    def _share(self) -> np.ndarray:
+        return self.contact.face_force / TABLE_FORCES
+
+    def _met(self, step: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """m2 on the face and its share of the force, (9,) each, of pads without a tilt; the mean of both."""
+        azimuth, elevation = self.azimuth + step[3] * _TURN, step[4] * _TURN
+        place = np.array(self.place) + GRID * np.array(step[:3])
+        found = []
+        for side in (1, -1):
+            view, across, begin = _seen(self.pad, self.shape, azimuth, elevation, side)
+            found.append(_between(view.places, view.touched[..., :2], across @ place - begin))
+        both = [each for each in found if each.any()]
+        met = np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
+        area, share = (np.interp(*_LOADS, column) for column in met.T)
+        return area, share
+
+
+def closed_mesh(pad: Pad, spec: ObjectSpec, contact: ContactArea) -> ClosedMesh:
+    """contact: of mesh_contact at TABLE_FORCES."""
+    (x, y), turn = spec.position, spec.yaw
+    cos, sin = math.cos(turn), math.sin(turn)
+    height = spec.grasp_height - spec.size[2] / 2
+    middle, normal = np.array([-x * cos - y * sin, x * sin - y * cos, height]), np.array([cos, -sin, 0.0])
+    across = middle - (middle @ normal) * normal
+    return ClosedMesh(
+        pad, spec.geometry, -turn, (float(across[0]), float(across[1]), float(across[2])), contact
+    )
+
+
+def mesh_steps(places: np.ndarray, azimuth: np.ndarray, closed: np.ndarray) -> np.ndarray:
+    """(N, 5) whole numbers of GRID along the mesh's axes, and of turns to the side and up, from where the pads closed.
+    places: (N, 2, 3) m of their middles; azimuth: (N,) rad and closed: (N, 3) m, of ClosedMesh."""
+    between = places[:, 1] - places[:, 0]
+    length = np.sqrt((between**2).sum(axis=1, keepdims=True))
+    normal = between / np.where(length > 0, length, 1.0)
+    across = places[:, 0] - (places[:, 0] * normal).sum(axis=1, keepdims=True) * normal
+    aside = np.arctan2(normal[:, 1], normal[:, 0]) - azimuth
+    aside = np.arctan2(np.sin(aside), np.cos(aside))
+    up = np.arcsin(np.clip(normal[:, 2], -1.0, 1.0))
+    numbers = ((across - closed) / GRID, np.stack((aside, up), axis=1) / _TURN)
+    return np.rint(np.concatenate(numbers, axis=1)).astype(np.int64)
+
+
+@lru_cache(maxsize=256)
+def _seen(
+    pad: Pad, shape: MeshShape, azimuth: float, elevation: float, side: int
+) -> tuple[PressedView, np.ndarray, np.ndarray]:
+    """What a pad meets whose normal is that direction, or against it; the other two axes (2, 3), and m along these
+    where the view begins."""
+    cos, sin, level = math.cos(azimuth), math.sin(azimuth), math.cos(elevation)
+    normal, aside = np.array([level * cos, level * sin, math.sin(elevation)]), np.array([-sin, cos, 0.0])
+    axes = np.stack([side * normal, side * aside, np.cross(normal, aside)])
+    vertices, faces = shape.surface
+    corners = np.ascontiguousarray(vertices, float)
+    view = pressed_view(pad, corners.tobytes(), faces.astype(np.int64).tobytes(), axes.tobytes())
+    return view, axes[1:], (corners @ axes[1:].T).min(axis=0) - pad.face / 2
+
+
+def _between(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """(forces, n) of values (forces, P, P, n) at a place (2,) m among places (2, P); beyond them none."""
+    for axis in range(2):
+        if not places[axis, 0] < at[axis] < places[axis, -1]:
+            return np.zeros((len(values), values.shape[-1]))
+        k = int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, 0, places.shape[1] - 2))
+        share = (at[axis] - places[axis, k]) / (places[axis, k + 1] - places[axis, k])
+        values = (1 - share) * values[:, k] + share * values[:, k + 1]
+    return values
