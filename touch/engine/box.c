@@ -13,6 +13,7 @@ enum { MODES = 24, STEPS = 20 };
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
 #define RIDGE 1e-4    /* of the first guess, without constraint */
 #define RELAXED 1.6
+#define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
 static const double pi = 3.14159265358979323846;
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. told: with eigenfunctions. */
@@ -233,16 +234,22 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     for (int m = 0; m < wide; m++)
       for (int i = 0; i < wide; i++)
         for (int k = 0; k < rates; k++) AT(half, m, i)[k] = greater(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];
+    double moving = 0;
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
-        double* own = AT(inside, i, j);
-        memset(own, 0, sizeof(double) * rates);
+        double *own = AT(inside, i, j), next[rates];
+        memset(next, 0, sizeof next);
         for (int m = 0; m < wide; m++)
-          for (int k = 0; k < rates; k++) own[k] += AT(turn, m, i)[k] * AT(half, m, j)[k];
-        for (int k = 0; k < rates; k++) AT(dual, i, j)[k] -= own[k];
+          for (int k = 0; k < rates; k++) next[k] += AT(turn, m, i)[k] * AT(half, m, j)[k];
+        for (int k = 0; k < rates; k++) {
+          moving = greater(moving, fabs(next[k] - own[k]));
+          own[k] = next[k];
+          AT(dual, i, j)[k] -= next[k];
+        }
         memcpy(AT(dual, j, i), AT(dual, i, j), sizeof(double) * rates);
       }
     }
+    if (moving < SETTLED) break;
   }
   memcpy(moved, inside, sizeof(double) * whole);
   for (int k = 0; k < rates; k++)
