@@ -12,8 +12,10 @@ import pytest
 from thermograsp.touch import Fingertip, prepare
 from thermograsp.touch.contacts import (
     AREA,
+    ASIDE,
     CONDUCTANCE,
     FORCE,
+    LENGTH,
     ContactReader,
     TouchContacts,
     array_contacts,
@@ -98,5 +100,9 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
             read = reader.touches[0, :, 0]
             for values, column in ((step.force, FORCE), (step.conductance, CONDUCTANCE), (step.area, AREA)):
                 np.testing.assert_allclose(values[world, :, 0], read[:, column], rtol=1e-6)
+            area = read[:, AREA]
+            np.testing.assert_allclose(step.length[world, :, 0] * area, read[:, LENGTH], rtol=1e-6)
+            shares = step.shares[world, :, 0] * area[:, None]
+            np.testing.assert_allclose(shares, read[:, ASIDE:], rtol=1e-6, atol=1e-9 * area.max(initial=1e-9))
         touched += (step.conductance > 0).all(axis=(0, 2)).sum() >= feeling
     assert touched > 50

@@ -406,6 +406,37 @@ def test_the_model_is_written_and_read_again(model: mujoco.MjModel, tmp_path: Pa
     assert np.allclose(ends[0], ends[1], rtol=5e-4)
 
 
+EDGE = """
+<mujoco><option timestep=".002" gravity="0 0 0"/><asset><mesh name="block" vertex="-.02 -.02 -.02  .02 -.02 -.02
+  -.02 .02 -.02  .02 .02 -.02  -.02 -.02 .02  .02 -.02 .02  -.02 .02 .02  .02 .02 .02"/></asset><worldbody>
+  <body name="block"><geom {} friction=".1" mass="1"/></body>
+  <body name="tip" pos="0 0 .0241"><joint name="over" type="slide" axis="{}" damping="5"/>
+    <joint name="down" type="slide" axis="0 0 -1" damping="20"/>
+    <geom name="tip" type="box" size=".01 .01 .004" mass=".1"/>
+  </body></worldbody>
+  <actuator><position joint="over" kp="2000" kv="60"/><motor joint="down"/></actuator></mujoco>"""
+
+
+@NEEDS_SPECS
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize("way", ["1 0 0", "0 -1 0", "0.8 0.6 0"])
+@pytest.mark.parametrize("geom", ['type="box" size=".02 .02 .02"', 'type="mesh" mesh="block"'])
+def test_over_an_edge_its_voltages_are_those_of_thermal_touch(geom: str, way: str, skin: str | None) -> None:
+    tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), skin=skin)
+    words: dict = {"fingertips": {"tip": tip}, "objects": {"block": "steel"}}
+    model = install(mujoco.MjSpec.from_string(EDGE.format(geom, way)), **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain="ideal")
+    data.ctrl[1], most, narrow = 10.0, 0.0, 0
+    for n in range(300):
+        data.ctrl[0] = 0.016 + 0.012 * np.sin(n / 40)
+        mujoco.mj_step(model, data)
+        touch.update(data)
+        if n % 10 == 9:
+            narrow += touch._heat.state().narrow.any()
+            most = max(most, float(np.abs((voltages(model, data) - sent(touch)) / per_kelvin(touch)).max()))
+    assert most < 1e-9 and narrow > 10
+
+
 def broken() -> Iterator[dict[str, str]]:
     spec = mujoco.MjSpec.from_string(hand.scene())
     install(spec, fingertips=PADS, objects=OBJECTS)

@@ -247,6 +247,38 @@ def test_whatever_the_widths_do_nothing_grows_and_no_heat_is_lost(touch: Thermal
     assert 0 < heat.object_temperature[0, 0] - 24.0 < reach
 
 
+def test_wherever_contacts_are_nothing_grows_and_no_heat_is_lost(touch: ThermalTouch) -> None:
+    """Any rectangle anywhere, at every sample another one, also such as no reader tells."""
+    rng = np.random.default_rng(6)
+    heat = JoinedHeat(
+        touch._pads, (), touch._shapes, worlds=1, dt=0.01, tolerance=0.05, film=0.0, ambient=24.0
+    )
+    touches = np.zeros((1, 1, 2, COLUMNS))
+    row = touches[0, 0, 0]
+    row[PLACE : PLACE + 3], row[NORMAL : NORMAL + 3], row[CLOSED] = (0.03, 0, 0), (-1, 0, 0), 1.0
+    for _ in range(2000):
+        first, second = 10.0 ** rng.uniform(-9, -1, 2)
+        row[CONDUCTANCE], row[AREA] = 10.0 ** rng.uniform(-6, 3), first * second
+        row[LENGTH], row[ASIDE:] = row[AREA] * second, row[AREA] * rng.uniform(-0.5, 1.5, 4)
+        heat.advance(touches, 1)
+        assert 0 <= heat.drop[0, 0] <= touch._pads[0].temperature - 24.0
+    balance = heat.balance(0)
+    assert balance.objects.sum() == pytest.approx(balance.given.sum(), rel=1e-10)
+    assert np.isfinite(heat.state().narrow).all()
+
+
+def test_nearer_an_end_there_is_more_to_spread(pad: PadPlace) -> None:
+    for shares in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)):
+        aside = np.array(shares)
+        narrow = [
+            added(pad, material("steel"), p * 0.004, 0.004, aside, aside)[0] for p in (0.001, 0.002, 0.004)
+        ]
+        assert narrow[0] > narrow[1] > narrow[2] > 0
+    steps = np.linspace(0.0, 1.0, 11)
+    found = [added(pad, material("steel"), 8e-6, 0.004, np.array([x, 0]), np.array([x, 0]))[0] for x in steps]
+    assert (np.diff(found) > 0).all()
+
+
 def test_what_has_spread_belongs_to_the_state() -> None:
     model, data = hand.hand()
     touch = ThermalTouch(model, fingertips={"thumb": "thumb_pad"}, objects={"can": "glass"}, chain="ideal")
