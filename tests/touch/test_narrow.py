@@ -204,9 +204,11 @@ def test_nothing_jumps_where_a_face_slides_over_an_edge(shape: str, skin: str | 
     data, reader = mujoco.MjData(model), touch._reader
     tables, ((own, other),) = narrow_tables([(touch._pads[0], material("steel"))], LEVEL)
     root = np.zeros(LEVEL.rates)
+    # Its steepest part is the last tenth of a millimetre, where the flow falls in proportion to what is left.
+    places = np.concatenate((np.arange(0.014, 0.0244, 2e-5), np.arange(0.0244, 0.024482, 5e-6)))
     for axis in range(2):
         series = []
-        for at in np.arange(0.014, 0.0245, 2e-5):
+        for at in places:
             data.qpos[:] = 0.0
             data.qpos[axis] = at
             mujoco.mj_forward(model, data)
