@@ -60,6 +60,7 @@ ROOMS = {
     "thermal": (
         "numerics",
         "matter",
+        "surfaces",
         "contact",
         "pressed",
         "plates",

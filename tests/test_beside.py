@@ -208,7 +208,8 @@ def test_a_second_process_compiles_what_a_mesh_needs(tmp_path):
     """A first mesh finds it, also what the mesh's networks are solved with."""
     mesh = """
 import gymnasium, numpy as np, thermograsp
-from thermograsp.thermal.meshes import cut, patch, place, rays, solve
+from thermograsp.thermal.meshes import patch, place, solve
+from thermograsp.thermal.surfaces import cut, rays
 from thermograsp.thermal.pressed import foundation
 env = gymnasium.make("thermograsp/Grasp-v0", objects="mug")
 env.reset(seed=0)

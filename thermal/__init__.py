@@ -83,14 +83,8 @@ from .rungs import RUNGS, Press, PressProblem, Rung, RungInfo, press
 if TYPE_CHECKING:
     from .fitting import Estimate, KnownTouch, SensorFit, fit_sensor
     from .identification import EffusivityPosterior, Identification, Identifier, TouchSetup, Verdict, identify
-    from .meshes import (
-        Solid,
-        SolidPart,
-        SurfacePatch,
-        body_network,
-        press_body,
-        solid,
-    )
+    from .meshes import body_network, press_body
+    from .surfaces import Solid, SolidPart, SurfacePatch, solid
 
 __all__ = [
     "ADS1115",

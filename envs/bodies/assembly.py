@@ -16,7 +16,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from ...thermal import Material
-from ...thermal.meshes import (
+from ...thermal.surfaces import (
     BENEATH,
     NEARLY_ALL,
     crossings,

@@ -9,7 +9,7 @@ import numpy as np
 
 from thermograsp.errors import MeshError
 
-from ...thermal.meshes import open_edges, wrongly_enclosed
+from ...thermal.surfaces import open_edges, wrongly_enclosed
 from .solids import Triangles
 
 FORMATS = (".stl", ".obj", ".ply", ".glb")

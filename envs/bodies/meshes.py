@@ -13,7 +13,7 @@ from thermograsp.compiled import compile_beside
 from thermograsp.errors import MeshError, MissingDependencyError, install, positive
 
 from ...thermal.contact import gas_conduction
-from ...thermal.meshes import crossed_above
+from ...thermal.surfaces import crossed_above
 from .mesh_files import FORMATS, read_surface
 
 SMALLEST = 0.005  # m, along the shortest extent

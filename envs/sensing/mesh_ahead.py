@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...thermal import SolidPart, SurfacePatch, body_network, material
-from ...thermal.meshes import Solid
 from ...thermal.pressed import pressure_map
+from ...thermal.surfaces import Solid
 from . import ahead
 
 _SIDE = 0.01  # m

@@ -20,10 +20,8 @@ from scipy.sparse.csgraph import connected_components
 from thermograsp.errors import MeshError
 
 from ..numerics import graded_cells
-from .cut import Edges, cut_mesh, in_planes
-from .nesting import net_volumes
+from ..surfaces import Edges, Solid, SurfacePatch, cut_mesh, in_planes, net_volumes
 from .place import ALONG, PlacedPatch
-from .solid import Solid, SurfacePatch
 
 _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
 _EMPTY = 1e-7  # of a cell, less than which is nothing

@@ -19,7 +19,13 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.files import cached_arrays
 
 from ..network import ThermalNetwork
-from .cut import enclosed
+from ..surfaces import (
+    Solid,
+    SurfacePatch,
+    checked,
+    enclosed,
+    surface_patches,
+)
 from .grid import (
     MeshGrid,
     MeshGridding,
@@ -31,12 +37,6 @@ from .grid import (
 from .patch import PatchOnGrid, patch_on_grid
 from .patterns import PatchPatterns, uniform_pattern
 from .place import layer_beneath, place_patch
-from .solid import (
-    Solid,
-    SurfacePatch,
-    checked,
-    surface_patches,
-)
 from .solve import conduct, solve_shifted
 
 _SHIFTS = np.geomspace(4000, 1 / 400, 10)  # 1/s: moments from under a millisecond to minutes

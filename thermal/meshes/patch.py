@@ -9,11 +9,10 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import MeshError
 
-from .cut import cell_range, slab
+from ..surfaces import FACING, cell_range, crossed_above, slab
 from .grid import MeshGrid, snapped
 from .patterns import PatchPatterns
 from .place import ABOVE, CORNERS, PlacedPatch, within_cube
-from .rays import FACING, crossed_above
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,7 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import MeshError
 
-from .cut import clip
-from .rays import crossings
-from .solid import SurfacePatch
+from ..surfaces import SurfacePatch, clip, crossings
 
 ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
 CORNERS = 24  # of a triangle clipped by twelve planes: 15

@@ -10,7 +10,7 @@ from ..readout import Thermostat
 from ..rungs import Conductance, Press, PressProblem, Rung, expected, press_of, pressed_sensor, sample_times
 from ..rungs import network as network_press
 from ..stack import HeatedStack
-from .solid import Solid, SurfacePatch
+from ..surfaces import Solid, SurfacePatch
 from .touched import PLATE, PLATE_MATERIAL, touched_body
 
 _AIR_LUMPED = ", nor what the air does that it takes at the object's mean temperature"

@@ -22,7 +22,6 @@ from ..network import (
     CONDUCTANCES,
     MOMENTS,
     NODE,
-    BodyGeometry,
     ContactSystem,
     Demand,
     ThermalNetwork,
@@ -33,11 +32,11 @@ from ..network import (
     with_sensors,
 )
 from ..plates import Geometry
-from .hollow import wetted_faces
+from ..surfaces import Solid, SurfacePatch, wetted_faces
+from .body_geometry import BodyGeometry
 from .network import body_network, conducting_parts
 from .patterns import learned_patterns
 from .place import place_patch
-from .solid import Solid, SurfacePatch
 
 PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned
 PLATE_MATERIAL = Material("glass", 1.0, 2500.0, 840.0)

@@ -2,7 +2,6 @@
 
 from . import coupling
 from .air import free_area, with_air
-from .body_geometry import BodyGeometry
 from .boxes import LEVELS, box_choice, box_system, lumped_air_error
 from .cached import network_for, network_of
 from .choice import FIRST, Choice, Demand, candidates, responses
@@ -24,7 +23,6 @@ __all__ = [
     "POLES",
     "SHIFTS",
     "WEIGHTS",
-    "BodyGeometry",
     "Choice",
     "ContactSystem",
     "Demand",

@@ -13,8 +13,8 @@ from thermograsp.thermal import (
     advance_heat,
     heat_tables,
 )
-from thermograsp.thermal.meshes.hollow import wetted_faces
 from thermograsp.thermal.meshes.touched import TouchedBody, field_carried, touched_body
+from thermograsp.thermal.surfaces.hollow import wetted_faces
 
 STACK = thermal.sensor("seed")
 SIDE, WALL = 0.024, 0.001  # m

@@ -7,7 +7,7 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.thermal.meshes.network import body_network
-from thermograsp.thermal.meshes.solid import (
+from thermograsp.thermal.surfaces.solid import (
     Solid,
     SolidPart,
     SurfacePatch,

@@ -16,16 +16,16 @@ from thermograsp.thermal.meshes.grid import (
 from thermograsp.thermal.meshes.network import body_network
 from thermograsp.thermal.meshes.patterns import learned_patterns
 from thermograsp.thermal.meshes.place import place_patch
-from thermograsp.thermal.meshes.solid import (
+from thermograsp.thermal.meshes.solve import conduct
+from thermograsp.thermal.network.system import SHIFTS, sample_geometry
+from thermograsp.thermal.plates.impedance import layered_impedance
+from thermograsp.thermal.plates.samples import Geometry
+from thermograsp.thermal.surfaces.solid import (
     Solid,
     SolidPart,
     SurfacePatch,
     solid,
 )
-from thermograsp.thermal.meshes.solve import conduct
-from thermograsp.thermal.network.system import SHIFTS, sample_geometry
-from thermograsp.thermal.plates.impedance import layered_impedance
-from thermograsp.thermal.plates.samples import Geometry
 
 PLATE = (0.04, 0.04, 0.01)
 TOP, BOTTOM = (SurfacePatch((0, 0, z / 2 * 0.01), (0, 0, z)) for z in (1, -1))

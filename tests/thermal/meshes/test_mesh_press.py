@@ -8,15 +8,15 @@ from thermograsp import thermal
 from thermograsp.errors import InvalidValueError
 from thermograsp.thermal.meshes import press as press_module
 from thermograsp.thermal.meshes.press import press_body
-from thermograsp.thermal.meshes.solid import (
+from thermograsp.thermal.meshes.touched import touched_body
+from thermograsp.thermal.numerics.laplace import invert
+from thermograsp.thermal.rungs.column import Column
+from thermograsp.thermal.surfaces.solid import (
     Solid,
     SolidPart,
     SurfacePatch,
     solid,
 )
-from thermograsp.thermal.meshes.touched import touched_body
-from thermograsp.thermal.numerics.laplace import invert
-from thermograsp.thermal.rungs.column import Column
 
 CUBE = (0.04, 0.04, 0.04)
 TOP = SurfacePatch((0, 0, 0.02), (0, 0, 1))

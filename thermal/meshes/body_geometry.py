@@ -1,4 +1,4 @@
-"""What a system of contacts remembers of an object that is no plate."""
+"""What a system of contacts keeps of an object that is no plate."""
 
 from __future__ import annotations
 

@@ -6,9 +6,9 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.errors import MeshError
-from thermograsp.thermal.meshes.nesting import hosts, net_volumes, shares_within
 from thermograsp.thermal.meshes.network import body_network
-from thermograsp.thermal.meshes.solid import Solid, SolidPart, SurfacePatch
+from thermograsp.thermal.surfaces.nesting import hosts, net_volumes, shares_within
+from thermograsp.thermal.surfaces.solid import Solid, SolidPart, SurfacePatch
 
 rod, ring, ball = trimesh.creation.cylinder, trimesh.creation.annulus, trimesh.creation.icosphere
 
