@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from thermograsp.cli import main
-from thermograsp.cli.device.live_plot import LivePlot, braille
+from thermograsp.cli.shared.live_plot import LivePlot, braille
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.hardware import (
     DeviceModel,

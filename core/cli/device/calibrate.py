@@ -9,8 +9,7 @@ from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.device.connection import add_port, connect
-from thermograsp.cli.shared import Output
+from thermograsp.cli.shared import Output, add_port, connect
 from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:

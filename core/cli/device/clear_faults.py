@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from thermograsp.cli.device.connection import add_port, connect
-from thermograsp.cli.shared import Output
+from thermograsp.cli.shared import Output, add_port, connect
 
 HELP = "Report why the heaters are latched off, and clear the latch. Inspect the fingertips first."
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.device.connection import add_service, serve
-from thermograsp.cli.shared import add_mode, add_skin
+from thermograsp.cli.shared import add_mode, add_service, add_skin, serve
 from thermograsp.errors import unknown_name
 
 if TYPE_CHECKING:

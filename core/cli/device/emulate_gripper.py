@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from thermograsp.cli.device.connection import add_service, serve
+from thermograsp.cli.shared import add_service, serve
 
 HELP = "Emulate a Robotiq 2F-85 with or without an object between its fingers, on a pseudo-terminal."
 _STROKE = 0.085

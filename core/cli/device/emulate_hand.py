@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-from thermograsp.cli.device.connection import add_service, serve
 from thermograsp.cli.shared import (
     Output,
     add_materials_file,
     add_mode,
     add_sensor,
+    add_service,
     add_skin,
     chosen_material,
     load_mujoco,
+    serve,
 )
 
 HELP = "Emulate fingertips and a Robotiq 2F-85 that grasp a simulated object in real time, on two pseudo-terminals."

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermograsp.cli.device.connection import (
+from thermograsp.cli.shared import (
+    LivePlot,
+    Output,
+    add_duration,
     add_port,
     add_sampling,
     connect,
     link_document,
     link_line,
 )
-from thermograsp.cli.device.live_plot import LivePlot
-from thermograsp.cli.shared import Output, add_duration
 from thermograsp.hardware.errors import DeviceError
 
 if TYPE_CHECKING:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import time
 
-from thermograsp.cli.device.connection import (
+from thermograsp.cli.shared import (
+    Output,
+    add_duration,
     add_port,
     add_sampling,
     connect,
     link_document,
     link_line,
+    target,
 )
-from thermograsp.cli.shared import Output, add_duration, target
 from thermograsp.errors import InvalidValueError
 
 HELP = "Record the raw bytes of the line until the time is over or Ctrl-C, for `thermograsp device replay`."

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 
-from thermograsp.cli.device.connection import (
+from thermograsp.cli.shared import (
+    Output,
     add_port,
     connect,
     link_document,
     link_line,
 )
-from thermograsp.cli.shared import Output
 
 HELP = "Run the device's self-test, and test its line for one second."
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.pressed_mesh import KEYWORDS, PLATES, add_mesh_arguments, press_mesh
+from thermograsp.cli.press.mesh import KEYWORDS, PLATES, add_mesh_arguments, press_mesh
 from thermograsp.cli.shared import (
     Output,
     add_materials_file,

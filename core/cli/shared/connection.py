@@ -1,4 +1,4 @@
-"""What the actions share: the port and how to open it, and the service of an emulator."""
+"""What actions on a device share: the port and how to open it, and the service of an emulator."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.shared import Output, add_duration, add_seed
+from thermograsp.cli.shared.arguments import add_duration, add_seed
+from thermograsp.cli.shared.output import Output
 from thermograsp.errors import InvalidValueError
 
 if TYPE_CHECKING:
