@@ -19,7 +19,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..matter import Layer, SensorStack
 from ..numerics import invert
-from .column import (
+from .layered import (
     Column,
     constant_conductance,
     half_space,

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import erfc, erfcx
 
 from .closed_form import equivalent_slab
-from .column import (
+from .layered import (
     constant_conductance,
     no_air,
     sample_times,

@@ -3,21 +3,26 @@
 Neglects: heat spreading sideways in the object, whose column is as wide as the patch (the contact's area in T mode, the
 bonded face in O mode) and adiabatic at its back and sides. So metals and thick plates cool it too little after the heat
 front has passed the patch's width. Any constant conductance, 0 included.
+
+Thermostat, element, contact and object stand in a row in the Laplace domain (`Column`, which `closed_form` shares).
+Layers are solved exactly by their transfer matrices (Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed.,
+section 3.7), written with decaying exponentials so that thick or fast layers do not overflow.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
-from .column import (
-    Column,
-    constant_conductance,
-    layer_on_insulation,
-    no_air,
-    press_curves,
-    untouched,
-)
+from thermograsp.errors import InvalidValueError
+
+from ..matter import Layer
+from ..numerics import invert
 from .problem import PressCurves, PressProblem
+
+Impedance = Callable[[np.ndarray], np.ndarray]
 
 
 def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
@@ -41,3 +46,133 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
         object_area=problem.area if problem.mode == "T" else stack.face_area,
     )
     return press_curves(problem, t, column, first=(0.0, conductance * problem.area, 0.0, 0.0, 0.0, 0.0))
+
+
+def half_space(effusivity: float) -> Impedance:
+    """Surface impedance m2 K/W of a semi-infinite body of that effusivity, W s^0.5/(m2 K)."""
+    return lambda s: 1 / (effusivity * np.sqrt(s))
+
+
+def layer_on_insulation(layer: Layer) -> Impedance:
+    """Surface impedance m2 K/W of one layer whose far side is adiabatic."""
+
+    def impedance(s: np.ndarray) -> np.ndarray:
+        root = np.sqrt(s / layer.diffusivity)
+        return 1 / (layer.conductivity * root * np.tanh(root * layer.thickness))
+
+    return impedance
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """mode: "T" or "O". layers: the element's, thermostat side first. sensed: index of the one whose drop is measured.
+    face_area: m2, the element's cross-section. contact_resistance: K/W. object_impedance: at the object's surface,
+    m2 K/W. object_area: m2, the object's column."""
+
+    mode: str
+    layers: tuple[Layer, ...]
+    sensed: int
+    face_area: float
+    contact_resistance: float
+    object_impedance: Impedance
+    object_area: float
+
+    def transform(self, s: np.ndarray) -> np.ndarray:
+        """(..., 6) per kelvin of first difference: drop K, heat flow W, fall of the sensor-side surface K, rise of the
+        object-side surface K, heat gained by the element J and by the object J."""
+        area = self.face_area
+        if self.mode == "T":  # the element starts with the thermostat: reckon its temperature below that
+            impedance, share = _march(self.layers, np.zeros_like(s), s)
+            object_side = self.object_impedance(s) / self.object_area
+            flow = 1 / s / (impedance[-1] / area + self.contact_resistance + object_side)
+            far, near = self.sensed, self.sensed + 1
+            sensor_fall, object_rise = impedance[-1] / area * flow, object_side * flow
+            element, into_object = (share[0] - 1) * flow, flow
+        else:  # the element starts with the object: reckon its temperature above that
+            bond = self.object_impedance(s) * (area / self.object_area)
+            impedance, share = _march(self.layers[::-1], bond, s)
+            flow = 1 / s / (impedance[-1] / area + self.contact_resistance)
+            far = len(self.layers) - 1 - self.sensed
+            near = far + 1
+            sensor_fall, object_rise = np.zeros_like(s), impedance[-1] / area * flow
+            element, into_object = (1 - share[0]) * flow, share[0] * flow
+        drop = (impedance[near] * share[near] - impedance[far] * share[far]) / area * flow
+        return np.stack([drop, flow, sensor_fall, object_rise, element / s, into_object / s], axis=-1)
+
+
+def _march(
+    layers: tuple[Layer, ...], far: np.ndarray, s: np.ndarray
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Impedances m2 K/W at the interfaces, far end first, and the fluxes there as shares of the near end's."""
+    impedance, passed = [far], []
+    for layer in layers:
+        root = np.sqrt(s / layer.diffusivity)
+        admittance = layer.conductivity * root
+        decay = np.exp(-root * layer.thickness)
+        tangent = -np.expm1(-2 * root * layer.thickness) / (1 + decay**2)
+        denominator = 1 + admittance * impedance[-1] * tangent
+        passed.append(2 * decay / (1 + decay**2) / denominator)
+        impedance.append((impedance[-1] + tangent / admittance) / denominator)
+    share = [np.ones_like(s)]
+    for factor in reversed(passed):
+        share.insert(0, share[0] * factor)
+    return impedance, share
+
+
+def press_curves(
+    problem: PressProblem, t: np.ndarray, column: Column, first: tuple[float, ...]
+) -> PressCurves:
+    """The column's answer at t (n,) s, >= 0. first: the six quantities of Column.transform at t = 0+, per kelvin."""
+    t = sample_times(t)
+    values = np.empty((len(t), 6))
+    values[:] = first
+    later = t > 0
+    if later.any():
+        values[later] = invert(column.transform, t[later])
+    values *= problem.temperature_difference
+    return PressCurves(
+        temperature_drop=values[:, 0],
+        heat_flow=values[:, 1],
+        sensor_surface=problem.sensor_temperature - values[:, 2],
+        object_surface=problem.object_temperature + values[:, 3],
+        stored_heat=values[:, 4:],
+    )
+
+
+def untouched(problem: PressProblem, t: np.ndarray) -> PressCurves:
+    """Both bodies as they were: what a conductance of 0 leaves."""
+    n = len(sample_times(t))
+    return PressCurves(
+        temperature_drop=np.zeros(n),
+        heat_flow=np.zeros(n),
+        sensor_surface=np.full(n, problem.sensor_temperature),
+        object_surface=np.full(n, problem.object_temperature),
+        stored_heat=np.zeros((n, 2)),
+    )
+
+
+def sample_times(t: np.ndarray) -> np.ndarray:
+    """t as (n,) floats. Raises InvalidValueError when one is negative or not finite."""
+    t = np.atleast_1d(np.asarray(t, dtype=float))
+    if t.ndim != 1 or not np.isfinite(t).all() or (t < 0).any():
+        raise InvalidValueError("the sample times must be one row of finite numbers >= 0 s")
+    return t
+
+
+def constant_conductance(problem: PressProblem, rung: str) -> float:
+    """The problem's conductance, W/(m2 K). Raises InvalidValueError when it is a function of time."""
+    if callable(problem.conductance):
+        raise InvalidValueError(
+            f"rung {rung!r} solves one contact of constant conductance in closed form and cannot follow a function of "
+            "time: give a number, or use 'lumped' or a network rung"
+        )
+    return problem.conductance
+
+
+def no_air(problem: PressProblem, rung: str) -> None:
+    """Raises InvalidValueError when the object loses heat to the air, which no one-dimensional rung can tell."""
+    if problem.air > 0:
+        raise InvalidValueError(
+            f"rung {rung!r} is one-dimensional and has no free faces to lose heat from, got air = {problem.air:g} "
+            "W/(m2 K): give 0, or use 'lumped' or a network rung"
+        )

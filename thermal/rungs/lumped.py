@@ -11,7 +11,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, non_negative
 
-from .column import sample_times
+from .layered import sample_times
 from .problem import PressCurves, PressProblem
 
 _SUBSTEPS = 8

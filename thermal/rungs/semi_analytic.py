@@ -17,7 +17,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..numerics import invert_many
 from ..plates import Geometry, lateral_sum, stack_impedance, stack_profile
-from .column import constant_conductance, sample_times, untouched
+from .layered import constant_conductance, sample_times, untouched
 from .network import geometry_of
 from .problem import PressCurves, PressProblem
 

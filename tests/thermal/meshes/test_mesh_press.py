@@ -10,7 +10,7 @@ from thermograsp.thermal.meshes import press as press_module
 from thermograsp.thermal.meshes.press import press_body
 from thermograsp.thermal.meshes.touched import touched_body
 from thermograsp.thermal.numerics.laplace import invert
-from thermograsp.thermal.rungs.column import Column
+from thermograsp.thermal.rungs.layered import Column
 from thermograsp.thermal.surfaces.solid import (
     Solid,
     SolidPart,
