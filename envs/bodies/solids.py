@@ -141,14 +141,14 @@ def ellipsoid(size: tuple[float, float, float]) -> Triangles:
     return Triangles(unit.vertices * fit * np.asarray(size), unit.faces)
 
 
-def smoothed(profile: np.ndarray, points: int = 40) -> np.ndarray:
-    """(points, 2) on a curve through the profile's that never overshoots them (monotone cubics over the chord length;
-    Fritsch & Carlson 1980, SIAM J. Numer. Anal. 17:238)."""
+def smoothed(profile: np.ndarray) -> np.ndarray:
+    """(P, 2) at least 40 points on a curve through the profile's that never overshoots them (monotone cubics over the
+    chord length; Fritsch & Carlson 1980, SIAM J. Numer. Anal. 17:238)."""
     from scipy.interpolate import PchipInterpolator
 
     steps = np.linalg.norm(np.diff(profile, axis=0), axis=1)
     chord = np.concatenate([[0.0], np.cumsum(steps)])
-    at = np.unique(np.concatenate([np.linspace(0.0, chord[-1], points), chord]))
+    at = np.unique(np.concatenate([np.linspace(0.0, chord[-1], 40), chord]))
     curve = PchipInterpolator(chord, profile)(at)
     curve[:, 0] = np.where(curve[:, 0] < 1e-9, 0.0, curve[:, 0])
     return curve

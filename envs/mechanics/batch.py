@@ -211,10 +211,9 @@ class Mechanics:
         ids: Sequence[int] | np.ndarray | None = None,
         objects: Sequence[Sequence[ObjectSpec]] | None = None,
         *,
-        opening: float = MAX_OPENING,
         height: float = 0.0,
     ) -> None:
-        """Start environments anew, at rest: objects on the table, gripper at `opening` (m) and `height` (m).
+        """Start environments anew, at rest: objects on the table, gripper as wide open as it goes, at `height` (m).
 
         ids: which (None: all). objects: for each of them its objects (None: as they were).
         Raises InvalidValueError when names or number of objects change or a mesh is not in the library.
@@ -228,10 +227,9 @@ class Mechanics:
                 self._check_layout(items)
             for i, items in zip(rows, chosen, strict=True):
                 self._set_objects(int(i), items)
-        within("opening", np.array([opening]), 0.0, MAX_OPENING)
         within("height", np.array([height]), 0.0, MAX_HEIGHT)
         self._batch.reset(rows, stage=mujoco.mjtStage.mjSTAGE_NONE)
-        opening = min(opening, self.gripper.widest)
+        opening = min(MAX_OPENING, self.gripper.widest)
         fingers, positions = self.gripper.rest(self.model, opening)
         for i in rows:
             self._qpos[i, fingers] = positions

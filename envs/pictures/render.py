@@ -24,6 +24,7 @@ from .colormap import temperature_colour
 
 MAX_WIDTH, MAX_HEIGHT = 1280, 960  # the offscreen buffer of assets/gripper.xml
 _MAX_GEOMS = 500
+_COLOURED = 20.0, 40.0  # degC, the range of the colours
 _CLOSING = 5.0  # s, at most, that a closing window is waited for
 
 
@@ -68,8 +69,8 @@ class Renderer:
         width: int = 640,
         height: int = 480,
         shadows: bool = True,
-        low: float = 20.0,
-        high: float = 40.0,
+        low: float = _COLOURED[0],
+        high: float = _COLOURED[1],
     ) -> None:
         if not (1 <= width <= MAX_WIDTH and 1 <= height <= MAX_HEIGHT):
             raise InvalidValueError(
@@ -133,13 +134,13 @@ class Window:
     Raises MissingDependencyError when there is no display or the viewer cannot open.
     """
 
-    def __init__(self, mechanics: Mechanics, *, low: float = 20.0, high: float = 40.0) -> None:
+    def __init__(self, mechanics: Mechanics) -> None:
         if not has_display():
             raise MissingDependencyError(
                 "no display to open a window on; use render_mode 'rgb_array', or set DISPLAY to a running X server"
             )
         self._mechanics = mechanics
-        self._stage = _Stage(mechanics, low, high)
+        self._stage = _Stage(mechanics, *_COLOURED)
         try:
             import mujoco.viewer
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,22 +77,20 @@ def run_mode(
     seed: int,
     film: bool,
     advance: Callable[[str, float], None],
-    names: Sequence[str] = SEED_MATERIALS,
 ) -> ModeRun:
     """Grasps every material; grasp i is seeded with seed + i. advance: told what is done, 1 for each material's model
     and 10 for the grasps together."""
-    task = GraspTask(hold_seconds=min(2.0, seconds / 4), seconds=seconds)
-    batch = GraspBatch(len(names), task=task, material=list(names), mode=mode)
+    task, names = GraspTask(hold_seconds=min(2.0, seconds / 4), seconds=seconds), list(SEED_MATERIALS)
+    batch = GraspBatch(len(names), task=task, material=names, mode=mode)
     seeds = [seed + row for row in range(len(names))]
-    for row, name in enumerate(
-        names
-    ):  # chooses the heat models, the slow part on a machine that has none cached
+    # chooses the heat models, the slow part on a machine that has none cached
+    for row, name in enumerate(names):
         advance(f"{mode} mode: heat model of {name}", 1.0)
         batch.reset([row], [np_random(seeds[row])[0]], {"material": name})
     assert batch.reading is not None
     force = np.minimum(FORCE, GENTLE * batch.reading.truth["crushing_force"])
     record(batch, seeds, _WARM_UP, force, names)
-    camera, no_picture = _film(batch, list(names), seconds) if film else (None, "")
+    camera, no_picture = _film(batch, names, seconds) if film else (None, "")
     watch = Stopwatch()
     watch.put_on(batch, "step", "step")
     watch.put_on(batch.plant.heat, "advance", "heat")  # pyright: ignore[reportAttributeAccessIssue]

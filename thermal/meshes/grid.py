@@ -25,6 +25,7 @@ from .place import ALONG, PlacedPatch
 
 _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
 _EMPTY = 1e-7  # of a cell, less than which is nothing
+_LEAST_PLANE = 0.02  # of the surface, in one plane across an axis, for which the grid has a plane there
 _FLAT = 20e-6  # m that the surface of a patch may rise or fall and be flat to the grid
 _RELIEF_CELLS = 12  # between the middle of a patch that is not flat and its lowest or highest place
 _CRUMB = 1e-3  # of the solid's volume, less than which a piece of its own is left out
@@ -254,8 +255,8 @@ def snapped(triangles: np.ndarray, edges: Edges) -> np.ndarray:
     return moved
 
 
-def _planes(triangles: np.ndarray, axis: int, share: float = 0.02) -> list[float]:
-    """Where the surface has flat pieces across an axis that are a share of it or more."""
+def _planes(triangles: np.ndarray, axis: int) -> list[float]:
+    """m along an axis at which the surface has flat pieces across it, together _LEAST_PLANE of its area or more."""
     a, b, c = np.moveaxis(triangles, 1, 0)
     areas = np.cross(b - a, c - a)
     size = np.linalg.norm(areas, axis=1)
@@ -265,7 +266,7 @@ def _planes(triangles: np.ndarray, axis: int, share: float = 0.02) -> list[float
     weight = np.bincount(inverse, size[flat], len(places))
     first = np.zeros(len(places), int)
     first[inverse[::-1]] = np.arange(len(inverse))[::-1]
-    return list(triangles[flat, 0, axis][first[weight > share * size.sum()]])
+    return list(triangles[flat, 0, axis][first[weight > _LEAST_PLANE * size.sum()]])
 
 
 def _distinct(values: Sequence[float] | np.ndarray) -> np.ndarray:
