@@ -80,7 +80,8 @@ def run_mode(
 ) -> ModeRun:
     """Grasps every material; grasp i is seeded with seed + i. advance: told what is done, 1 for each material's model
     and 10 for the grasps together."""
-    task, names = GraspTask(hold_seconds=min(2.0, seconds / 4), seconds=seconds), list(SEED_MATERIALS)
+    task = GraspTask(hold_seconds=min(2.0, seconds / 4), seconds=seconds)
+    names: list[str] = list(SEED_MATERIALS)
     batch = GraspBatch(len(names), task=task, material=names, mode=mode)
     seeds = [seed + row for row in range(len(names))]
     # chooses the heat models, the slow part on a machine that has none cached
