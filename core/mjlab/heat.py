@@ -42,7 +42,7 @@ class WorldsHeat:
         self._step = (
             fixed.advance if compiled is None else compiled(fixed.advance, fullgraph=True, dynamic=False)
         )
-        self.state: FixedTouchState = _each(fixed.start(len(like)), lambda one: one.clone())
+        self.state: FixedTouchState = _mapped(fixed.start(len(like)), lambda tensor: tensor.clone())
         none = 0.0 * self.state.signal.last
         self.reading = FixedTouchReading(
             self.state.voltage,
@@ -103,10 +103,11 @@ class WorldsHeat:
         return self.state.heat * (1 - (other[..., None] * self._uneven).sum(1)), way
 
 
-def _each(state: FixedTouchState, made: Any) -> FixedTouchState:
+def _mapped(state: FixedTouchState, copy: Any) -> FixedTouchState:
+    """The state with each of its tensors copied by that function."""
     heat, narrow, signal, voltage, material, first = state
     return FixedTouchState(
-        made(heat), made(narrow), type(signal)(*map(made, signal)), made(voltage), made(material), made(first)
+        copy(heat), copy(narrow), type(signal)(*map(copy, signal)), copy(voltage), copy(material), copy(first)
     )
 
 

@@ -50,8 +50,8 @@ def _side(
     across = np.array([side * sin, side * cos, 0.0])
     middle = np.array([-x * cos - y * sin, x * sin - y * cos, height])
     frame = np.stack([middle, normal, across, (0.0, 0.0, 1.0)])
-    seen = mesh_map(shape, normal)
-    places, surface, cover = _seen(pad, frame, seen, _POINTS)
+    height_map = mesh_map(shape, normal)
+    places, surface, cover = _sampled(pad, frame, height_map, _POINTS)
     if not cover.any():
         return None
     area = (pad.width / _POINTS) ** 2
@@ -60,7 +60,7 @@ def _side(
     stiffness = pad.foundation_modulus / pad.thickness
     centre = cover @ places / cover.sum()
     pressure = np.zeros(len(places))
-    fine, heights, covered = _seen(pad, frame, seen, _POINTS * _FINER)
+    fine, heights, covered = _sampled(pad, frame, height_map, _POINTS * _FINER)
     pitch = pad.width / (_POINTS * _FINER)
     within, stiffer = face_springs(pad, fine, pitch)
     contacts = []
@@ -76,12 +76,12 @@ def _side(
     return np.array(contacts).T
 
 
-def _seen(
-    pad: Pad, frame: np.ndarray, seen: HeightMap, count: int
+def _sampled(
+    pad: Pad, frame: np.ndarray, height_map: HeightMap, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places (n, 2) m, count^2 of the pad, and the mesh's heights m and coverage there."""
     middles = (np.arange(count) + 0.5) * pad.width / count - pad.width / 2
     places = np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
     height, cover = np.zeros(len(places)), np.zeros(len(places))
-    map_heights(*seen, frame, places, height, cover)
+    map_heights(*height_map, frame, places, height, cover)
     return places, height, cover

@@ -42,7 +42,7 @@ class ClosedMesh:
         """At TABLE_FORCES, (9,) each; the pad's area is that of closing. step: of `mesh_steps`, (5,)."""
         if not any(step):
             return self.contact
-        here, first = self._met(step), self._met((0, 0, 0, 0, 0))
+        here, first = self._area_and_share(step), self._area_and_share((0, 0, 0, 0, 0))
         face, load = (
             np.where(was > 0, known * now / np.where(was > 0, was, 1.0), now)
             for known, now, was in zip((self.contact.face, self._share), here, first, strict=True)
@@ -54,17 +54,17 @@ class ClosedMesh:
     def _share(self) -> np.ndarray:
         return self.contact.face_force / TABLE_FORCES
 
-    def _met(self, step: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+    def _area_and_share(self, step: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
         """m2 on the face and its share of the force, (9,) each, of pads without a tilt; the mean of both."""
         azimuth, elevation = self.azimuth + step[3] * _TURN, step[4] * _TURN
         place = np.array(self.place) + GRID * np.array(step[:3])
         found = []
         for side in (1, -1):
-            view, across, begin = _seen(self.pad, self.shape, azimuth, elevation, side)
+            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side)
             found.append(_between(view.places, view.touched[..., :2], across @ place - begin))
         both = [each for each in found if each.any()]
-        met = np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
-        area, share = (np.interp(*_LOADS, column) for column in met.T)
+        mean = np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
+        area, share = (np.interp(*_LOADS, column) for column in mean.T)
         return area, share
 
 
@@ -95,7 +95,7 @@ def mesh_steps(places: np.ndarray, azimuth: np.ndarray, closed: np.ndarray) -> n
 
 
 @lru_cache(maxsize=256)
-def _seen(
+def _view(
     pad: Pad, shape: MeshShape, azimuth: float, elevation: float, side: int
 ) -> tuple[PressedView, np.ndarray, np.ndarray]:
     """What a pad meets whose normal is that direction, or against it; the other two axes (2, 3), and m along these

@@ -20,9 +20,9 @@ class Copied:
     _np_random_seed: int | None
 
     def __new__(cls, *args: Any, **keywords: Any) -> Any:
-        made: Any = super().__new__(cls)
-        made._keywords = args, dict(keywords)
-        return made
+        env: Any = super().__new__(cls)
+        env._keywords = args, dict(keywords)
+        return env
 
     def __reduce__(self) -> tuple[Any, ...]:
         if not hasattr(self.batch.plant, "state"):
@@ -32,10 +32,10 @@ class Copied:
         args, keywords = self._keywords  # pyright: ignore[reportAttributeAccessIssue]
         state = None if self.batch.reading is None else self.state()  # pyright: ignore[reportAttributeAccessIssue]
         drawing = self._np_random, self._np_random_seed
-        return _made_again, (type(self), args, keywords, self.spec, drawing, state)
+        return _rebuilt, (type(self), args, keywords, self.spec, drawing, state)
 
 
-def _made_again(kind: type, args: Any, keywords: Any, spec: Any, drawing: tuple, state: Any) -> Any:
+def _rebuilt(kind: type, args: Any, keywords: Any, spec: Any, drawing: tuple, state: Any) -> Any:
     env: Any = kind(*args, **keywords)
     env.spec = spec
     env._np_random, env._np_random_seed = drawing

@@ -51,16 +51,16 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
     conducts = np.empty((samples, 2))
     duration = tables.dt * samples
     for b in range(len(rows)):
-        row, one, x = rows[b], info[b], state[b]
+        row, step, x = rows[b], info[b], state[b]
         if row.boxed:
             continue
-        _meet(laws[b], row, one, normal[b], place[b], drop[b], conducts, first)
+        _meet(laws[b], row, step, normal[b], place[b], drop[b], conducts, first)
         if first == 0 and reservoirs[b].conductance > 0.0:
-            one.reservoir_temperature = reservoir_temperature(reservoirs[b], row.enthalpy)
+            step.reservoir_temperature = reservoir_temperature(reservoirs[b], row.enthalpy)
         around = row.ambient
         film, above = reservoirs[b].conductance, 0.0
         if film > 0.0:
-            above = one.reservoir_temperature - (
+            above = step.reservoir_temperature - (
                 row.sensor_temperature[0] + row.offset[0] - row.difference[0]
             )
             if row.fed:
@@ -71,26 +71,26 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
                 around = (row.air * row.ambient + film * above) / (row.air + film)
         if row.begun:
             for k in range(first, last):
-                if row.lasting == 0 and _renewed(one, conducts, k):
+                if row.lasting == 0 and _renewed(step, conducts, k):
                     forget_row(tables, row.network, x)
                 advance_row(tables, row.network, x, conducts[k], row.difference, around, room, reading, 0, k)
-                _add(one, reading, drop[b], k, samples, tips)
+                _add(step, reading, drop[b], k, samples, tips)
         if last < samples:
             continue
         if row.begun:
-            _end(row, one, reading, samples - 1, tips)
+            _end(row, step, reading, samples - 1, tips)
             if row.ambient != 0.0 or film > 0.0:
-                mean = one.air_loss / (row.air + film)  # of the object over the step, above its first
-                one.air_loss = row.air * (mean - row.ambient)
+                mean = step.air_loss / (row.air + film)  # of the object over the step, above its first
+                step.air_loss = row.air * (mean - row.ambient)
                 if film > 0.0:
-                    one.reservoir_flow = film * (above - mean)
+                    step.reservoir_flow = film * (above - mean)
             if row.fed:
-                one.reservoir_flow = NODE * (above - _node(tables, row.network, x)) / duration
+                step.reservoir_flow = NODE * (above - _node(tables, row.network, x)) / duration
             if film > 0.0 or row.fed:
                 reservoir = reservoirs[b]
-                row.enthalpy = reservoir_step(reservoir, row.enthalpy, one.reservoir_flow, duration)
-                one.reservoir_temperature = reservoir_temperature(reservoir, row.enthalpy)
-        _book(row, one, duration)
+                row.enthalpy = reservoir_step(reservoir, row.enthalpy, step.reservoir_flow, duration)
+                step.reservoir_temperature = reservoir_temperature(reservoir, row.enthalpy)
+        _book(row, step, duration)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -102,26 +102,26 @@ def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *nu
     room, reading = fixed_room(tables.gram.shape[1]), _reading(samples, tips)
     conducts = np.empty((samples, 2))
     for b in range(len(rows)):
-        row, one = rows[b], info[b]
+        row, step = rows[b], info[b]
         if row.boxed == 0:
             continue
-        _meet(laws[b], row, one, normal[b], place[b], drop[b], conducts, first)
+        _meet(laws[b], row, step, normal[b], place[b], drop[b], conducts, first)
         if row.begun:
             for k in range(first, last):
                 for f in range(tips):
                     if tables.links[b, WHERE + f] < 0:
                         conducts[k, f] = 0.0
-                if row.lasting == 0 and _renewed(one, conducts, k):
+                if row.lasting == 0 and _renewed(step, conducts, k):
                     forget_fixed(tables, b, state[b])
                 advance_fixed(
                     tables, b, state[b], conducts[k], row.difference, row.ambient, room, reading, 0, k
                 )
-                _add(one, reading, drop[b], k, samples, tips)
+                _add(step, reading, drop[b], k, samples, tips)
         if last < samples:
             continue
         if row.begun:
-            _end(row, one, reading, samples - 1, tips)
-        _book(row, one, tables.dt * samples)
+            _end(row, step, reading, samples - 1, tips)
+        _book(row, step, tables.dt * samples)
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -134,66 +134,66 @@ def _reading(samples, tips):
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _meet(law, row, one, normal, place, drop, conducts, first):
+def _meet(law, row, step, normal, place, drop, conducts, first):
     """Where a row's fingertips touch in a control step: fills conducts (N, F) W/K of each sample, notes what has begun
     and ended, and before the first sample clears what the step adds up."""
     samples, at = len(drop), np.empty(3)
     for f in range(2):
         _along_pad(law, place, f, at)
-        touching = _mean_contacts(law, normal[:, f], one, f, at, conducts)
+        touching = _mean_contacts(law, normal[:, f], step, f, at, conducts)
         if first == 0:
-            _follow(row, one, f, touching, place[f])
+            _follow(row, step, f, touching, place[f])
             row.begun |= touching
-            one.heat[f] = one.flow[f] = 0.0
-            one.sensor_surface[f] = row.sensor_temperature[f] + row.offset[f]
-            one.object_surface[f] = one.sensor_surface[f] - row.difference[f]
+            step.heat[f] = step.flow[f] = 0.0
+            step.sensor_surface[f] = row.sensor_temperature[f] + row.offset[f]
+            step.object_surface[f] = step.sensor_surface[f] - row.difference[f]
             for k in range(samples):
                 drop[k, f] = 0.0
         if row.glued and _distance(place[f], row.anchor[f]) > row.reach:
             for k in range(samples):  # a fingertip without a sensor takes no part
                 conducts[k, f] = 0.0
     if first == 0:
-        one.over_temperature = False
-        one.heat[2] = one.air_loss = 0.0
-        one.object_temperature = one.object_surface[0]
-        one.reservoir_temperature, one.reservoir_flow = math.nan, 0.0
+        step.over_temperature = False
+        step.heat[2] = step.air_loss = 0.0
+        step.object_temperature = step.object_surface[0]
+        step.reservoir_temperature, step.reservoir_flow = math.nan, 0.0
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _add(one, reading, drop, k, samples, tips):
+def _add(step, reading, drop, k, samples, tips):
     """Adds sample k to what the step tells."""
     for f in range(tips):
         drop[k, f] = reading.drop[0, k, f]
-        one.flow[f] += reading.flow[0, k, f] / samples
-    one.air_loss += reading.air_loss[0, k] / samples
+        step.flow[f] += reading.flow[0, k, f] / samples
+    step.air_loss += reading.air_loss[0, k] / samples
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _end(row, one, reading, k, tips):
+def _end(row, step, reading, k, tips):
     """What sample k, the step's last, leaves."""
     for f in range(tips):
-        one.heat[f] = reading.element_heat[0, k, f]
-        one.sensor_surface[f] += reading.sensor_rise[0, k, f]
-        one.object_surface[f] += reading.object_rise[0, k, f]
-    one.heat[2] = reading.object_heat[0, k]
-    one.object_temperature += one.heat[2] / row.capacity
+        step.heat[f] = reading.element_heat[0, k, f]
+        step.sensor_surface[f] += reading.sensor_rise[0, k, f]
+        step.object_surface[f] += reading.object_rise[0, k, f]
+    step.heat[2] = reading.object_heat[0, k]
+    step.object_temperature += step.heat[2] / row.capacity
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _book(row, one, duration):
+def _book(row, step, duration):
     """The balance of heat after a step of so many seconds."""
     for f in range(2):
-        one.drawn[f] = one.flow[f]
+        step.drawn[f] = step.flow[f]
         if row.glued == 0:
-            one.heat[f] += row.element_capacity * row.offset[f]
-            one.drawn[f] += (one.heat[f] - row.stored[f]) / duration
-        row.stored[f] = one.heat[f]
-    row.books[0] += (one.flow[0] + one.flow[1] + one.reservoir_flow) * duration
-    row.books[1] += (abs(one.flow[0]) + abs(one.flow[1]) + abs(one.reservoir_flow)) * duration
-    row.books[2] += one.air_loss * duration
-    gained = one.heat[2] + (one.heat[0] + one.heat[1] if row.glued else 0.0)
-    one.imbalance = gained + row.books[2] - row.books[0]
-    one.exchanged = row.books[1]
+            step.heat[f] += row.element_capacity * row.offset[f]
+            step.drawn[f] += (step.heat[f] - row.stored[f]) / duration
+        row.stored[f] = step.heat[f]
+    row.books[0] += (step.flow[0] + step.flow[1] + step.reservoir_flow) * duration
+    row.books[1] += (abs(step.flow[0]) + abs(step.flow[1]) + abs(step.reservoir_flow)) * duration
+    row.books[2] += step.air_loss * duration
+    gained = step.heat[2] + (step.heat[0] + step.heat[1] if row.glued else 0.0)
+    step.imbalance = gained + row.books[2] - row.books[0]
+    step.exchanged = row.books[1]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -229,7 +229,7 @@ def _along_pad(law, place, f, at):
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _mean_contacts(law, normal, one, f, place, conductances):
+def _mean_contacts(law, normal, step, f, place, conductances):
     """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends
     fall within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is
     the mean of all, and whose area is the mean over the substeps that touch. place: see footprint. Returns whether any
@@ -260,16 +260,16 @@ def _mean_contacts(law, normal, one, f, place, conductances):
         conductances[k, f] /= substeps
     if touching and area == 0.0:  # gas alone, all over the face
         area = 4 * law.half_face * law.half_face * touching
-    one.area[f] = area / touching if touching else 0.0
-    one.conductance[f] = total / substeps / one.area[f] if touching else 0.0
+    step.area[f] = area / touching if touching else 0.0
+    step.conductance[f] = total / substeps / step.area[f] if touching else 0.0
     return touching > 0
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _renewed(one, conductances, k):
+def _renewed(step, conductances, k):
     """Whether a fingertip meets its new patch in sample k."""
     for f in range(2):
-        if one.events[f] & NEW_PATCH and conductances[k, f] > 0.0:
+        if step.events[f] & NEW_PATCH and conductances[k, f] > 0.0:
             before = 0.0
             for earlier in range(k):
                 before += conductances[earlier, f]
@@ -279,7 +279,7 @@ def _renewed(one, conductances, k):
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _follow(row, one, f, touching, place):
+def _follow(row, step, f, touching, place):
     """Notes a touch, a release or a new patch since the last step."""
     touched, events = row.touching[f] > 0, 0
     moved = _distance(place, row.anchor[f]) > row.reach
@@ -294,7 +294,7 @@ def _follow(row, one, f, touching, place):
         row.known[f] = 1
         for i in range(3):
             row.anchor[f, i] = place[i]
-    one.events[f] = events
+    step.events[f] = events
 
 
 @njit(cache=True, error_model="numpy", inline="always")

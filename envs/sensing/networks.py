@@ -113,14 +113,14 @@ class HeatNetworks:
         return number
 
     def _add(self, key: object, system: ContactSystem, film: float, rung: str) -> int:
-        number = self._given_up()
+        number = self._free_number()
         entry = slice(number, number + 1)  # of one that is given up, or behind the last
         self.systems[entry], self._films[entry], self.rungs[entry] = [system], [film], [rung]
         self._numbers[key] = number
         self._tables = heat_tables(self.systems, self._films, self._dt)
         return number
 
-    def _given_up(self) -> int:
+    def _free_number(self) -> int:
         """The number of a network that is forgotten for a new one, or the next where none is to be."""
         if len(self.systems) < MOST_NETWORKS:
             return len(self.systems)

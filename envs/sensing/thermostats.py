@@ -95,15 +95,15 @@ class Thermostats:
 
     def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:
         """A copy of what the rows remember."""
-        return (self._hot[list(rows)], *(array[_fingertips(rows)] for array in self._kept()))
+        return (self._hot[list(rows)], *(array[_fingertips(rows)] for array in self._remembered()))
 
     def set_state(self, rows: Sequence[int], state: tuple[np.ndarray, ...]) -> None:
         """Puts the rows into a state taken by `state`."""
         self._hot[list(rows)], *arrays = state
-        for kept, new in zip(self._kept(), arrays, strict=True):
+        for kept, new in zip(self._remembered(), arrays, strict=True):
             kept[_fingertips(rows)] = new
 
-    def _kept(self) -> list[np.ndarray]:
+    def _remembered(self) -> list[np.ndarray]:
         return [] if self._model is None else _arrays(self._state)
 
 

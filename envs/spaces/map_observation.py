@@ -41,10 +41,10 @@ class MapObserver:
         """See Observer."""
         self._within.restart(rows)
 
-    def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
+    def observe(self, reading: Reading, force_limit: np.ndarray, observed: np.ndarray) -> Observation:
         """See Observer; needs a plant that reads the map."""
-        observation = self._within.observe(reading, force_limit, seen)
-        self._map[seen] = np.clip(getattr(reading, self._name)[seen], *self._bounds)
+        observation = self._within.observe(reading, force_limit, observed)
+        self._map[observed] = np.clip(getattr(reading, self._name)[observed], *self._bounds)
         return {**observation, self._name: self._map.copy()}
 
 

@@ -58,14 +58,14 @@ class Observer:
         """Forgets the rows' history: the next reading's first voltage stands for it."""
         self._fresh[rows] = True
 
-    def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
+    def observe(self, reading: Reading, force_limit: np.ndarray, observed: np.ndarray) -> Observation:
         """Observations (B, ...) after a reading; arrays of their own. force_limit: (B,) N, as commanded. Rows of which
-        `seen` (B,) is False keep what they last observed."""
-        before = None if np.count_nonzero(seen) == len(seen) else self._values.copy()
+        `observed` (B,) is False keep what they last observed."""
+        before = None if np.count_nonzero(observed) == len(observed) else self._values.copy()
         gripper, force, voltage, thermostat = self._read.values()
         samples = reading.voltage.transpose(0, 2, 1)[:, :, -HISTORY:]
         if np.count_nonzero(self._fresh):
-            begins = self._fresh & seen
+            begins = self._fresh & observed
             voltage[begins], self._fresh[begins] = samples[begins, :, :1], False
         kept = HISTORY - samples.shape[2]
         voltage[:, :, :kept] = voltage[:, :, samples.shape[2] :]
@@ -74,7 +74,7 @@ class Observer:
         gripper[:, 2], gripper[:, 3] = reading.height, force_limit
         force[:], thermostat[:] = reading.force, reading.thermostat
         if before is not None:
-            self._values[~seen] = before[~seen]
+            self._values[~observed] = before[~observed]
         # Rounding to float32 keeps the bounds: those of the space are rounded alike.
         clipped = np.minimum(np.maximum(self._values, _LOW), _HIGH).astype(np.float32)
         return _by_key(clipped.view(_OBSERVED))

@@ -29,11 +29,11 @@ class SortObserver(Observer):
         """See Observer."""
         return *super().arrays, self._lateral, self._goal
 
-    def observe(self, reading: Reading, force_limit: np.ndarray, seen: np.ndarray) -> Observation:
+    def observe(self, reading: Reading, force_limit: np.ndarray, observed: np.ndarray) -> Observation:
         """See Observer; needs a plant with a lateral axis that says what is asked."""
-        observation = super().observe(reading, force_limit, seen)
+        observation = super().observe(reading, force_limit, observed)
         assert reading.lateral is not None
         bound = np.float32(_FURTHEST)
-        self._lateral[seen, 0] = np.clip(reading.lateral[seen].astype(np.float32), -bound, bound)
-        self._goal[seen] = reading.truth["goal"][seen]
+        self._lateral[observed, 0] = np.clip(reading.lateral[observed].astype(np.float32), -bound, bound)
+        self._goal[observed] = reading.truth["goal"][observed]
         return {**observation, "lateral": self._lateral.copy(), "goal": self._goal.copy()}

@@ -44,7 +44,7 @@ class Feeling:
         """Another touch begins."""
         self._pending: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=_MOST_PENDING)
         self._looked = 0.0
-        self._found: Identification | None = None
+        self._identification: Identification | None = None
         self._fresh = True
 
     def add(self, columns: Mapping[str, np.ndarray], row: int) -> None:
@@ -66,18 +66,18 @@ class Feeling:
         t, voltage = (np.concatenate(parts) for parts in zip(*self._pending, strict=True))
         self._pending.clear()
         self._looked = float(t[-1])
-        if self._found is not None and self._over(self._looked):
+        if self._identification is not None and self._over(self._looked):
             return None
-        self._found = identifier.update(t, voltage)
-        return posterior(self._found)
+        self._identification = identifier.update(t, voltage)
+        return posterior(self._identification)
 
     def close(self) -> None:
         """What has not begun need not be made."""
         self._making.cancel()
 
     def _over(self, now: float) -> bool:
-        assert self._found is not None
-        touches = self._found.touch
+        assert self._identification is not None
+        touches = self._identification.touch
         return all(np.isfinite(touches)) and now > max(touches) + self._horizon
 
 
@@ -94,14 +94,16 @@ def known_touch(choices: Choices, fingertips: Literal[1, 2]) -> TouchSetup:
     )
 
 
-def posterior(found: Identification) -> dict[str, Any]:
+def posterior(identification: Identification) -> dict[str, Any]:
     """For the page: verdict and message, the likeliest materials with their probabilities, and the effusivity in
     W s^0.5/(m2 K) with its 90 % interval."""
-    order = np.argsort(-found.probability, kind="stable")[:_SHOWN]
-    low, high = found.effusivity.interval()
+    order = np.argsort(-identification.probability, kind="stable")[:_SHOWN]
+    low, high = identification.effusivity.interval()
     return {
-        "verdict": str(found.verdict),
-        "message": found.message,
-        "likely": [[found.materials[k], round(float(found.probability[k]), 4)] for k in order],
-        "effusivity": [round(float(value), 1) for value in (low, found.effusivity.median, high)],
+        "verdict": str(identification.verdict),
+        "message": identification.message,
+        "likely": [
+            [identification.materials[k], round(float(identification.probability[k]), 4)] for k in order
+        ],
+        "effusivity": [round(float(value), 1) for value in (low, identification.effusivity.median, high)],
     }

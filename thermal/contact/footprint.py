@@ -180,19 +180,19 @@ def beside(law, mean_gap, area, square, hertz, place):
         gas = law.gas * beside_ball(square, hertz, mean_gap, law.radius, half, off, place[2])
         if hertz > 0.0 and area > 0.0:
             under, _ = disc_on_face(square, half, off, place[2])
-            gas *= _left(4 * half * half, area, under * math.pi * square)
+            gas *= _share_beside(4 * half * half, area, under * math.pi * square)
         return gas
     if law.shape == CYLINDER:
         along = _common(half, law.length / 2, place[2])
         gas = law.gas * along * beside_strip(square, mean_gap, law.radius, half, off)
         if hertz > 0.0 and area > 0.0:
-            gas *= _left(2 * half * along, area, _common(half, math.sqrt(square), off) * along)
+            gas *= _share_beside(2 * half * along, area, _common(half, math.sqrt(square), off) * along)
         return gas
     return 0.0
 
 
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)
-def _left(whole, touched, under):
+def _share_beside(whole, touched, under):
     """How much of the face is beside what touches, over what is not under the curve: Hertz's contact stays on the face
     where its middle would be near the edge or beyond it."""
     return max(whole - touched, 0.0) / (whole - under) if under < whole else 0.0

@@ -26,13 +26,13 @@ def climb(table, axes, data, prior, limits, index, capacity, resistance):
     misfit, point = np.zeros(count), np.zeros((count, 3))
     gradient, curvature = np.zeros((count, 3)), np.zeros((count, 3, 3))
     low, high = limits
-    seen = np.zeros((3, table.shape[3]))
+    curve = np.zeros((3, table.shape[3]))
     g, a = np.zeros(3), np.zeros((3, 3))
     move, damped = np.zeros(3), np.zeros((3, 3))
     least = np.inf
     for p in range(count):
         u, r = capacity[p], resistance[p]
-        now, difference = _misfit(table, axes, data, prior, index[p], u, r, seen, g, a)
+        now, difference = _misfit(table, axes, data, prior, index[p], u, r, curve, g, a)
         damping, still = 1e-3, 0
         for _ in range(_STEPS):
             for i in range(3):
@@ -48,13 +48,13 @@ def climb(table, axes, data, prior, limits, index, capacity, resistance):
             _solve(damped, move)
             next_u = min(max(u + move[1], -FARTHEST), FARTHEST)
             next_r = min(max(r * np.exp(min(max(move[2], -1.0), 1.0)), low), high)
-            new, best = _misfit(table, axes, data, prior, index[p], next_u, next_r, seen, g, a)
+            new, best = _misfit(table, axes, data, prior, index[p], next_u, next_r, curve, g, a)
             if new <= now:
                 still = still + 1 if now - new < _CONVERGED else 0
                 u, r, now, difference = next_u, next_r, new, best
                 damping *= 0.1
             else:
-                _misfit(table, axes, data, prior, index[p], u, r, seen, g, a)
+                _misfit(table, axes, data, prior, index[p], u, r, curve, g, a)
                 still = still + 1 if new - now < _CONVERGED else 0
                 damping *= 10
             if still == 2 or damping > 1e4 or (still == 1 and damping < 1e-4):
@@ -68,19 +68,19 @@ def climb(table, axes, data, prior, limits, index, capacity, resistance):
 
 
 @njit(cache=True, inner=True)
-def _misfit(table, axes, data, prior, index, capacity, resistance, seen, gradient, curvature):
-    """(misfit, difference) at a point; fills seen (3, Q), the curve and its derivatives per kelvin by capacity and
+def _misfit(table, axes, data, prior, index, capacity, resistance, curve, gradient, curvature):
+    """(misfit, difference) at a point; fills curve (3, Q), the curve and its derivatives per kelvin by capacity and
     relative resistance, gradient and curvature."""
     first, spacing, step = axes
     mean, deviation = prior
     middle = (table.shape[1] - 1) / 2
-    _interpolate(table, index, middle + capacity / step, (np.log(resistance) - first) / spacing, seen)
+    _interpolate(table, index, middle + capacity / step, (np.log(resistance) - first) / spacing, curve)
     count = len(data)
     weight = 1 / deviation**2
     power, match = weight, mean * weight
     for q in range(count):
-        power += seen[0, q] ** 2
-        match += seen[0, q] * data[q]
+        power += curve[0, q] ** 2
+        match += curve[0, q] * data[q]
     best = match / power
     if table.shape[1] == 1:
         capacity = 0.0
@@ -88,14 +88,14 @@ def _misfit(table, axes, data, prior, index, capacity, resistance, seen, gradien
     gradient[:] = 0.0
     curvature[:] = 0.0
     for q in range(count):
-        left = data[q] - best * seen[0, q]
-        by_capacity, by_resistance = best * seen[1, q] / step, best * seen[2, q] / spacing
+        left = data[q] - best * curve[0, q]
+        by_capacity, by_resistance = best * curve[1, q] / step, best * curve[2, q] / spacing
         misfit += left * left
-        gradient[0] += left * seen[0, q]
+        gradient[0] += left * curve[0, q]
         gradient[1] += left * by_capacity
         gradient[2] += left * by_resistance
-        curvature[0, 1] += seen[0, q] * by_capacity
-        curvature[0, 2] += seen[0, q] * by_resistance
+        curvature[0, 1] += curve[0, q] * by_capacity
+        curvature[0, 2] += curve[0, q] * by_resistance
         curvature[1, 1] += by_capacity * by_capacity
         curvature[1, 2] += by_capacity * by_resistance
         curvature[2, 2] += by_resistance * by_resistance
@@ -109,14 +109,14 @@ def _misfit(table, axes, data, prior, index, capacity, resistance, seen, gradien
 
 
 @njit(cache=True)
-def _interpolate(table, x, y, z, seen):
+def _interpolate(table, x, y, z, curve):
     """Of degree 5, 5 and 3 along the axes, at a point in units of the nodes: value, and derivatives along the second
     and third axis."""
     weight, slope = np.zeros((3, 6)), np.zeros((3, 6))
     i0, ni = _lagrange(x, table.shape[0], 6, weight[0], slope[0])
     j0, nj = _lagrange(y, table.shape[1], 6, weight[1], slope[1])
     k0, nk = _lagrange(z, table.shape[2], 4, weight[2], slope[2])
-    seen[:] = 0.0
+    curve[:] = 0.0
     for i in range(ni):
         if weight[0, i] == 0.0:
             continue
@@ -126,9 +126,9 @@ def _interpolate(table, x, y, z, seen):
                 a, b, c = plain * weight[2, k], along * weight[2, k], plain * slope[2, k]
                 row = table[i0 + i, j0 + j, k0 + k]
                 for q in range(len(row)):
-                    seen[0, q] += a * row[q]
-                    seen[1, q] += b * row[q]
-                    seen[2, q] += c * row[q]
+                    curve[0, q] += a * row[q]
+                    curve[1, q] += b * row[q]
+                    curve[2, q] += c * row[q]
 
 
 @njit(cache=True, inner=True)

@@ -15,9 +15,9 @@ from . import prior as prior
 from .evidence import (
     Evidence,
     Explained,
-    Seen,
+    ProjectedCurves,
     explain,
-    see,
+    project,
 )
 from .library import CurveLibrary
 
@@ -64,9 +64,9 @@ def effusivity_posterior(
     resistance."""
     axis = library.log_effusivity
     spacing = axis[1] - axis[0]
-    seen = see(evidence, library.objects)
-    x, index, start = axis, *_starts(seen, difference)
-    found = explain(seen, index, start, difference, limits)
+    projected = project(evidence, library.objects)
+    x, index, start = axis, *_starts(projected, difference)
+    found = explain(projected, index, start, difference, limits)
     found = _best(found, index, len(x))
     for _ in range(_ZOOMS):
         inside = np.flatnonzero(found.log_evidence > found.log_evidence.max() - _DEPTH)
@@ -76,7 +76,7 @@ def effusivity_posterior(
         right = np.clip(np.searchsorted(x, finer), 1, len(x) - 1)
         both = np.concatenate((right - 1, right))
         start = found.capacity[both], found.resistance[both]
-        again = explain(seen, np.tile((finer - axis[0]) / spacing, 2), start, difference, limits)
+        again = explain(projected, np.tile((finer - axis[0]) / spacing, 2), start, difference, limits)
         x, found = finer, _best(again, np.tile(np.arange(_NODES), 2), _NODES)
     return _density(x, found)
 
@@ -88,16 +88,18 @@ def prior_posterior(difference: tuple[float, float]) -> EffusivityPosterior:
     return EffusivityPosterior(effusivity, density, 0.0, difference, 0.0)
 
 
-def _starts(seen: Seen, difference: tuple[float, float]) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+def _starts(
+    projected: ProjectedCurves, difference: tuple[float, float]
+) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
     """Index (P,) of objects, and heat capacities and resistances to begin from: of each object every heat capacity that
     is better than its neighbours, for there may be more than one answer."""
-    misfit, resistance = seen.nodes(difference)
+    misfit, resistance = projected.nodes(difference)
     padded = np.pad(misfit, ((0, 0), (1, 1)), constant_values=np.inf)
     chosen = (misfit <= padded[:, :-2]) & (misfit < padded[:, 2:])
     index, node = np.nonzero(chosen)
     order = np.argsort(misfit[chosen], kind="stable")
     index, node = index[order], node[order]
-    capacity = (node - (misfit.shape[1] - 1) / 2) * seen.table.capacity_step
+    capacity = (node - (misfit.shape[1] - 1) / 2) * projected.table.capacity_step
     return index, (capacity, resistance[index, node])
 
 

@@ -81,8 +81,9 @@ def gather(
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
-    """A table of curves as the evidence's independent numbers see it, (N, C, H, Q)."""
+class ProjectedCurves:
+    """A table of curves in the coordinates of an evidence. curves: (N, C, H, Q), what the evidence's Q independent
+    numbers would be for each curve of the table, per K of first difference."""
 
     evidence: Evidence
     table: CurveTable
@@ -102,9 +103,9 @@ class Seen:
         return misfit, np.exp(first + spacing * best)
 
 
-def see(evidence: Evidence, table: CurveTable) -> Seen:
-    """The table through the evidence."""
-    return Seen(evidence, table, table.coefficients @ evidence.rows.T)
+def project(evidence: Evidence, table: CurveTable) -> ProjectedCurves:
+    """The table's curves in the evidence's coordinates."""
+    return ProjectedCurves(evidence, table, table.coefficients @ evidence.rows.T)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +126,7 @@ class Explained:
 
 
 def explain(
-    seen: Seen,
+    projected: ProjectedCurves,
     index: np.ndarray,
     start: tuple[np.ndarray, np.ndarray],
     difference: tuple[float, float],
@@ -135,11 +136,11 @@ def explain(
     capacity and resistance (P,) to begin from. difference: K, mean and standard deviation. limits: m2 K/W, of a
     log-uniform resistance."""
     capacity, resistance = (np.asarray(one, float) for one in start)
-    axes = (*seen.table.log_resistance, seen.table.capacity_step)
+    axes = (*projected.table.log_resistance, projected.table.capacity_step)
     misfit, point, gradient, curvature = climb(
-        seen.curves,
+        projected.curves,
         axes,
-        seen.evidence.data,
+        projected.evidence.data,
         difference,
         limits,
         np.asarray(index, float),

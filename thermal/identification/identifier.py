@@ -19,10 +19,10 @@ from .effusivity import effusivity_posterior, prior_posterior
 from .evidence import (
     Evidence,
     Explained,
-    Seen,
+    ProjectedCurves,
     explain,
     gather,
-    see,
+    project,
     slow_deviations,
 )
 from .library import CurveLibrary, curve_library
@@ -64,7 +64,7 @@ class Identifier:
             raise InvalidValueError("there are no candidates: name at least one material")
         self.names = tuple(one.name for one in chosen)
         self.library: CurveLibrary = curve_library(self.setup, chosen, cache=cache)
-        self._given = None if touch is None else finite("touch (s)", touch)
+        self._touch_time = None if touch is None else finite("touch (s)", touch)
         self.reset()
 
     def reset(self) -> None:
@@ -118,8 +118,8 @@ class Identifier:
         self._t = times
 
     def _touch(self, tip: int, kelvin: np.ndarray) -> float | None:
-        if self._given is not None:
-            return self._given
+        if self._touch_time is not None:
+            return self._touch_time
         if tip in self._found:
             return self._found[tip]
         noise, offset = self._kelvins()
@@ -139,7 +139,7 @@ class Identifier:
     def _gather(self, kelvin: np.ndarray, touch: float) -> Evidence:
         setup = self.setup
         used = (self._t <= touch + setup.horizon) & ~setup.saturated(kelvin)
-        if self._given is None:
+        if self._touch_time is None:
             used &= (self._t < touch - OPENING[0]) | (self._t > touch + OPENING[1])
         if setup.smoothing:
             used &= np.abs(self._t - touch) > setup.smoothing
@@ -151,7 +151,7 @@ class Identifier:
         nuisances = [np.full((len(since), 1), offset)]
         if len(since):
             curve, rate = smooth_curve(self.library, since, values, noise, scale)
-            touch_error = setup.touch_error if self._given is not None else FOUND_WITHIN
+            touch_error = setup.touch_error if self._touch_time is not None else FOUND_WITHIN
             nuisances.append(touch_error * rate[:, None])
             lacking = np.hypot(setup.model_error * np.abs(curve).max(), setup.tolerance / 4)
             lacking *= np.sqrt(self._kelvin.shape[1])  # the same for every fingertip: it does not average out
@@ -164,10 +164,10 @@ class Identifier:
             np.hstack([one for one in nuisances if one.any()] or [np.zeros((len(since), 1))]),
         )
 
-    def _explain(self, seen: Seen, difference: tuple[float, float]) -> Explained:
+    def _explain(self, projected: ProjectedCurves, difference: tuple[float, float]) -> Explained:
         count = len(self.names)
-        start = np.zeros(count), seen.nodes(difference)[1][:, 0]
-        return explain(seen, np.arange(count), start, difference, self.setup.resistance)
+        start = np.zeros(count), projected.nodes(difference)[1][:, 0]
+        return explain(projected, np.arange(count), start, difference, self.setup.resistance)
 
     def _answer(self, evidence: list[Evidence], touches: tuple[float, ...]) -> Identification:
         setup = self.setup
@@ -175,9 +175,9 @@ class Identifier:
             nothing = np.full(len(self.names), 1 / len(self.names))
             return judge(setup, self.names, nothing, prior_posterior(setup.difference), touches)
         both = reduce(add, evidence)
-        seen = see(both, self.library.materials)
+        projected = project(both, self.library.materials)
         objects = effusivity_posterior(both, self.library, setup.difference, setup.resistance)
-        listed, free = (self._explain(seen, one) for one in (setup.difference, ANY_DIFFERENCE))
+        listed, free = (self._explain(projected, one) for one in (setup.difference, ANY_DIFFERENCE))
         likely = np.exp(listed.log_evidence - listed.log_evidence.max())
         return judge(setup, self.names, likely / likely.sum(), objects, touches, both, listed, free)
 

@@ -50,12 +50,12 @@ class SystemFamily:
     """
 
     geometry: Geometry
-    _known: dict[int, ContactSystem]
+    _by_band: dict[int, ContactSystem]
     _element: ElementSamples | None
 
     def __init__(self, geometry: Geometry) -> None:
         self.geometry = geometry
-        self._known = {}
+        self._by_band = {}
         self._element = sample_element(geometry, SHIFTS) if geometry.mode == "O" else None
 
     def system(self, conductivity: float, heat_capacity: float) -> ContactSystem:
@@ -65,14 +65,14 @@ class SystemFamily:
         if geometry.mode == "O":
             return fine_system(geometry, self._element)
         band = round(np.log(material.diffusivity) / np.log(_BAND))
-        if band not in self._known:
+        if band not in self._by_band:
             reference = Material("reference", _BAND**band * 2e6, 2e6, 1.0)
-            self._known[band] = fine_system(replace(geometry, material=reference))
-        known = self._known[band]
-        rates, ports = known.rates.copy(), known.ports.copy()
-        rates[: known.orders.even] *= material.diffusivity / _BAND**band
-        ports[: known.orders.even] *= np.sqrt(2e6 / heat_capacity)
-        return replace(known, geometry=geometry, rates=rates, ports=ports)
+            self._by_band[band] = fine_system(replace(geometry, material=reference))
+        reference_system = self._by_band[band]
+        rates, ports = reference_system.rates.copy(), reference_system.ports.copy()
+        rates[: reference_system.orders.even] *= material.diffusivity / _BAND**band
+        ports[: reference_system.orders.even] *= np.sqrt(2e6 / heat_capacity)
+        return replace(reference_system, geometry=geometry, rates=rates, ports=ports)
 
 
 @dataclass(frozen=True, slots=True)

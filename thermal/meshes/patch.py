@@ -41,7 +41,7 @@ def patch_on_grid(
     corners = np.ascontiguousarray(snapped(corners @ axes + patch.centre, grid.edges))
     room = 4096
     while True:
-        cells, seen, middles, spans = _pieces(corners, counts, axes, *grid.edges, room)
+        cells, areas, middles, spans = _pieces(corners, counts, axes, *grid.edges, room)
         if len(cells) < room:
             break
         room *= 4
@@ -50,13 +50,13 @@ def patch_on_grid(
     over = np.all((around.min(axis=1) <= [half, half, np.inf]) & (around.max(axis=1) >= -half), axis=1)
     above = crossed_above((middles - patch.centre) @ axes.T, np.ascontiguousarray(around[over]), ABOVE)
     touched = (cells >= 0) & ~above.any(axis=1)
-    cells, seen, middles, spans = cells[touched], seen[touched], middles[touched], spans[touched]
-    total = float(seen.sum())
+    cells, areas, middles, spans = cells[touched], areas[touched], middles[touched], spans[touched]
+    total = float(areas.sum())
     if not total > 0:
         raise MeshError(
             f"the patch {2e3 * half:.3g} mm wide meets no surface at its place: it may lie beyond an edge"
         )
-    weights = seen / total
+    weights = areas / total
     spans = (spans - (patch.sides @ patch.centre)[:, None]) / half
     values = patterns.means(spans[:, :, 0], spans[:, :, 1])
     # Only the uniform pattern lets heat in, also where the surface ends within the patch.
@@ -82,7 +82,7 @@ def _pieces(corners, counts, axes, x, y, z, room):
         np.zeros((CORNERS, 3)),
         np.zeros((CORNERS, 3)),
     )
-    cells, seen = np.zeros(room, np.int64), np.zeros(room)
+    cells, areas = np.zeros(room, np.int64), np.zeros(room)
     middles, spans = np.zeros((room, 3)), np.zeros((room, 2, 2))
     found, start = 0, 0
     for polygon in range(len(counts)):
@@ -104,15 +104,15 @@ def _pieces(corners, counts, axes, x, y, z, room):
                 k0, k1 = cell_range(in_y, m, 2, z, normal[2])
                 for k in range(k0, k1 + 1):
                     c = slab(in_y, m, 2, z, k, k0, k1, spare, in_z)
-                    area = _seen(in_z, c, normal, middles[found])
+                    area = _projected_area(in_z, c, normal, middles[found])
                     if area > 1e-20 and found < room - 1:
                         cells[found] = (i * (len(y) - 1) + j) * (len(z) - 1) + k
-                        seen[found] = area
+                        areas[found] = area
                         _span(in_z, c, axes, spans[found])
                         found += 1
     if found == room - 1:
         found = room
-    return cells[:found], seen[:found], middles[:found], spans[:found]
+    return cells[:found], areas[:found], middles[:found], spans[:found]
 
 
 @njit(cache=True, inner=True)
@@ -128,7 +128,7 @@ def _span(polygon, count, axes, span):
 
 
 @njit(cache=True, inner=True)
-def _seen(polygon, count, normal, middle):
+def _projected_area(polygon, count, normal, middle):
     """Area m2 of a polygon seen along a normal; its middle is filled in."""
     total = 0.0
     for c in range(3):

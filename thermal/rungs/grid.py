@@ -69,7 +69,7 @@ class March:
     slope: list[np.ndarray] = field(init=False)
     balance: Balance = field(default_factory=Balance)
     _stages: dict[float, Stage] = field(default_factory=dict)
-    _kept: int = field(init=False)
+    _most_stages: int = field(init=False)
 
     def __post_init__(self) -> None:
         pairs = list(zip(self.grid.bodies, self.grid.first, strict=True))
@@ -78,13 +78,13 @@ class March:
         cells = sum(interface.cells[0] * interface.cells[1] for interface in self.grid.interfaces)
         # of a stage: the responses and their factors, and the air's where it is shielded
         matrices = 8.0 * cells**2 * (2 + bool(self.grid.bodies[OBJECT].top))
-        self._kept = int(np.clip(_STAGES_BYTES / matrices, 2, _STAGES_KEPT))
+        self._most_stages = int(np.clip(_STAGES_BYTES / matrices, 2, _STAGES_KEPT))
 
     def advance(self, step: float) -> None:
         """One SDIRK2 step of that length (s)."""
         step = float(f"{step:.10e}")
         if step not in self._stages:
-            if len(self._stages) >= self._kept:
+            if len(self._stages) >= self._most_stages:
                 del self._stages[next(iter(self._stages))]
             self._stages[step] = Stage(self.grid, step * GAMMA)
         stage = self._stages[step]

@@ -89,16 +89,16 @@ class BodyShape:
         return float(np.prod(self.size)) * self.material.volumetric_heat_capacity
 
 
-Made = str | Material | ThermalBody
+BodyMaterial = str | Material | ThermalBody
 """What an object is made of."""
-Objects = Mapping[str, Made | Sequence[Made]]
+Objects = Mapping[str, BodyMaterial | Sequence[BodyMaterial]]
 """By name; a sequence has one for each world."""
 
 
 def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tuple[BodyShape, ...]:
     """The objects of a model: those asked for, and those that its MJCF names; of many worlds, the first one's. Raises
     UnknownNameError and InvalidValueError."""
-    wanted: dict[str, Made] = dict(written(model))
+    wanted: dict[str, BodyMaterial] = dict(described_in_model(model))
     for name, one in (objects or {}).items():
         wanted[name] = _first(name, one)
     if not wanted:
@@ -117,22 +117,22 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
     return tuple(found)
 
 
-def _first(name: str, given: Made | Sequence[Made]) -> Made:
-    if isinstance(given, str | Material | ThermalBody) or not isinstance(given, list | tuple):
-        return given  # pyright: ignore[reportReturnType]
-    if not given:
+def _first(name: str, described: BodyMaterial | Sequence[BodyMaterial]) -> BodyMaterial:
+    if isinstance(described, str | Material | ThermalBody) or not isinstance(described, list | tuple):
+        return described  # pyright: ignore[reportReturnType]
+    if not described:
         raise InvalidValueError(f"object {name!r}: its list of materials is empty: give one for each world")
-    return given[0]
+    return described[0]
 
 
 def materials_by_world(
-    given: Objects, shapes: Sequence[BodyShape], worlds: int, ambient: float
+    described: Objects, shapes: Sequence[BodyShape], worlds: int, ambient: float
 ) -> tuple[dict[str, list[Material]], dict[str, np.ndarray]]:
     """By name of the objects given: their materials in each world, and their first temperatures (worlds,) °C. shapes:
     what they are otherwise. Raises InvalidValueError and UnknownNameError."""
     known = {shape.name: shape for shape in shapes}
     materials, temperatures = {}, {}
-    for name, one in given.items():
+    for name, one in described.items():
         if name not in known:
             raise unknown_name("object", name, known)
         every = list(one) if isinstance(one, list | tuple) else [one] * worlds
@@ -149,17 +149,17 @@ def materials_by_world(
     return materials, temperatures
 
 
-def _thermal_body(name: str, given: object) -> ThermalBody:
-    if isinstance(given, ThermalBody):
-        return given
-    if not isinstance(given, str | Material):
+def _thermal_body(name: str, described: object) -> ThermalBody:
+    if isinstance(described, ThermalBody):
+        return described
+    if not isinstance(described, str | Material):
         raise InvalidValueError(
-            f"object {name!r}: give a material's name, a Material or a ThermalBody, got {given!r}"
+            f"object {name!r}: give a material's name, a Material or a ThermalBody, got {described!r}"
         )
-    return ThermalBody(given)
+    return ThermalBody(described)
 
 
-def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
+def described_in_model(model: mujoco.MjModel) -> dict[str, ThermalBody]:
     """The objects that the MJCF itself describes: custom texts "thermograsp:NAME" of a material and, behind it, °C.
     Where MjSpec.attach has renamed them with the rest, "PREFIXthermograsp:NAME", they are of PREFIXNAME."""
     found = {}
@@ -183,9 +183,9 @@ def written(model: mujoco.MjModel) -> dict[str, ThermalBody]:
     return found
 
 
-def _body(model: mujoco.MjModel, name: str, given: Made, ambient: float) -> BodyShape:
+def _body(model: mujoco.MjModel, name: str, described: BodyMaterial, ambient: float) -> BodyShape:
     kind, number = find(model, name, ("body", "geom"), "object")
-    described = _thermal_body(name, given)
+    body = _thermal_body(name, described)
     geoms = geoms_of(model, kind, number)
     if not geoms:
         raise InvalidValueError(
@@ -196,14 +196,14 @@ def _body(model: mujoco.MjModel, name: str, given: Made, ambient: float) -> Body
         name,
         int(model.geom_bodyid[geoms[0]]),
         geoms,
-        named_material(described.material),
-        ambient if described.temperature is None else float(described.temperature),
+        named_material(body.material),
+        ambient if body.temperature is None else float(body.temperature),
         size,
         centre,
         axes,
         extent,
         surface,
-        tuple(described.elements),
+        tuple(body.elements),
     )
 
 
