@@ -73,7 +73,8 @@ def merged(old: Reading, new: Reading, rows: Sequence[int]) -> Reading:
 
 
 class Plant(Protocol):
-    """dt: s, the control period. sample_rate: Hz of the voltage. num_envs: B."""
+    """What executes commands and returns readings: a simulation, or a gripper on a serial port. dt: s, the control
+    period. sample_rate: Hz of the voltage. num_envs: B."""
 
     dt: float
     sample_rate: float

@@ -45,7 +45,8 @@ TRUTH = tuple(_TRUTH)
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """dtype: of an item, "str" for text. shape: of an item. unit: "" where there is none."""
+    """Type, shape and unit of a column. dtype: of an item, "str" for text. shape: of an item. unit: "" where there is
+    none."""
 
     name: str
     per: Per

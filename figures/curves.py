@@ -18,7 +18,7 @@ _FINE = 0.2  # pixels that a path may leave out
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """x, y: (n,). style: class of the group, which the style sheet colours."""
+    """One line of a plot. x, y: (n,). style: class of the group, which the style sheet colours."""
 
     label: str
     style: str

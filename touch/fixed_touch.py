@@ -40,8 +40,9 @@ _SAME = 1e-9  # of a box's sides, by which they may differ and count as equal
 
 
 class FixedTouchState(NamedTuple):
-    """heat: (B, K) of all fields. narrow: (B, N, R). signal: of the electronics, (B, F) each, and voltage: (B, F,
-    samples) V as reported, oldest first. material: (B, O) integers, and first: (B, O) °C of the objects at a reset."""
+    """The state of heat and electronics in every world. heat: (B, K) of all fields. narrow: (B, N, R). signal: of the
+    electronics, (B, F) each, and voltage: (B, F, samples) V as reported, oldest first. material: (B, O) integers, and
+    first: (B, O) °C of the objects at a reset."""
 
     heat: Array
     narrow: Array

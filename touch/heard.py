@@ -28,9 +28,10 @@ where Python advances it; substeps of a sample and samples of a reading; and the
 
 
 class Hearing:
-    """arrays: last (1,) s, step (2,) s, substeps (1,) and taken (1,), which must stay where they are. addresses: of the
-    data's time and number of contacts, of its ContactMemory, of a reader, of heat and touches (0 for none), and of the
-    electronics. sizes: substeps of a sample, samples of a reading. address: for `hear`, as long as this lives."""
+    """What compiled code needs to take a step of one MjData. arrays: last (1,) s, step (2,) s, substeps (1,) and taken
+    (1,), which must stay where they are. addresses: of the data's time and number of contacts, of its ContactMemory, of
+    a reader, of heat and touches (0 for none), and of the electronics. sizes: substeps of a sample, samples of a
+    reading. address: for `hear`, as long as this lives."""
 
     def __init__(
         self, arrays: tuple[np.ndarray, ...], addresses: tuple[int, ...], sizes: tuple[int, int]
@@ -56,9 +57,10 @@ def _sensing() -> int:
 
 
 class RecordHearing:
-    """arrays: last (W,) s, step (2,) s, substeps (1,) and taken (1,), which must stay where they are. addresses: of
-    what `sense_contacts` takes, of heat and touches (0 for none), and of the electronics. sizes: substeps of a sample,
-    samples of a reading. address: for `hear_record`, as long as this lives."""
+    """What compiled code needs to take a recorded step of many worlds. arrays: last (W,) s, step (2,) s, substeps (1,)
+    and taken (1,), which must stay where they are. addresses: of what `sense_contacts` takes, of heat and touches (0
+    for none), and of the electronics. sizes: substeps of a sample, samples of a reading. address: for `hear_record`, as
+    long as this lives."""
 
     def __init__(
         self, arrays: tuple[np.ndarray, ...], addresses: tuple[int, ...], sizes: tuple[int, int]

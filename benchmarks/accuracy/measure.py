@@ -40,8 +40,9 @@ Prepare = Callable[[PressProblem, np.ndarray], tuple[str, March]]
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """family: what it is called in the figure. setting: its knob. prepare: of a problem and its samples t (n,) s, what
-    was made (for "auto" the rung) and the march that returns the drop (n,) K. repeats: 1 for what takes long."""
+    """A way to compute a press, at one setting of its accuracy. family: what it is called in the figure. setting: its
+    knob. prepare: of a problem and its samples t (n,) s, what was made (for "auto" the rung) and the march that returns
+    the drop (n,) K. repeats: 1 for what takes long."""
 
     family: str
     setting: str

@@ -29,7 +29,8 @@ _SECONDS = 5.6
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """timestep: s. substeps: time steps in a control step. tolerance: K."""
+    """The steps and the tolerance of an environment. timestep: s. substeps: time steps in a control step. tolerance:
+    K."""
 
     timestep: float
     substeps: int
@@ -47,10 +48,10 @@ REFERENCE = Setting(0.0002, 50, 0.002)
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """seconds: of CPU per environment and simulated second. speed: simulated seconds per second of computing over
-    those of SHIPPED. error: V, rms over environments, fingertips and time of the voltage less the reference's.
-    relative: error over the reference's rms. lost: environments whose simulation broke down. pareto: no other is as
-    fast and better."""
+    """What one setting costs, and its error. seconds: of CPU per environment and simulated second. speed: simulated
+    seconds per second of computing over those of SHIPPED. error: V, rms over environments, fingertips and time of the
+    voltage less the reference's. relative: error over the reference's rms. lost: environments whose simulation broke
+    down. pareto: no other is as fast and better."""
 
     setting: Setting
     seconds: float

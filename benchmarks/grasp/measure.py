@@ -41,7 +41,8 @@ _ERROR_NOISE = 1.5  # of errors: no two variants touch at the same instants
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """family: which knob is turned. label: how far, unique in its family. repeats: how often it is timed."""
+    """One set of solver settings that is compared with the others. family: which knob is turned. label: how far, unique
+    in its family. repeats: how often it is timed."""
 
     family: str
     label: str

@@ -31,8 +31,9 @@ _TOLERANCE = 0.002  # K of 12 K
 
 @dataclass(frozen=True, slots=True)
 class Touches:
-    """voltage: (N, n) V at samples 10 ms, 20 ms, ... after the touch. label: (N,), which material. effusivity: (N,)
-    W s^0.5/(m2 K). conductance: (N,) W/(m2 K). difference: (N,) K. setup: what was known beforehand."""
+    """Simulated touches of known materials. voltage: (N, n) V at samples 10 ms, 20 ms, ... after the touch. label:
+    (N,), which material. effusivity: (N,) W s^0.5/(m2 K). conductance: (N,) W/(m2 K). difference: (N,) K. setup: what
+    was known beforehand."""
 
     setup: thermal.TouchSetup
     voltage: np.ndarray

@@ -11,8 +11,8 @@ import numpy as np
 
 
 class Pair(NamedTuple):
-    """bare and touch: take `steps` steps each, of the same physics. same: whether the two are still where they should
-    be, beside each other. unit: what a step is."""
+    """The same scene without heat and with it. bare and touch: take `steps` steps each, of the same physics. same:
+    whether the two are still where they should be, beside each other. unit: what a step is."""
 
     name: str
     unit: str

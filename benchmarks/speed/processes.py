@@ -56,8 +56,8 @@ print(json.dumps([made - begun, reset - made, end - reset]))
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """num_envs: of each process. peak: bytes, the most each held. per_env: bytes that an environment adds, by least
-    squares."""
+    """Memory of processes with more and more environments. num_envs: of each process. peak: bytes, the most each held.
+    per_env: bytes that an environment adds, by least squares."""
 
     num_envs: tuple[int, ...]
     peak: tuple[int, ...]

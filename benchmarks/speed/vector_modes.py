@@ -23,8 +23,9 @@ _WARM = 20  # control steps
 
 @dataclass(frozen=True, slots=True)
 class ModeSpeed:
-    """seconds: wall clock per environment and control step (median over blocks). ratio: the native mode's over it, the
-    median of the blocks. same: rewards and observations equal the native mode's, bit for bit."""
+    """The speed of one of Gymnasium's vector modes. seconds: wall clock per environment and control step (median over
+    blocks). ratio: the native mode's over it, the median of the blocks. same: rewards and observations equal the native
+    mode's, bit for bit."""
 
     mode: str
     num_envs: int

@@ -26,9 +26,10 @@ _KNOWN = 0.1  # K
 
 @dataclass(frozen=True, slots=True)
 class Touched:
-    """materials: (K,) names. truth: (N,), which it was. touch: (N,) s, the end of the last control step before the
-    first contact. times: (D,) s of the decisions. shares: (N, D, K), what the agent would have declared. declares:
-    (N, D), whether it would have. voltage: (N, n, 2) V, sample i at (i + 1) / RATE s."""
+    """Grasps with what an agent would have declared at each moment. materials: (K,) names. truth: (N,), which it was.
+    touch: (N,) s, the end of the last control step before the first contact. times: (D,) s of the decisions. shares:
+    (N, D, K), what the agent would have declared. declares: (N, D), whether it would have. voltage: (N, n, 2) V, sample
+    i at (i + 1) / RATE s."""
 
     materials: tuple[str, ...]
     truth: np.ndarray

@@ -39,9 +39,9 @@ _FIRST_WITHIN = 2.0  # s
 @RobotConfig.register_subclass("thermograsp_hand")
 @dataclass(kw_only=True)
 class ThermograspHandConfig(RobotConfig):
-    """port: of the fingertips, best a stable name (/dev/serial/by-id/...). gripper: URL as open_gripper takes it, such
-    as robotiq:///dev/ttyUSB0, or "" for fingertips without one. rate: Hz of their samples. setpoint: °C of both
-    thermostats. speed: m/s of the fingers."""
+    """Configuration of our fingertips as a robot of LeRobot. port: of the fingertips, best a stable name
+    (/dev/serial/by-id/...). gripper: URL as open_gripper takes it, such as robotiq:///dev/ttyUSB0, or "" for fingertips
+    without one. rate: Hz of their samples. setpoint: °C of both thermostats. speed: m/s of the fingers."""
 
     port: str
     gripper: str = ""

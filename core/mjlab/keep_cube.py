@@ -84,7 +84,7 @@ class KeepCommand(CommandTerm):
 
 @dataclass(kw_only=True)
 class KeepCommandCfg(CommandTermCfg):
-    """sensor_name: of a ThermalTouchCfg whose only object is the cube, of MATERIALS."""
+    """Configuration of KeepCommand. sensor_name: of a ThermalTouchCfg whose only object is the cube, of MATERIALS."""
 
     sensor_name: str = SENSOR
 

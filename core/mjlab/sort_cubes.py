@@ -50,7 +50,8 @@ class SortCommand(MultiCubeLiftingCommand):
 
 @dataclass(kw_only=True)
 class SortCommandCfg(MultiCubeLiftingCommandCfg):
-    """entity_names: of the cubes, each with as many materials as there are cubes. sensor_name: of a ThermalTouchCfg."""
+    """Configuration of SortCommand. entity_names: of the cubes, each with as many materials as there are cubes.
+    sensor_name: of a ThermalTouchCfg."""
 
     sensor_name: str = SENSOR
 

@@ -34,9 +34,9 @@ _ACROSS = np.array([-0.003, 0.0, 0.003])  # m, from a face's middle, where it is
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assembly:
-    """surfaces: (n,) in the object's frame. within: (n,) the part that each lies in, None for the object itself.
-    volumes: (n,) m3 that each encloses, with what lies in it. middles: (n, 3) m and unit_inertia: (n, 3, 3) m2 about
-    them, of the same for a uniform kilogram."""
+    """The surfaces of an object and of its parts, and how they nest. surfaces: (n,) in the object's frame. within: (n,)
+    the part that each lies in, None for the object itself. volumes: (n,) m3 that each encloses, with what lies in it.
+    middles: (n, 3) m and unit_inertia: (n, 3, 3) m2 about them, of the same for a uniform kilogram."""
 
     surfaces: tuple[Triangles, ...]
     within: tuple[int | None, ...]

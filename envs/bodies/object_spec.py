@@ -180,7 +180,7 @@ class ObjectSpec:
 
     @property
     def volume(self) -> float:
-        """m3."""
+        """Volume, m3."""
         x, y, z = self.size
         if self.shape == "mesh":
             return self.geometry.volume

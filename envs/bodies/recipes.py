@@ -71,12 +71,12 @@ def make(recipe: str, parameters: Mapping[str, Any]) -> Solid:
 
 
 def box(size: Sequence[float]) -> Solid:
-    """Of that size (x, y, z)."""
+    """A box of that size (x, y, z)."""
     return Solid("box", _size(size))
 
 
 def cylinder(diameter: float, height: float) -> Solid:
-    """Standing."""
+    """A standing cylinder."""
     return Solid("cylinder", _size((diameter, diameter, height)))
 
 
@@ -86,12 +86,12 @@ def sphere(diameter: float) -> Solid:
 
 
 def ellipsoid_(size: Sequence[float]) -> Solid:
-    """With these full axes (x, y, z)."""
+    """An ellipsoid with these full axes (x, y, z)."""
     return _mesh(ellipsoid(_size(size)))
 
 
 def egg(length: float, width: float, taper: float) -> Solid:
-    """Lying along y; its radius at u in -1 .. 1 along its length is width/2 sqrt(1 - u^2) (1 - taper u)."""
+    """An egg that lies along y; its radius at u in -1 .. 1 along its length is width/2 sqrt(1 - u^2) (1 - taper u)."""
     u = -np.cos(np.linspace(0.0, np.pi, 49))
     radius = width / 2 * np.sqrt(1 - u**2) * (1 - taper * u)
     radius[[0, -1]] = 0.0
@@ -115,7 +115,7 @@ def turned_(profile: Profile, smooth: bool = False, axis: Axis = "z") -> Solid:
 
 
 def tube(outer: float, inner: float, length: float, axis: Axis = "z", sides: int = 0) -> Solid:
-    """Of these diameters; sides: a prism outside, its flats that far apart, such as a nut."""
+    """A tube of these diameters; sides: a prism outside, its flats that far apart, such as a nut."""
     if not 0 < inner < outer:
         raise InvalidValueError(f"tube: inner diameter {inner} m must be above 0 and below outer, {outer} m")
     half = length / 2
@@ -128,8 +128,8 @@ def tube(outer: float, inner: float, length: float, axis: Axis = "z", sides: int
 def vessel(
     profile: Profile, wall: float, base: float | None = None, handle: Mapping[str, float] | None = None
 ) -> Solid:
-    """Open at the top. profile: of its outside, from the bottom's rim up. base: thickness of the bottom (the wall's
-    where nothing is said). handle: low, high, thickness, reach, see solids.turned_with_handle."""
+    """A vessel, open at the top. profile: of its outside, from the bottom's rim up. base: thickness of the bottom (the
+    wall's where nothing is said). handle: low, high, thickness, reach, see solids.turned_with_handle."""
     outside = np.concatenate([[[0.0, 0.0]], _points(profile)])
     inside = _inset(outside, wall, wall if base is None else base)
     steep = np.diff(outside[-2:], axis=0)[0]

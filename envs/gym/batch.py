@@ -45,8 +45,8 @@ class BatchState:
 
 
 class Step(NamedTuple):
-    """observation: dict of (B, ...). reward (B,), terminated (B,), truncated (B,). outcome says why an environment
-    ended; reading is what it all follows from."""
+    """What a control step of a batch returns. observation: dict of (B, ...). reward (B,), terminated (B,), truncated
+    (B,). outcome says why an environment ended; reading is what it all follows from."""
 
     observation: Observation
     reward: np.ndarray

@@ -26,8 +26,8 @@ class ElectronicsState:
 
 
 class Electronics:
-    """chain: what every environment's is at first. seebeck: V/K. dt: s between samples, `samples` of them in a control
-    step. most_delay: samples by which an environment's may be late."""
+    """The signal chains of a batch's fingertips. chain: what every environment's is at first. seebeck: V/K. dt: s
+    between samples, `samples` of them in a control step. most_delay: samples by which an environment's may be late."""
 
     def __init__(
         self, num_envs: int, chain: SignalChain, seebeck: float, dt: float, samples: int, most_delay: int

@@ -27,9 +27,9 @@ MOST_NETWORKS = 256  # beside those in use
 
 
 class HeatNetworks:
-    """dt: s of a heat sample. cache: keep networks on disk. least_sensor_states: of each fingertip (T mode), also where
-    the tolerance needs fewer. used: tells the numbers that are in use. systems, rungs: the networks and their names, by
-    number.
+    """The thermal networks of a batch, by number. dt: s of a heat sample. cache: keep networks on disk.
+    least_sensor_states: of each fingertip (T mode), also where the tolerance needs fewer. used: tells the numbers that
+    are in use. systems, rungs: the networks and their names, by number.
 
     From MOST_NETWORKS on a new one takes the number of the one that was asked for longest ago and is not in use, so
     that memory stays the same however many sizes and places are drawn."""

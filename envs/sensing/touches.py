@@ -39,9 +39,9 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Touches:
-    """grasped: the object. body: its network and its patches. contacts: (F,) the patch that each fingertip is on or was
-    on last. demand: what the network was made for. film: W/K between it and its contents, 0 for none. cache:
-    keep networks on disk."""
+    """The patches of one grasp on an object of any shape. grasped: the object. body: its network and its patches.
+    contacts: (F,) the patch that each fingertip is on or was on last. demand: what the network was made for. film: W/K
+    between it and its contents, 0 for none. cache: keep networks on disk."""
 
     grasped: GraspBody
     body: TouchedBody

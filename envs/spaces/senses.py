@@ -24,8 +24,8 @@ _CLOSING = 0.005  # m/s of the opening, from which the fingers move
 
 @dataclass(frozen=True, slots=True)
 class Senses:
-    """heat: voltages and thermostats. load: the load cells. What is left out reads 0, so that agents with and without
-    it have the same network. voltage: V that read 1."""
+    """The part of an observation that an agent is given. heat: voltages and thermostats. load: the load cells. What is
+    left out reads 0, so that agents with and without it have the same network. voltage: V that read 1."""
 
     heat: bool = True
     load: bool = True

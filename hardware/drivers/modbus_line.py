@@ -24,9 +24,9 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class ModbusSettings:
-    """answer_within: s to wait for an answer, above the adapter's latency (16 ms for an FTDI) and the line's time.
-    tries: of a request. spacing: s between the beginnings of two requests (Robotiq's manual: 5 ms at least). rest: s
-    between an answer and the next request, above the 1.75 ms of silence that end a frame."""
+    """Time limits of a Modbus line. answer_within: s to wait for an answer, above the adapter's latency (16 ms for an
+    FTDI) and the line's time. tries: of a request. spacing: s between the beginnings of two requests (Robotiq's manual:
+    5 ms at least). rest: s between an answer and the next request, above the 1.75 ms of silence that end a frame."""
 
     answer_within: float = 0.06
     tries: int = 5

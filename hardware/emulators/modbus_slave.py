@@ -15,8 +15,9 @@ READ_HOLDING, READ_INPUT, WRITE_ONE, WRITE_MANY, READ_WRITE = 0x03, 0x04, 0x06, 
 
 @dataclass(frozen=True, slots=True)
 class LinePacing:
-    """byte: s on the line. gap: s of silence that ends a frame. response: s between a frame's end and the answer's
-    first byte. The defaults are 115200 baud, 8N1, the specification's 1.75 ms above 19200 baud, and an estimate."""
+    """How long bytes, gaps and answers take on an emulated line. byte: s on the line. gap: s of silence that ends a
+    frame. response: s between a frame's end and the answer's first byte. The defaults are 115200 baud, 8N1, the
+    specification's 1.75 ms above 19200 baud, and an estimate."""
 
     byte: float = 10 / 115_200
     gap: float = 1.75e-3

@@ -124,8 +124,8 @@ def _open_error(path: str, baud: int, error: BaseException) -> PortError:
 
 @dataclass(frozen=True, slots=True)
 class PortInfo:
-    """path: a name that stays when the device is plugged in again, where the system has one. device: the port itself.
-    description: what the adapter calls itself."""
+    """A serial port of this machine. path: a name that stays when the device is plugged in again, where the system has
+    one. device: the port itself. description: what the adapter calls itself."""
 
     path: str
     device: str

@@ -17,8 +17,9 @@ _LETTERS = {"u1": "B", "u2": "H", "u4": "I", "u8": "Q", "i2": "h", "i4": "i"}
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """name: of the message's attribute. kind: u1, u2, u4, u8, i2, i4, as numpy names them. per_unit: steps of the
-    integer in one SI unit (°C for temperatures); 0 where the attribute is the integer. shape: of an array, C order.
+    """How one attribute of a message is coded in bytes. name: of the message's attribute. kind: u1, u2, u4, u8, i2, i4,
+    as numpy names them. per_unit: steps of the integer in one SI unit (°C for temperatures); 0 where the attribute is
+    the integer. shape: of an array, C order.
 
     A signed field with per_unit carries NaN as its lowest value."""
 

@@ -17,8 +17,8 @@ MICROSECONDS = 1 << 32
 
 
 class Frame(NamedTuple):
-    """code: of the message. flags: condition of the device. sequence: number modulo 2^16. device_us: device time of the
-    event, us modulo 2^32. payload: as its message lays it out."""
+    """One frame of the protocol, taken apart. code: of the message. flags: condition of the device. sequence: number
+    modulo 2^16. device_us: device time of the event, us modulo 2^32. payload: as its message lays it out."""
 
     code: int
     flags: int

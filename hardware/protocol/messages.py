@@ -121,8 +121,8 @@ class Result(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """voltage: V of each Peltier element, after the converter, before calibration. thermostat: °C. force: N on each
-    pad, normal (> 0 when pressing) and two tangential, pad frame."""
+    """One sample of both fingertips. voltage: V of each Peltier element, after the converter, before calibration.
+    thermostat: °C. force: N on each pad, normal (> 0 when pressing) and two tangential, pad frame."""
 
     voltage: Pair
     thermostat: Pair
@@ -131,7 +131,8 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class ThermostatReport:
-    """setpoint, temperature: °C, NaN for a heater that is off and for an open thermistor. power: W of each heater."""
+    """The state of both thermostats. setpoint, temperature: °C, NaN for a heater that is off and for an open
+    thermistor. power: W of each heater."""
 
     setpoint: Pair
     temperature: Pair
@@ -140,8 +141,9 @@ class ThermostatReport:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """uptime: s. samples: sent since boot. overruns: samples lost for want of room to send. bad_frames: received with a
-    wrong checksum or length. repeats: commands received again and not executed. supply: V. rate: Hz of samples."""
+    """The device's counters and supply. uptime: s. samples: sent since boot. overruns: samples lost for want of room to
+    send. bad_frames: received with a wrong checksum or length. repeats: commands received again and not executed.
+    supply: V. rate: Hz of samples."""
 
     uptime: int
     samples: int
@@ -194,7 +196,8 @@ class SelfTest:
 
 @dataclass(frozen=True, slots=True)
 class Acknowledgement:
-    """command: sequence number of the command's frame. code: its code. result: how it went, a Result."""
+    """The device's answer to a command. command: sequence number of the command's frame. code: its code. result: how it
+    went, a Result."""
 
     command: int
     code: int
@@ -211,7 +214,8 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Identify:
-    """oldest, newest: protocol majors that the host speaks. session: a number drawn when the host connects."""
+    """The host asks the device who it is. oldest, newest: protocol majors that the host speaks. session: a number drawn
+    when the host connects."""
 
     oldest: int
     newest: int
@@ -220,21 +224,23 @@ class Identify:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """wanted: code of the message to send: THERMOSTAT, STATUS, CALIBRATION or CONDITION."""
+    """The host asks for one message. wanted: code of the message to send: THERMOSTAT, STATUS, CALIBRATION or
+    CONDITION."""
 
     wanted: int
 
 
 @dataclass(frozen=True, slots=True)
 class SetRate:
-    """rate: samples a second, 0 to stop."""
+    """The host sets the rate of samples. rate: samples a second, 0 to stop."""
 
     rate: int
 
 
 @dataclass(frozen=True, slots=True)
 class SetSetpoint:
-    """setpoint: °C of each thermostat as it reports temperature; NaN turns its heater off."""
+    """The host sets both thermostats. setpoint: °C of each thermostat as it reports temperature; NaN turns its heater
+    off."""
 
     setpoint: Pair
 
@@ -246,21 +252,23 @@ class SetCalibration(Calibration):
 
 @dataclass(frozen=True, slots=True)
 class RunSelfTest:
-    """checks: what to look at."""
+    """The host starts a self-test. checks: what to look at."""
 
     checks: int
 
 
 @dataclass(frozen=True, slots=True)
 class ClearFaults:
-    """faults: of HeatersOff, what is to be latched no longer; the heaters go on where nothing else is."""
+    """The host clears latched faults. faults: of HeatersOff, what is to be latched no longer; the heaters go on where
+    nothing else is."""
 
     faults: int
 
 
 @dataclass(frozen=True, slots=True)
 class KeepAlive:
-    """session: of the host's IDENTIFY. Not acknowledged; without it the heaters go off after 10 s."""
+    """The host says that it is there. session: of the host's IDENTIFY. Not acknowledged; without it the heaters go off
+    after 10 s."""
 
     session: int
 

@@ -55,10 +55,10 @@ class SampleRow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """time, device_time, arrival: (n,) s, when each was taken on the host's clock (never falling, never after arrival)
-    and on the device's since its boot, and when it came. voltage: (n, 2) V. thermostat: (n, 2) °C. force: (n, 2, 3) N.
-    What the device does not know is NaN, and a flag says so. flags: (n,) Flag. lost: (n,) frames that are missing just
-    before it."""
+    """Samples of both fingertips, as arrays. time, device_time, arrival: (n,) s, when each was taken on the host's
+    clock (never falling, never after arrival) and on the device's since its boot, and when it came. voltage: (n, 2) V.
+    thermostat: (n, 2) °C. force: (n, 2, 3) N. What the device does not know is NaN, and a flag says so. flags: (n,)
+    Flag. lost: (n,) frames that are missing just before it."""
 
     time: np.ndarray
     device_time: np.ndarray

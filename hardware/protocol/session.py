@@ -25,9 +25,9 @@ _NEWER = 1.0  # s that a frame's time is ahead when a long gap, not lateness, ex
 
 @dataclass(slots=True)
 class SessionCounts:
-    """lost: frames missing in the device's numbering. duplicates, late: frames that came twice, or after newer ones;
-    not used. echoes: the host's own commands. late_answers: acknowledgements that nobody waited for. overruns: samples
-    dropped because nobody took them."""
+    """Counters of a session with a device. lost: frames missing in the device's numbering. duplicates, late: frames
+    that came twice, or after newer ones; not used. echoes: the host's own commands. late_answers: acknowledgements that
+    nobody waited for. overruns: samples dropped because nobody took them."""
 
     samples: int = 0
     lost: int = 0

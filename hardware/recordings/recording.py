@@ -39,7 +39,7 @@ _KIND, _KIND_AT = re.compile(b"[mrsez]"), 4  # and its place in an entry
 
 
 class Entry(NamedTuple):
-    """kind: one of this module's. time: s, the recording host's clock."""
+    """One entry of a recording. kind: one of this module's. time: s, the recording host's clock."""
 
     kind: int
     time: float

@@ -46,7 +46,7 @@ _FEWEST, _CLEAR = 4, 0.25  # rigs on either side, and how far from chance one un
 
 @dataclass(frozen=True, slots=True)
 class Bands:
-    """rigs: those drawn. sweeps: one for each rig, by mode."""
+    """The experiment on drawn rigs. rigs: those drawn. sweeps: one for each rig, by mode."""
 
     rigs: tuple[Rig, ...]
     sweeps: tuple[Mapping[str, Sweep], ...]

@@ -11,9 +11,9 @@ Verdict = Literal["holds", "partly", "fails", "open"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """computed: what was computed, in words with numbers. verdict: "holds", "partly" (the text says which part),
-    "fails", or "open" where nothing that could decide it is published. numbers: the same numbers for machines, units in
-    their names."""
+    """What a computation says of a statement. computed: what was computed, in words with numbers. verdict: "holds",
+    "partly" (the text says which part), "fails", or "open" where nothing that could decide it is published. numbers:
+    the same numbers for machines, units in their names."""
 
     computed: str
     verdict: Verdict
@@ -32,8 +32,9 @@ class Support:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """key: short name. section: where the paper says so. statement: what it says, in our words. support: within the
-    bands that the experiment's unknowns leave; None of a statement that is not on the experiment."""
+    """A statement of the paper. key: short name. section: where the paper says so. statement: what it says, in our
+    words. support: within the bands that the experiment's unknowns leave; None of a statement that is not on the
+    experiment."""
 
     key: str
     section: str

@@ -70,8 +70,8 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class PaperRuns:
-    """smooth, rough: by mode. sections: by mode, in the order of MATERIALS, at SECTION_TIME. bands: `rough` on other
-    rigs. effort: how finely all was computed."""
+    """All computations of the paper's experiment. smooth, rough: by mode. sections: by mode, in the order of MATERIALS,
+    at SECTION_TIME. bands: `rough` on other rigs. effort: how finely all was computed."""
 
     smooth: Mapping[str, Sweep]
     rough: Mapping[str, Sweep]

@@ -31,8 +31,8 @@ PRESSURE = 1e4
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """tolerance: K of temperature drop. dt: s between samples. resolution: of the axisymmetric grid. rigs: how many are
-    drawn."""
+    """How finely the experiment is computed. tolerance: K of temperature drop. dt: s between samples. resolution: of
+    the axisymmetric grid. rigs: how many are drawn."""
 
     tolerance: float
     dt: float

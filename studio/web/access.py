@@ -20,8 +20,8 @@ _PORTS = {"http": ":80", "https": ":443"}  # that addresses leave out
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """host: where the server listens. token: what every path begins with. Every address has one, for other users of
-    this machine reach its loopback addresses too."""
+    """Who may open the studio's page. host: where the server listens. token: what every path begins with. Every address
+    has one, for other users of this machine reach its loopback addresses too."""
 
     host: str
     token: str

@@ -40,7 +40,8 @@ _POLICY, _BUSY, _BROKEN = 1008, 1013, 1011  # close codes of RFC 6455 and its re
 
 @dataclass(slots=True)
 class Studio:
-    """access: who may come. stock, choices: what a visitor finds. most: visitors at once. make: a visitor's worker."""
+    """The studio's server and its visitors. access: who may come. stock, choices: what a visitor finds. most: visitors
+    at once. make: a visitor's worker."""
 
     access: Access
     stock: Stock = field(default_factory=Stock)

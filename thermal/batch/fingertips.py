@@ -60,8 +60,9 @@ MOST_FORCE = 1e3
 
 
 class FingertipState(NamedTuple):
-    """heat: (B, K), of the networks. difference: (B, F) K, what sensor less object was at the start. signal: of the
-    electronics, (B, F) each. which: (B,) integers, the object that each row touched last."""
+    """The state of many fingertips: heat and electronics. heat: (B, K), of the networks. difference: (B, F) K, what
+    sensor less object was at the start. signal: of the electronics, (B, F) each. which: (B,) integers, the object that
+    each row touched last."""
 
     heat: Array
     difference: Array

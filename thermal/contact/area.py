@@ -69,8 +69,8 @@ class Pad:
 
 @dataclass(frozen=True, slots=True)
 class ContactArea:
-    """pad, face: m2 in contact on the whole pad (face included) and on the sensor's face. face_force: N on the face.
-    Arrays of the force's shape."""
+    """The area of a contact and the force on the sensor's face. pad, face: m2 in contact on the whole pad (face
+    included) and on the sensor's face. face_force: N on the face. Arrays of the force's shape."""
 
     pad: np.ndarray
     face: np.ndarray

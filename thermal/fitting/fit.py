@@ -61,10 +61,10 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class SensorFit:
-    """stack: the fitted sensor. shared: by the keys of UNITS; one that was held is its own interval.
-    conductances: (R,) W/(m2 K). misfit: (R,) rms of the residuals as a share of the touch's largest signal. noise: V
-    rms of all residuals. correlation: (P, P), 0 with those held. untold: sentences on what the touches cannot tell.
-    confidence: of the intervals."""
+    """A sensor fitted to touches of known materials. stack: the fitted sensor. shared: by the keys of UNITS; one that
+    was held is its own interval. conductances: (R,) W/(m2 K). misfit: (R,) rms of the residuals as a share of the
+    touch's largest signal. noise: V rms of all residuals. correlation: (P, P), 0 with those held. untold: sentences on
+    what the touches cannot tell. confidence: of the intervals."""
 
     stack: SensorStack | HeatedStack
     shared: Mapping[str, Estimate]

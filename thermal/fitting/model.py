@@ -49,7 +49,8 @@ def with_shared(stack: SensorStack, shared: Shared) -> SensorStack:
 
 
 class TouchModel:
-    """stack: what is not fitted of the sensor. bandwidth: Hz of the amplifier's low-pass. behind: as in SensorResponse.
+    """The voltage of a touch as a function of the fitted quantities. stack: what is not fitted of the sensor.
+    bandwidth: Hz of the amplifier's low-pass. behind: as in SensorResponse.
 
     Voltage of a touch at t: offset + seebeck difference drop(t - delay - late; sensed layer, conductance).
     """

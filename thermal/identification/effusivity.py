@@ -30,8 +30,9 @@ _FINE = 801
 
 @dataclass(frozen=True, slots=True)
 class EffusivityPosterior:
-    """effusivity: (n,) W s^0.5/(m2 K). density: (n,) of its natural logarithm, integrates to 1. log_evidence: of any
-    object of the prior. difference: K, mean and standard deviation. misfit: of the best object, as in Explained."""
+    """The probability density of an object's effusivity after a touch. effusivity: (n,) W s^0.5/(m2 K). density: (n,)
+    of its natural logarithm, integrates to 1. log_evidence: of any object of the prior. difference: K, mean and
+    standard deviation. misfit: of the best object, as in Explained."""
 
     effusivity: np.ndarray
     density: np.ndarray

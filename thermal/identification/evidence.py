@@ -27,8 +27,9 @@ _PRIOR_SAMPLES = 100.0  # of noise that the data sheet's value is worth
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """rows: (Q, r) and data: (Q,): log p(samples | curve) = const - |data - difference * rows @ c|^2 / 2, differences
-    in K. noise: K rms of a sample, as it was found. samples: how many there were."""
+    """What samples say about a curve, as a few independent numbers. rows: (Q, r) and data: (Q,): log p(samples | curve)
+    = const - |data - difference * rows @ c|^2 / 2, differences in K. noise: K rms of a sample, as it was found.
+    samples: how many there were."""
 
     rows: np.ndarray
     data: np.ndarray

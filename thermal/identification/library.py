@@ -29,9 +29,10 @@ _KEPT = 4e-6  # of K per K, what the basis may leave out of a curve
 
 @dataclass(frozen=True, slots=True)
 class CurveTable:
-    """coefficients: (N, C, H, r) on the basis per K of difference. Axes: objects, heat capacity in standard deviations
-    (C = 1: known), and log of the contact resistance (m2 K/W). log_resistance: (first, spacing). capacity_step:
-    standard deviations between neighbours, the middle one is the median."""
+    """Curves of objects at nodes of heat capacity and contact resistance. coefficients: (N, C, H, r) on the basis per K
+    of difference. Axes: objects, heat capacity in standard deviations (C = 1: known), and log of the contact resistance
+    (m2 K/W). log_resistance: (first, spacing). capacity_step: standard deviations between neighbours, the middle one is
+    the median."""
 
     coefficients: np.ndarray
     log_resistance: tuple[float, float]
@@ -40,9 +41,10 @@ class CurveTable:
 
 @dataclass(frozen=True, slots=True)
 class CurveLibrary:
-    """knots: (n,) s. functions: (n, r), the basis at the knots. objects: curves of any object, its effusivities
-    log_effusivity (E,). materials: curves of the named materials, which are exact. typical: (r,) rms of the objects'
-    coefficients, spread: (r, r), whose square is their second moment; both per kelvin."""
+    """The curves that identification compares a touch with. knots: (n,) s. functions: (n, r), the basis at the knots.
+    objects: curves of any object, its effusivities log_effusivity (E,). materials: curves of the named materials, which
+    are exact. typical: (r,) rms of the objects' coefficients, spread: (r, r), whose square is their second moment; both
+    per kelvin."""
 
     knots: np.ndarray
     functions: np.ndarray

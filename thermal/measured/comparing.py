@@ -18,9 +18,10 @@ _SHARE = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """touches: how many. mean_rms, mean_largest: K, of the mean curve's error. touch_rms, touch_largest: K, of the
-    touches'. scatter: K rms of the measured touches about their mean. drawn: K rms by which the mean of as many runs
-    drawn again (with replacement) differs from the mean, in 95 % of draws; nan for fewer than 3 runs."""
+    """How far predictions are from measured touches. touches: how many. mean_rms, mean_largest: K, of the mean curve's
+    error. touch_rms, touch_largest: K, of the touches'. scatter: K rms of the measured touches about their mean. drawn:
+    K rms by which the mean of as many runs drawn again (with replacement) differs from the mean, in 95 % of draws; nan
+    for fewer than 3 runs."""
 
     label: str
     touches: int

@@ -49,7 +49,7 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True)
 class StackFit:
-    """stack: with the fitted properties. values: by name."""
+    """A stack fitted to recorded touches. stack: with the fitted properties. values: by name."""
 
     stack: HeatedStack
     values: Mapping[str, Fitted]

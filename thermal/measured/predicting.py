@@ -42,8 +42,8 @@ class Touched:
 
 @dataclass(frozen=True, slots=True)
 class Predictions:
-    """curves: (B, n) °C of the heated sensor as it would be recorded. temperature: (B,) °C that each sample was given.
-    free: the temperature found for each label that had a free one."""
+    """Predicted recordings of touches. curves: (B, n) °C of the heated sensor as it would be recorded. temperature:
+    (B,) °C that each sample was given. free: the temperature found for each label that had a free one."""
 
     curves: np.ndarray
     temperature: np.ndarray

@@ -29,8 +29,9 @@ _COLDEST, _HOTTEST, _STRONGEST = -100.0, 300.0, 200.0  # °C, °C, N: beyond the
 
 @dataclass(frozen=True, slots=True)
 class Recordings:
-    """t: (n,) s, evenly spaced, 0 at the touch. heated, passive: (B, n) °C. force: (B, n) N. run: (B,) integers, of
-    touches made under the same circumstances. label: (B,) names of what was touched."""
+    """Recorded touches of a heated and a passive sensor. t: (n,) s, evenly spaced, 0 at the touch. heated, passive: (B,
+    n) °C. force: (B, n) N. run: (B,) integers, of touches made under the same circumstances. label: (B,) names of what
+    was touched."""
 
     t: np.ndarray
     heated: np.ndarray

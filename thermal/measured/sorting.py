@@ -33,7 +33,8 @@ _GRID = 77
 
 @dataclass(frozen=True, slots=True)
 class Confusion:
-    """labels: of rows (true) and columns (said). table: (L, L) touches."""
+    """How often touches of each material are sorted as which. labels: of rows (true) and columns (said). table: (L, L)
+    touches."""
 
     labels: tuple[str, ...]
     table: np.ndarray

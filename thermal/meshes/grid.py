@@ -52,7 +52,8 @@ class MeshGridding:
 
 @dataclass(frozen=True, slots=True)
 class GridAxis:
-    """edges: (n + 1,) m, cell boundaries. nodes: (n,) m, where each cell's temperature is."""
+    """One axis of a tensor grid. edges: (n + 1,) m, cell boundaries. nodes: (n,) m, where each cell's temperature
+    is."""
 
     edges: np.ndarray
     nodes: np.ndarray

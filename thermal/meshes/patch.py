@@ -17,9 +17,9 @@ from .place import ABOVE, CORNERS, PlacedPatch, within_cube
 
 @dataclass(frozen=True, slots=True)
 class PatchOnGrid:
-    """shares: (N, M) how each pattern's heat flow is spread over the cells, the uniform one's in all 1; also how the
-    cells' temperatures count in the pattern's. skin: (M, M) K/W from the cells' nodes to the surface. area: m2 of
-    surface touched, seen along the normal."""
+    """A touched patch as the cells of a grid feel it. shares: (N, M) how each pattern's heat flow is spread over the
+    cells, the uniform one's in all 1; also how the cells' temperatures count in the pattern's. skin: (M, M) K/W from
+    the cells' nodes to the surface. area: m2 of surface touched, seen along the normal."""
 
     shares: np.ndarray
     skin: np.ndarray

@@ -12,9 +12,9 @@ from ..plates import Geometry, SquarePatch, sample_bodies
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PatchPatterns:
-    """edges: (T + 1,) 0 .. 1, strips along a half side of 1. sums: (T + 1, T + 1, M), each pattern's integral from the
-    middle to the strips' corners, of a quarter that is mirrored to the other three. Over the patch a pattern's mean
-    square is 1 and the first one is 1 everywhere."""
+    """Patterns of heat flux over a square patch, by their integrals. edges: (T + 1,) 0 .. 1, strips along a half side
+    of 1. sums: (T + 1, T + 1, M), each pattern's integral from the middle to the strips' corners, of a quarter that is
+    mirrored to the other three. Over the patch a pattern's mean square is 1 and the first one is 1 everywhere."""
 
     edges: np.ndarray
     sums: np.ndarray

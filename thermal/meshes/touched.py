@@ -50,9 +50,10 @@ _TIMES = np.concatenate(([0.0], np.geomspace(1e-3, 300.0, 40)))  # s, over which
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TouchedBody:
-    """geometry: what it remembers of fingertips and object. sensor: a fingertip's network. object: the object's, M
-    ports a patch, its state 0 the mean. patches, and centres (P, 3) m: where on the surface they are. error: K of
-    temperature drop that its fewer states were measured to be off, in the demand's cases, from all of the grid's."""
+    """A body of any shape with the networks of its patches. geometry: what it remembers of fingertips and object.
+    sensor: a fingertip's network. object: the object's, M ports a patch, its state 0 the mean. patches, and centres (P,
+    3) m: where on the surface they are. error: K of temperature drop that its fewer states were measured to be off, in
+    the demand's cases, from all of the grid's."""
 
     geometry: BodyGeometry
     sensor: ThermalNetwork

@@ -34,9 +34,9 @@ _CUTS = np.geomspace(0.3, 1e-8, 40)  # weight below which states are left out
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """tolerance: K of temperature drop from FIRST s on. difference: K between sensor and object at the touch.
-    conductances: W/(m2 K) that occur. horizon: s of contact. opposite: W/(m2 K) of the second fingertip while the first
-    touches, None where it is the first's."""
+    """What a network is to be good for. tolerance: K of temperature drop from FIRST s on. difference: K between sensor
+    and object at the touch. conductances: W/(m2 K) that occur. horizon: s of contact. opposite: W/(m2 K) of the second
+    fingertip while the first touches, None where it is the first's."""
 
     tolerance: float
     difference: float
@@ -47,7 +47,7 @@ class Demand:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """system: the network. error: K, bound found for the demand it was chosen for."""
+    """A network that keeps a demand. system: the network. error: K, bound found for the demand it was chosen for."""
 
     system: ContactSystem
     error: float

@@ -68,8 +68,8 @@ class Orders:
 
 @dataclass(frozen=True, slots=True)
 class StateBasis:
-    """vectors: (K, R) orthonormal, the most excited first, after `still` states of rate 0. weights: (R,) their singular
-    values relative to the whole contact's largest."""
+    """The states of a body that a contact excites. vectors: (K, R) orthonormal, the most excited first, after `still`
+    states of rate 0. weights: (R,) their singular values relative to the whole contact's largest."""
 
     vectors: np.ndarray
     weights: np.ndarray

@@ -32,11 +32,12 @@ its heat is lost to rounding."""
 
 @dataclass(frozen=True, slots=True)
 class ContactSystem:
-    """rates: (K,) 1/s. ports: (K, M) sqrt(K/J): heat flow from sensor to object in, temperature of the object less the
-    sensor's out, above what each started from. Rows on the state: drop (F, K) K, element_heat (F, K) J, object_heat
-    (K,) J, sensor_surface and object_surface (F, K) K above the start. mean: index of the state that holds the
-    object's mean temperature (in O mode with the elements'). F = 1 or 2 fingertips. air_loss: (K,) W, where the rates
-    include the air's; reservoir: (K,) J above the start of a node that the object's walls feed, see FilledBody."""
+    """Fingertips and an object as one system of decaying states, joined by contacts. rates: (K,) 1/s. ports: (K, M)
+    sqrt(K/J): heat flow from sensor to object in, temperature of the object less the sensor's out, above what each
+    started from. Rows on the state: drop (F, K) K, element_heat (F, K) J, object_heat (K,) J, sensor_surface and
+    object_surface (F, K) K above the start. mean: index of the state that holds the object's mean temperature (in O
+    mode with the elements'). F = 1 or 2 fingertips. air_loss: (K,) W, where the rates include the air's; reservoir:
+    (K,) J above the start of a node that the object's walls feed, see FilledBody."""
 
     geometry: Geometry
     orders: Orders

@@ -24,7 +24,8 @@ _COSINES_FROM = 0.05  # tau / W^2 above which the cosine series is the shorter o
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """half_x, half_y: m, half widths of a rectangular cross-section, the patch in its middle."""
+    """A rectangular cross-section. half_x, half_y: m, half widths of a rectangular cross-section, the patch in its
+    middle."""
 
     half_x: float
     half_y: float
@@ -67,7 +68,7 @@ class Rectangle:
 
 @dataclass(frozen=True, slots=True)
 class Disc:
-    """radius: m of a round cross-section, the patch in its middle."""
+    """A round cross-section. radius: m of a round cross-section, the patch in its middle."""
 
     radius: float
 

@@ -70,10 +70,11 @@ class PressedMesh:
 
 
 class PressedView(NamedTuple):
-    """places: (2, PLACES) m of the pad's middle along the two axes across the direction, from where the face begins to
-    meet the mesh. touched: (FORCES, PLACES, PLACES, 7), m2 of the face in contact, its share of the force, m, the
-    length along the second axis of a rectangle of that area that is as long to broad as the contact, and the shares by
-    which it lies at an end of the face along both axes, and of the mesh (thermal/contact/patch_place.py)."""
+    """What a pad touches of a mesh along one direction. places: (2, PLACES) m of the pad's middle along the two axes
+    across the direction, from where the face begins to meet the mesh. touched: (FORCES, PLACES, PLACES, 7), m2 of the
+    face in contact, its share of the force, m, the length along the second axis of a rectangle of that area that is as
+    long to broad as the contact, and the shares by which it lies at an end of the face along both axes, and of the mesh
+    (thermal/contact/patch_place.py)."""
 
     places: np.ndarray
     touched: np.ndarray

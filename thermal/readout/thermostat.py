@@ -22,9 +22,9 @@ TOO_HOT = 70.0
 
 @dataclass(frozen=True, slots=True)
 class Thermostat:
-    """setpoint, ambient: °C. heat_capacity: J/K of the plate; inf is an ideal thermostat. power_limit: W of the
-    heater, which cannot cool. proportional: W/K, integral: W/(K s), derivative: W s/K, gains. sensor_lag: s, time
-    constant of the temperature sensor. loss: W/K to the air.
+    """The heater and controller behind a fingertip. setpoint, ambient: °C. heat_capacity: J/K of the plate; inf is an
+    ideal thermostat. power_limit: W of the heater, which cannot cool. proportional: W/K, integral: W/(K s), derivative:
+    W s/K, gains. sensor_lag: s, time constant of the temperature sensor. loss: W/K to the air.
 
     The defaults are estimates: an aluminium plate with a 5 W film heater, 10 W/(m2 K) on two free faces, a thermistor
     of 0.2 s, and gains for a closed loop of 1.9 rad/s with a damping ratio near 1.
@@ -79,8 +79,9 @@ def ideal_thermostat(setpoint: float = 36.0) -> Thermostat:
 
 @dataclass(frozen=True, slots=True)
 class ThermostatState:
-    """temperature, measured, previous: °C, of the plate, by its sensor, and by its sensor a step ago. integral: W, the
-    controller's integral part. power: W, the heater's over the last step. Arrays (B,)."""
+    """The state of many thermostats. temperature, measured, previous: °C, of the plate, by its sensor, and by its
+    sensor a step ago. integral: W, the controller's integral part. power: W, the heater's over the last step. Arrays
+    (B,)."""
 
     temperature: np.ndarray
     measured: np.ndarray

@@ -65,9 +65,9 @@ def layer_on_insulation(layer: Layer) -> Impedance:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """mode: "T" or "O". layers: the element's, thermostat side first. sensed: index of the one whose drop is measured.
-    face_area: m2, the element's cross-section. contact_resistance: K/W. object_impedance: at the object's surface,
-    m2 K/W. object_area: m2, the object's column."""
+    """Thermostat, element, contact and object in one dimension. mode: "T" or "O". layers: the element's, thermostat
+    side first. sensed: index of the one whose drop is measured. face_area: m2, the element's cross-section.
+    contact_resistance: K/W. object_impedance: at the object's surface, m2 K/W. object_area: m2, the object's column."""
 
     mode: str
     layers: tuple[Layer, ...]

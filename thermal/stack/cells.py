@@ -36,8 +36,8 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """capacity: (N,) J/(m2 K). links: (N - 1,) W/(m2 K) between neighbours. readout, heater: nodes. loss: W/(m2 K) to
-    the surroundings, at node `back`."""
+    """A stack as a chain of heat capacities and conductances, per area. capacity: (N,) J/(m2 K). links: (N - 1,) W/(m2
+    K) between neighbours. readout, heater: nodes. loss: W/(m2 K) to the surroundings, at node `back`."""
 
     capacity: np.ndarray
     links: np.ndarray

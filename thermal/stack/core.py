@@ -90,8 +90,8 @@ class HeatedCore:
 
 @dataclass(frozen=True, slots=True)
 class CoreState:
-    """nodes: (B, N) °C, the heater's place last. change: (B,) K, its last step's. reading: (B,) °C at the readout. The
-    others as in HeaterMemory."""
+    """The state of many heated sensors. nodes: (B, N) °C, the heater's place last. change: (B,) K, its last step's.
+    reading: (B,) °C at the readout. The others as in HeaterMemory."""
 
     nodes: np.ndarray
     change: np.ndarray

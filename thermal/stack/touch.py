@@ -59,9 +59,9 @@ class Touches:
 
 @dataclass(frozen=True, slots=True)
 class StackCurves:
-    """reading: (B, n) °C at the readout. recorded: (B, n) °C, as the recorder leaves it. flow: (B, n - 1) W/m2 into
-    what is touched, means of steps. power: (B, n - 1) W/m2 of the heater. gained: (B, 2) J/m2 in all by the stack
-    and by the sample."""
+    """Curves of a heated sensor that touches a sample. reading: (B, n) °C at the readout. recorded: (B, n) °C, as the
+    recorder leaves it. flow: (B, n - 1) W/m2 into what is touched, means of steps. power: (B, n - 1) W/m2 of the
+    heater. gained: (B, 2) J/m2 in all by the stack and by the sample."""
 
     reading: np.ndarray
     recorded: np.ndarray
