@@ -82,6 +82,7 @@ ROOMS = {
         "mechanics",
         "footprint",
         "sensing",
+        "readout",
         "spaces",
         "plant",
         "tasks",

@@ -53,7 +53,7 @@ from .randomization import (
 
 if TYPE_CHECKING:
     from ..footprint import Taxels
-    from ..sensing import FaceTemperature
+    from ..readout import FaceTemperature
 
 AUTO = "auto"
 """A skin where one is needed; see SimulationConfig."""
@@ -281,7 +281,7 @@ class SimulationConfig:
         """What maps the temperature over the sensors' faces."""
         if self.face_temperature is None:
             return None
-        from ..sensing import FaceTemperature  # nothing that it needs is loaded without it
+        from ..readout import FaceTemperature  # nothing that it needs is loaded without it
 
         return FaceTemperature(
             self.face_temperature, num_envs, stack, self.samples * SAMPLE_PERIOD, self.worn

@@ -20,23 +20,16 @@ from thermograsp.plant import Command, Reading
 from ..footprint import GraspBody
 from ..limits import SAMPLE_PERIOD
 from ..mechanics import Mechanics, MechanicsState, Motion
-from ..sensing import (
-    Electronics,
-    ElectronicsState,
-    GraspHeat,
-    HeatedCores,
-    HeatState,
-    HeatStep,
-    Thermostats,
-    start_compiling,
-)
+from ..readout import Electronics, ElectronicsState, HeatedCores, Thermostats
+from ..sensing import GraspHeat, HeatState, HeatStep, start_compiling
 from .config import SimulationConfig, check_fields
 from .layouts import EpisodeLabels, Layout, Scene, SceneLayout
 from .randomization import CAUSES, draw
 from .truth import INFO, Truth
 
 if TYPE_CHECKING:
-    from ..sensing import FaceTemperatureState, SceneHeatState, SceneHeatStep
+    from ..readout import FaceTemperatureState
+    from ..sensing import SceneHeatState, SceneHeatStep
 
 
 @dataclass(frozen=True, slots=True)

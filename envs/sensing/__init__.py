@@ -1,4 +1,4 @@
-"""What fingertips feel of their contacts: heat, thermostats and electronics of a batch."""
+"""Heat of a batch of grasps: from forces and places of every substep to the fingertips' temperature drops."""
 
 from typing import TYPE_CHECKING
 
@@ -7,28 +7,20 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from .ahead import start_compiling
     from .boxes import served_anywhere, served_in_the_middle
-    from .cores import HeatedCores
-    from .electronics import Electronics, ElectronicsState
-    from .face_temperature import FaceTemperature, FaceTemperatureState
     from .heat import GraspHeat, HeatState, HeatStep
-    from .rows import EVENTS
+    from .rows import EVENTS, NEW_PATCH, OVER_TEMPERATURE
     from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
-    from .thermostats import Thermostats
 
 __all__ = [
     "EVENTS",
-    "Electronics",
-    "ElectronicsState",
-    "FaceTemperature",
-    "FaceTemperatureState",
+    "NEW_PATCH",
+    "OVER_TEMPERATURE",
     "GraspHeat",
     "HeatState",
     "HeatStep",
-    "HeatedCores",
     "SceneHeat",
     "SceneHeatState",
     "SceneHeatStep",
-    "Thermostats",
     "served_anywhere",
     "served_in_the_middle",
     "start_compiling",

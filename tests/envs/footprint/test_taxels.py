@@ -353,7 +353,7 @@ def test_without_them_nothing_of_theirs_is_loaded_or_recorded() -> None:
         "seen, _ = env.reset(seed=0)\n"
         "env.step(np.zeros(3))\n"
         "names = ['footprint.taxels', 'spaces.map_observation', 'footprint.surface_height']\n"
-        "names += ['mechanics.pad_contacts', 'sensing.face_temperature']\n"
+        "names += ['mechanics.pad_contacts', 'readout.face_temperature']\n"
         "keys = {'pressure', 'face_temperature'} & set(seen)\n"
         "names = [f'thermograsp.envs.{name}' for name in names]\n"
         "names += [f'thermograsp.thermal.{name}' for name in ('batch.face', 'pressed')]\n"

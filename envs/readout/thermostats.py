@@ -19,7 +19,7 @@ from ...thermal import (
     thermostat_step,
 )
 from ...thermal.readout import thermostat_at
-from .rows import OVER_TEMPERATURE
+from ..sensing import OVER_TEMPERATURE
 
 _OFF = -273.15  # °C, a setpoint at which no heater works
 

@@ -37,8 +37,7 @@ from ...thermal.contact import (
 from ..footprint import PAD, GraspBody, Taxels, checked_taxels
 from ..limits import TIPS
 from ..mechanics import Mechanics
-from .heat import HeatStep
-from .rows import NEW_PATCH
+from ..sensing import NEW_PATCH, HeatStep
 
 PAD_POINTS = 40  # along the pad's side, on which the pressure is worked out: half a millimetre
 _LEAST_PRESSURE = 1e-3  # of a face's highest, below which a cell is apart
