@@ -15,11 +15,11 @@ from functools import lru_cache
 import numpy as np
 
 from ..matter import Material, SensorStack
+from ..numerics import output_row
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
 from .element import POLES, Element, element, element_samples
 from .exponentials import misfit, residues, states
-from .outputs import output_row
 from .patterns import GRAM
 from .samples import GRASP, OF_GRASP
 

@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..matter import Material, SensorStack
+from ..numerics import output_row
 from ..plates import Sampled
 from .box import BoxSamples, Patches, box_samples
 from .contact import Side, Tip, contact_weight
 from .coverage import touch_patterns
 from .element import Rectangle, element, element_samples
-from .outputs import output_row
 from .patterns import GRAM
 from .projection import states
 from .samples import MOMENTS

@@ -7,6 +7,7 @@ from .grid_contact import BOTTOM, OBJECT, SENSOR, TOP, Grid, Interface, Stage, r
 from .laplace import invert
 from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
+from .outputs import output_row
 from .passive_residues import free_residues, passive_residues, port_residues
 
 __all__ = [
@@ -34,6 +35,7 @@ __all__ = [
     "invert",
     "invert_many",
     "namespace_of",
+    "output_row",
     "passive_residues",
     "port_residues",
     "radial_axis",
