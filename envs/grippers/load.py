@@ -14,6 +14,7 @@ import numpy as np
 
 from thermograsp.errors import GripperError, InvalidValueError, length
 
+from ..limits import MAX_FORCE
 from .file import Source, compiled
 from .fingers import Pad, named_pair, of_one_hand, pairs
 from .found import ActuatorMap
@@ -28,7 +29,6 @@ _FOLLOWED = 5e-4  # m, by which the opening may be off for that
 _TRIED = 3  # pairs of fingers, the most promising ones
 _WORTH = 0.02  # m of travel that weigh as much as a unit of cost
 _FLAT = 0.2  # rad, by which a pad gives way (fit_fingertip)
-_MOST_FORCE = 40.0  # N
 
 
 def load_gripper(
@@ -125,7 +125,7 @@ def _described(name: str, hand: Hand, way: Closing, polynomials: dict[int, np.nd
                 coordinate.name, coordinate.unit, wide, narrow, rate, _limit(model, coordinate.number)
             )
         )
-    strongest = min([_MOST_FORCE, *(m.limit / abs(m.per_newton) for m in maps if abs(m.per_newton) > 1e-4)])
+    strongest = min([MAX_FORCE, *(m.limit / abs(m.per_newton) for m in maps if abs(m.per_newton) > 1e-4)])
     flat = way.openings[way.tilt < _FLAT]
     left, right = way.fingers
     return Gripper(

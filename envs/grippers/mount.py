@@ -17,7 +17,7 @@ import numpy as np
 
 from ...assets import asset
 from ...touch import rotation
-from ..limits import PAD_SIDE
+from ..limits import MAX_FORCE, MAX_OPENING, PAD_SIDE
 from .fingertip import add_fingertip
 from .hand import parts_of
 
@@ -287,8 +287,8 @@ def _add_drive(spec: mujoco.MjSpec, gripper: FoundGripper) -> None:
         biasprm=[0, -stiffness] + [0] * 8,
         actearly=True,
         ctrlrange=(-0.1, 0.1),
-        actrange=(-0.015, 0.085),
-        forcerange=(-40, 40),
+        actrange=(-0.015, MAX_OPENING),
+        forcerange=(-MAX_FORCE, MAX_FORCE),
     )
 
 

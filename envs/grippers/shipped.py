@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from ...assets import asset
+from ..limits import MAX_FORCE, MAX_OPENING
 
 if TYPE_CHECKING:
     from ..bodies import ObjectSpec
@@ -55,8 +56,8 @@ class ShippedGripper:
     """Two fingers that slide along x."""
 
     joints = ("finger_left", "finger_right")
-    widest = 0.085
-    strongest = 40.0
+    widest = MAX_OPENING
+    strongest = MAX_FORCE
 
     def scene(self) -> mujoco.MjSpec:
         """See GripperModel."""

@@ -7,7 +7,6 @@ import argparse
 from thermograsp.cli.shared import add_service, serve
 
 HELP = "Emulate a Robotiq 2F-85 with or without an object between its fingers, on a pseudo-terminal."
-_STROKE = 0.085
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,10 +21,10 @@ def run(args: argparse.Namespace) -> int:
     """Serves until the end of the time or an interrupt."""
     import numpy as np
 
-    from thermograsp.hardware import EmulatedGripper, PtyDevice, SpringFingers
+    from thermograsp.hardware import EmulatedGripper, PtyDevice, RobotiqUnits, SpringFingers
     from thermograsp.hardware.emulators import plan_gripper_fault
 
-    fingers = SpringFingers(_STROKE, args.width, args.stiffness)
+    fingers = SpringFingers(RobotiqUnits().stroke, args.width, args.stiffness)
     device = EmulatedGripper(fingers=fingers, rng=np.random.default_rng(args.seed))
     for text in args.fault:
         plan_gripper_fault(device, text)
