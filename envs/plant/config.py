@@ -73,7 +73,7 @@ class SimulationConfig:
     and degree; the object lies within +- these of its own place, drawn per episode. randomize: what else differs from
     episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one). anywhere:
     heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; without, each patch
-    is the middle of a face. gripper: an MJCF file, an MjSpec or what load_gripper makes of them, None for the shipped
+    is the middle of a face. gripper: an MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None for the shipped
     one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of
     10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a
     name of thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose material is
@@ -386,9 +386,11 @@ class SimulationConfig:
         take."""
         if self.gripper is None:
             return SHIPPED_GRIPPER
-        from ..grippers import load_gripper  # nothing that another gripper needs is loaded without one
+        gripper = self.gripper
+        if not hasattr(gripper, "wrist_at"):  # no GripperModel: a file or a spec
+            from ..grippers import load_gripper  # nothing that another gripper needs is loaded without one
 
-        gripper = load_gripper(self.gripper)
+            gripper = load_gripper(gripper)
         for body in bodies:
             gripper.wrist_at(body.spec)
         return gripper
