@@ -73,13 +73,13 @@ class SimulationConfig:
     and degree; the object lies within +- these of its own place, drawn per episode. randomize: what else differs from
     episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one). anywhere:
     heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; without, each patch
-    is the middle of a face. gripper: an MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None for the shipped
-    one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of
-    10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a
-    name of thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose material is
-    `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n, m) of the
-    map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each sensor's
-    face (T mode), None for none."""
+    is the middle of a face. gripper: an MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None
+    for the shipped one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a
+    whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the
+    fingertips, a name of thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose
+    material is `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n,
+    m) of the map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each
+    sensor's face (T mode), None for none."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"

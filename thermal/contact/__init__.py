@@ -19,34 +19,34 @@ from .curved_table import (
 )
 from .fingertip import face_joint, skinned, touching
 from .footprint import (
-    FOOTPRINT_LAW,
-    TABLE_FORCES,
-    bare_footprint,
-    bared,
+    LOG_LEAST,
+    LOG_MOST,
+    SEPARATION,
+    conductance,
     conduction,
-    cylinder_footprint,
-    flat_footprint,
+    contact,
+    flat_patch,
     footprint,
     gas_conduction,
-    round_footprint,
-    sphere_footprint,
-    table_footprint,
+    solid_conduction,
 )
 from .gas_beside import beside_ball, beside_strip
 from .law import (
     CONTACT_LAW,
     CYLINDER,
     FLAT,
-    LOG_LEAST,
-    LOG_MOST,
-    SEPARATION,
-    conductance,
-    contact,
+    FOOTPRINT_LAW,
+    TABLE_FORCES,
+    bare_footprint,
+    bared,
+    cylinder_footprint,
     cylinder_law,
+    flat_footprint,
     flat_law,
-    flat_patch,
-    solid_conduction,
+    round_footprint,
+    sphere_footprint,
     sphere_law,
+    table_footprint,
 )
 from .patch_place import NARROW, patch_ends, patch_offset
 from .rigid import RigidContact, rigid_cylinder, rigid_sphere

@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics import HIGH, LOW, Array, as_like, namespace_of
-from .law import CYLINDER, LOG_LEAST, LOG_MOST, SEPARATION
+from .footprint import LOG_LEAST, LOG_MOST, SEPARATION
+from .law import CYLINDER
 from .patch_place import NARROW, array_patch_ends, array_patch_offset
 
 _COEFFICIENTS = tuple(SEPARATION[::-1].tolist())  # highest power first, as numbers that compilers can see

@@ -22,8 +22,7 @@ from ..matter import Material, Skin
 from ..numerics import Array, as_integers, namespace_of
 from .area import Pad
 from .fingertip import touching
-from .footprint import round_footprint
-from .law import CYLINDER
+from .law import CYLINDER, round_footprint
 from .patch_place import patch_ends, patch_offset
 from .rough_faces import Surface
 from .spread import beneath, even_contact

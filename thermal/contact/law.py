@@ -1,31 +1,26 @@
-"""Area and conductance of a fingertip's contact as one compiled function of the normal force, for many rows at once.
+"""Laws of contact: records of the numbers on which area and conductance of a fingertip's contact depend.
 
-The laws are those of area.py and rough_faces.py, which stay the reference: a row holds one object's numbers, and
-`contact` evaluates them in the order of their formulas, to 1e-9. Rows never mix.
-"""
+A CONTACT_LAW holds the numbers of the two faces and of a flat object; area.py and rough_faces.py stay the reference,
+which it follows to 1e-9. A FOOTPRINT_LAW also holds those that follow a pad anywhere on the object: boxes, cylinders
+and spheres by closed forms (area.py), other bodies by a table over the force. footprint.py evaluates both."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from thermograsp.compiled import njit
+from thermograsp.errors import InvalidValueError, positive
 
-from ..numerics import (
-    FARTHEST,
-    FAST,
-    HIGH,
-    LOW,
-    NEAREST,
-    SERIES,
-)
-from .area import Pad, flat_contact
-from .patch_place import NARROW, patch_ends, patch_offset
-from .rough_faces import Joint, solid_conductance
+from ..matter import Skin
+from .area import ContactArea, Pad, flat_contact
+from .fingertip import face_joint, skinned
+from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductance, joint, solid_conductance
 
-FLAT, CYLINDER, SPHERE = range(3)
+FLAT, CYLINDER, SPHERE, TABLE = range(4)
+TABLE_FORCES = 0.01 * 3.0 ** np.arange(9)
+"""N on the pad, (9,), at which a table is given."""
+_ENDLESS = 80.0  # logarithm of W/(m2 K) or of Pa that nothing reaches, finite in 32 bits too
 
 CONTACT_LAW = np.dtype(
     [
@@ -61,11 +56,24 @@ CONTACT_LAW = np.dtype(
 )
 """Of a row, what the conductance of a contact depends on besides force; flat_law and its like make one."""
 
-# Mean planes' distance over roughness, sqrt(2) erfc^-1(x), in powers of where sqrt(-log x) is between LOW and HIGH; the
-# series' first terms, good to 1e-11.
-LOG_LEAST, LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
-SEPARATION = math.sqrt(2) * np.polynomial.chebyshev.cheb2poly(SERIES[:13])
-_ENDLESS = 80.0  # logarithm of W/(m2 K) or of Pa that nothing reaches, finite in 32 bits too
+FOOTPRINT_LAW = np.dtype(
+    [
+        # m of a cylinder
+        ("length", "f8"),
+        # of curved bodies: radius m, gap m of faces that touch without force, the temperature jump with it
+        ("radius", "f8"),
+        ("mean_gap", "f8"),
+        # on a bare face: Hertz's modulus Pa, 0 on springs; m K/W, a disc's constriction times its radius
+        ("modulus", "f8"),
+        ("constriction", "f8"),
+        # at TABLE_FORCES: m2 of the face in contact, its share of the force
+        ("areas", "f8", TABLE_FORCES.shape),
+        ("shares", "f8", TABLE_FORCES.shape),
+        # last: numba takes a record that begins as another does for one of that kind
+        *CONTACT_LAW.descr,
+    ]
+)
+"""Of a row, what area and conductance of a contact depend on besides force and place."""
 
 
 def flat_law(
@@ -118,89 +126,86 @@ def _law(pad: Pad, joint: Joint, **numbers: float) -> np.void:
     return law[0]
 
 
-@njit(cache=True, inner=True, error_model="numpy")
-def _overlap(law, place):
-    """(area m2 on the face, its share of the force) of a flat object. place: see contact."""
-    if law.size[0] == 0:
-        return law.area, law.share
-    on_pad, on_face = 1.0, 1.0
-    for side in range(2):
-        axis = law.across[side]
-        offset, half = abs(place[axis]), law.size[side] / 2
-        on_pad *= max(min(law.half_pad, half - offset) + min(law.half_pad, half + offset), 0.0)
-        on_face *= max(min(law.half_face, half - offset) + min(law.half_face, half + offset), 0.0)
-    bearing = on_pad + (law.ratio - 1.0) * on_face
-    return on_face, law.ratio * on_face / bearing if on_pad > 0 else 0.0
+def flat_footprint(
+    pad: Pad, joint: Joint, size: tuple[float, float], across: tuple[int, int] | None = None
+) -> np.void:
+    """The law of a flat object; see flat_law."""
+    return _followed(flat_law(pad, joint, size, across))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def contact(law, force, place):
-    """(area m2 on the face, its force N) of a flat object at a normal force N > 0 on the pad; not numbers of others,
-    which footprints and tables know. place: (3,) m, the pad's middle from the object's in the object's frame, which
-    laws of a fixed place leave aside."""
-    if law.shape != FLAT:
-        return math.nan, math.nan
-    area, share = _overlap(law, place)
-    return area, force * share
+def cylinder_footprint(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
+    """The law of a cylinder along z of that radius and length m; see area.cylinder_contact."""
+    beside = {"radius": radius, "mean_gap": _mean_gap(joint)}
+    return _followed(cylinder_law(pad, joint, radius, length), length=length, **beside)
 
 
-@njit(cache=True, error_model="numpy")
-def flat_patch(law, area, place, shares):
-    """m, the second side of a flat contact of that area m2 on the face; fills shares (4,) by which it lies at an end of
-    the face along both sides, and at an end of the object (patch_place.py). place: as contact's."""
-    width = 2 * law.half_face
-    for side in range(4):
-        shares[side] = 0.0
-    if law.size[0] == 0 or area >= width * width * NARROW:
-        return math.sqrt(area)
-    length = 0.0
-    for side in range(2):
-        pad, size = place[law.across[side]], law.size[side]
-        low, high = max(-law.half_face, -pad - size / 2), min(law.half_face, size / 2 - pad)
-        length = high - low
-        shares[side] = patch_offset((low + high) / 2, length, width)
-        shares[2 + side] = patch_ends(pad + (low + high) / 2, pad, length, size, width)
-    return length
+def sphere_footprint(pad: Pad, joint: Joint, radius: float) -> np.void:
+    """The law of a sphere of that radius m; see area.sphere_contact."""
+    return _followed(sphere_law(pad, joint, radius), radius=radius, mean_gap=_mean_gap(joint))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def conductance(law, pressure):
-    """W/(m2 K) at a pressure Pa > 0, solid spots and gas together."""
-    log_pressure = math.log(pressure)
-    solid = math.exp(min(law.spot_scale + law.spot_power * log_pressure, law.spot_most))
-    share, separation = law.elastic_share, 0.0
-    if share < 1.0:
-        separation += (1 - share) * _separation(log_pressure + math.log(2.0) - law.log_hardness)
-    if share > 0.0:
-        separation += share * _separation(log_pressure + math.log(4.0) - law.log_elastic_hardness)
-    gap = law.roughness * separation + law.jump
-    if law.flatness > 0.0:
-        return solid + law.gas / law.flatness * math.log1p(law.flatness / gap)
-    return solid + law.gas / gap
+def bare_footprint(
+    pad: Pad,
+    body: Surface,
+    radius: float,
+    length: float | None = None,
+    *,
+    face: Surface = LAPPED_ALUMINA,
+    gas: Gas | None = AIR,
+) -> np.void:
+    """The law of a cylinder of that radius and length m, or of a sphere, on a rigid face that wears no skin. Faces with
+    a skin yield: sphere_footprint and cylinder_footprint are theirs, with a pad of the skin's springs.
+
+    gas: None for vacuum. A network's patch is the whole face, as heat passes gas all over it, and a disc's constriction
+    counts down to it. Raises InvalidValueError for a size that is none."""
+    pad, pair = bared(pad, face), joint(face, body, gas, full_contact=True)
+    if length is not None:
+        law = cylinder_footprint(pad, pair, positive("radius (m)", radius), positive("length (m)", length))
+    else:
+        law = sphere_footprint(pad, pair, positive("radius (m)", radius))
+        law["constriction"] = (1 / face.conductivity + 1 / body.conductivity) / 4
+    law["modulus"] = 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in (face, body))
+    return law
 
 
-@njit(cache=True, error_model="numpy")
-def solid_conduction(law, area, load):
-    """W/K of an area m2 of the face under a force N on it; law: a FOOTPRINT_LAW.
+def bared(pad: Pad, face: Surface = LAPPED_ALUMINA) -> Pad:
+    """The pad with springs on the sensor's face as stiff as a column of it, as deep as the pad: a rigid face."""
+    return replace(pad, face_stiffness=face.youngs_modulus / pad.thickness)
 
-    Conductance is that of the mean pressure. Under a curved body pressure varies, and the sum over places is within
-    2.5 % of this, as the spots conduct nearly in proportion to pressure and the gas nearly without it."""
-    if area <= 0.0:
+
+def round_footprint(
+    pad: Pad, skin: Skin | None, body: Surface, radius: float, length: float | None = None
+) -> np.void:
+    """The law of a fingertip on a ball of that radius m, or on a cylinder of that length m. pad: its silicone; skin:
+    over it, None for a bare face, which is rigid. Raises InvalidValueError for sizes that are none."""
+    if skin is None:
+        return bare_footprint(pad, body, radius, length)
+    sheet, faces = skinned(pad, skin), face_joint(skin, body)
+    if length is None:
+        return sphere_footprint(sheet, faces, radius)
+    return cylinder_footprint(sheet, faces, radius, length)
+
+
+def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:
+    """The law of a body whose contact at TABLE_FORCES is known, (9,) each. Raises InvalidValueError for others."""
+    if contact.face.shape != TABLE_FORCES.shape:
+        raise InvalidValueError(f"a table needs {len(TABLE_FORCES)} forces, got {contact.face.shape}")
+    law = _followed(flat_law(pad, joint, (pad.width, pad.width)), areas=contact.face)
+    law["shape"], law["shares"] = TABLE, contact.face_force / TABLE_FORCES
+    return law
+
+
+def _mean_gap(joint: Joint) -> float:
+    """m of gas between faces that touch without force, the temperature jump with it; 0 in vacuum."""
+    if not joint.gas_conductivity:
         return 0.0
-    conducts = conductance(law, load / area) * area
-    if law.constriction > 0.0:
-        more = math.sqrt(math.pi / area) - 0.5 * math.sqrt(math.pi) / law.half_face
-        if more > 0.0:
-            gas = law.gas / law.mean_gap * area if law.mean_gap > 0.0 else 0.0  # between faces without force
-            conducts = gas + (conducts - gas) / (1.0 + (conducts - gas) * law.constriction * more)
-    return conducts
+    return float(joint.gas_conductivity) / float(gas_conductance(replace(joint, flatness=0.0), 0.0))
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _separation(log_share):
-    y = math.sqrt(-min(max(log_share, LOG_LEAST), LOG_MOST))
-    z = (2 * y - LOW - HIGH) / (HIGH - LOW)
-    total = 0.0
-    for i in range(len(SEPARATION) - 1, -1, -1):
-        total = total * z + SEPARATION[i]
-    return total
+def _followed(law: np.void, **numbers: float | np.ndarray) -> np.void:
+    record = np.zeros(1, FOOTPRINT_LAW)
+    for name in law.dtype.names or ():
+        record[name] = law[name]
+    for name, value in numbers.items():
+        record[name] = value
+    return record[0]

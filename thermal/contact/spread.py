@@ -20,8 +20,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material
-from .footprint import beside, touched
-from .law import solid_conduction
+from .footprint import beside, solid_conduction, touched
 from .rough_faces import LAPPED_ALUMINA, Surface
 
 _DEEPEST, _SECONDS = 0.8e-3, 1.0  # m, s, see above

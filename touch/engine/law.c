@@ -1,4 +1,4 @@
-/* Area and conductance of a pad's contact by its force, as thermal/contact/law.py for what is flat. */
+/* Area and conductance of a pad's contact by its force, as thermal/contact/footprint.py for what is flat. */
 
 #include <math.h>
 

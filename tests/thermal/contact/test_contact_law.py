@@ -20,7 +20,7 @@ from thermograsp.thermal import (
     materials,
     sphere_law,
 )
-from thermograsp.thermal.contact.law import conductance, contact
+from thermograsp.thermal.contact.footprint import conductance, contact
 
 FORCES = np.logspace(-6, 3.5, 200)
 PAD = Pad()
