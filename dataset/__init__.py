@@ -7,18 +7,23 @@
 docs/datasets.md lists the columns.
 """
 
-from thermograsp.dataset.keywords import decoded
-from thermograsp.dataset.lerobot_export import export_lerobot
-from thermograsp.dataset.minari_export import export_minari
-from thermograsp.dataset.plan import Plan, Shard
-from thermograsp.dataset.reading import iterate, load
-from thermograsp.dataset.run import Made, make
-from thermograsp.dataset.shards import read_plan
+from typing import TYPE_CHECKING
+
+from thermograsp.doors import opened
+
+if TYPE_CHECKING:
+    from thermograsp.dataset.keywords import decoded
+    from thermograsp.dataset.lerobot_export import export_lerobot
+    from thermograsp.dataset.minari_export import export_minari
+    from thermograsp.dataset.plan import Plan, Shard
+    from thermograsp.dataset.reading import iterate, load
+    from thermograsp.dataset.run import ShardCounts, make
+    from thermograsp.dataset.shards import read_plan
 
 __all__ = [
-    "Made",
     "Plan",
     "Shard",
+    "ShardCounts",
     "decoded",
     "export_lerobot",
     "export_minari",
@@ -27,3 +32,5 @@ __all__ = [
     "make",
     "read_plan",
 ]
+
+__getattr__ = opened(__name__, renamed={"Made": "ShardCounts"})  # until 0.3

@@ -31,7 +31,7 @@ def silent(total: float) -> Iterator[Advance]:
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class ShardCounts:
     """The number of all shards, and of those that were complete before this run."""
 
     shards: int
@@ -44,7 +44,7 @@ def make(
     workers: int = 0,
     address: str | None = None,
     progress: Callable[[float], AbstractContextManager[Advance]] = silent,
-) -> Made:
+) -> ShardCounts:
     """Writes the shards that the folder lacks. The files are the same, byte for byte, however many workers there are
     and however often it was stopped, by machines of one kind (processor, package versions).
 
@@ -68,7 +68,7 @@ def make(
                 for shard, content in made:  # workers end with it, whatever happens here
                     store(folder, shard, content)
     tidy(folder, plan)
-    return Made(len(plan.shards), len(plan.shards) - len(todo))
+    return ShardCounts(len(plan.shards), len(plan.shards) - len(todo))
 
 
 def _produced(

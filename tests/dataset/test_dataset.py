@@ -51,7 +51,7 @@ PLAN = dataset.Plan(episodes=7, seed=8, shard_size=3, materials=MATERIALS)
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("dataset") / "grasps"
-    assert dataset.make(PLAN, made) == dataset.Made(shards=3, found=0)
+    assert dataset.make(PLAN, made) == dataset.ShardCounts(shards=3, found=0)
     return made
 
 
@@ -152,11 +152,11 @@ def test_lost_and_broken_files_are_made_again_and_no_others(folder: Path, tmp_pa
     (tmp_path / shards[1]).write_bytes(whole[shards[1]][:-100])  # cut short
     (tmp_path / ".left.parquet").write_bytes(b"of a killed run")
     kept = (tmp_path / shards[2]).stat().st_mtime_ns
-    assert dataset.make(PLAN, tmp_path) == dataset.Made(shards=3, found=1)
+    assert dataset.make(PLAN, tmp_path) == dataset.ShardCounts(shards=3, found=1)
     (tmp_path / ".left.parquet").unlink()
     assert contents(tmp_path) == whole and (tmp_path / shards[2]).stat().st_mtime_ns == kept
     (tmp_path / shards[0]).write_bytes(whole[shards[1]])  # another's seeds
-    assert dataset.make(PLAN, tmp_path) == dataset.Made(shards=3, found=2)
+    assert dataset.make(PLAN, tmp_path) == dataset.ShardCounts(shards=3, found=2)
     assert contents(tmp_path) == whole
 
 
@@ -224,7 +224,7 @@ def test_a_dataset_grows_to_what_one_run_makes(folder: Path, tmp_path: Path) -> 
     plan = dataclasses.replace(PLAN, episodes=4)
     dataset.make(plan, small)
     assert len(list(small.glob("*.parquet"))) == 2
-    assert dataset.make(PLAN, small) == dataset.Made(shards=3, found=1)
+    assert dataset.make(PLAN, small) == dataset.ShardCounts(shards=3, found=1)
     assert contents(small) == contents(folder)
 
 
@@ -237,7 +237,7 @@ def test_an_upgrade_with_the_same_sources_goes_on(
     monkeypatch.setattr("thermograsp.__version__", "99.0")
     after = dataclasses.replace(PLAN, versions=installed_versions())
     assert after.versions["thermograsp"] == "99.0"
-    assert dataset.make(after, tmp_path) == dataset.Made(shards=3, found=2)
+    assert dataset.make(after, tmp_path) == dataset.ShardCounts(shards=3, found=2)
     assert contents(tmp_path) == whole
 
 
@@ -260,7 +260,9 @@ def test_processes_of_this_machine_make_the_same_files(folder: Path, tmp_path: P
         assert total == PLAN.episodes
         yield lambda doing, by: done.append(by)
 
-    assert dataset.make(PLAN, tmp_path, workers=2, progress=watching) == dataset.Made(shards=3, found=0)
+    assert dataset.make(PLAN, tmp_path, workers=2, progress=watching) == dataset.ShardCounts(
+        shards=3, found=0
+    )
     assert contents(tmp_path) == contents(folder)
     assert done == [1] * PLAN.episodes  # it moves with every episode
 
@@ -349,7 +351,7 @@ def test_a_disk_that_fills_up_loses_nothing_that_was_whole(
     assert not multiprocessing.active_children()
     left = contents(tmp_path)
     assert len(left) == 2 and left.items() <= whole.items()
-    assert dataset.make(PLAN, tmp_path, workers=workers) == dataset.Made(shards=3, found=1)
+    assert dataset.make(PLAN, tmp_path, workers=workers) == dataset.ShardCounts(shards=3, found=1)
     assert contents(tmp_path) == whole
 
 

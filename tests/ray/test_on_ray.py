@@ -96,7 +96,7 @@ def test_a_node_that_dies_loses_and_doubles_nothing(
                 nodes.append(len([one for one in ray.nodes() if one["Alive"]]))
 
     made = dataset.make(PLAN, tmp_path, workers=2, address=cluster.address, progress=Killing)
-    assert made == dataset.Made(shards=10, found=0)
+    assert made == dataset.ShardCounts(shards=10, found=0)
     assert nodes == [2, 1] and done == [10]
     assert contents(tmp_path) == plain
     reference = tmp_path / "reference"

@@ -17,6 +17,7 @@ import pytest
 import thermograsp  # noqa: F401  registers the environments
 from thermograsp.assets import asset
 from thermograsp.envs import (
+    GraspEnv,
     Gripper,
     Mechanics,
     ObjectSpec,
@@ -405,3 +406,14 @@ def test_the_shipped_gripper_answers_as_its_file_says():
     places, values = SHIPPED_GRIPPER.rest(model, 0.05)
     assert values.sum() == pytest.approx(0.05)
     assert list(places) == [model.joint(name).qposadr[0] for name in SHIPPED_GRIPPER.joints]
+
+
+def test_an_object_with_the_methods_of_a_model_is_the_gripper():
+    own, shipped = GraspEnv(gripper=SHIPPED_GRIPPER, material="glass"), GraspEnv(material="glass")
+    own.reset(seed=0)
+    shipped.reset(seed=0)
+    for _ in range(30):
+        found, expected = (env.step(action_of(0.0, 10.0, 0.0))[0] for env in (own, shipped))
+        assert all(np.array_equal(found[name], expected[name]) for name in expected)
+    with pytest.raises(GripperError, match="give an MJCF file"):
+        GraspEnv(gripper=object())
