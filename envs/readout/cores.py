@@ -6,11 +6,11 @@ B: environments, F = 2 fingertips, N: samples of a control step.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 
 import numpy as np
 
-from ...thermal.stack import CoreState, HeatedStack, heated_core
+from ...thermal.stack import HeatedStack, heated_core
+from .states import arrays_of, copied, fingertip_rows
 
 
 class HeatedCores:
@@ -28,14 +28,14 @@ class HeatedCores:
         self.setpoints = np.tile(starts, (num_envs, 1))
         self._divider, self._room = sensor.divider, room
         self._core = heated_core(sensor, dt)
-        self._state = _written(self._core.settled(self.setpoints.ravel(), room))
+        self._state = copied(self._core.settled(self.setpoints.ravel(), room))
         self._warm = self.setpoints.copy()
 
     def reset(self, rows: Sequence[int]) -> None:
         """The rows' have been as warm as at the start for long."""
-        both = _fingertips(rows).ravel()
+        both = fingertip_rows(rows).ravel()
         settled = self._core.settled(self.setpoints.ravel(), self._room)
-        for kept, new in zip(_arrays(self._state), _arrays(settled), strict=True):
+        for kept, new in zip(arrays_of(self._state), arrays_of(settled), strict=True):
             kept[both] = new[both]
         self._warm[list(rows)] = self.setpoints[list(rows)]
 
@@ -46,7 +46,7 @@ class HeatedCores:
         off = first - self.setpoints
         self._warm = self._state.temperature.reshape(-1, 2) + off
         state = self._core.step(self._state, drawn.ravel(), drop.ravel(), force.ravel(), self._room)
-        self._state = _written(state)
+        self._state = copied(state)
         return self._state.temperature.reshape(-1, 2) + off
 
     def voltage(self, drop: np.ndarray) -> np.ndarray:
@@ -65,23 +65,10 @@ class HeatedCores:
 
     def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:
         """A copy of what the rows remember."""
-        return (self._warm[list(rows)], *(array[_fingertips(rows)] for array in _arrays(self._state)))
+        return (self._warm[list(rows)], *(array[fingertip_rows(rows)] for array in arrays_of(self._state)))
 
     def set_state(self, rows: Sequence[int], state: tuple[np.ndarray, ...]) -> None:
         """Puts the rows into a state taken by `state`."""
         self._warm[list(rows)], *arrays = state
-        for kept, new in zip(_arrays(self._state), arrays, strict=True):
-            kept[_fingertips(rows)] = new
-
-
-def _fingertips(rows: Sequence[int]) -> np.ndarray:
-    return np.array([[2 * row, 2 * row + 1] for row in rows], int)
-
-
-def _arrays(state: CoreState) -> list[np.ndarray]:
-    return [getattr(state, field.name) for field in fields(state)]
-
-
-def _written(state: CoreState) -> CoreState:
-    """The same with an array of its own in every field, to be written to."""
-    return CoreState(*(array.copy() for array in _arrays(state)))
+        for kept, new in zip(arrays_of(self._state), arrays, strict=True):
+            kept[fingertip_rows(rows)] = new

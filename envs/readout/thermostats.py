@@ -6,7 +6,7 @@ B: environments, F = 2 fingertips.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from ...thermal import (
 )
 from ...thermal.readout import thermostat_at
 from ..sensing import OVER_TEMPERATURE
+from .states import arrays_of, copied, fingertip_rows
 
 _OFF = -273.15  # °C, a setpoint at which no heater works
 
@@ -46,15 +47,15 @@ class Thermostats:
         self._hot = np.zeros(num_envs, bool)
         self._tripped = np.zeros((num_envs, 2), bool)
         if self._model is not None:
-            self._state = _distinct(settled_thermostat(self._model, 2 * num_envs))
+            self._state = copied(settled_thermostat(self._model, 2 * num_envs))
 
     def reset(self, rows: Sequence[int]) -> None:
         """The rows' have been at their setpoint for long."""
         self._hot[list(rows)] = False
         if self._model is not None:
-            both = _fingertips(rows).ravel()
+            both = fingertip_rows(rows).ravel()
             settled = settled_thermostat(self._model, self.setpoints.size)
-            for kept, new in zip(_arrays(self._state), _arrays(settled), strict=True):
+            for kept, new in zip(arrays_of(self._state), arrays_of(settled), strict=True):
                 kept[both] = new[both]
 
     @property
@@ -71,9 +72,9 @@ class Thermostats:
         after = thermostat_step(self._model, before, drawn.ravel(), self._dt)
         if off.any():
             idle = thermostat_step(replace(self._model, setpoint=_OFF), before, drawn.ravel(), self._dt)
-            both = zip(_arrays(idle), _arrays(after), strict=True)
+            both = zip(arrays_of(idle), arrays_of(after), strict=True)
             after = ThermostatState(*(np.where(off, a, b) for a, b in both))
-        self._state = _distinct(after)
+        self._state = copied(after)
         too_hot = self._state.measured.reshape(-1, 2) >= TOO_HOT
         self._tripped = too_hot & ~self._hot[:, None]
         self._hot = self._hot | too_hot.any(axis=1)
@@ -95,26 +96,13 @@ class Thermostats:
 
     def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:
         """A copy of what the rows remember."""
-        return (self._hot[list(rows)], *(array[_fingertips(rows)] for array in self._remembered()))
+        return (self._hot[list(rows)], *(array[fingertip_rows(rows)] for array in self._remembered()))
 
     def set_state(self, rows: Sequence[int], state: tuple[np.ndarray, ...]) -> None:
         """Puts the rows into a state taken by `state`."""
         self._hot[list(rows)], *arrays = state
         for kept, new in zip(self._remembered(), arrays, strict=True):
-            kept[_fingertips(rows)] = new
+            kept[fingertip_rows(rows)] = new
 
     def _remembered(self) -> list[np.ndarray]:
-        return [] if self._model is None else _arrays(self._state)
-
-
-def _fingertips(rows: Sequence[int]) -> np.ndarray:
-    return np.array([[2 * row, 2 * row + 1] for row in rows], int)
-
-
-def _arrays(state: ThermostatState) -> list[np.ndarray]:
-    return [getattr(state, field.name) for field in fields(state)]
-
-
-def _distinct(state: ThermostatState) -> ThermostatState:
-    """The same with an array of its own in every field, to be written to."""
-    return ThermostatState(*(array.copy() for array in _arrays(state)))
+        return [] if self._model is None else arrays_of(self._state)
