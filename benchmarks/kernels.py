@@ -37,7 +37,7 @@ def drawn(rng: np.random.Generator) -> Geometry:
 
 
 def errors(geometry: Geometry) -> list[float]:
-    """Of each level, a share of the first difference."""
+    """The error of each level, a share of the first difference."""
     demand = Demand(1.0, 1.0)
     full = responses(assemble(geometry, sample_geometry(geometry).networks(MOST_MODES)), demand)
     return [

@@ -273,7 +273,7 @@ class _CallTypes:
 
     def __init__(self, search: Any) -> None:
         self._search = search
-        self._found: dict[Any, Any] = {}
+        self._remembered: dict[Any, Any] = {}
 
     def __get__(self, function: Any, kind: Any) -> Any:
         return self if function is None else functools.partial(self, function)
@@ -282,10 +282,10 @@ class _CallTypes:
         if kws or any(type(one) not in _PLAIN for one in args):
             return self._search(function, context, args, kws)
         key = function, context, args
-        if (known := self._found.get(key)) is None:
+        if (known := self._remembered.get(key)) is None:
             known = self._search(function, context, args, kws)
             if function._impl_keys[known.args] is function.typing_key:
-                self._found[key] = known
+                self._remembered[key] = known
         else:
             function._impl_keys[known.args] = function.typing_key
         return known

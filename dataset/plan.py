@@ -45,7 +45,7 @@ class Shard:
 
     @property
     def file(self) -> str:
-        """Its file's name, from the seeds alone; names sort as seeds do."""
+        """The shard's file name, from the seeds alone; names sort as seeds do."""
         return f"seeds-{self.first:012d}-{self.first + self.count - 1:012d}.parquet"
 
 

@@ -171,8 +171,8 @@ class FixedTouch:
         return FixedTouchState(heat, narrow, SignalState(filtered, last), voltage, made_of, first)
 
     def contacts(self, record: Array) -> TouchContacts:
-        """Of recorded sensordata (B, H, sensordata), or (B, sensordata) of one substep, of a model that touch.prepare
-        has made. Raises InvalidValueError for another model or shape."""
+        """The contacts of recorded sensordata (B, H, sensordata), or (B, sensordata) of one substep, of a model that
+        touch.prepare has made. Raises InvalidValueError for another model or shape."""
         places = self.record
         if places is None:
             raise InvalidValueError(

@@ -117,7 +117,7 @@ class ThermalTouch:
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
         self._ambient = ambient
-        self._made_with = {
+        self._identity = {
             "fingertips": self.fingertips,
             "objects": self.objects,
             "elements": self.elements,
@@ -174,22 +174,23 @@ class ThermalTouch:
 
     @property
     def fingertips(self) -> tuple[str, ...]:
-        """Their labels, in the order of a reading's rows."""
+        """The fingertips' labels, in the order of a reading's rows."""
         return tuple(pad.label for pad in self._pads)
 
     @property
     def objects(self) -> tuple[str, ...]:
-        """Their names."""
+        """The objects' names."""
         return tuple(shape.name for shape in self._shapes)
 
     @property
     def elements(self) -> tuple[str, ...]:
-        """Those that are glued on objects, "OBJECT:NUMBER", in the order of a reading's rows of elements."""
+        """The labels of elements that are glued on objects, "OBJECT:NUMBER", in the order of a reading's rows of
+        elements."""
         return tuple(element.label for element in self._glued)
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The one it was made for."""
+        """The model that it was made for."""
         return self._model
 
     @property
@@ -200,7 +201,7 @@ class ThermalTouch:
 
     @property
     def reading(self) -> TouchReading:
-        """The last one."""
+        """The last reading."""
         return self._reading
 
     def update(self, data: mujoco.MjData | np.ndarray) -> TouchReading:
@@ -239,11 +240,11 @@ class ThermalTouch:
         worlds: Sequence[int] | np.ndarray | None = None,
         objects: Objects | None = None,
     ) -> TouchReading:
-        """Everything at its first temperature, at the data's time (without, at that of the next update). seed: of the
-        electronics' noise, one for each world or the first world's; None goes on with it. temperatures: °C of objects
-        by name, for this time, one or one for each of these worlds. worlds: which, by number or as (W,) booleans; None
-        for all. objects: what some are made of and how warm they start from now on, in these worlds, in the
-        constructor's form: one of them or a list of one for each."""
+        """Puts everything at its first temperature, at the data's time (without, at that of the next update). seed: of
+        the electronics' noise, one for each world or the first world's; None goes on with it. temperatures: °C of
+        objects by name, for this time, one or one for each of these worlds. worlds: which, by number or as (W,)
+        booleans; None for all. objects: what some are made of and how warm they start from now on, in these worlds, in
+        the constructor's form: one of them or a list of one for each."""
         rows = self._rows(worlds)
         if data is not None:
             if self._many:
@@ -298,11 +299,11 @@ class ThermalTouch:
         return self._reading
 
     def fixed_places(self, like: Array, *, world: int = 0) -> FixedPlaces:
-        """Its fingertips on the places where they have touched so far, as they are now, for a pure step of arrays:
-        `advance(state, conductance)`, once per sample of the converter; contacts there are of the sensor's whole face.
-        like: an array of floating-point numbers whose kind (NumPy, PyTorch, JAX), dtype and device are taken. Raises
-        InvalidValueError where nothing has been touched, and beside thermostats of finite power, heated sensors and
-        glued elements."""
+        """Returns the fingertips on the places where they have touched so far, as they are now, for a pure step of
+        arrays: `advance(state, conductance)`, once per sample of the converter; contacts there are of the sensor's
+        whole face. like: an array of floating-point numbers whose kind (NumPy, PyTorch, JAX), dtype and device are
+        taken. Raises InvalidValueError where nothing has been touched, and beside thermostats of finite power, heated
+        sensors and glued elements."""
         (row,) = self._rows([world])
         return self._heat.fixed_places(row, like)
 
@@ -314,10 +315,10 @@ class ThermalTouch:
         world: int = 0,
         data: mujoco.MjData | None = None,
     ) -> FixedTouch:
-        """Its fingertips on every object, each on one place of it, for a pure step of arrays that takes contacts:
-        `advance(state, contacts)`, once per sample of the converter. A place is where the fingertip has touched the
-        object, or else where the pad would, in the pose of `data` or the model's first. Contacts of fingertips with
-        one another are left aside.
+        """Returns the fingertips on every object, each on one place of it, for a pure step of arrays that takes
+        contacts: `advance(state, contacts)`, once per sample of the converter. A place is where the fingertip has
+        touched the object, or else where the pad would, in the pose of `data` or the model's first. Contacts of
+        fingertips with one another are left aside.
 
         like: an array of floating-point numbers whose kind (NumPy, PyTorch, JAX), dtype and device are taken.
         materials: by object, those that it may be of; without, those that it is of in the worlds. A ThermalTouch of
@@ -396,7 +397,7 @@ class ThermalTouch:
         return draw_fingertips(scene, data, self._pads, drops, volts)
 
     def state(self) -> TouchState:
-        """A copy of what it remembers, to go with a saved state of the simulation."""
+        """Returns a copy of the whole state, to go with a saved state of the simulation."""
         reader, electronics = self._reader, self._electronics
         return TouchState(
             self._time.copy(),
@@ -408,15 +409,15 @@ class ThermalTouch:
             (electronics.pressed.copy(), electronics.off.copy(), int(self._taken[0])),
             tuple(electronics.noise.state(w) for w in range(len(self._time))),
             self._reading,
-            dict(self._made_with),
+            dict(self._identity),
         )
 
     def set_state(self, state: TouchState) -> None:
-        """Puts it into a state taken by `state` of a ThermalTouch made alike. Raises InvalidValueError for others."""
+        """Goes on from a state taken by `state` of a ThermalTouch made alike. Raises InvalidValueError for others."""
         reader, electronics = self._reader, self._electronics
         if not isinstance(state, TouchState):
             raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
-        for name, expected in self._made_with.items():
+        for name, expected in self._identity.items():
             if state.of[name] != expected:
                 raise InvalidValueError(
                     f"the state is of another ThermalTouch, whose {name} are {state.of[name]!r} in place of "
@@ -640,7 +641,7 @@ def whole_steps(dt: float, step: float) -> int:
 
 
 def samples_in(substeps: int, dt: float) -> int:
-    """Of a reading: as many as divide its substeps, at most one each SAMPLE_TIME."""
+    """How many samples a reading has: as many as divide its substeps, at most one each SAMPLE_TIME."""
     most = max(int(dt / SAMPLE_TIME * (1 + _WHOLE)), 1)
     return max(count for count in range(1, most + 1) if substeps % count == 0)
 

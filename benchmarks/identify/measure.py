@@ -76,8 +76,8 @@ class Accuracies:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """Of one contact time: share of fresh objects inside their 90 % interval, and the interval's width as a ratio of
-    its ends: quantiles 10, 50, 90 %."""
+    """What intervals cover at one contact time: the share of fresh objects inside their 90 % interval, and the
+    interval's width as a ratio of its ends: quantiles 10, 50, 90 %."""
 
     window: float
     held: float

@@ -132,8 +132,8 @@ def _measured(
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """Of N touches after one contact time: probability (N, M), interval (N, 2) of effusivity, seconds (N,) of CPU for
-    each posterior, verdict (N,)."""
+    """What identification says of N touches after one contact time: probability (N, M), interval (N, 2) of effusivity,
+    seconds (N,) of CPU for each posterior, verdict (N,)."""
 
     probability: np.ndarray
     interval: np.ndarray

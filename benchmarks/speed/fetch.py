@@ -48,7 +48,7 @@ def wrapped(name: str) -> Pair:
 
 
 def inside(name: str) -> Pair:
-    """Its scene from where the block is held, stepped by MuJoCo alone."""
+    """The environment's scene from where the block is held, stepped by MuJoCo alone."""
     env = _made()
     _grasp(env)
     held, path = env.unwrapped, env.unwrapped.fullpath

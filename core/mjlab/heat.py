@@ -78,7 +78,7 @@ class WorldsHeat:
             old.copy_(new)
 
     def reset(self, worlds: Tensor | slice) -> None:
-        """Those worlds at their first temperatures, the electronics at rest."""
+        """Puts those worlds at their first temperatures, with the electronics at rest."""
         chosen = self._held[:, 0] & False
         chosen[worlds] = True
         _write(self.state, self._fixed.reset(self.state, chosen))

@@ -105,11 +105,11 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
 
     @property
     def objects(self) -> tuple[str, ...]:
-        """Their names; `touching` counts along them."""
+        """The objects' names; `touching` counts along them."""
         return tuple(self._materials)
 
     def materials(self, name: str) -> tuple[Material, ...]:
-        """Those that an object may be of; a world's number counts along them. Raises UnknownNameError."""
+        """The materials that an object may be of; a world's number counts along them. Raises UnknownNameError."""
         self._object(name)
         return self._materials[name]
 
@@ -212,7 +212,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
             self._advance()
 
     def reset(self, env_ids: Worlds = None) -> None:
-        """Those worlds' heat and electronics as at first; their materials stay."""
+        """Puts those worlds' heat and electronics back to their start; their materials stay."""
         super().reset(env_ids)
         for sensor in self._sensors:
             sensor.reset(env_ids)

@@ -84,8 +84,8 @@ class Assembly:
 def assembly(
     shape: str, size: Size, mesh: str | None, scale: float, pieces: int, parts: tuple[Part, ...]
 ) -> Assembly:
-    """Of an ObjectSpec's shape and parts. Raises InvalidValueError for parts that do not lie in the object, or lie
-    partly in each other, and MeshError for files and surfaces that cannot serve."""
+    """The assembly of an ObjectSpec's shape and parts. Raises InvalidValueError for parts that do not lie in the
+    object, or lie partly in each other, and MeshError for files and surfaces that cannot serve."""
     if mesh is None:
         outline, origin = primitive_surface(shape, size), np.zeros(3)
     else:

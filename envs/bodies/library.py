@@ -99,7 +99,7 @@ class ObjectPreset:
 
     @cached_property
     def solid(self) -> Solid:
-        """Its shape. Raises InvalidValueError where the recipe's parameters make none."""
+        """The object's shape. Raises InvalidValueError where the recipe's parameters make none."""
         return make(self.recipe, self.parameters)
 
     def spec(self) -> ObjectSpec:

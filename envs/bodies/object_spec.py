@@ -132,14 +132,14 @@ class ObjectSpec:
 
     @property
     def assembly(self) -> Assembly:
-        """Its parts together, itself the first (cached)."""
+        """The object and its parts together, the object first (cached)."""
         from .assembly import assembly  # nothing that parts need is loaded without them
 
         return assembly(self.shape, self.size, self.mesh, self.scale, self.pieces, self.parts)
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """Its own, where it has one, and its parts'."""
+        """The object's own material, where it has one, and its parts'."""
         first = () if self.material is None else (material(self.material),)
         return (*first, *(part.made_of for part in self.parts))
 
@@ -199,7 +199,8 @@ class ObjectSpec:
 
     @property
     def sliding_friction(self) -> float:
-        """Of every contact: what is given, else that of the material that is touched, else 0.8."""
+        """The coefficient of sliding friction of every contact: what is given, else that of the material that is
+        touched, else 0.8."""
         if self.friction is not None:
             return self.friction
         touched = self.touched

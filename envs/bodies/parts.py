@@ -48,7 +48,7 @@ class Part:
 
     @property
     def made_of(self) -> Material:
-        """Its material."""
+        """The part's material."""
         return material(self.material)
 
     def scaled(self, factor: float) -> Part:

@@ -13,7 +13,7 @@ from .solids import (
 
 
 def primitive_surface(shape: str, size: tuple[float, float, float]) -> Triangles:
-    """Of a box, a cylinder or a sphere of that size m, about its centre."""
+    """The surface of a box, a cylinder or a sphere of that size m, about its centre."""
     x, y, z = size
     if shape == "box":
         return cut(np.array([[-y / 2, -z / 2, z / 2], [y / 2, -z / 2, z / 2]]), x)

@@ -45,7 +45,7 @@ class Triangles(NamedTuple):
         return Triangles(self.vertices, self.faces[:, ::-1].copy())
 
     def along(self, axis: str) -> Triangles:
-        """With its z axis turned to x or y, by a rotation."""
+        """The same surface with its z axis turned to x or y, by a rotation."""
         order = {"z": (0, 1, 2), "x": (2, 0, 1), "y": (1, 2, 0)}[axis]
         return Triangles(self.vertices[:, order].copy(), self.faces)
 
@@ -132,7 +132,7 @@ def cut(outline: np.ndarray, thickness: float) -> Triangles:
 
 
 def ellipsoid(size: tuple[float, float, float]) -> Triangles:
-    """With these full axes (x, y, z), m, and its true volume."""
+    """An ellipsoid with these full axes (x, y, z), m, and the volume of the true one."""
     angle = np.linspace(0.0, np.pi, SEGMENTS // 3 + 1)
     profile = np.stack([np.sin(angle), -np.cos(angle)], axis=1) / 2
     profile[[0, -1], 0] = 0.0

@@ -39,7 +39,7 @@ class ClosedMesh:
     contact: ContactArea
 
     def contact_at(self, step: tuple[int, ...]) -> ContactArea:
-        """At TABLE_FORCES, (9,) each; the pad's area is that of closing. step: of `mesh_steps`, (5,)."""
+        """The contact at TABLE_FORCES, (9,) each; the pad's area is that of closing. step: of `mesh_steps`, (5,)."""
         if not any(step):
             return self.contact
         here, first = self._area_and_share(step), self._area_and_share((0, 0, 0, 0, 0))

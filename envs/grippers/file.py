@@ -19,8 +19,8 @@ Source = str | os.PathLike[str] | mujoco.MjSpec
 
 
 def compiled(source: Source) -> tuple[str, mujoco.MjModel]:
-    """Its name and model. Raises GripperError for what is missing, is no MJCF, or does
-    not compile, with MuJoCo's reason."""
+    """A gripper's name and model. Raises GripperError for what is missing, is no MJCF, or does not compile, with
+    MuJoCo's reason."""
     if isinstance(source, mujoco.MjSpec):
         name, spec = source.modelname or "MjSpec", source  # a copy would lose what refers to nothing
     elif not isinstance(source, str | os.PathLike):

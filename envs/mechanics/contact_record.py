@@ -45,8 +45,8 @@ class ContactRecord:
 def contact_record(
     out: dict[str, np.ndarray], contacts: tuple[int, int, int], poses: slice, at: Any, failed: np.ndarray
 ) -> ContactRecord:
-    """Of a rollout's FULL_RECORD. contacts: fingertips, objects and numbers of a contact sensor. poses: the objects' in
-    qpos. at: ADDRESSES. failed: (B,)."""
+    """The ContactRecord of a rollout's FULL_RECORD. contacts: fingertips, objects and numbers of a contact sensor.
+    poses: the objects' in qpos. at: ADDRESSES. failed: (B,)."""
     qpos, qvel, positions = out["qpos"], out["qvel"], out["site_xpos"]
     # (B, S, T, O, found force position), in the world's frame
     sensed = out["sensordata"].reshape(*qpos.shape[:2], *contacts)

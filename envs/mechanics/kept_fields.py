@@ -24,9 +24,9 @@ class _Place(NamedTuple):
 
 
 class KeptFields:
-    """Those of the `most` models that were added last. They lie one behind another in a few large blocks. As arrays of
-    their own they would be scattered over the memory that compiling a model takes and returns, 14 MB and more each
-    time, and would keep all of it with this process: gigabytes where every episode draws a size."""
+    """The fields of the `most` models that were added last. They lie one behind another in a few large blocks. As
+    arrays of their own they would be scattered over the memory that compiling a model takes and returns, 14 MB and more
+    each time, and would keep all of it with this process: gigabytes where every episode draws a size."""
 
     def __init__(self, most: int) -> None:
         self._most = most

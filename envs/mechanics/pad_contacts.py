@@ -15,10 +15,10 @@ from .kernel import into_frame
 
 
 class PadContacts(NamedTuple):
-    """Of one control step and one object. force (B, T) N: mean normal force over the substeps. centre (B, T, 2) m: its
-    centre, MuJoCo's contact centroids weighted by the substeps' normal forces, along the pad's two tangential axes. pad
-    (B, T, 4, 3): the pad in the object's frame when the last substep began: its middle, m, its normal, out of the pad,
-    and the two tangential axes."""
+    """Where the pads pressed on one object in one control step. force (B, T) N: mean normal force over the substeps.
+    centre (B, T, 2) m: its centre, MuJoCo's contact centroids weighted by the substeps' normal forces, along the pad's
+    two tangential axes. pad (B, T, 4, 3): the pad in the object's frame when the last substep began: its middle, m, its
+    normal, out of the pad, and the two tangential axes."""
 
     force: np.ndarray
     centre: np.ndarray

@@ -259,7 +259,7 @@ class SimulationConfig:
 
     @property
     def others(self) -> tuple[ObjectSpec, ...]:
-        """Of the scene, beside the first."""
+        """The objects of the scene beside the first."""
         return self._scene_objects[1:]
 
     @property
@@ -299,7 +299,7 @@ class SimulationConfig:
 
     @property
     def samples(self) -> int:
-        """Of voltage and heat in a control step."""
+        """How many samples of voltage and heat a control step has."""
         return round(self.substeps * self.solver.timestep / SAMPLE_PERIOD)
 
     @property
@@ -370,7 +370,7 @@ class SimulationConfig:
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
-        """Of every shape and size that may come, so that one too large is refused at once and not in some later
+        """A body of every shape and size that may come, so that one too large is refused at once and not in some later
         episode."""
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))

@@ -37,8 +37,8 @@ class Episode:
 
 
 class EpisodeLabels(NamedTuple):
-    """Of one scene or, as arrays, of a batch: names of the material and the model of its heat, and the force N from
-    which on the object is crushed."""
+    """Labels of one scene or, as arrays, of a batch: names of the material and the model of its heat, and the force N
+    from which on the object is crushed."""
 
     material: Any
     rung: Any
@@ -65,7 +65,7 @@ class Layout(Protocol):
         ...
 
     def labels(self, scene: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
-        """Of one scene, each object's heat computed by one of `rungs`."""
+        """The labels of one scene, each object's heat computed by one of `rungs`."""
         ...
 
     def extend(self, truth: Truth, task: np.ndarray, lift: np.ndarray, force: np.ndarray) -> None:

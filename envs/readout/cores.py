@@ -61,7 +61,7 @@ class HeatedCores:
         return self._state.reading.reshape(-1, 2).copy()
 
     def tell(self, info: np.ndarray) -> None:
-        """Nothing: no device puts these heaters off."""
+        """Does nothing: no device puts these heaters off."""
 
     def state(self, rows: Sequence[int]) -> tuple[np.ndarray, ...]:
         """A copy of what the rows remember."""

@@ -16,8 +16,8 @@ from ...thermal.readout import chain_numbers, measure_rows
 
 @dataclass(frozen=True, slots=True)
 class ElectronicsState:
-    """Of some environments; picklable. chains: CHAIN_NUMBERS records. filtered, last: (n, F) V of the low-pass. late:
-    (n, L, F) V under way."""
+    """The electronics' state of some environments; picklable. chains: CHAIN_NUMBERS records. filtered, last: (n, F) V
+    of the low-pass. late: (n, L, F) V under way."""
 
     chains: np.ndarray
     filtered: np.ndarray

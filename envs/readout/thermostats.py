@@ -64,8 +64,8 @@ class Thermostats:
         return self._model is None
 
     def step(self, drawn: np.ndarray, first: np.ndarray) -> np.ndarray:
-        """Their temperatures (B, F) °C after a control step in which heat `drawn` (B, F) W left them. first: (B, F) °C,
-        what they started from."""
+        """The thermostats' temperatures (B, F) °C after a control step in which heat `drawn` (B, F) W left them. first:
+        (B, F) °C, what they started from."""
         if self._model is None:
             return first
         before, off = self._state, np.repeat(self._hot, 2)

@@ -48,12 +48,12 @@ class HeatNetworks:
         self.rungs: list[str] = []
 
     def tables(self, fingertips: int) -> HeatTables:
-        """Of all."""
+        """The tables of all networks."""
         return no_heat_tables(fingertips, self._dt) if self._tables is None else self._tables
 
     @property
     def states(self) -> int:
-        """Of the largest."""
+        """The number of states of the largest network."""
         return 0 if self._tables is None else self._tables.rates.shape[1]
 
     def of_plate(self, geometry: Geometry, demand: Demand, film: float) -> int:
@@ -88,7 +88,7 @@ class HeatNetworks:
         return self._turns[new].T @ whole @ self._turns[old]
 
     def fingertip(self, number: int, tip: int) -> slice:
-        """Where a fingertip's own states are in a network's."""
+        """The slice of a fingertip's own states in a network's."""
         orders = self.systems[number].orders
         first = orders.even + (orders.odd or 0) + tip * orders.sensor
         return slice(first, first + orders.sensor)

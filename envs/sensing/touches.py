@@ -100,9 +100,9 @@ class Touches:
 
 
 def first_touches(grasped: GraspBody, demand: Demand, cache: bool) -> Touches | None:
-    """With a patch where each fingertip is to meet the object; None, with a RuntimeWarning that says why, where no
-    network can be made with these (a ring's hole, pieces that share but an edge), so that a plate stands for the
-    object. Raises MeshError there for one with parts, which no plate can stand for."""
+    """The Touches with a patch where each fingertip is to meet the object; None, with a RuntimeWarning that says why,
+    where no network can be made with these (a ring's hole, pieces that share but an edge), so that a plate stands for
+    the object. Raises MeshError there for one with parts, which no plate can stand for."""
     contacts = tuple(range(grasped.fingertips))
     patches = tuple(_grasped(grasped, side) for side in (-1, 1)[: grasped.fingertips])
     film = grasped.spec.reservoir.conductance if grasped.spec.reservoir else 0.0

@@ -34,7 +34,7 @@ class Task(Protocol):
     reasons: ClassVar[tuple[str, ...]]
 
     def action_space(self) -> gymnasium.spaces.Box:
-        """Of one environment."""
+        """The action space of one environment."""
         ...
 
     def command(self, action: np.ndarray) -> Command:

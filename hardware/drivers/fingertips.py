@@ -168,8 +168,8 @@ class Fingertips:
         return self._taken()
 
     def wait(self, count: int, seconds: float) -> Samples:
-        """At least `count` samples, all since the last take. Raises StaleSensorError when they have not come within
-        `seconds`, and what take raises."""
+        """Waits for at least `count` samples and returns them, all since the last take. Raises StaleSensorError when
+        they have not come within `seconds`, and what take raises."""
         rows = self._link.session.rows
         if self._link.reader is None:
             self._keep_alive()

@@ -76,7 +76,7 @@ class Gripper(Protocol):
         ...
 
     def status(self) -> GripperStatus:
-        """How it is."""
+        """The gripper's status."""
         ...
 
     def clear_faults(self) -> None:

@@ -100,7 +100,7 @@ class Link:
         self._numbers = itertools.count(random.SystemRandom().randrange(SEQUENCE))
 
     def use(self, transport: Transport) -> None:
-        """From now on over this transport."""
+        """Goes on over this transport."""
         self.close()
         self._transport = transport
         self.note(OPENED)

@@ -133,7 +133,7 @@ class RobotiqGripper:
         return self._status(now)
 
     def status(self) -> GripperStatus:
-        """How it is; a fault is told, not raised."""
+        """The gripper's status; a fault is in it, not raised."""
         return self._status(self.state())
 
     def wait(self, seconds: float = _TRAVEL_WITHIN) -> GripperStatus:
@@ -162,7 +162,7 @@ class RobotiqGripper:
         return self.units.quantised(opening, force, speed)
 
     def state(self, *, first: bool = False) -> State:
-        """Its registers as they are. first: asked for before whatever other threads wait for."""
+        """The gripper's registers as they are. first: asked for before whatever other threads wait for."""
         return state(self._line.read(STATUS, COUNT, first=first))
 
     def _move(self, opening: float, force: float, speed: float, stops: int) -> GripperStatus:

@@ -80,7 +80,7 @@ class Action:
     force: int = 0
 
     def registers(self) -> list[int]:
-        """For the three registers from COMMAND on."""
+        """The values for the three registers from COMMAND on."""
         bits = self.activate | self.go << 3 | self.release << 4 | self.release_opens << 5
         return [bits << 8, self.position, self.speed << 8 | self.force]
 

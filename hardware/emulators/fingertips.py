@@ -149,7 +149,7 @@ class EmulatedFingertips:
         self._send(self._identity(self.model.protocol))
 
     def overheat(self, fingertip: int) -> None:
-        """Its plate is at 80 °C from now on, cooling."""
+        """Puts a fingertip's plate at 80 °C, from where it cools."""
         self._plates.put(fingertip, 80.0)
 
     def plan(self, time: float, action: Callable[[], None]) -> None:

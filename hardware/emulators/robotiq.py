@@ -88,11 +88,11 @@ class EmulatedGripper:
         self.power_cycle()
 
     def power_cycle(self) -> None:
-        """Without power for a moment: not activated, fingers as they are."""
+        """Takes the power away for a moment: not activated, fingers as they are."""
         self._written = [0] * COUNT
         self._action = Action()
         self._activation = Activation.RESET
-        self._seen = ObjectSeen.MOVING
+        self._object_seen = ObjectSeen.MOVING
         self._fault = Fault.NONE
         self._sequence: deque[float] = deque()
         self._received_at = self._now
@@ -138,7 +138,7 @@ class EmulatedGripper:
             activated=self._action.activate,
             going=going,
             activation=self._activation,
-            seen=self._seen,
+            seen=self._object_seen,
             fault=self._visible_fault(),
             requested=self._action.position,
             position=min(max(round(position), 0), TOP),
@@ -211,9 +211,9 @@ class EmulatedGripper:
         elif self._activation == Activation.DONE and command.go:
             goal = float(units.opening(command.position))
             done = self._towards(goal, float(units.force(command.force)), float(units.speed(command.speed)))
-            self._seen = _SEEN[self.fingers.contact]
-            if done and self._seen == ObjectSeen.MOVING:
-                self._seen = ObjectSeen.AT_POSITION
+            self._object_seen = _SEEN[self.fingers.contact]
+            if done and self._object_seen == ObjectSeen.MOVING:
+                self._object_seen = ObjectSeen.AT_POSITION
         else:
             self._towards(self.fingers.opening, units.weakest, units.slowest)
 
@@ -221,7 +221,7 @@ class EmulatedGripper:
         """A command takes effect."""
         before, self._action = self._action, command
         if not command.activate:
-            self._activation, self._seen, self._fault = Activation.RESET, ObjectSeen.MOVING, Fault.NONE
+            self._activation, self._object_seen, self._fault = Activation.RESET, ObjectSeen.MOVING, Fault.NONE
         elif not before.activate:
             self._activation = Activation.RUNNING
             self._sequence = deque([0.0, self.model.units.stroke])

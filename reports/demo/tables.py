@@ -97,7 +97,7 @@ def details(runs: Sequence[ModeRun], settings: Settings) -> str:
 
 
 def versions() -> dict[str, str]:
-    """Of what decides the numbers."""
+    """The versions of what decides the numbers."""
     found = {"thermograsp": thermograsp.__version__, "Python": platform.python_version()}
     for name in ("mujoco", "gymnasium", "numpy"):
         try:

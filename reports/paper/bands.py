@@ -76,7 +76,7 @@ class Bands:
         return low[:, nearest], high[:, nearest]
 
     def lines(self) -> list[str]:
-        """For people: what was drawn, and the bands at a few moments."""
+        """Lines for people: what was drawn, and the bands at a few moments."""
         rows = [["K"], *([readable(name)] for name in MATERIALS)]
         for mode in MODES:
             for moment in _MOMENTS:
@@ -92,7 +92,7 @@ class Bands:
         ]
 
     def document(self) -> dict[str, object]:
-        """For machines: the same."""
+        """The same as numbers, for machines."""
         return {
             "rigs": len(self.rigs),
             "share": SHARE,

@@ -68,7 +68,7 @@ class Stock:
 
     @property
     def drivers(self) -> tuple[str, ...]:
-        """Of DRIVERS those that can act here: a real gripper has no arm that lifts."""
+        """The drivers that can act here: a real gripper has no arm that lifts."""
         return DRIVERS if self.plant is None else DRIVERS[:2]
 
     @property
@@ -80,7 +80,7 @@ class Stock:
 
     @property
     def shapes(self) -> tuple[str, ...]:
-        """Of objects."""
+        """The shapes of objects."""
         return (*(SHAPES if self.mesh is not None else SHAPES[:-1]), *objects())
 
 
@@ -114,7 +114,7 @@ class Choices:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of what is grasped, one or two side by side."""
+        """The names of what is grasped, one or two side by side."""
         return (self.shape,) if self.everyday else self.materials
 
     @property

@@ -95,8 +95,8 @@ def known_touch(choices: Choices, fingertips: Literal[1, 2]) -> TouchSetup:
 
 
 def posterior(identification: Identification) -> dict[str, Any]:
-    """For the page: verdict and message, the likeliest materials with their probabilities, and the effusivity in
-    W s^0.5/(m2 K) with its 90 % interval."""
+    """The posterior for the page: verdict and message, the likeliest materials with their probabilities, and the
+    effusivity in W s^0.5/(m2 K) with its 90 % interval."""
     order = np.argsort(-identification.probability, kind="stable")[:_SHOWN]
     low, high = identification.effusivity.interval()
     return {

@@ -61,14 +61,14 @@ class Session:
         self._log = Log(1)
         self._sent = 0
         self._waiting: list[Message] = [self._hello()]
-        self._seen = 0
+        self._last_message = 0
 
     def handle(self, message: Mapping[str, Any]) -> None:
         """One message: {"do": what, ...}. What cannot be done is told to the page; nothing is raised for it."""
         content = dict(message)
         do, number = content.pop("do", None), content.pop("id", None)
         if isinstance(number, int):
-            self._seen = number
+            self._last_message = number
         try:
             if not isinstance(do, str) or do not in _ACTIONS:
                 raise unknown_name("action", do, _ACTIONS)
@@ -169,7 +169,9 @@ class Session:
                 raise
         except ThermograspError as error:
             self._problem(error)
-            self._waiting.append({"kind": "chosen", "seen": self._seen, "choices": self.choices.message()})
+            self._waiting.append(
+                {"kind": "chosen", "seen": self._last_message, "choices": self.choices.message()}
+            )
             return
         self._release()
         self._grasp, self._feelings, self.choices = grasp, feelings, wanted
@@ -247,7 +249,7 @@ class Session:
     def _scene(self) -> Message:
         return {
             "kind": "scene",
-            "seen": self._seen,
+            "seen": self._last_message,
             "shapes": self._grasp.shapes(),
             "rows": list(self._grasp.names),
             "choices": self.choices.message(),
@@ -263,7 +265,7 @@ class Session:
     def _frame(self) -> Message:
         frame: Message = {
             "kind": "frame",
-            "seen": self._seen,
+            "seen": self._last_message,
             "busy": self._preparing(),
             "controls": self.controls.message(),
         }

@@ -49,7 +49,7 @@ class MeasuredGrasp:
 
     def reset(self, seed: int) -> None:
         """Opens, and begins anew."""
-        self._seen, self.reading = self._batch.reset([0], [np_random(seed)[0]])
+        self._observation, self.reading = self._batch.reset([0], [np_random(seed)[0]])
         self._driving.restart(seed)
         self.time = 0.0
 
@@ -60,8 +60,8 @@ class MeasuredGrasp:
 
     def step(self, controls: Controls) -> dict[str, np.ndarray]:
         """One control step, which takes as long as it lasts; the columns (1, S)."""
-        step = self._batch.step(self._driving.action(controls, self._seen, self.reading))
-        self._seen, self.reading = step.observation, step.reading
+        step = self._batch.step(self._driving.action(controls, self._observation, self.reading))
+        self._observation, self.reading = step.observation, step.reading
         samples = self._plant.config.samples
         late = float(step.reading.truth["late"][0])
         self.time += self.dt + (late if late > OVERRUN else 0.0)

@@ -54,7 +54,7 @@ class PlayedGrasp:
         return self._choices.colours
 
     def reset(self, seed: int) -> None:
-        """From its beginning."""
+        """Starts from the recording's beginning."""
         del seed
         self._steps = self._at = 0
 

@@ -32,7 +32,7 @@ class Puppet:
         return [shape for shape in shapes if self._width is not None or shape["part"] != _OBJECT]
 
     def poses(self, opening: float, height: float, lift: float) -> list[list[float]]:
-        """Of the bodies, with the fingers `opening` m apart, the arm at `height` m and the cube `lift` m up."""
+        """The bodies' poses, with the fingers `opening` m apart, the arm at `height` m and the cube `lift` m up."""
         mujoco.mj_resetData(self._model, self._data)
         for finger in ("finger_left", "finger_right"):
             self._data.joint(finger).qpos[0] = opening / 2

@@ -93,7 +93,7 @@ class SimulatedGrasp:
         """Begins anew; both rows with the same place and noise."""
         for row, name in enumerate(self.names):
             chosen = {} if self._choices.everyday else {"material": self._stock.materials[name]}
-            self._seen, self._reading = self.batch.reset([row], [np_random(seed)[0]], chosen)
+            self._observation, self._reading = self.batch.reset([row], [np_random(seed)[0]], chosen)
         self._driving.restart(seed)
         self._endings, self._steps = [""] * self.rows, 0
         for label in self._watch.seconds:
@@ -101,8 +101,8 @@ class SimulatedGrasp:
 
     def step(self, controls: Controls) -> dict[str, np.ndarray]:
         """One control step; the columns (B, S) of `thermograsp grasp --csv`."""
-        step = self.batch.step(self._driving.action(controls, self._seen, self._reading))
-        self._seen, self._reading = step.observation, step.reading
+        step = self.batch.step(self._driving.action(controls, self._observation, self._reading))
+        self._observation, self._reading = step.observation, step.reading
         for row, error in enumerate(step.reading.error):
             reasons = [name for name, ended in step.outcome.reasons.items() if ended[row]]
             self._endings[row] = self._endings[row] or error or "".join(reasons[:1])
@@ -114,7 +114,7 @@ class SimulatedGrasp:
         return shapes_of(self._model, self.plant.mechanics.names)
 
     def poses(self, row: int) -> list[list[float]]:
-        """Of the row's bodies, now."""
+        """The poses of the row's bodies, now."""
         self.plant.mechanics.env_data(row, self._data)
         return poses_of(self._model, self._data)
 
@@ -146,7 +146,7 @@ class SimulatedGrasp:
         return f"held {1e3 * lift:.0f} mm up" if lift > _UP else "gripped"
 
     def cost(self, row: int) -> Cost:
-        """Of the row's heat model."""
+        """The cost of the row's heat model."""
         rung = str(self._reading.truth["rung"][row])
         orders = Orders.parse(rung.partition(":")[2])  # of "network:..." or "body:..."
         spent, steps = self._watch.seconds, max(self._steps, 1)

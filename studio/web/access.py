@@ -28,7 +28,8 @@ class Access:
 
     @classmethod
     def to(cls, host: str, token: str = "") -> Access:
-        """With that token, a random one where it is empty. Raises InvalidValueError for one that is easily guessed."""
+        """Access with that token, a random one where it is empty. Raises InvalidValueError for one that is easily
+        guessed."""
         if token and not _TOKEN.fullmatch(token):
             raise InvalidValueError("a token must have at least 16 letters, digits, - or _")
         return cls(host, token or secrets.token_urlsafe(24))
@@ -62,16 +63,16 @@ class Allowance:
     """Messages that a client may still send: `RATE` a second, up to `BURST` at once. clock: s."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
-        self._clock, self._left, self._last = clock, BURST, clock()
+        self._clock, self._allowed, self._last = clock, BURST, clock()
 
     def take(self) -> bool:
         """False for one message too many."""
         now = self._clock()
-        self._left = min(self._left + RATE * (now - self._last), BURST)
+        self._allowed = min(self._allowed + RATE * (now - self._last), BURST)
         self._last = now
-        if self._left < 1:
+        if self._allowed < 1:
             return False
-        self._left -= 1
+        self._allowed -= 1
         return True
 
 

@@ -39,7 +39,7 @@ class Worker:
 
     @property
     def pid(self) -> int | None:
-        """Of the process."""
+        """The process's number."""
         return self._process.pid
 
     def exchange(self, messages: Sequence[dict[str, Any]]) -> list[str]:

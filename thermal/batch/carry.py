@@ -79,7 +79,8 @@ def carry_steps(systems: Sequence[ContactSystem], states: int) -> tuple[np.ndarr
 
 
 def tip_rows(system: ContactSystem) -> TipRows:
-    """Of a contact system's fingertips. Raises InvalidValueError in O mode, where fingertips have no states."""
+    """The rows of a contact system's fingertips. Raises InvalidValueError in O mode, where fingertips have no
+    states."""
     states = system.orders.sensor
     if states == 0:
         raise InvalidValueError("in O mode the elements stay on their objects: there is nothing to carry")

@@ -55,8 +55,8 @@ class FaceField(NamedTuple):
 
 
 class FaceState(NamedTuple):
-    """Of one face. fields: (2, P, P, K) K, of the cosines' states. surface: (P, P) K, of the face's cosines. contact:
-    (N, N) shares of the cells that touch, or touched last."""
+    """The state of one face's heat. fields: (2, P, P, K) K, of the cosines' states. surface: (P, P) K, of the face's
+    cosines. contact: (N, N) shares of the cells that touch, or touched last."""
 
     fields: np.ndarray
     surface: np.ndarray
@@ -80,7 +80,7 @@ def face_field(stack: SensorStack, behind: Layer, dt: float) -> FaceField:
 
 
 def face_state() -> FaceState:
-    """Of a face that is as warm as its thermostat everywhere."""
+    """The state of a face that is as warm as its thermostat everywhere."""
     return FaceState(
         np.zeros((2, COSINES, COSINES, ORDER)), np.zeros((COSINES, COSINES)), np.ones((CELLS, CELLS))
     )

@@ -93,7 +93,8 @@ class ArrayFingertips:
     seebeck: float
 
     def start(self, rows: int, object_temperature: Array | None = None) -> FingertipState:
-        """Everything at its first temperature, for so many rows. object_temperature: (rows,) °C where it differs."""
+        """The state with everything at its first temperature, for so many rows. object_temperature: (rows,) °C where it
+        differs."""
         like = self.tables.decay
         still = as_like(np.zeros((rows, self.fingertips)), like)
         first = self.object_temperature if object_temperature is None else object_temperature[..., None]

@@ -131,9 +131,9 @@ class HeatTables(NamedTuple):
 
 
 class HeatReading(NamedTuple):
-    """At the end of each step of a call. drop: (B, N, F) K. element_heat: (B, N, F) J. object_heat: (B, N) J.
-    sensor_rise, object_rise: (B, N, F) K of the two contact faces above what each body started from. flow: (B, N, F)
-    W from sensor to object and air_loss: (B, N) W from the object to the air, means over the step."""
+    """Outputs at the end of each step of a call. drop: (B, N, F) K. element_heat: (B, N, F) J. object_heat: (B, N) J.
+    sensor_rise, object_rise: (B, N, F) K of the two contact faces above what each body started from. flow: (B, N, F) W
+    from sensor to object and air_loss: (B, N) W from the object to the air, means over the step."""
 
     drop: np.ndarray
     element_heat: np.ndarray
@@ -178,7 +178,7 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
 
 
 def no_heat_tables(fingertips: int, dt: float) -> HeatTables:
-    """Of no network."""
+    """The tables of no network."""
     pairs = len(POLES)
     rows = np.zeros((0, TIPPED + 4 * fingertips + 2 * pairs, 0))
     return HeatTables(dt, np.zeros((0, 5), np.int64), rows, np.zeros((0, pairs, 0, 0), complex))

@@ -45,7 +45,7 @@ class ArrayLaws(NamedTuple):
     follows: Array
 
     def at(self, index: Array) -> ArrayLaws:
-        """Those of the given indices along the first axis."""
+        """The laws of the given indices along the first axis."""
         return ArrayLaws(*(table[index] for table in self))
 
 

@@ -46,7 +46,8 @@ class Fraction:
 
 
 def fraction(matrices: np.ndarray, start: np.ndarray) -> Fraction:
-    """Of symmetric complex matrices (S, C, C) and a unit vector (C,): Lanczos' recursion in the bilinear product."""
+    """The continued fraction of symmetric complex matrices (S, C, C) and a unit vector (C,): Lanczos' recursion in the
+    bilinear product."""
     vector = np.broadcast_to(start.astype(complex), matrices.shape[:2])
     before, root = np.zeros_like(vector), np.zeros(len(matrices), complex)
     a, b = [], [np.ones(len(matrices), complex)]

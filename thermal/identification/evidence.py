@@ -111,9 +111,9 @@ def project(evidence: Evidence, table: CurveTable) -> ProjectedCurves:
 
 @dataclass(frozen=True, slots=True)
 class Explained:
-    """Of P objects: log_evidence, and the most probable difference (K), resistance (m2 K/W) and heat capacity
-    (standard deviations of its prior), each (P,). difference_variance: (P,) K2. misfit: (P,) twice the negative log
-    posterior there, up to what is common to all."""
+    """How well P objects explain the evidence: log_evidence, and the most probable difference (K), resistance (m2 K/W)
+    and heat capacity (standard deviations of its prior), each (P,). difference_variance: (P,) K2. misfit: (P,) twice
+    the negative log posterior there, up to what is common to all."""
 
     log_evidence: np.ndarray
     difference: np.ndarray

@@ -103,7 +103,7 @@ class Answer:
 
 
 def answer(system: ContactSystem, core: HeatedCore | None = None) -> Answer:
-    """Of a network on an ideal thermostat, the drop; on a core, the fall of the reading."""
+    """The temperature drop of a network on an ideal thermostat; on a core, the fall of the reading."""
     ports, area = system.ports[:, : system.modes], system.geometry.area
     if core is None or isinstance(core.sensor.law, Held):
         return Answer(system.rates, ports, system.drop[0], np.zeros(len(system.rates)), area)

@@ -73,8 +73,8 @@ def shipped_recordings() -> Recordings:
 
 
 def load_recordings(path: str | os.PathLike[str]) -> Recordings:
-    """Of an .npz file with time_s (n,), heated_degC, passive_degC and force_N (B, n), run and material (B,). Raises
-    InvalidValueError, which names the file and what is wrong with it."""
+    """The recordings of an .npz file with time_s (n,), heated_degC, passive_degC and force_N (B, n), run and material
+    (B,). Raises InvalidValueError, which names the file and what is wrong with it."""
     try:
         with open(path, "rb") as stream:
             if not zipfile.is_zipfile(stream):

@@ -56,12 +56,12 @@ class Orders:
 
     @property
     def states(self) -> int:
-        """Of the fingertips and the object."""
+        """The number of states of the fingertips and the object."""
         return self.fingertips * self.sensor + self.even + (self.odd or 0)
 
     @property
     def multiply_adds(self) -> int:
-        """Of one step as coupling.py takes it, real ones (a complex one is four)."""
+        """Multiply-adds of one step as coupling.py takes it, real ones (a complex one is four)."""
         n, m = self.states, self.fingertips * self.modes
         return 2 * n * m + len(POLES) * 4 * (2 * n * m + m**3 // 3)
 

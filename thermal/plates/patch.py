@@ -54,7 +54,7 @@ class SquarePatch:
 
     @property
     def edges(self) -> np.ndarray:
-        """Of the strips, m, along one half side."""
+        """The strips' edges, m, along one half side."""
         return graded_edges(self.half_width, self.intervals)
 
     @property
@@ -97,7 +97,7 @@ class RoundPatch:
 
     @property
     def edges(self) -> np.ndarray:
-        """Of the rings, m, radii."""
+        """The rings' edges, m of radius."""
         return graded_edges(self.radius, self.intervals)
 
     @property

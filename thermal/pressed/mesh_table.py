@@ -82,7 +82,7 @@ class PressedView(NamedTuple):
 
 @lru_cache(maxsize=256)
 def pressed_view(pad: Pad, vertices: bytes, faces: bytes, axes: bytes) -> PressedView:
-    """Of a PressedMesh, with a pad that has its skin's springs."""
+    """The view of a PressedMesh, with a pad that has its skin's springs."""
     corners = np.frombuffer(vertices).reshape(-1, 3)
     seen = height_map(
         corners, np.frombuffer(faces, np.int64).reshape(-1, 3), np.frombuffer(axes).reshape(3, 3)

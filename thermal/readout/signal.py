@@ -89,7 +89,7 @@ SIGNAL_CHAINS: Mapping[str, SignalChain] = MappingProxyType({"ideal": IDEAL, "ad
 
 
 class SignalState(NamedTuple):
-    """Of the low-pass, V before the gain: its output and its last input, (B,) each."""
+    """The state of the low-pass, V before the gain: its output and its last input, (B,) each."""
 
     filtered: Array
     last: Array

@@ -91,7 +91,8 @@ class ThermostatState:
 
 
 def settled_thermostat(thermostat: Thermostat, rows: int) -> ThermostatState:
-    """At the setpoint for long, nothing drawn; where the heater is too weak for that, at what it reaches."""
+    """The state of a thermostat that has been at its setpoint for long, nothing drawn; where the heater is too weak for
+    that, at what it reaches."""
     wanted = thermostat.loss * (thermostat.setpoint - thermostat.ambient)
     power = min(max(wanted, 0.0), thermostat.power_limit)
     temperature = thermostat.setpoint

@@ -61,7 +61,7 @@ def any_sensor(name: str | os.PathLike[str] | SensorStack | HeatedStack) -> Sens
 
 
 def load_heated_stacks(path: str | os.PathLike[str]) -> Mapping[str, HeatedStack]:
-    """Those sensors of a TOML file that have a `touch` table, by name. Raises InvalidValueError, naming the file."""
+    """The sensors of a TOML file that have a `touch` table, by name. Raises InvalidValueError, naming the file."""
     sensors = load_sensors(path)
     entries = tomllib.loads(Path(path).read_text(encoding="utf-8"))["sensors"]
     found = {}

@@ -23,11 +23,11 @@ _KELVIN = 273.15
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chain:
-    """Of one element, temperatures in K above the air's. nodes: (N,) at the start, the last one at the element. decay:
-    (N, N), and heat: (N,) K/W, over a step. reading: at the start, of node `read`, or -1 for what the element's drop
-    leaves. power: W at the start. The controller: setpoint, gains W/K, W/K of a step and W/K of a step's change, limit
-    W, and the force N that cuts it. answering: W/K of a step's change. room: W from surroundings that are warmer than
-    the air. voltage: V at the start, of the divider: supply V, ratio, K and K."""
+    """What lies behind one glued element, temperatures in K above the air's. nodes: (N,) at the start, the last one at
+    the element. decay: (N, N), and heat: (N,) K/W, over a step. reading: at the start, of node `read`, or -1 for what
+    the element's drop leaves. power: W at the start. The controller: setpoint, gains W/K, W/K of a step and W/K of a
+    step's change, limit W, and the force N that cuts it. answering: W/K of a step's change. room: W from surroundings
+    that are warmer than the air. voltage: V at the start, of the divider: supply V, ratio, K and K."""
 
     nodes: np.ndarray
     decay: np.ndarray

@@ -128,7 +128,7 @@ def _first(name: str, described: BodyMaterial | Sequence[BodyMaterial]) -> BodyM
 def materials_by_world(
     described: Objects, shapes: Sequence[BodyShape], worlds: int, ambient: float
 ) -> tuple[dict[str, list[Material]], dict[str, np.ndarray]]:
-    """By name of the objects given: their materials in each world, and their first temperatures (worlds,) °C. shapes:
+    """The objects given, by name: their materials in each world, and their first temperatures (worlds,) °C. shapes:
     what they are otherwise. Raises InvalidValueError and UnknownNameError."""
     known = {shape.name: shape for shape in shapes}
     materials, temperatures = {}, {}

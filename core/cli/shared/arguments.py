@@ -120,7 +120,7 @@ def chosen_material(name: str, file: str | None) -> Material:
 
 
 def target(path: str | None, suffixes: tuple[str, ...]) -> Path | None:
-    """Where a result is to go, checked before the work is done. Raises InvalidValueError."""
+    """The path to which a result is to go, checked before the work is done. Raises InvalidValueError."""
     if path is None:
         return None
     file = Path(path)
