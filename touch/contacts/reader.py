@@ -400,7 +400,7 @@ def sense_contacts(record_at, first, last, entries_at):
     return 1
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _sense_world(
     record, w, first, last, pair, pose, placed, turns, offsets, pads, parts, laws, curved, tables, tilts, views, bend,
     curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches, beside, broken, make,
@@ -479,7 +479,7 @@ def _begin(pushed, frames):
             pushed[f, g, 2] = 0.0
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _frame(pads, parts, xpos, xmat, frames, f):
     """Fills frames[f] with where pad f is in the world, unless it is known in this substep."""
     if frames[f, _KNOWN] > 0.0:
@@ -547,7 +547,7 @@ def _within(pad, x, y, z, sunk):
     return abs(x) <= DEPTH + sunk and abs(y) <= pad[_HALF] + RIM and abs(z) <= pad[_HALF + 1] + RIM
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _feel(
     xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
     weight, spot, views, make,

@@ -167,7 +167,7 @@ def sample(entries_at, touches_at, substeps, settled):
     return 0
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, ports, grams, paces, fade, held, rows, nets,
     decay, kept, grown, tables, kinds, widths, x, states, narrow, given, air, drop, busy, warmth, roots, numbers,

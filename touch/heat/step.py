@@ -76,7 +76,7 @@ def room_size(contacts: int, patterns: int) -> int:
     return 3 * contacts + (4 * _PAIRS + 1) * columns + 2 * LANES * (m * m + 2 * m)
 
 
-@njit(cache=True, inner=True, borrows=True)
+@njit(cache=True, inner=True, borrows=True, forceinline=True)
 def room_of(numbers, contacts, patterns):
     """A Room for so many contacts."""
     m, columns = contacts * patterns, contacts * LANES * ((patterns + LANES - 1) // LANES)
@@ -97,7 +97,7 @@ def room_of(numbers, contacts, patterns):
     )
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride, held, room):
     """One step of dt s of a group, whose integers begin at `at`. states: flat, in place; from `first` on the
     world's fields, each `stride` behind the last. held: (O,) J
@@ -176,7 +176,7 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
     return lost
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _solve(matrix, flows, factors, m):
     """Solves matrix x = flows at all poles at once, the leading m of each, in place, without pivoting: the matrix is
     symmetric, of which the upper half is looked at, and its numerical range lies in a half plane (batch/step.py)."""
