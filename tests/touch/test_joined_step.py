@@ -88,7 +88,7 @@ def test_it_is_that_of_the_whole_system(pairs: tuple, patterns: int) -> None:
             now,
             stride,
         ),
-        *(held, 1 / conductance, difference, np.zeros(room_size(len(pairs), patterns)), found),
+        *(held, 1 / conductance, difference, np.zeros(room_size(len(pairs), patterns, pool.rates)), found),
     )
     touched = [t for t in range(count) if t in fields or any(t in (OBJECTS + f, g) for f, g in pairs)]
     for t in touched:

@@ -124,7 +124,7 @@ def _fill(law, resistance, forces, aside, along, values, shares):
                 values[k, i, j, 0], values[k, i, j, 1], values[k, i, j, 2] = conducts, area, long
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def curved_contact(table, force, aside, along):
     """(W/K, patch m2, its length m) at a force N > 0 on the pad, the crown that far m from the pad's middle, either
     sign; 0 where nothing conducts. table: of curved_table."""
@@ -145,7 +145,7 @@ def curved_contact(table, force, aside, along):
     return conducts, area + w * (more - area), long + w * (longer - long)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def curved_shares(table, force, aside, along, shares):
     """Fills shares (4,): by how much such a contact lies at an end of the face along both axes, and of the body."""
     i, u = _between(table[:PLACES], abs(aside))

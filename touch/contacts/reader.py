@@ -594,6 +594,7 @@ def _feel(
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
             conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
+            number, first, second, whole, lying = -1, 0.0, 0.0, 1.0, force
             for k in range(4):
                 shares[k] = 0.0
             if not bulging and parts[g, 3] > 0:
@@ -604,11 +605,9 @@ def _feel(
                 number = curved[f, g, view]
                 if tables[number, 1] == 0.0 and asked(make, number) == 0:
                     return False
-                conducts, area, long = curved_contact(tables[number], force, first, second)
-                curved_shares(tables[number], force, first, second, shares)
             elif not bulging and curved[f, g, axis] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
-                first, second, lying, whole = pushed[f, g, 1] / force, pushed[f, g, 2] / force, force, 1.0
+                number, first, second = curved[f, g, axis], pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 if law.shape == CYLINDER:
                     # MuJoCo may name any point of the line of contact: only what is across it is heard.
                     along_y, along_z = 0.0, 0.0
@@ -630,11 +629,6 @@ def _feel(
                             slope / length,
                         )
                     whole, lying = tilted(tilts[f, g, axis], force, slope, second)
-                if whole > 0:
-                    table = tables[curved[f, g, axis]]
-                    conducts, area, long = curved_contact(table, lying / whole, first, second)
-                    curved_shares(table, lying / whole, first, second, shares)
-                    conducts, area, long = whole * conducts, whole * area, whole * long
             elif bulging:
                 _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
                 area, share, kept, longer = round_contact(
@@ -645,6 +639,10 @@ def _feel(
                 area, share = contact(law, force, place)
                 if area > 0:
                     long = flat_patch(law, area, place, shares)
+            if number >= 0 and whole > 0:
+                conducts, area, long = curved_contact(tables[number], lying / whole, first, second)
+                curved_shares(tables[number], lying / whole, first, second, shares)
+                conducts, area, long = whole * conducts, whole * area, whole * long
             if share > 0 and area > 0:
                 conducts, area = conductance(law, share / area) * area * kept, area * kept
             touch = touches[f, target]

@@ -215,7 +215,7 @@ class JoinedHeat:
         """Of the table of all arrays that `sample` takes."""
         if self._table is None:
             pool = self._pool
-            self._room = np.zeros(room_size(pool.most, self._level.patterns))
+            self._room = np.zeros(room_size(pool.most, self._level.patterns, pool.rates))
             arrays = (
                 *(self._boxes, self._widths, self._reach, self._faces, self._middles),
                 *(self._sought_faces, self._sought_middles, self._new_faces, self._new_middles),

@@ -18,20 +18,15 @@ LANES = 4
 _ONCE = ("contract",)
 
 
-def _add_scaled(typingctx, out, i, a, j, factor):
-    """out[i:i + 4] += factor a[j:j + 4]"""
+def _put(typingctx, out, i, a, j):
+    """out[i:i + 4] = a[j:j + 4]"""
 
     def code(context, builder, signature, values):
-        to, first, factor_four = (
-            _place(context, builder, signature, values, 0),
-            _place(context, builder, signature, values, 2),
-            _spread(builder, values[4]),
-        )
-        product = builder.fmul(_load(builder, first), factor_four, flags=_ONCE)
-        _store(builder, builder.fadd(_load(builder, to), product, flags=_ONCE), to)
+        to, first = (_place(context, builder, signature, values, n) for n in (0, 2))
+        _store(builder, _load(builder, first), to)
         return context.get_dummy_value()
 
-    return types.void(out, i, a, j, factor), code
+    return types.void(out, i, a, j), code
 
 
 def _put_sum(typingctx, out, i, a, j, stride, factors, k, count):
@@ -39,16 +34,34 @@ def _put_sum(typingctx, out, i, a, j, stride, factors, k, count):
 
     def code(context, builder, signature, values):
         to, first, factor = (_place(context, builder, signature, values, n) for n in (0, 2, 5))
-        total = cgutils.alloca_once_value(builder, _zeros())
-        with cgutils.for_range(builder, values[7]) as loop:
-            lane = _load(builder, _ahead(builder, first, builder.mul(loop.index, values[4])))
-            number = builder.load(_number(builder, _ahead(builder, factor, loop.index)))
-            product = builder.fmul(lane, _spread(builder, number), flags=_ONCE)
-            builder.store(builder.fadd(builder.load(total), product, flags=_ONCE), total)
-        _store(builder, builder.load(total), to)
+        one = ir.Constant(values[4].type, 1)
+        _store(builder, _sum(builder, _zeros(), first, values[4], factor, one, values[7]), to)
         return context.get_dummy_value()
 
     return types.void(out, i, a, j, stride, factors, k, count), code
+
+
+def _add_sum(typingctx, out, i, a, j, stride, factors, k, ahead, count):
+    """out[i:i + 4] += the sum over n < count of factors[k + n ahead] times the four of a at j + n stride."""
+
+    def code(context, builder, signature, values):
+        to, first, factor = (_place(context, builder, signature, values, n) for n in (0, 2, 5))
+        total = _sum(builder, _load(builder, to), first, values[4], factor, values[7], values[8])
+        _store(builder, total, to)
+        return context.get_dummy_value()
+
+    return types.void(out, i, a, j, stride, factors, k, ahead, count), code
+
+
+def _sum(builder: Any, begun: Any, first: Any, stride: Any, factor: Any, ahead: Any, count: Any) -> Any:
+    """What has begun and the sum behind it."""
+    total = cgutils.alloca_once_value(builder, begun)
+    with cgutils.for_range(builder, count) as loop:
+        lane = _load(builder, _ahead(builder, first, builder.mul(loop.index, stride)))
+        number = builder.load(_number(builder, _ahead(builder, factor, builder.mul(loop.index, ahead))))
+        product = builder.fmul(lane, _spread(builder, number), flags=_ONCE)
+        builder.store(builder.fadd(builder.load(total), product, flags=_ONCE), total)
+    return builder.load(total)
 
 
 def _dot(typingctx, a, i, b, j, count):
@@ -76,7 +89,7 @@ def _put_product(typingctx, out, i, a, j, b, k):
 
     def code(context, builder, signature, values):
         real, imag = _product(builder, *_operands(context, builder, signature, values))
-        _put(builder, _place(context, builder, signature, values, 0), real, imag)
+        _store_complex(builder, _place(context, builder, signature, values, 0), real, imag)
         return context.get_dummy_value()
 
     return types.void(out, i, a, j, b, k), code
@@ -89,7 +102,7 @@ def _take_product(typingctx, out, i, a, j, b, k):
         real, imag = _product(builder, *_operands(context, builder, signature, values))
         to = _place(context, builder, signature, values, 0)
         had_real, had_imag = _complex(builder, to)
-        _put(
+        _store_complex(
             builder,
             to,
             builder.fsub(had_real, real, flags=_ONCE),
@@ -108,7 +121,7 @@ def _invert(typingctx, out, i):
         real, imag = _complex(builder, at)
         squares = (builder.fmul(part, part, flags=_ONCE) for part in (real, imag))
         size = builder.fdiv(ir.Constant(_four(), [1.0] * LANES), builder.fadd(*squares, flags=_ONCE))
-        _put(builder, at, builder.fmul(real, size), builder.fmul(builder.fneg(imag), size))
+        _store_complex(builder, at, builder.fmul(real, size), builder.fmul(builder.fneg(imag), size))
         return context.get_dummy_value()
 
     return types.void(out, i), code
@@ -151,7 +164,7 @@ def _complex(builder: Any, place: Any) -> tuple[Any, Any]:
     return _load(builder, place), _load(builder, _behind(builder, place))
 
 
-def _put(builder: Any, place: Any, real: Any, imag: Any) -> None:
+def _store_complex(builder: Any, place: Any, real: Any, imag: Any) -> None:
     _store(builder, real, place)
     _store(builder, imag, _behind(builder, place))
 
@@ -185,8 +198,9 @@ def _product(builder: Any, real: Any, imag: Any, other_real: Any, other_imag: An
     )
 
 
-add_scaled: Any = intrinsic(_add_scaled)
+put: Any = intrinsic(_put)
 put_sum: Any = intrinsic(_put_sum)
+add_sum: Any = intrinsic(_add_sum)
 dot: Any = intrinsic(_dot)
 put_product: Any = intrinsic(_put_product)
 take_product: Any = intrinsic(_take_product)

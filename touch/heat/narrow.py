@@ -41,6 +41,7 @@ from ..scene import PadPlace
 
 STEPS = 9
 """Widths of a table: the sensor's, and each the last one's over the root of 2; narrower ones count as the last."""
+_ROOT = 2.0**0.5
 _FINEST = 3e4
 """W/(m2 K) of the contact beside which errors of the impedance are weighed."""
 
@@ -158,12 +159,15 @@ def spread(own, other, width, area, length, aside, ends, root):
         root[k] = 0.0
     for side in range(2):
         table, shares = (own, aside) if side == 0 else (other, ends)
-        for corner in range(16):
-            a, b, c, d = corner & 1, corner >> 1 & 1, corner >> 2 & 1, corner >> 3
-            weight = _of(shares[0], a) * _of(shares[1], b) * _of(u, c) * _of(v, d)
-            if weight > 0.0:
-                for k in range(len(root)):
-                    root[k] += weight * table[a, b, i + c, j + d, k]
+        for place in range(4):
+            a, b = place & 1, place >> 1
+            placed = _of(shares[0], a) * _of(shares[1], b)
+            if placed > 0.0:  # most contacts are in the middle
+                for size in range(4):
+                    c, d = size & 1, size >> 1
+                    weight = placed * _of(u, c) * _of(v, d)
+                    for k in range(len(root)):
+                        root[k] += weight * table[a, b, i + c, j + d, k]
     for k in range(len(root)):
         root[k] = np.sqrt(root[k])
     return True
@@ -173,9 +177,10 @@ def spread(own, other, width, area, length, aside, ends, root):
 def _between(ratio):
     """(number of the width before, share of the way to the next) of a width that is a ratio-th of the sensor's: evenly
     by its inverse, to which the impedance is proportional at first."""
-    narrow = min(2 * np.log2(ratio), STEPS - 1.0)
-    at = min(int(narrow), STEPS - 2)
-    return at, (2.0 ** ((narrow - at) / 2) - 1) / (2.0**0.5 - 1)
+    at, size = 0, 1.0
+    while at < STEPS - 2 and ratio > size * _ROOT:
+        at, size = at + 1, size * _ROOT
+    return at, min((ratio / size - 1) / (_ROOT - 1), 1.0)
 
 
 @njit(cache=True, inner=True, error_model="numpy")

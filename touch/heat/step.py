@@ -16,12 +16,12 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ...thermal.network import POLES, WEIGHTS
-from .lanes import LANES, add_scaled, dot, invert, put_product, put_sum, take_product
+from .lanes import LANES, add_sum, dot, invert, put, put_product, put_sum, take_product
 
 CONTACTS, FIELDS, PORTS, GRAM, HEADER = range(5)
 """Of a group's integers, the first: contacts and fields, and where its ports and its gram begin. Behind them its
 contacts' pairs; then of each field its number, how many lanes it has, how many rates and states, the lanes by number,
-and of each rate its row among the paces and how many states."""
+the row of its first rate among the paces, and of each rate how many states."""
 _RATE, _LEFT, _MEAN, _SEEN, _PUSHED, _LAGGED = 0, 1, 2, 3, 9, 15
 PACE = 21
 """Numbers of a rate: itself 1/s; of a state left alone what is there after a step, and its mean; how it is seen at the
@@ -57,7 +57,7 @@ def gram(rates: np.ndarray, ports: np.ndarray, dt: float) -> np.ndarray:
 class Room(NamedTuple):
     """Memory of `step`. Of each contact: resistance K/W, difference K and flow W. By column, a lane's port: heard and
     flows (2 Q, columns), and into (columns,), all flat. Of the solution, complex lanes, one pole each: matrix (m, m),
-    solved and factors (m,)."""
+    solved and factors (m,). Lanes by rate: summed."""
 
     resistance: np.ndarray
     difference: np.ndarray
@@ -68,12 +68,13 @@ class Room(NamedTuple):
     matrix: np.ndarray
     solved: np.ndarray
     factors: np.ndarray
+    summed: np.ndarray
 
 
-def room_size(contacts: int, patterns: int) -> int:
-    """Numbers of which `room_of` makes a Room for so many contacts."""
+def room_size(contacts: int, patterns: int, rates: int) -> int:
+    """Numbers of which `room_of` makes a Room for so many contacts and rates of a field."""
     m, columns = contacts * patterns, contacts * LANES * lanes(patterns)
-    return 3 * contacts + (4 * _PAIRS + 1) * columns + 2 * LANES * (m * m + 2 * m)
+    return 3 * contacts + (4 * _PAIRS + 1) * columns + 2 * LANES * (m * m + 2 * m) + LANES * rates
 
 
 @njit(cache=True, inner=True, borrows=True, forceinline=True)
@@ -84,6 +85,7 @@ def room_of(numbers, contacts, patterns):
     flows, into = heard + 2 * _PAIRS * columns, heard + 4 * _PAIRS * columns
     solved = into + columns
     factors, matrix = solved + 2 * LANES * m, solved + 4 * LANES * m
+    summed = matrix + 2 * LANES * m * m
     return Room(
         numbers[:contacts],
         numbers[contacts : 2 * contacts],
@@ -91,9 +93,10 @@ def room_of(numbers, contacts, patterns):
         numbers[heard:flows],
         numbers[flows:into],
         numbers[into:solved],
-        numbers[matrix:],
+        numbers[matrix:summed],
         numbers[solved:factors],
         numbers[factors:matrix],
+        numbers[summed:],
     )
 
 
@@ -107,38 +110,41 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
     objects, wide = len(held), LANES * ((patterns + LANES - 1) // LANES)
     columns, m = contacts * wide, contacts * patterns
     heard, flows, into, solved, matrix = room.heard, room.flows, room.into, room.solved, room.matrix
-    resistance, difference, flow = room.resistance, room.difference, room.flow
+    resistance, difference, flow, summed = room.resistance, room.difference, room.flow, room.summed
     for c in range(2 * _PAIRS * columns):
         heard[c] = 0.0
     listed, port = at + HEADER + 2 * contacts, integers[at + PORTS]
     for _ in range(fields):
         field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]
-        of_rate, state = listed + 4 + own, first + field * stride
-        for s in range(rates):
-            row, size = PACE * integers[of_rate + 2 * s], integers[of_rate + 2 * s + 1]
-            for b in range(own):
-                put_sum(into, 0, ports, port + LANES * b, LANES * own, states, state, size)
-                column = LANES * integers[listed + 4 + b]
-                for r in range(2 * _PAIRS):
-                    add_scaled(heard, r * columns + column, into, 0, paces[row + _SEEN + r])
-            state += size
-            port += LANES * own * size
-        listed = of_rate + 2 * rates
-    row = 2 * LANES * m
+        paced, first_port = listed + 4 + own, port
+        for b in range(own):
+            state, port = first + field * stride, first_port + LANES * b
+            for s in range(rates):
+                size = integers[paced + 1 + s]
+                put_sum(summed, LANES * s, ports, port, LANES * own, states, state, size)
+                state += size
+                port += LANES * own * size
+            column, row = LANES * integers[listed + 4 + b], PACE * integers[paced] + _SEEN
+            for r in range(2 * _PAIRS):
+                add_sum(heard, r * columns + column, summed, 0, LANES, paces, row + r, PACE, rates)
+        port = first_port + LANES * own * integers[listed + 3]
+        listed = paced + 1 + rates
+    row, own_gram = 2 * LANES * m, integers[at + GRAM]
     for c in range(contacts):
+        resists, differs = min(resistance[c], _MOST) / dt, difference[c] / dt
         for p in range(patterns):
             a = c * patterns + p
-            for n in range(2 * LANES * (m - a)):
-                matrix[a * row + 2 * LANES * a + n] = grams[integers[at + GRAM] + a * row + 2 * LANES * a + n]
-            resists = min(resistance[c], _MOST) / dt
+            diagonal = a * row + 2 * LANES * a
+            for n in range(diagonal, (a + 1) * row, LANES):
+                put(matrix, n, grams, own_gram + n)
             for q in range(LANES):
-                matrix[a * row + 2 * LANES * a + q] += resists
+                matrix[diagonal + q] += resists
             for q in range(_PAIRS):
                 real, imag = 2 * LANES * a + q, 2 * LANES * a + LANES + q
                 solved[real] = -heard[q * columns + c * wide + p]
                 solved[imag] = -heard[(_PAIRS + q) * columns + c * wide + p]
                 if p == 0:
-                    solved[real] += difference[c] / dt
+                    solved[real] += differs
     _solve(matrix, solved, room.factors, m)
     for c in range(contacts):
         flow[c] = 0.0
@@ -152,9 +158,9 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
     listed, port, lost = at + HEADER + 2 * contacts, integers[at + PORTS], 0.0
     for _ in range(fields):
         field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]
-        of_rate, state = listed + 4 + own, first + field * stride
+        paced, state = listed + 4 + own, first + field * stride
+        row = PACE * integers[paced]
         if field < objects:  # of the mean temperature, its first state
-            row = PACE * integers[of_rate]
             mean = paces[row + _MEAN] * states[state]
             for b in range(own):
                 column = LANES * integers[listed + 4 + b]
@@ -164,15 +170,15 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
                     )
             lost += held[field] * paces[row + _RATE] * mean
         for s in range(rates):
-            row, size = PACE * integers[of_rate + 2 * s], integers[of_rate + 2 * s + 1]
             for b in range(own):
                 column = LANES * integers[listed + 4 + b]
                 put_sum(into, LANES * b, flows, column, columns, paces, row + _PUSHED, 2 * _PAIRS)
-            for _ in range(size):
+            for _ in range(integers[paced + 1 + s]):
                 states[state] = paces[row + _LEFT] * states[state] + dot(ports, port, into, 0, own)
                 state += 1
                 port += LANES * own
-        listed = of_rate + 2 * rates
+            row += PACE
+        listed = paced + 1 + rates
     return lost
 
 

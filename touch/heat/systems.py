@@ -42,7 +42,7 @@ def groups(pairs: Sequence[Pair], objects: int) -> list[tuple[Pair, ...]]:
 class SystemPool:
     """Systems of groups, each made once. faces: (n, patterns) ports of each tip for another that touches it. starts:
     where each one's integers begin (step.py), and ports, grams and paces: what these refer to. most: contacts of the
-    largest."""
+    largest. rates: of the field that has most."""
 
     def __init__(
         self, tips: Sequence[Tip], faces: Sequence[np.ndarray], objects: int, patterns: int, dt: float
@@ -50,10 +50,10 @@ class SystemPool:
         self._tips, self._faces, self._objects = tuple(tips), tuple(faces), objects
         self._patterns, self._dt = patterns, dt
         self._known: dict[tuple[object, ...], int] = {}
-        self._rates: dict[float, int] = {}
+        self._rates: dict[tuple[float, ...], int] = {}
         self.starts, self.integers = np.zeros(0, np.int64), np.zeros(0, np.int64)
         self.ports, self.grams, self.paces = np.zeros(0), np.zeros(0), np.zeros((0, PACE))
-        self.most = 0
+        self.most = self.rates = self._paced = 0
         self._used = (0, 0, 0, 0)  # of the first four, what is behind it is room
 
     def __len__(self) -> int:
@@ -96,8 +96,9 @@ class SystemPool:
             spans = [(start, end) for start, end in pairwise(starts) if end > start]
             own = [number * of_contact + n for number in seen for n in range(of_contact)]
             integers += [member, len(own), len(spans), len(rates), *own]
-            for start, end in spans:
-                integers += [self._pace(float(rates[start])), end - start]
+            integers += [self._pace(tuple(rates[[start for start, _ in spans]].tolist()))]
+            integers += [end - start for start, end in spans]
+            self.rates = max(self.rates, len(spans))
         count, *used = self._used
         whole = np.array([len(pairs), len(members), *used[1:], *integers], np.int64)
         self.starts = _written(self.starts, count, np.array(used[:1]))
@@ -108,12 +109,14 @@ class SystemPool:
         self._used = count + 1, used[0] + len(whole), used[1] + len(flat), used[2] + heard.size
         return count
 
-    def _pace(self, rate: float) -> int:
-        """The row of a rate."""
-        if rate not in self._rates:
-            self.paces = _written(self.paces, len(self._rates), pace(rate, self._dt)[None])
-            self._rates[rate] = len(self._rates)
-        return self._rates[rate]
+    def _pace(self, rates: tuple[float, ...]) -> int:
+        """The row of the first of a field's rates."""
+        if rates not in self._rates:
+            first = self._paced
+            rows = np.array([pace(rate, self._dt) for rate in rates]).reshape(-1, PACE)
+            self.paces = _written(self.paces, first, rows)
+            self._rates[rates], self._paced = first, first + len(rates)
+        return self._rates[rates]
 
     def _tips_of(self, pair: Pair) -> list[int]:
         tip, target = pair
