@@ -4,10 +4,11 @@ advances heat and electronics."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numba import carray  # pyright: ignore[reportPrivateImportUsage]
+from numba import carray, types  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
@@ -39,6 +40,12 @@ class Hearing:
         self._arrays = arrays
         self._table = table(arrays, (*addresses, *sizes, *_functions()))
         self.address = self._table.ctypes.data
+
+
+@cache
+def hearer() -> Callable[[int], int]:
+    """`hear` as Python calls it soonest: numba does not look again of what kind the address is."""
+    return hear.compile((types.int64,))
 
 
 @cache

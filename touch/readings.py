@@ -6,7 +6,9 @@ W: worlds, F: fingertips, E: glued elements, S = F + E: sensors, O: objects, T =
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numba import carray  # pyright: ignore[reportPrivateImportUsage]
@@ -22,7 +24,8 @@ NOISE_BLOCK = 32
 """Samples for which noise is drawn at once."""
 
 
-class Layout(NamedTuple):
+@dataclass(frozen=True)
+class Layout:
     """What the numbers of a reading are: of each world (W, SIZE), the voltages of all sensors, their drops, the
     fingertips' forces and those beside, the objects' temperatures, and what each fingertip touches, -1 for nothing.
     names: of the objects, the fingertips, and "" for the last one."""
@@ -33,7 +36,7 @@ class Layout(NamedTuple):
     names: tuple[str, ...]
     many: bool
 
-    @property
+    @cached_property
     def starts(self) -> tuple[int, ...]:
         """Where drops, forces, forces beside, temperatures and touches begin, and how many numbers there are."""
         drops = self.sensors * SAMPLES
@@ -79,12 +82,12 @@ class TouchReading:
     @property
     def voltage(self) -> np.ndarray:
         """(F, SAMPLES) V as the driver reports it, oldest first."""
-        return self._volts()[..., : self._layout.tips, :]
+        return self._volts(0, self._layout.tips)
 
     @property
     def element_voltage(self) -> np.ndarray:
         """(E, SAMPLES) V of the elements that are glued on objects, in the order of `ThermalTouch.elements`."""
-        return self._volts()[..., self._layout.tips :, :]
+        return self._volts(self._layout.tips, self._layout.sensors)
 
     @property
     def temperature_drop(self) -> np.ndarray:
@@ -124,9 +127,9 @@ class TouchReading:
         found = tuple([tuple([names[t] for t in world]) for world in worlds])
         return found if self._layout.many else found[0]
 
-    def _volts(self) -> np.ndarray:
-        first = self._rows(0, self._layout.starts[0])
-        return first.reshape(*first.shape[:-1], self._layout.sensors, SAMPLES)
+    def _volts(self, first: int, last: int) -> np.ndarray:
+        found = self._rows(first * SAMPLES, last * SAMPLES)
+        return found.reshape(*found.shape[:-1], last - first, SAMPLES)
 
     def _rows(self, first: int, last: int) -> np.ndarray:
         found = self._numbers[:, first:last]
@@ -286,7 +289,8 @@ class Electronics:
         layout, numbers = self._layout, self._numbers.copy()
         if not layout.many:
             return TouchReading(time.item(), False, numbers, layout)
-        numbers[broken, : layout.starts[4]] = np.nan
+        if broken.any():
+            numbers[broken, : layout.starts[4]] = np.nan
         return TouchReading(time.copy(), broken.copy(), numbers, layout)
 
 
@@ -319,6 +323,8 @@ def close_sample(entries_at, due):
             off[w, f] += beside[w, f]
             beside[w, f] = 0.0
             for t in range(targets):
+                if touches[w, f, t, FORCE] == 0.0:
+                    continue  # nothing has been added
                 pressed[w, f, t] += touches[w, f, t, FORCE]
                 for k in range(COLUMNS):
                     touches[w, f, t, k] = 0.0

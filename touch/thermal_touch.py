@@ -26,7 +26,7 @@ from ..thermal.stack import converter
 from .contacts import ContactReader, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
-from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, RecordHearing, hear, hear_record
+from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, RecordHearing, hear_record, hearer
 from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
 from .readings import SAMPLES, Electronics, Layout, Noise, TouchReading
 from .scene import (
@@ -167,6 +167,7 @@ class ThermalTouch:
         self._hearing: Hearing | None = None
         self._recorded: RecordHearing | None = None
         self._near_at = 0
+        self._hear_step: Any = None  # what hears a step of these data
         self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
         self._heat.reset(range(count), self._first)
         self._rest(range(count))
@@ -213,7 +214,7 @@ class ThermalTouch:
         time it changes nothing. Raises InvalidValueError for data of another model or of an earlier time, and
         SimulationError for forces that are not finite; of many worlds, those `failed` until they are reset."""
         if data is self._near:
-            heard = hear(self._near_at)
+            heard = self._hear_step(self._near_at)
             if heard == NOTHING:
                 return self._reading
             if heard != ELSEWHERE:
@@ -602,7 +603,7 @@ class ThermalTouch:
             ),
             (self._sample_steps, self._samples),
         )
-        self._near, self._near_at = data, self._hearing.address
+        self._near, self._near_at, self._hear_step = data, self._hearing.address, hearer()
 
     def _finish(self, heard: int) -> TouchReading:
         """What is left to do where `hear` found something to do."""
@@ -617,6 +618,9 @@ class ThermalTouch:
         if heard & DUE:
             self._reading = self._read()
         return self._reading
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_hear_step": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""

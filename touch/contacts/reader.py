@@ -273,7 +273,7 @@ def _making(meshes: Mapping[PressedMesh, int], tables: np.ndarray, failed: list[
     return _MAKE(make)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", short_loops=True)
 def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
@@ -357,7 +357,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     return 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", short_loops=True)
 def sense_contacts(record_at, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `sensing`.

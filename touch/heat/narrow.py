@@ -161,13 +161,12 @@ def spread(own, other, width, area, length, aside, ends, root):
         table, shares = (own, aside) if side == 0 else (other, ends)
         for place in range(4):
             a, b = place & 1, place >> 1
-            placed = _of(shares[0], a) * _of(shares[1], b)
-            if placed > 0.0:  # most contacts are in the middle
-                for size in range(4):
-                    c, d = size & 1, size >> 1
-                    weight = placed * _of(u, c) * _of(v, d)
-                    for k in range(len(root)):
-                        root[k] += weight * table[a, b, i + c, j + d, k]
+            weight = _of(shares[0], a) * _of(shares[1], b)
+            if weight > 0.0:  # most contacts are in the middle, where one is
+                for k in range(len(root)):
+                    near = (1 - v) * table[a, b, i, j, k] + v * table[a, b, i, j + 1, k]
+                    far = (1 - v) * table[a, b, i + 1, j, k] + v * table[a, b, i + 1, j + 1, k]
+                    root[k] += weight * ((1 - u) * near + u * far)
     for k in range(len(root)):
         root[k] = np.sqrt(root[k])
     return True
