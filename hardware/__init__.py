@@ -1,6 +1,7 @@
 """Wire formats, drivers, emulators and the serial plant."""
 
 from .drivers import (
+    Axis,
     Contact,
     Fault,
     Fingertips,
@@ -74,6 +75,7 @@ from .protocol import (
 from .recordings import Damage, Recorder, Recording, Replay, known_touch, read_recording, replay
 
 __all__ = [
+    "Axis",
     "Calibration",
     "CommandRefusedError",
     "Condition",

@@ -4,42 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
+from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 
 from thermograsp.envs.limits import SAMPLE_PERIOD
 from thermograsp.envs.plant import SimulatedPlant, simulated_plant
 from thermograsp.errors import InvalidValueError
-from thermograsp.hardware import Fingertips, GripperModel, RobotiqGripper, VirtualLine
+from thermograsp.hardware import Fingertips, GripperModel, RobotiqGripper, RobotiqUnits, VirtualLine
 from thermograsp.hardware.plant import SerialConfig, SerialPlant, VirtualTime, without_maps
 from thermograsp.plant import Command, Reading
 
 from .simulated_hand import SimulatedHand
 
+_JUDGED = ("material", "lift", "crushing_force")  # of the simulation's truth
+
 
 class TwinPlant:
     """A SerialPlant on emulated devices that `simulation` moves (a plant, thermograsp.plant.Plant). It is what a policy
-    will meet on the real gripper: commands in the gripper's steps, samples from the wire, no lift axis. Only the
-    material is told beyond what a SerialPlant knows, so that a policy can be judged. Nothing waits for the wall's time,
-    and the same seeds give the same bits.
+    will meet on the real gripper: commands in the gripper's steps, samples from the wire, an arm that lifts. units: of
+    the emulated gripper, a Robotiq 2F-85 by default. Beyond what a SerialPlant knows, the material, the object's height
+    and the force that crushes it are told, so that a policy can be judged. Nothing waits for the wall's time, and the
+    same seeds give the same bits.
 
     Raises InvalidValueError for a simulation of more than one environment, and for fingertips of two temperatures."""
 
     num_envs = 1
 
-    def __init__(self, simulation: SimulatedPlant) -> None:
+    def __init__(self, simulation: SimulatedPlant, units: RobotiqUnits | None = None) -> None:
         plates = simulation.config.sensor_temperatures
         if len(set(plates)) > 1:
             raise InvalidValueError(f"sensor_temperature {plates!r} °C: behind a serial line both are alike")
         self.dt, self.sample_rate = simulation.dt, simulation.sample_rate
         self._simulation = simulation
-        self._hand = SimulatedHand(simulation, model=GripperModel(activation_speed=1.0))
+        units = units or RobotiqUnits()
+        self._hand = SimulatedHand(simulation, model=GripperModel(units, activation_speed=1.0))
         lines = VirtualLine(self._hand.fingertips), VirtualLine(self._hand.gripper)
         self._serial = SerialPlant(
             Fingertips(lines[0].open, clock=lines[0].clock, background=False, setpoint=plates[0]),
-            RobotiqGripper(lines[1].open, clock=lines[1].clock, sleep=lines[1].advance),
+            RobotiqGripper(lines[1].open, units=units, clock=lines[1].clock, sleep=lines[1].advance),
             SerialConfig(dt=simulation.dt, rate=round(1 / SAMPLE_PERIOD), setpoint=plates[0]),
             VirtualTime(lines),
+            lift=self._hand.lift,
         )
 
     def reset(
@@ -60,19 +66,31 @@ class TwinPlant:
         self._simulation.close()
 
     def _judged(self, reading: Reading) -> Reading:
-        """With the material, which the simulation knows."""
-        material = np.array([self._simulation.bodies[0].material.name], object)
+        """With what the simulation knows."""
+        simulated = self._hand.reading
+        known = {} if simulated is None else {name: simulated.truth[name] for name in _JUDGED}
         unknown = np.empty(1, object)
-        unknown[0] = tuple(name for name in reading.truth["unknown"][0] if name != "material")
-        truth = {**reading.truth, "unknown": unknown, "material": material}
+        unknown[0] = tuple(name for name in reading.truth["unknown"][0] if name not in known)
+        truth = {**reading.truth, **known, "unknown": unknown}
         return reading._replace(truth=truth, info_names=(*reading.info_names, "material"))
 
 
 def twin_plant(url: str, num_envs: int, **config: Any) -> TwinPlant:
-    """The plant behind plant="twin". Keywords as in SimulationConfig. Raises UnknownKeywordError for others, and
-    InvalidValueError for what no serial line has and for a URL with a port: devices are emulated."""
-    if url != "twin":
-        raise InvalidValueError(f"plant {url!r}: a twin has no port; give 'twin'")
+    """The plant behind plant="twin", or "twin:?weakest=1&strongest=40" for a gripper whose forces, N, are other than a
+    Robotiq 2F-85's. Keywords as in SimulationConfig. Raises UnknownKeywordError for others, and InvalidValueError for
+    what no serial line has and for a URL of another form, such as one with a port: devices are emulated."""
+    parts = urlsplit(url)
+    given = {"weakest": RobotiqUnits().weakest, "strongest": RobotiqUnits().strongest}
+    try:
+        asked = {name: float(value) for name, value in parse_qsl(parts.query, keep_blank_values=True)}
+    except ValueError:
+        asked = {"": 0.0}
+    if parts.netloc or parts.path not in ("", "twin") or not asked.keys() <= given.keys():
+        raise InvalidValueError(
+            f"plant {url!r}: a twin has no port; give 'twin', or 'twin:?weakest=N&strongest=N' with N in newtons"
+        )
     if num_envs != 1:
         raise InvalidValueError(f"a twin is one gripper, so num_envs must be 1, got {num_envs}")
-    return TwinPlant(simulated_plant(url, 1, **without_maps(config)))
+    forces = given | asked
+    units = RobotiqUnits(weakest=forces["weakest"], strongest=forces["strongest"])
+    return TwinPlant(simulated_plant("twin", 1, **without_maps(config)), units)

@@ -1,4 +1,4 @@
-"""Emulated fingertips and an emulated gripper that belong together: one simulated plant is what both move and feel."""
+"""Emulated fingertips, gripper and lift that belong together: one simulated plant is what they move and feel."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from thermograsp.envs.limits import SAMPLE_PERIOD
+from thermograsp.envs.limits import MAX_HEIGHT, MAX_LIFT_RATE, SAMPLE_PERIOD
 from thermograsp.envs.plant import SimulatedPlant
-from thermograsp.errors import InvalidValueError
+from thermograsp.errors import InvalidValueError, within
 from thermograsp.hardware import (
     Contact,
     EmulatedFingertips,
@@ -29,18 +29,44 @@ _REHEARSAL = 50  # control steps, in which the fingers reach an object
 _PAUSE = 1.0  # s without a sample, in which the simulation stands still
 
 
-class SimulatedHand:
-    """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too.
+class SimulatedLift:
+    """The lift of a simulated hand, an Axis without a line. rate: m/s that it was told last; the simulation follows it
+    with its own acceleration, and stops at its ends. height: m after the last control step."""
 
-    A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., or as `draw_next`
-    says, stands between the fingers whenever an active gripper is wide open. Its simulation goes on, a control step
-    whenever one is due for the next sample, from the first command to close until the fingers are wide open again.
-    While the gripper is not active nothing is between them. The fingers' speed is the simulation's, whatever the
-    command says, there is no lift axis, and the plates keep the simulation's temperature. Two threads may serve the
+    travel = MAX_HEIGHT
+
+    def __init__(self) -> None:
+        self.rate = self.height = 0.0
+
+    def move(self, rate: float) -> None:
+        """See Axis. Raises InvalidValueError for a rate that the simulated arm does not have."""
+        self.rate = float(within("lift_rate", rate, -MAX_LIFT_RATE, MAX_LIFT_RATE, "m/s"))
+
+    def position(self) -> float:
+        """See Axis."""
+        return self.height
+
+    def stop(self) -> None:
+        """See Axis."""
+        self.rate = 0.0
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+class SimulatedHand:
+    """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too. `lift` is the axis
+    of its arm, which stands still unless it is moved.
+
+    A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., stands between the
+    fingers whenever an active gripper is wide open. Once `draw_next` has been called, objects come from it alone. The
+    simulation goes on, a control step whenever one is due for the next sample, from the first command to close or to
+    lift until the next object. While the gripper is not active nothing is between the fingers. Their speed is the
+    simulation's, whatever the command says, and the plates keep the simulation's temperature. Two threads may serve the
     two lines.
 
-    opening, contact, current: see Fingers. episodes: objects so far. Raises InvalidValueError for a plant of more
-    than one environment.
+    opening, contact, current: see Fingers. episodes: objects so far. reading: the simulation's last, None while nothing
+    is between the fingers. Raises InvalidValueError for a plant of more than one environment.
     """
 
     def __init__(self, simulation: SimulatedPlant, seed: int = 0, model: GripperModel | None = None) -> None:
@@ -53,7 +79,9 @@ class SimulatedHand:
         self._rehearse()
         self._plates = simulation.config.sensor_temperatures
         self._last_command = (model.units.stroke, 0.0)
-        self._reading: Reading | None = None
+        self.lift = SimulatedLift()
+        self.reading: Reading | None = None
+        self._asked = False
         self._begun: float | None = None  # s, of the control step that the reading is of
         self._next: tuple[np.random.Generator, Mapping[str, Any]] | None = None
         self._lock = threading.Lock()
@@ -63,18 +91,19 @@ class SimulatedHand:
     def draw_next(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         """Takes the object away. The next one is drawn from `rng`, with the reset options of the simulation."""
         with self._lock:
-            self._reading = self._begun = None
-            self._next = (rng, options)
+            self.reading = self._begun = None
+            self.lift.height = 0.0
+            self._next, self._asked = (rng, options), True
 
     def move(self, target: float, force: float, speed: float, seconds: float) -> None:
         """See Fingers."""
         with self._lock:
             self._last_command = (target, force)
             if not self._active:
-                self._reading = self._begun = None
-            if self._reading is None or target > self.opening - _SHORT:
+                self.reading = self._begun = None
+            if self.reading is None or target > self.opening - _SHORT:
                 self.contact = Contact.NONE
-            if self._reading is None:
+            if self.reading is None:
                 step = speed * seconds
                 self.opening += float(np.clip(target - self.opening, -step, step))
 
@@ -91,17 +120,21 @@ class SimulatedHand:
     def _feel(self, now: float) -> Feel:
         with self._lock:
             wide = min(self.opening, self._last_command[0]) > self._stroke - _WIDE
-            if self._active and wide and (self._reading is None or self._begun is not None):
+            if (
+                self._active
+                and wide
+                and (self.reading is None or (self._begun is not None and not self._asked))
+            ):
                 self._put_object()
-            if self._reading is None or (self._begun is None and wide):
+            if self.reading is None or (self._begun is None and wide and not self.lift.rate):
                 return Feel(thermostat=self._plates)
             return self._simulated(now)
 
     def _put_object(self) -> None:
         rng, options = self._next or (np.random.default_rng(self._seed + self.episodes), {})
         self._next = None
-        self._reading, self._begun = self._simulation.reset([0], [rng], options), None
-        self.opening, self.contact = self._stroke, Contact.NONE
+        self.reading, self._begun = self._simulation.reset([0], [rng], options), None
+        self.opening, self.contact, self.lift.height = self._stroke, Contact.NONE, 0.0
         self.episodes += 1
 
     def _simulated(self, now: float) -> Feel:
@@ -114,16 +147,19 @@ class SimulatedHand:
             self._step()
             self._begun += dt
             place -= samples
-        assert self._reading is not None
-        reading = self._reading
+        assert self.reading is not None
+        reading = self.reading
         left, right = reading.force[0].tolist()
         volts = reading.voltage[0, place].tolist()
         return Feel((volts[0], volts[1]), (0.0, 0.0), (left, right), tuple(reading.thermostat[0].tolist()))  # pyright: ignore[reportArgumentType]
 
     def _step(self) -> None:
         target, force = self._last_command
-        reading = self._simulation.step(Command(np.array([target]), np.array([force]), np.zeros(1)))
-        self._reading, self.opening = reading, float(reading.opening[0])
+        reading = self._simulation.step(
+            Command(np.array([target]), np.array([force]), np.array([self.lift.rate]))
+        )
+        self.reading, self.opening = reading, float(reading.opening[0])
+        self.lift.height = float(reading.height[0])
         pressing = reading.force[0, :, 0].min() > _PRESSING
         standing = abs(reading.opening_rate[0]) < _STANDING and self.opening > target + _SHORT
         self.contact = Contact.CLOSING if pressing and standing else Contact.NONE

@@ -35,7 +35,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--twin",
         action="store_true",
-        help="score through emulated devices and their serial protocols, on the task identify only",
+        help="score through emulated devices and their serial protocols, on the tasks grasp and identify",
+    )
+    add(
+        "--force-range",
+        type=float,
+        nargs=2,
+        metavar=("LOW", "HIGH"),
+        help="force range of the emulated gripper in N, with --twin (default: a Robotiq 2F-85's, 20 235)",
     )
 
 
@@ -46,13 +53,16 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.agents.learning import HELD_OUT, learning_task, score
 
     task = learning_task(args.task)
-    if args.twin and task.name != "identify":
+    if args.twin and task.env_id == "thermograsp/Sort-v0":
         raise InvalidValueError(
-            f"--twin: a gripper on a serial line has no lift axis, which {task.name} needs"
+            f"--twin: a gripper on a serial line has no lateral axis, which {task.name} needs"
         )
+    if args.force_range and not args.twin:
+        raise InvalidValueError("--force-range is of an emulated gripper: give --twin, too")
     changes = {"gripper": args.gripper} if args.gripper else {}
     if args.twin:
-        changes["plant"] = "twin"
+        weakest, strongest = args.force_range or (None, None)
+        changes["plant"] = f"twin:?{weakest=}&{strongest=}" if args.force_range else "twin"
     task = task.drawn() if args.randomize else task
     task = replace(task, keywords={**task.keywords, **changes})
     with output.progress(args.episodes) as advance:
@@ -72,6 +82,7 @@ def run(args: argparse.Namespace) -> int:
             "gripper": args.gripper,
             "randomize": args.randomize,
             "twin": args.twin,
+            "force_range": args.force_range,
             "first_seed": HELD_OUT,
             "episodes": found.episodes,
             "successes": found.successes,

@@ -1,5 +1,6 @@
 """Drivers of fingertips and grippers."""
 
+from .axis import Axis
 from .fingertips import Fingertips, LinkStatistics
 from .gripper import Contact, Gripper, GripperStatus, open_gripper
 from .link import OPENED, LinkSettings, Tap
@@ -31,6 +32,7 @@ __all__ = [
     "TOP",
     "Action",
     "Activation",
+    "Axis",
     "Contact",
     "Fault",
     "Fingertips",

@@ -9,16 +9,15 @@ import threading
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, finite, positive, within
+from thermograsp.errors import InvalidValueError, positive, within
 from thermograsp.plant import Command, Reading
 
-from ..drivers import Fingertips, Gripper, GripperStatus, open_gripper
+from ..drivers import Axis, Fingertips, Gripper, GripperStatus, open_gripper
 from ..errors import (
     DeviceError,
     LinkLostError,
@@ -28,76 +27,30 @@ from ..errors import (
     StoppedError,
 )
 from ..protocol import Flag, Samples
+from .config import PaceCounts, SerialConfig
+from .lift import Lift
 from .pacing import Pace, RealTime
 
 UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height", "lateral")
 _STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
 MOST_OPENING = 0.085  # m that a command may ask for, and an observation tell
 OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
-_STOPPED = "the fingers were stopped where they are; reset the environment to go on"
+_STOPPED = "fingers and lift were stopped where they are; reset the environment to go on"
 _TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
 _WARMING = Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT | _TOLERATED
 _SETTLING = 0.2  # s between looks at a thermostat that warms up
 
 
-@dataclass(frozen=True, slots=True)
-class SerialConfig:
-    """rate: Hz of the voltage. dt: s, the control period, a whole number of samples. setpoint: °C of both thermostats.
-    speed: m/s of the fingers. most_force: N on a pad, of either sign, above which the gripper lets go; so it does where
-    a load cell is at an end of its range (62.4 N in docs/firmware.md), whatever this is. watchdog: s without a step
-    after which it lets go; 0 for never. settle_within, open_within: s that a reset waits for the thermostats, and for
-    the fingers to open."""
-
-    rate: int = 100
-    dt: float = 0.02
-    setpoint: float = 36.0
-    speed: float = 0.1
-    most_force: float = 50.0
-    watchdog: float = 0.5
-    settle_within: float = 60.0
-    open_within: float = 6.0
-
-    def __post_init__(self) -> None:
-        for name in ("dt", "speed", "most_force", "settle_within", "open_within"):
-            positive(f"serial plant: {name}", getattr(self, name))
-        for name in ("setpoint", "watchdog"):
-            finite(f"serial plant: {name}", getattr(self, name))
-        if self.samples < 1 or abs(self.dt * self.rate - self.samples) > 1e-9:
-            raise InvalidValueError(
-                f"serial plant: {self.rate} Hz and steps of {self.dt:g} s: give a whole number of samples a step"
-            )
-        if self.watchdog and self.watchdog < 2 * self.dt:
-            raise InvalidValueError(
-                f"serial plant: watchdog must be 0 or at least 2 steps, got {self.watchdog:g} s"
-            )
-
-    @property
-    def samples(self) -> int:
-        """Of the voltage in a control step."""
-        return round(self.dt * self.rate)
-
-
-@dataclass(slots=True)
-class PaceCounts:
-    """steps. overruns: that ended more than 1 ms late. latest: s, the worst. repeated, skipped: samples that were not
-    there in time, so that the one before stood in for it, and that came too many."""
-
-    steps: int = 0
-    overruns: int = 0
-    latest: float = 0.0
-    repeated: int = 0
-    skipped: int = 0
-
-
 class SerialPlant:
-    """A plant (thermograsp.plant.Plant) of real fingertips and a real gripper, which it owns and closes.
+    """A plant (thermograsp.plant.Plant) of real fingertips, a real gripper and maybe a lift, which it owns and closes.
 
     A step sends the command, waits for the step's end, and reads. The voltages are the oldest samples not yet read, so
-    that they are at most a step and a sample old. What goes wrong in a step or a reset opens the gripper and ends the
-    episode: a step's reading has the last values and says why in error. Without a lift axis the height is 0 and
-    lift_rate does nothing; lateral_rate does nothing; a gripper of a shorter stroke opens as far as it can. truth has
-    `unknown`, names that only a simulation knows or that need such an axis, and `late`, s by which the step's end was
-    missed. The fingers stay as they are on close.
+    that they are at most a step and a sample old. What goes wrong in a step or a reset stops the lift, opens the
+    gripper and ends the episode: a step's reading has the last values and says why in error. What is held then falls
+    from where the lift is. lift: the arm's axis that carries the gripper; it does not leave 0 .. its travel, nor 0 ..
+    0.15 m. Without one the height is 0 and lift_rate does nothing; lateral_rate does nothing; a gripper of a shorter
+    stroke opens as far as it can. truth has `unknown`, names that only a simulation knows or that need such an axis,
+    and `late`, s by which the step's end was missed. On close the fingers stay as they are, and the lift stops.
     """
 
     num_envs = 1
@@ -109,6 +62,7 @@ class SerialPlant:
         config: SerialConfig | None = None,
         pace: Pace | None = None,
         widest: float | None = None,
+        lift: Axis | None = None,
     ) -> None:
         self.config = config or SerialConfig()
         self.dt, self.sample_rate = self.config.dt, float(self.config.rate)
@@ -118,6 +72,8 @@ class SerialPlant:
             stroke = positive("the gripper's stroke (m)", getattr(gripper, "stroke", MOST_OPENING))
             widest = min(stroke, MOST_OPENING)
         self._widest = widest
+        self._lift = Lift(lift)
+        self._unknown = tuple(name for name in UNKNOWN if lift is None or name != "height")
         self._queue: deque[tuple[np.ndarray, np.ndarray, np.ndarray]] = deque()
         self._held = (np.zeros(2), np.zeros((2, 3)), np.full(2, np.nan))
         self._opening = 0.0
@@ -129,6 +85,7 @@ class SerialPlant:
         self._stopped = False  # since the last reset
         self._guarding = threading.Lock()
         self._closing = threading.Event()
+        self._closed = False
         self._guard: threading.Thread | None = None
         if self.config.watchdog and isinstance(self._pace, RealTime):
             self._guard = threading.Thread(target=self._watch, name="gripper watchdog", daemon=True)
@@ -137,8 +94,8 @@ class SerialPlant:
     def reset(
         self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
     ) -> Reading:
-        """Opens the gripper and waits for it and for the thermostats. Nothing is drawn: the object is what lies there.
-        Raises DeviceError and its kinds, InvalidValueError for options."""
+        """Lowers the lift, then opens the gripper, and waits for them and for the thermostats. Nothing is drawn: the
+        object is what lies there. Raises DeviceError and its kinds, InvalidValueError for options."""
         del rows, rngs
         if options:
             raise InvalidValueError(f"a serial plant has no reset options, got {sorted(options)}")
@@ -154,7 +111,9 @@ class SerialPlant:
 
     def _prepare(self) -> None:
         self._armed = self._holding = self._stopped = False
+        self._lift.heard = True
         self._await(self._heated, self.config.open_within, "the fingertips to answer")
+        self._await(self._lowered, self.config.lower_within, "the lift to go down")
         self._require_unstopped()
         self._gripper.activate()
         self._require_unstopped()
@@ -182,8 +141,10 @@ class SerialPlant:
                 self._require_unreleased()
                 opening, force = float(command.opening[0]), float(command.force_limit[0])
                 self._gripper.move(self._within(opening), force, self.config.speed)
+                self._lift.move(float(command.lift_rate[0]), self._pace.now(), self.dt)
             self._pace.until(self._end - _STATUS_LEAD)
             status = self._checked(self._gripper.status())
+            self._lift.read(self._pace.now())
             self._pace.until(self._end)
             self._take(self._tips.take())
             voltage = self._oldest()
@@ -202,26 +163,34 @@ class SerialPlant:
         return self._reading(voltage, rate, late)
 
     def stop(self) -> None:
-        """Stops the fingers where they are, from another thread, before what a step or a reset asks of the gripper, and
-        ends the episode: nothing moves them until the next reset. Raises what the gripper's `stop` raises."""
+        """Stops lift and fingers where they are, from another thread, before what a step or a reset asks of them, and
+        ends the episode: nothing moves them until the next reset. Raises what their own `stop` raises, after both have
+        been told."""
         self._stopped = True
-        self._gripper.stop()
-        with self._guarding:  # a step may have been about to move them
-            self._gripper.stop()
-            self._end_episode(_STOPPED)
+        try:
+            self._stop_both()
+        finally:
+            with self._guarding:  # a step may have been about to move them
+                self._end_episode(_STOPPED)
+                self._stop_both()
 
     def quantised(self, command: Command) -> Command:
-        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps, no
-        lift."""
+        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps; without a
+        lift axis no lift."""
         wanted = self._within(command.opening)
         opening, force, _ = self._gripper.quantised(wanted, command.force_limit, self.config.speed)
-        return Command(opening, force, np.zeros_like(opening))
+        return Command(
+            opening, force, np.zeros_like(opening) if self._lift.axis is None else command.lift_rate
+        )
 
     def close(self) -> None:
-        """Ends the watchdog and releases both lines. Does nothing the second time."""
+        """Ends the watchdog, stops the lift and releases all lines. Does nothing the second time."""
         self._closing.set()
         if self._guard is not None:
             self._guard.join()
+        if not self._closed:
+            self._closed = True
+            self._lift.close()
         self._tips.close()
         self._gripper.close()
 
@@ -232,11 +201,11 @@ class SerialPlant:
     def _reading(self, voltage: np.ndarray, rate: float, late: float) -> Reading:
         _, force, thermostat = self._held
         unknown = np.empty(1, object)
-        unknown[0] = UNKNOWN
+        unknown[0] = self._unknown
         return Reading(
             opening=np.array([self._opening]),
             opening_rate=np.array([rate]),
-            height=np.zeros(1),
+            height=np.array([self._lift.height]),
             force=force[None].copy(),
             voltage=voltage[None],
             thermostat=thermostat[None].copy(),
@@ -290,6 +259,11 @@ class SerialPlant:
         samples.require_healthy(but=_WARMING)
         return len(samples) > 0 and not int(samples.flags[-1]) & int(_WARMING & ~_TOLERATED)
 
+    def _lowered(self) -> bool:
+        with self._guarding:
+            self._require_unstopped()
+            return self._lift.lowered(self._pace.now(), _SETTLING)
+
     def _heated(self) -> bool:
         try:
             self._tips.set_setpoint(self.config.setpoint, self.config.setpoint)
@@ -328,17 +302,25 @@ class SerialPlant:
         return np.minimum(opening, self._widest)
 
     def _let_go(self, why: str) -> None:
-        """Opens the gripper; where it does not hear, the watchdog tells it again and again. One that was stopped stays
-        as it is."""
+        """Stops the lift and opens the gripper; where they do not hear, the watchdog tells them again and again. What
+        was stopped stays as it is."""
         with self._guarding:
             if self._stopped:
                 return self._end_episode(_STOPPED)
             self._trouble, self._armed, self._holding = why, False, True
+            self._lift.halt()
             self._open()
 
     def _end_episode(self, why: str) -> None:
-        """The fingers stay as they are."""
+        """The fingers stay as they are, and the lift stops."""
         self._trouble, self._armed, self._holding = why, False, False
+        self._lift.halt()
+
+    def _stop_both(self) -> None:
+        try:
+            self._lift.stop()
+        finally:
+            self._gripper.stop()
 
     def _open(self) -> None:
         with suppress(Exception):  # of whatever kind: another package's gripper may raise anything
@@ -352,8 +334,10 @@ class SerialPlant:
             silent = self._pace.now() - self._fed
             if self._armed and silent > self.config.watchdog:
                 self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
-            elif self._holding:
+            elif self._holding or not self._lift.heard:
                 with self._guarding:
+                    if not self._lift.heard:
+                        self._lift.halt()
                     if self._holding:
                         self._open()
 
@@ -373,9 +357,10 @@ def without_maps(config: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in config.items() if name not in _SIMULATED}
 
 
-def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
+def serial_plant(url: str, num_envs: int, lift: Axis | None = None, **config: Any) -> SerialPlant:
     """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
-    as open_gripper takes it. config: SerialConfig's. Raises InvalidValueError for anything else, and DeviceError."""
+    as open_gripper takes it. lift: see SerialPlant. config: SerialConfig's. Raises InvalidValueError for anything else,
+    and DeviceError."""
     parts = urlsplit(url)
     options = dict(parse_qsl(parts.query))
     gripper_url = options.pop("gripper", "")
@@ -388,7 +373,7 @@ def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
     try:
         settings = SerialConfig(**without_maps(config))
     except TypeError as error:
-        names = ", ".join(SerialConfig.__slots__)
+        names = ", ".join((*SerialConfig.__slots__, "lift"))
         raise InvalidValueError(f"a serial plant takes {names}: {error}") from error
     gripper = open_gripper(gripper_url)
     try:
@@ -396,4 +381,4 @@ def serial_plant(url: str, num_envs: int, **config: Any) -> SerialPlant:
     except BaseException:
         gripper.close()
         raise
-    return SerialPlant(tips, gripper, settings)
+    return SerialPlant(tips, gripper, settings, lift=lift)

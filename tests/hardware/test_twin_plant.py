@@ -9,6 +9,7 @@ import pytest
 
 import thermograsp  # noqa: F401  registers the environments
 from thermograsp.cli import main
+from thermograsp.envs import STAKES, action_of
 from thermograsp.errors import InvalidValueError, UnknownKeywordError
 
 CLOSE = np.array([-1.0, 0.5, 1.0], np.float32)
@@ -57,6 +58,49 @@ def test_a_policy_is_judged_through_the_line(capsys: Any) -> None:
     assert found["twin"] and found["successes"] == 4
 
 
+def test_a_grasp_is_lifted_and_judged_through_the_line(capsys: Any) -> None:
+    """By a gripper of the simulated one's forces; a 2F-85, which presses with 20 N at least, crushes what is soft."""
+    words = ["score", "trained", "--task", "grasp", "--no-load", "--twin", "--episodes", "4", "--json"]
+    assert main([*words, "--force-range", "1", "40"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["force_range"] == [1.0, 40.0] and found["successes"] == 4
+    env = gymnasium.make("thermograsp/Grasp-v0", plant="twin", **{**STAKES, "material": "butter"})
+    env.reset(seed=0)
+    gentle = action_of(opening=0.0, force_limit=8.0, lift_rate=0.0)
+    while True:
+        *_, terminated, truncated, info = env.step(gentle)
+        if terminated or truncated:
+            break
+    assert info.get("crushed")
+    env.close()
+
+
+def test_the_arm_goes_where_a_simulation_alone_has_it(twin: gymnasium.Env) -> None:
+    """Also with open fingers, and opening them wide puts no other object there."""
+    alone = gymnasium.make("thermograsp/Grasp-v0", material=["glass", "copper"])
+    heights: list[list[float]] = []
+    for env in (twin, alone):
+        env.reset(seed=5)
+        rates = [0.05] * 40 + [-0.05] * 20 + [0.0] * 20
+        steps = [
+            env.step(action_of(opening=0.085, force_limit=20.0, lift_rate=rate))[0]["gripper"][2]
+            for rate in rates
+        ]
+        heights.append(steps)
+    np.testing.assert_allclose(heights[0], heights[1], atol=1e-6)
+    assert max(heights[0]) > 0.03
+    twin.reset(seed=0, options={"material": "glass"})
+    for _ in range(50):
+        twin.step(CLOSE)
+    wide = action_of(opening=0.085, force_limit=20.0, lift_rate=0.0)
+    hand = twin.unwrapped.batch.plant._hand  # pyright: ignore[reportAttributeAccessIssue]
+    before = hand.episodes
+    for _ in range(60):
+        twin.step(wide)
+    assert hand.opening > 0.0849 and hand.episodes == before
+    alone.close()
+
+
 def test_what_no_line_has_is_refused(twin: gymnasium.Env, capsys: Any) -> None:
     with pytest.raises(InvalidValueError, match="unknown reset options"):
         twin.reset(options={"colour": "red"})
@@ -69,11 +113,18 @@ def test_what_no_line_has_is_refused(twin: gymnasium.Env, capsys: Any) -> None:
             gymnasium.make("thermograsp/Grasp-v0", plant="twin", **keywords)
     with pytest.raises(InvalidValueError, match="has no port"):
         gymnasium.make("thermograsp/Grasp-v0", plant="twin:///dev/ttyACM0")
+    for forces in ("weak=1", "weakest=one", "weakest"):
+        with pytest.raises(InvalidValueError, match="N in newtons"):
+            gymnasium.make("thermograsp/Grasp-v0", plant=f"twin:?{forces}")
+    with pytest.raises(InvalidValueError, match="limits"):
+        gymnasium.make("thermograsp/Grasp-v0", plant="twin:?weakest=50&strongest=40")
     with pytest.raises(UnknownKeywordError, match="material"):
         gymnasium.make("thermograsp/Grasp-v0", plant="twin", materials="glass")
     with pytest.raises(InvalidValueError, match="num_envs must be 1"):
         gymnasium.make_vec(
             "thermograsp/Grasp-v0", num_envs=2, plant="twin", vectorization_mode="vector_entry_point"
         )
-    assert main(["score", "trained", "--task", "grasp", "--twin"]) == 2
-    assert "no lift axis" in capsys.readouterr().err
+    assert main(["score", "trained", "--task", "sort", "--twin"]) == 2
+    assert "no lateral axis" in capsys.readouterr().err
+    assert main(["score", "trained", "--task", "grasp", "--force-range", "1", "40"]) == 2
+    assert "give --twin" in capsys.readouterr().err
