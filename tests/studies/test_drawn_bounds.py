@@ -1,4 +1,4 @@
-"""What anybody could do with everything drawn: the study counts, and the teacher stays below its bound."""
+"""What anybody could do: the study counts, and the teacher stays below its bound."""
 
 from __future__ import annotations
 
@@ -30,5 +30,8 @@ def test_the_teacher_is_below_its_bound_and_later_is_surer(
     assert 45 < found["taught"] <= found["liftable"] < 60
     right = list(found["right"].values())
     assert 0.3 < right[0] <= right[1] <= right[2] < 1
+    forces = {name: list(shares.values()) for name, shares in found["forces"].items()}
+    assert min(forces["nothing"][1:]) > 0.9  # from .5 s on
+    assert 0.5 < max(forces["everything"]) <= found["liftable"] / 60
     with pytest.raises(SystemExit):
         study.main(["--episodes", "0"])
