@@ -81,9 +81,11 @@ def watched(
     return Seen(np.concatenate(vectors), np.concatenate(rights).astype(np.float32), gained.ravel())
 
 
-def imitate(policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int) -> float:
+def imitate(
+    policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int, averaged: slice = slice(0)
+) -> float:
     """Fits a policy of stable-baselines3, its mean actions to the teacher's and its values to what was gained; returns
-    the mean squared error of the actions over the last pass.
+    the mean error of the actions over the last pass. averaged: see Teacher.
 
     Descent works on inputs of mean 0 and deviation 1: what the voltages do late in a touch is small, but tells most."""
     generator = torch.Generator().manual_seed(seed)
@@ -97,12 +99,18 @@ def imitate(policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int
     falling = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, minibatches)
     vector = torch.from_numpy((seen.vector - mean) * scale)
     right, gained = torch.from_numpy(seen.right), torch.from_numpy(seen.gained)
+    squared = torch.zeros(right.shape[1], dtype=torch.bool)
+    squared[averaged] = True
     errors = []
     for _ in range(minibatches):
         chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
         acting, valuing = policy.mlp_extractor(vector[chosen])
         wanted = right[chosen]
-        error = ((policy.action_net(acting) - wanted)[~wanted.isnan()] ** 2).mean()
+        apart = (
+            policy.action_net(acting) - wanted.nan_to_num()
+        )  # not even a NaN without weight has a gradient
+        errors_of = torch.where(squared, apart**2, _even(apart.abs(), recipe.even_from))
+        error = errors_of[~wanted.isnan()].mean()
         known = ~gained[chosen].isnan()
         loss = error
         if known.any():
@@ -116,6 +124,11 @@ def imitate(policy: Any, seen: Seen, minibatches: int, recipe: Recipe, seed: int
     for layer in first:
         _of_other_inputs(layer, mean, scale)
     return float(np.mean(errors[-max(count // recipe.batch, 1) :]))
+
+
+def _even(size: Any, even_from: float) -> Any:
+    """Errors that count by their size, below `even_from` by their square."""
+    return torch.where(size < even_from, size**2 / (2 * even_from), size - even_from / 2)
 
 
 def _of_other_inputs(layer: Any, mean: np.ndarray, scale: np.ndarray) -> None:

@@ -13,6 +13,7 @@ class Recipe:
     `rounds`; in the first round the teacher acts, in the others the agent does in three of four episodes, and the
     teacher says in all of them what it would do. minibatches: of each round but the last, of all that has been seen so
     far; last_minibatches: of the last one, after which nothing is seen that could make up for what was not learned.
+    even_from: error of a movement, of -1 .. 1, from which on it counts by its size rather than its square.
     hidden: tanh units of each layer. noise: logarithm of the standard deviation of PPO's actions at the start.
     decisions: of each environment between two updates of PPO. checkpoints: evaluations, evenly over PPO's steps.
     evaluated: episodes of each.
@@ -23,6 +24,7 @@ class Recipe:
     rounds: int = 6
     minibatches: int = 1500
     last_minibatches: int = 15_000
+    even_from: float = 0.1
     imitation_rate: float = 3e-3
     num_envs: int = 32
     hidden: tuple[int, ...] = (128, 128)

@@ -26,7 +26,11 @@ _LEFT = 0.01  # m beside an object's place, from which the arm has left it
 
 
 class Teacher(Protocol):
-    """Actions (B, n) for observations (B, ...), and rows that begin a new episode."""
+    """Actions (B, n) for observations (B, ...), and rows that begin a new episode. averaged: those numbers of an action
+    of which an agent that cannot tell learns the mean of the answers, as a probability; of the others, movements, it
+    learns what is right more often than not, for there is nothing to be gained between two of them."""
+
+    averaged: slice
 
     def restart(self, rows: np.ndarray) -> None:
         """The rows begin a new episode."""
@@ -42,6 +46,7 @@ class GraspTeacher(FeelingGrasp):
     """Closes with little force until something touches, for heavy fingers would hit it with more than they press with.
     Then gently, and firmly on an object that needs it and bears it, also while one fingertip has to push it."""
 
+    averaged = slice(0)
     _closing, _touch_force = 2.0, 0.5  # N, until something touches, and what a touch gives at least
     _settling_time = 0.15  # s of touch, after which both fingers have come to rest
     _firm = 38.0  # N, near the gripper's 40: drawn metals need up to 57 N
@@ -84,6 +89,7 @@ class IdentifyTeacher:
     An agent that regresses to this learns how probably it is right, and so when to stop: where that probability is
     _SURE, the mean of the teacher's answers is DECLARES, from which on an agent declares."""
 
+    averaged = slice(1, None)
     _share = 0.25  # of the gripper's largest force
     _SURE = 0.97
     _YES = (1.0 + DECLARES) / _SURE - 1.0  # its answer where the agent is right; -1 where it is wrong
@@ -118,10 +124,12 @@ class IdentifyTeacher:
 class SortTeacher(ScriptedSort):
     """Feels as the script does, and then lifts the right one."""
 
-    feeling = 0.5
+    averaged = slice(0)
 
     def __init__(self, batch: Any) -> None:
         super().__init__(batch)
+        # Materials take longer to tell apart than temperatures, for which both objects are touched, one maybe twice.
+        self.feeling = 1.5 if batch.plant.layout.pair.goal == "material" else 0.5
         self._batch, self._dt = batch, batch.dt * REPEAT
 
     def action(self, observation: dict[str, np.ndarray], learner: np.ndarray | None = None) -> np.ndarray:

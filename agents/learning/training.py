@@ -172,7 +172,9 @@ class Training:
             assert seen is not None
             last = done + 1 == recipe.rounds
             minibatches = recipe.last_minibatches if last else recipe.minibatches
-            error = imitate(self._model.policy, seen, minibatches, recipe, self.seed + done)
+            error = imitate(
+                self._model.policy, seen, minibatches, recipe, self.seed + done, teachers[0].averaged
+            )
             self._model.logger.record("imitation/error", error)
             self._state["rounds_done"] = done + 1
             if not last:

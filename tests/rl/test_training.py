@@ -104,6 +104,19 @@ def test_scaled_inputs_change_nothing_but_the_descent(tmp_path: Path) -> None:
     np.testing.assert_allclose(after, before, atol=1e-5)
 
 
+def test_who_cannot_tell_moves_one_way_and_says_how_probable_it_is(tmp_path: Path) -> None:
+    """Seven of ten answers were 1 and three -1: their median is 1 and their mean .4."""
+    policy = Training(brief("identify"), tmp_path, recipe=TINY)._model.policy
+    vector = np.zeros((200, policy.observation_space.shape[0]), np.float32)
+    right = np.repeat(np.where(np.arange(200) % 10 < 7, 1.0, -1.0)[:, None], 12, axis=1).astype(np.float32)
+    seen = Seen(vector, right, np.full(200, np.nan, np.float32))
+    recipe = replace(TINY, batch=512, imitation_rate=0.03)
+    imitate(policy, seen, 600, recipe, seed=0, averaged=slice(1, None))
+    said, _ = policy.predict(vector[:1], deterministic=True)
+    assert said[0, 0] > 0.9
+    np.testing.assert_allclose(said[0, 1:], 0.4, atol=0.1)
+
+
 def test_a_killed_run_goes_on_from_its_checkpoint(tmp_path: Path) -> None:
     code = f"""
 from dataclasses import replace
