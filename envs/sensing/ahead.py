@@ -60,7 +60,7 @@ def compile_ahead() -> None:
 def compile_boxes_ahead() -> None:
     """The same for boxes whose networks come from heat kernels. First what no first process is compiling at that time;
     the kernels come from it."""
-    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)))
+    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
     _contacts()
     _advance(advance_fixed, no_fixed_tables(0.01), _made_by(fixed_room, types.int64))
     _readings()

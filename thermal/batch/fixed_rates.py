@@ -15,7 +15,6 @@ slow poles, Q: pole pairs, T: elements under different contacts.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -185,28 +184,22 @@ def tip_residues(side: Side) -> np.ndarray:
 
 def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[int]) -> None:
     """Makes a box the row's, whose patches, those under fingertips first, are the places of these numbers."""
-    _body(
-        tables.slow[row],
-        tables.body[row],
-        tables.links[row],
-        _slow_table(box.rate, tables.dt),
-        np.array(places),
-        tables.patterns,
-        *box,
-    )
-
-
-@lru_cache(maxsize=1024)
-def _slow_table(rate: float, dt: float) -> np.ndarray:
-    return _rate_table(np.array([rate]), dt)[:, 0].copy()
+    parts = tables.slow[row], tables.body[row], tables.links[row]
+    _body(*parts, np.array(places), tables.patterns, tables.dt, *box)
 
 
 @njit(cache=True, error_model="numpy")
-def _body(slow, body, index, table, places, patterns, rate, ports, held, residues, heat, still):
-    """Fills one row's slow, body and index. table: of its slowest rate. The rest is a BodyResidues."""
+def _body(slow, body, index, places, patterns, dt, rate, ports, held, residues, heat, still):
+    """Fills one row's slow, body and index, for steps of dt s. The rest is a BodyResidues."""
     most, touched, told = (len(slow) - HELD - 1), len(residues), len(ports)
     slow[:], body[:] = 0.0, 0.0
-    slow[:_RATE_ROWS], slow[HELD] = table, held
+    slow[0], slow[_FADING], slow[HELD] = rate, 1.0, held
+    for q in range(_PAIRS):  # as in _rate_table
+        scale = 1 / (POLES[q] + dt * rate)
+        pushed = -2 * dt * (WEIGHTS[q] * scale)
+        slow[_FADING] -= rate * pushed.real
+        slow[_SEEN + q], slow[_SEEN + _PAIRS + q] = scale.real, scale.imag
+        slow[_PUSHED + q], slow[_PUSHED + _PAIRS + q] = pushed.real, -pushed.imag
     for j in range(told):
         at = places[j // patterns] * patterns + j % patterns
         slow[HELD + 1 + at] = ports[j]

@@ -32,6 +32,10 @@ def _integral_of_erfc() -> np.ndarray:
 
 
 _TABLE = _integral_of_erfc()
+_PI_FIRST = 201 / 64  # so few digits that its small multiples are exact
+_PI_REST = math.pi - _PI_FIRST + math.sin(math.pi)  # which is what the number lacks
+_SERIES = tuple((-1) ** n / math.factorial(2 * n + 1) for n in range(10))
+_LEVEL = 1e-8  # wave number times length up to which an eigenfunction is even
 _FAR = 20.0  # from which on erfcx is told by its series
 _FEW = 0.02  # what is added to its argument up to which differences of erfcx are told by theirs
 
@@ -63,54 +67,79 @@ def wave_numbers(length, film):
                 ratio = biot / angle
                 change = (d - math.atan(ratio)) / (1 + ratio / angle / (1 + ratio * ratio))
                 d -= change
-                if abs(change) < 1e-15 * d:
+                if abs(change) < 1e-8 * d:  # what is left is its square
                     break
         waves[m] = 2 * (base + d) / length
     return waves
 
 
 @njit(cache=True, error_model="numpy")
-def overlaps(nodes, jumps, order, length, waves, cosines, out):
-    """Fills out (F, M) with the functions' products with normalised eigenfunctions. cosines: room (E,)."""
-    for m in range(len(waves)):
-        wave, phase = waves[m], m * math.pi / 2
-        full = wave * length
-        norm = length / 2
-        if full > 1e-8:
-            norm *= 1 + (1 - 2 * (m % 2)) * math.sin(full) / full
-        else:
-            norm *= 2
-        for k in range(len(nodes)):
-            x = nodes[k] - length / 2
-            if order == 0:
-                cosines[k] = math.cos(wave * x - phase)
-            elif full > 1e-8:
-                cosines[k] = math.sin(wave * x - phase) / wave
-            else:
-                cosines[k] = x
-        scale = 1 / math.sqrt(norm)
+def overlaps(nodes, jumps, order, length, waves, seen, out):
+    """Fills out (F, M) with the functions' products with normalised eigenfunctions. seen: room (M,)."""
+    out[:] = 0.0
+    for k in range(len(nodes)):
+        x = nodes[k] - length / 2
+        for m in range(len(waves)):
+            turn = waves[m] * x - m * math.pi / 2
+            seen[m] = _sine(turn + math.pi / 2) if order == 0 else _sine(turn) / waves[m]
+        if order == 1 and waves[0] * length <= _LEVEL:
+            seen[0] = x
         for f in range(len(jumps)):
-            total = 0.0
-            for k in range(len(nodes)):
-                total += jumps[f, k] * cosines[k]
-            out[f, m] = total * scale
+            for m in range(len(waves)):
+                out[f, m] += jumps[f, k] * seen[m]
+    for m in range(len(waves)):
+        full = waves[m] * length
+        norm = length if full <= _LEVEL else length / 2 * (1 + (1 - 2 * (m % 2)) * _sine(full) / full)
+        for f in range(len(jumps)):
+            out[f, m] /= math.sqrt(norm)
+
+
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+def _sine(x):
+    """Of |x| up to some hundred, to round-off, without a branch or a call, so that a loop of it becomes vectors."""
+    turns = np.floor(x / math.pi + 0.5)
+    r = x - turns * _PI_FIRST - turns * _PI_REST
+    square = r * r
+    series = 0.0
+    for n in range(9, 0, -1):
+        series = (series + _SERIES[n]) * square
+    return (r + r * series) * (1 - 2 * (turns - 2 * np.floor(turns / 2)))
 
 
 @njit(cache=True, error_model="numpy")
 def images(one, order, other, other_order, same, length, film, tau, out):
     """Fills out (E one, E other) with the kernel's antiderivatives, of the orders in x and in x', at tau m2. What is
     linear in both is left out: no function over strips sees it. one, other: ascending. same: one is other."""
+    scale = 2 * math.sqrt(tau)
+    if order + other_order == 2:
+        _free_strips(one, other, scale, out)
+    else:
+        flip = -1.0 if other_order == 1 else 1.0
+        for i in range(len(one)):
+            for j in range(len(other)):
+                out[i, j] = flip * _free(one[i] - other[j], scale, order + other_order)
+    add_images(one, order, other, other_order, same, length, film, tau, out)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def ends_felt(one, other, length, tau):
+    """Whether anything comes from one to the other by way of the axis' first end, and of its last; as in images."""
+    reach = _REACH * 2 * math.sqrt(tau)
+    return one[0] + other[0] <= reach, 2 * length - one[-1] - other[-1] <= reach
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def add_images(one, order, other, other_order, same, length, film, tau, out):
+    """Adds to out what comes by way of the ends, as in images."""
     total = order + other_order
-    flip = -1.0 if other_order == 1 else 1.0
     turned = -1.0 if total == 1 else 1.0
     scale = 2 * math.sqrt(tau)
-    reach = _REACH * scale
-    low_end = one[0] + other[0] <= reach
-    high_end = 2 * length - one[-1] - other[-1] <= reach
+    low_end, high_end = ends_felt(one, other, length, tau)
+    if not low_end and not high_end:
+        return
     for i in range(len(one)):
         for j in range(i + 1 if same else len(other)):
-            near, far = one[i] - other[j], one[i] + other[j]
-            value = flip * _free(near, scale, total)
+            far, value = one[i] + other[j], 0.0
             if low_end:
                 value += _beyond(far, 1.0, scale, total)
                 if film > 0.0:
@@ -119,18 +148,63 @@ def images(one, order, other, other_order, same, length, film, tau, out):
                 value += _beyond(far - 2 * length, -1.0, scale, total)
                 if film > 0.0:
                     value -= turned * _lost(2 * length - far, scale, film, total)
-            out[i, j] = value
+            out[i, j] += value
             if same:
-                out[j, i] = value
+                out[j, i] = out[i, j]
+
+
+@njit(cache=True, error_model="numpy")
+def free_kernels(half, jumps, nodes, taus):
+    """(N, 2, F, F, T) of N patches' functions on themselves where no end is near. half: (N, 2) m. jumps: (N, 2, F, E)
+    and nodes: (E,) from -1 to 1. taus: (T,) m2."""
+    count, functions = len(half), jumps.shape[2]
+    found = np.zeros((count, 2, functions, functions, len(taus)))
+    table, done = np.empty((len(nodes), len(nodes))), np.empty(len(nodes))
+    for n in range(count):
+        for w in range(2):
+            places = half[n, w] * nodes
+            for t in range(len(taus)):
+                _free_strips(places, places, 2 * math.sqrt(taus[t]), table)
+                add_met(jumps[n, w], table, jumps[n, w], done, found[n, w], t)
+    return found
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def add_met(by, table, beside, done, out, t):
+    """Adds to out (F one, F other, T), at number t, jumps (F one, E one) times the table times jumps (F other,
+    E other). done: room (E other,)."""
+    count = len(done)
+    for f in range(len(by)):
+        for q in range(count):
+            done[q] = 0.0
+        for k in range(by.shape[1]):
+            for q in range(count):
+                done[q] += by[f, k] * table[k, q]
+        for g in range(len(beside)):
+            even, odd = 0.0, 0.0  # sums that need not wait for each other
+            for q in range(count // 2):
+                even += beside[g, 2 * q] * done[2 * q]
+                odd += beside[g, 2 * q + 1] * done[2 * q + 1]
+            if count % 2:
+                even += beside[g, count - 1] * done[count - 1]
+            out[f, g, t] += even + odd
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _free_strips(one, other, scale, out):
+    """Fills out with the free kernel's antiderivative in x and x', by loops that become vectors."""
+    fine = _FINE / scale
+    for i in range(len(one)):
+        for j in range(len(other)):
+            d = abs(one[i] - other[j])
+            out[i, j] = -0.5 * (d + scale * _between(_TABLE, min(d * fine, _REACH * _FINE)))
 
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _free(d, scale, order):
-    """Antiderivative of that order of the free kernel at d; scale: 2 sqrt(tau)."""
+    """Antiderivative of that order, 0 or 1, of the free kernel at d; scale: 2 sqrt(tau)."""
     side = 1.0 if d >= 0 else -1.0
     far = _beyond(d, side, scale, order)
-    if order == 2:
-        return far + 0.5 * abs(d)
     return far + 0.5 * side if order == 1 else far
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from .axis import MODES, SWITCH, images, overlaps, wave_numbers
+from .axis import MODES, SWITCH, add_images, add_met, ends_felt, free_kernels, images, overlaps, wave_numbers
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
@@ -101,12 +101,18 @@ def box_kernel(
     wanted: int,
     times: np.ndarray,
     first: int = 0,
+    free: np.ndarray | None = None,
 ) -> tuple[np.ndarray, float, np.ndarray, float, np.ndarray | None]:
     """Kernel (T, wanted P, L P) K/J at times (T,) s, ascending, of the temperatures of the first `wanted` patches by
     the L from number `first` on, less the slowest eigenfunction's part; rate, port and held as in BoxSamples; kernel
     (T, L P) of the heat in the box, likewise without it, None where no film takes any. jumps, terms: along_axes's.
-    first: 0, or wanted where these are known."""
+    first: 0, or wanted where these are known. free: free_kernels's of these patches
+    at the times up to SWITCH, or more, where they are known."""
     diffusivity = conductivity / heat_capacity
+    if free is None:
+        taus = diffusivity * times
+        early = taus[taus <= SWITCH * max(size) ** 2]
+        free = free_kernels(patches.half[: 0 if first else None], jumps, NODES, early)
     kernel, slowest, port, held, whole = _kernel(
         np.asarray(size, float),
         film / conductivity,
@@ -117,6 +123,7 @@ def box_kernel(
         patches.half,
         NODES,
         jumps,
+        free,
         terms,
         wanted,
         first,
@@ -125,7 +132,7 @@ def box_kernel(
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, terms, wanted, start):
+def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, free, terms, wanted, start):
     """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, L P) of the
     heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. jumps:
     (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one
@@ -137,9 +144,10 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
     ends, step, inside = np.empty(2), np.array([[-1.0, 1.0]]), np.empty((1, MODES))
     point = np.ones((1, 1))
     overlap = np.zeros((3, count, functions, MODES))
-    room, fading = np.empty(len(nodes)), np.empty(MODES)
+    # of eigenfunctions at times, and from which time on they count for nothing
+    room, fading, faded = np.empty(MODES), np.empty((MODES, len(taus))), np.empty(MODES, np.int64)
     table = np.empty((len(nodes), len(nodes)))
-    half_done = np.empty((functions, len(nodes)))
+    half_done = np.empty(len(nodes))
     between = np.zeros((3, count, functions, count, functions, len(taus)))
     everywhere = np.ones((3, count, functions, len(taus)))
     # by axis: whether it lies in a patch, and which of the patch's two it is
@@ -154,6 +162,13 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
         while begun < len(taus) and seen < MODES and _fading(waves[seen], taus[begun]) >= _FADED:
             seen += 1
         waves = waves[:seen]
+        for w in range(seen):
+            faded[w] = begun
+            while faded[w] < len(taus):
+                fading[w, faded[w]] = _fading(waves[w], taus[faded[w]])
+                if fading[w, faded[w]] < _FADED:
+                    break
+                faded[w] += 1
         slowest += waves[0] ** 2
         ends[0], ends[1] = 0.0, length
         overlaps(ends, step, 1, length, waves, room, inside)
@@ -186,68 +201,72 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
             for f in range(functions):
                 for m in range(seen):
                     overlap[axis, n, f, m] = overlap[axis, alike[n], f, m]
-        for t in range(len(taus)):
-            tau = taus[t]
-            late = t >= begun
-            left = 0
-            while late and left < seen:
-                fading[left] = _fading(waves[left], tau)
-                if fading[left] < _FADED:
-                    break
-                left += 1
-            now, all_over = between[axis], everywhere[axis]
-            for n in range(start, count):
-                across = order[n] == 1
-                axis_functions = functions if across else 1
-                a = places[n] if across else places[n, :1]
-                by = jumps[n, which[axis, n]] if across else point
-                for m in range(min(n + 1, wanted)):
-                    others = functions if order[m] == 1 else 1
-                    if _unseen(size, face, n, m, tau):
-                        continue
-                    if (alike[n] < n or alike[m] < m) and not _unseen(size, face, alike[n], alike[m], tau):
-                        # opposite fingertips often differ along one axis only
-                        for f in range(axis_functions):
-                            for g in range(others):
-                                if alike[m] <= alike[n]:
-                                    now[n, f, m, g, t] = now[alike[n], f, alike[m], g, t]
-                                else:
-                                    now[n, f, m, g, t] = now[alike[m], g, alike[n], f, t]
-                        continue
-                    if late:
-                        for f in range(axis_functions):
-                            for g in range(others):
-                                value = 0.0
-                                for w in range(left):
-                                    value += fading[w] * overlap[axis, n, f, w] * overlap[axis, m, g, w]
-                                now[n, f, m, g, t] = value
-                        continue
-                    b = places[m] if order[m] == 1 else places[m, :1]
-                    beside = jumps[m, which[axis, m]] if order[m] == 1 else point
-                    images(a, order[n], b, order[m], n == m, length, film, tau, table)
-                    for f in range(axis_functions):
-                        for q in range(len(b)):
-                            half_done[f, q] = 0.0
+        for n in range(start, count):
+            across = order[n] == 1
+            axis_functions = functions if across else 1
+            a = places[n] if across else places[n, :1]
+            by = jumps[n, which[axis, n]] if across else point
+            for m in range(min(n + 1, wanted)):
+                others = functions if order[m] == 1 else 1
+                b = places[m] if order[m] == 1 else places[m, :1]
+                beside = jumps[m, which[axis, m]] if order[m] == 1 else point
+                first, last = _felt(size, face, n, m, taus), len(taus)
+                if alike[n] < n or alike[m] < m:
+                    # opposite fingertips often differ along one axis only
+                    last = max(_felt(size, face, alike[n], alike[m], taus), first)
+                for t in range(first, min(begun, last)):
+                    if n == m and across:
+                        for f in range(functions):
+                            for g in range(functions):
+                                between[axis, n, f, m, g, t] = free[n, which[axis, n], f, g, t]
+                        low_end, high_end = ends_felt(a, b, length, taus[t])
+                        if not low_end and not high_end:
+                            continue
                         for k in range(len(a)):
                             for q in range(len(b)):
-                                half_done[f, q] += by[f, k] * table[k, q]
-                        for g in range(others):
-                            for q in range(len(b)):
-                                now[n, f, m, g, t] += beside[g, q] * half_done[f, q]
-                if film > 0.0:
-                    if alike[n] == n and not late:
-                        images(a, order[n], ends, 1, False, length, film, tau, table)
-                    for f in range(axis_functions):
-                        value = 0.0
-                        if alike[n] < n:
-                            value = all_over[alike[n], f, t]
-                        elif late:
-                            for w in range(left):
-                                value += fading[w] * overlap[axis, n, f, w] * inside[0, w]
+                                table[k, q] = 0.0
+                        add_images(a, 1, b, 1, True, length, film, taus[t], table)
+                    else:
+                        images(a, order[n], b, order[m], n == m, length, film, taus[t], table)
+                    add_met(by, table, beside, half_done[: len(b)], between[axis, n, :, m], t)
+                for f in range(axis_functions):
+                    for g in range(others):
+                        along = between[axis, n, f, m, g]
+                        for w in range(seen if last > begun else 0):
+                            both = overlap[axis, n, f, w] * overlap[axis, m, g, w]
+                            for t in range(max(begun, first), min(faded[w], last)):
+                                along[t] += both * fading[w, t]
+                        if last == len(taus):
+                            continue
+                        if alike[m] <= alike[n]:
+                            known = between[axis, alike[n], f, alike[m], g]
                         else:
-                            for k in range(len(a)):
-                                value += by[f, k] * (table[k, 1] - table[k, 0])
-                        all_over[n, f, t] = value
+                            known = between[axis, alike[m], g, alike[n], f]
+                        for t in range(last, len(taus)):
+                            along[t] = known[t]
+            for f in range(axis_functions if film > 0.0 else 0):
+                along = everywhere[axis, n, f]
+                if alike[n] < n:
+                    for t in range(len(taus)):
+                        along[t] = everywhere[axis, alike[n], f, t]
+                    continue
+                for t in range(len(taus)):
+                    along[t] = 0.0
+                for w in range(seen):
+                    both = overlap[axis, n, f, w] * inside[0, w]
+                    for t in range(begun, faded[w]):
+                        along[t] += both * fading[w, t]
+            for t in range(begun if film > 0.0 and alike[n] == n else 0):
+                low_end, high_end = ends_felt(a, ends, length, taus[t])
+                if across and not low_end and not high_end:
+                    for f in range(functions):
+                        for k in range(len(a)):
+                            everywhere[axis, n, f, t] += by[f, k] * a[k]
+                    continue
+                images(a, order[n], ends, 1, False, length, film, taus[t], table)
+                for f in range(axis_functions):
+                    for k in range(len(a)):
+                        everywhere[axis, n, f, t] += by[f, k] * (table[k, 1] - table[k, 0])
     rows, told = wanted * patterns, total - start * patterns
     kernel, whole, port = np.zeros((len(taus), rows, told)), np.zeros((len(taus), told)), np.zeros(total)
     sums = np.empty(len(taus))
@@ -265,7 +284,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, t
                     air = everywhere[0, n, f0, t] * everywhere[1, n, f1, t]
                     whole[t, at - start * patterns] += air * everywhere[2, n, f2, t]
             for m in range(min(n + 1, wanted) if n >= start else 0):
-                for j in range(patterns):
+                for j in range(patterns if m < n else i + 1):
                     for t in range(len(taus)):
                         sums[t] = 0.0
                     for x in range(terms.shape[1]):
@@ -311,6 +330,15 @@ def _unseen(size, face, n, m, tau):
     """Whether patches n and m are on opposite faces, of which neither has felt the other by then to round-off."""
     axis = face[n] // 2
     return face[m] // 2 == axis and face[m] != face[n] and size[axis] * size[axis] > _UNSEEN * tau
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _felt(size, face, n, m, taus):
+    """The number of the first time at which they have, as many as there are for never."""
+    first = 0
+    while first < len(taus) and _unseen(size, face, n, m, taus[first]):
+        first += 1
+    return first
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -12,29 +12,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numerics import free_residues, passive_residues, port_residues
+from ..numerics import passive_residues
 from .samples import GRASP
 
 
 def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(K, N, N) positive semidefinite. impedance: (S, N, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
-    return passive_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
+    return passive_residues(fades(rates), impedance, weight)
 
 
-def touched_residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """The same as (N, N, K)."""
-    return port_residues(weight[:, None] / (GRASP[:, None] + rates), weight[:, None, None] * impedance)
-
-
-def free_fit(rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """(S, K), by which impedances at GRASP are turned into residues that need not be passive: of flow that was once,
-    through places where nothing flows any more, so that no power has to balance. weight: (S,) of their errors, W/K."""
-    return weight[:, None] * free_residues(weight[:, None] / (GRASP[:, None] + rates))
+def fades(rates: np.ndarray) -> np.ndarray:
+    """(S, K) s of a unit residue at each rate, at GRASP."""
+    return 1 / (GRASP[:, None] + rates)
 
 
 def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:
     """Largest weighted error of the sum."""
-    fitted = np.tensordot(1 / (GRASP[:, None] + rates), found, axes=1)
+    fitted = np.tensordot(fades(rates), found, axes=1)
     return float(np.max(np.abs(fitted - impedance) * weight[:, None, None]))
 
 

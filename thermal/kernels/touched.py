@@ -20,10 +20,12 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material
+from ..numerics import free_residues, port_residues
+from .axis import free_kernels
 from .box import Patches, box_kernel
 from .contact import Resolution, Tip
-from .exponentials import free_fit, touched_residues
-from .patterns import basis_jumps, basis_terms
+from .exponentials import fades
+from .patterns import NODES, basis_jumps, basis_terms
 from .samples import GRASP
 
 _SPACING = 1.0  # of times in ln t: the transforms at GRASP are known to exp(-pi^2 / spacing), 5e-5
@@ -102,7 +104,7 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
     own = under.own
     if len(box.tips) == count:
         return own
-    known, touched = _kernel_of(box, count), len(own.ports)
+    known, touched, fit = _kernel_of(box, count), len(own.ports), _fit(level)
     port = np.concatenate((own.ports, known.port[touched:]))
     residues, heat = np.empty((touched, len(port), level.rates)), np.zeros((len(port), level.rates))
     residues[:, :touched], heat[:touched] = own.residues, own.heat
@@ -122,7 +124,8 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
         under.fit,
         GRASP,
         total,
-        *_heat_fit(level),
+        fit.seen,
+        fit.share,
         residues,
         heat,
     )
@@ -131,24 +134,33 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
 
 def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
     """Of a box all of whose patches are under fingertips."""
-    known, material, areas = _kernel_of(box, 0), box.material, box.patches.areas
+    known, material, fit = _kernel_of(box, 0), box.material, _fit(level)
     capacity = material.volumetric_heat_capacity
     # before the first time a patch by itself is on a half-space
-    alone = 1 / (capacity * areas * math.sqrt(math.pi * material.conductivity / capacity * known.times[0]))
+    alone = 1 / (capacity * math.sqrt(math.pi * material.conductivity / capacity * known.times[0]))
     port, held = known.port, known.held
-    rest, warmth = _at_moments(known.kernel, known.heat, port, alone, known.to_grasp, known.early)
-    weights = np.array([one.weight for one in box.tips])
-    weight, rate, opened, returned = _shielded(
-        GRASP, rest, warmth, known.rate, port, held, box.film * areas, weights
+    rest, warmth, weight, rate, opened, returned = _samples(
+        known.kernel,
+        known.heat,
+        port,
+        known.to_grasp,
+        known.early,
+        GRASP,
+        alone,
+        box.patches.half,
+        known.rate,
+        held,
+        box.film,
+        np.array([_weight(one) for one in box.tips]),
     )
-    found = touched_residues(rest, level.decay, weight)
+    found = port_residues(fit.fades, rest, weight)
     heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
     if box.film > 0:
-        total = np.concatenate([one.even for one in box.tips]) - held * port
+        even = np.concatenate([one.even for one in box.tips])
         whole = capacity * math.prod(box.size)
-        heat, still = _warmed(found, warmth, total, whole - held**2, *_heat_fit(level))
+        heat, still = _warmed(found, warmth, even, port, held, whole, fit.seen, fit.share)
     own = BodyResidues(rate, port, held, found, heat, still)
-    return UnderTips(own, opened, returned, known.rate, free_fit(level.decay, weight))
+    return UnderTips(own, opened, returned, known.rate, free_residues(fit.fades, weight))
 
 
 def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
@@ -156,9 +168,13 @@ def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
     material, size, film, patches, tips, touched = box
     capacity = material.volumetric_heat_capacity
     jumps, terms = np.array([_jumps(one) for one in tips]), basis_terms(tips[0].basis.shape[1])
-    times, to_grasp, early = _transform(material.conductivity / capacity)
+    diffusivity, free = material.conductivity / capacity, None
+    times, to_grasp, early = _transform(diffusivity)
+    if first == 0:
+        begun, halves = max(_FIRST * diffusivity, _UNFELT), patches.half.tolist()
+        free = np.array([_free(one, *half, begun) for one, half in zip(tips, halves, strict=True)])
     kernel, rate, port, held, heat = box_kernel(
-        size, material.conductivity, capacity, film, patches, jumps, terms, touched, times, first
+        size, material.conductivity, capacity, film, patches, jumps, terms, touched, times, first, free
     )
     heat = np.zeros((len(times), kernel.shape[2])) if heat is None else heat
     return _Kernel(kernel, heat, rate, port, held, times, to_grasp, early)
@@ -169,18 +185,49 @@ def _jumps(one: Tip) -> np.ndarray:
     return basis_jumps(one.basis)
 
 
+@lru_cache(maxsize=1024)
+def _weight(one: Tip) -> np.ndarray:
+    return one.weight
+
+
+@lru_cache(maxsize=1024)
+def _free(one: Tip, first_half: float, second_half: float, begun: float) -> np.ndarray:
+    """free_kernels's of one patch at all times that any box is asked for, from begun m2 on."""
+    taus = begun * np.exp(_SPACING * np.arange(_count(_FIRST)))
+    return free_kernels(np.array([[first_half, second_half]]), _jumps(one)[None], NODES, taus)[0]
+
+
 @lru_cache(maxsize=256)
 def _transform(diffusivity: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (T,) s at which kernels of m2/s are needed; (S, T) their transform at GRASP by the trapezoidal rule in
     ln t, as if they had their first value before; (S,) s of what they have more then if they fall as 1 / sqrt(t)."""
     first = max(_FIRST, _UNFELT / diffusivity)
-    count = math.ceil(math.log(_LAST / GRASP[0] / first) / _SPACING) + 1
+    count = _count(first)
     times = first * np.exp(_SPACING * np.arange(-_BEFORE, count))
     rule = _SPACING * times * np.exp(-GRASP[:, None] * times)
     sooner, to_grasp = rule[:, :_BEFORE], np.ascontiguousarray(rule[:, _BEFORE:])
     flat = sooner.sum(axis=1)
     to_grasp[:, 0] += flat
     return times[_BEFORE:], to_grasp, (sooner * np.sqrt(first / times[:_BEFORE])).sum(axis=1) - flat
+
+
+def _count(first: float) -> int:
+    """Of times from that on, s."""
+    return math.ceil(math.log(_LAST / GRASP[0] / first) / _SPACING) + 1
+
+
+@njit(cache=True, error_model="numpy")
+def _samples(kernel, heat, port, to_grasp, early, moments, alone, half, rate, held, film, weight):
+    """What _at_moments and _shielded tell of patches of half widths (A, 2) m under a film of W/(m2 K). alone: K m2/J.
+    weight: (A, S)."""
+    areas = np.empty(len(half))
+    for n in range(len(half)):
+        areas[n] = 4 * half[n, 0] * half[n, 1]
+    rest, warmth = _at_moments(kernel, heat, port, alone / areas, to_grasp, early)
+    counts, lasting, opened, returned = _shielded(
+        moments, rest, warmth, rate, port, held, film * areas, weight
+    )
+    return rest, warmth, counts, lasting, opened, returned
 
 
 @njit(cache=True, error_model="numpy")
@@ -191,11 +238,11 @@ def _at_moments(kernel, heat, port, alone, to_grasp, early):
     count, rows, ports = kernel.shape
     patterns = rows // len(alone)
     found, warmed = np.zeros((len(early), rows, ports)), np.zeros((len(early), ports))
+    flat, summed = kernel.reshape(count, rows * ports), found.reshape(len(early), rows * ports)
     for s in range(len(early)):
         for t in range(count):
-            for i in range(rows):
-                for j in range(ports):
-                    found[s, i, j] += to_grasp[s, t] * kernel[t, i, j]
+            for i in range(rows * ports):  # one long loop, of which vectors are made
+                summed[s, i] += to_grasp[s, t] * flat[t, i]
             for j in range(ports):
                 warmed[s, j] += to_grasp[s, t] * heat[t, j]
         for i in range(rows):
@@ -207,7 +254,7 @@ def _at_moments(kernel, heat, port, alone, to_grasp, early):
     return found, warmed
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _shielded(moments, rest, heat, rate, port, held, back, weight):
     """Puts back into the samples rest (S, A M, A M) and heat (S, A M), in proportion to the temperature, what a film
     takes from under the fingertips, back (A,) W/K. Returns what an error of impedance counts (S,) W/K, beside weight
@@ -292,9 +339,10 @@ def _beside(
 ):
     """Fills residues (A M, N M, K) and heat rows (N M, K) of the places under no fingertip. exact, port (N M,): of the
     slowest eigenfunction where the kernel is exact, and as it is in the network. total (L M,): even heats; empty where
-    no film takes any heat. The rest as in _Kernel, BodyResidues, UnderTips and _heat_fit."""
+    no film takes any heat. The rest as in _Kernel, BodyResidues, UnderTips and _Fit."""
     times, touched, others = kernel.shape
     found, whole = np.empty((touched, others)), np.empty((touched, others))
+    summed, flat = found.reshape(touched * others), kernel.reshape(times, touched * others)
     for i in range(touched):
         for j in range(touched, touched + others):
             for k in range(len(share)):
@@ -306,9 +354,8 @@ def _beside(
                 both = exact[i] * exact[touched + j]
                 found[i, j] = slow * both + early[s] * (kernel[0, i, j] + both)
         for t in range(times):
-            for i in range(touched):
-                for j in range(others):
-                    found[i, j] += to_grasp[s, t] * kernel[t, i, j]
+            for i in range(touched * others):
+                summed[i] += to_grasp[s, t] * flat[t, i]
         for i in range(touched):
             for j in range(others):
                 whole[i, j] = 0.0
@@ -331,17 +378,25 @@ def _beside(
         _balanced(rows[touched + j], total[j] - held * port[touched + j], share)
 
 
+class _Fit(NamedTuple):
+    """Of a level. fades: (S, K) s. The least squares' answer to a heat's samples is seen (S, K) times these and share
+    (K,) times its total; samples at s are weighed by s, as a share of what has gone in."""
+
+    fades: np.ndarray
+    seen: np.ndarray
+    share: np.ndarray
+
+
 @lru_cache(maxsize=8)
-def _heat_fit(level: Resolution) -> tuple[np.ndarray, np.ndarray]:
-    """(S, K) and (K,): the least squares' answer is a heat's samples times the first and its total times the second.
-    Samples at s are weighed by s, as a share of what has gone in."""
-    columns = GRASP[:, None] / (GRASP[:, None] + level.decay)
-    rates = level.rates
+def _fit(level: Resolution) -> _Fit:
+    columns = fades(level.decay)
+    weighed, rates = GRASP[:, None] * columns, level.rates
     normal = np.ones((rates + 1, rates + 1))
-    normal[:-1, :-1] = columns.T @ columns + _HEAT_RIDGE * np.eye(rates)
+    normal[:-1, :-1] = weighed.T @ weighed + _HEAT_RIDGE * np.eye(rates)
     normal[-1, -1] = 0.0
     inverse = np.linalg.inv(normal)
-    return np.ascontiguousarray((inverse[:-1, :-1] @ (columns * GRASP[:, None]).T).T), inverse[:-1, -1].copy()
+    seen = (inverse[:-1, :-1] @ (weighed * GRASP[:, None]).T).T
+    return _Fit(columns, np.ascontiguousarray(seen), inverse[:-1, -1].copy())
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -357,18 +412,18 @@ def _balanced(row, total, share):
 
 
 @njit(cache=True, error_model="numpy")
-def _warmed(found, heat, total, stored, seen, share):
-    """Rows (A M, K) of the heat (S, A M) that follows each port's flow, whose sums are the total (A M,): all heat that
-    goes in is in. And (K,) J/K of what follows the air, and not the box's slowest state, whose sum is what is stored
-    (J/K): a rate's share is what the touched ports tell, its heat row squared over its resistance, as in a state.
-    found: (A M, A M, K). seen, share: _heat_fit's."""
+def _warmed(found, heat, even, port, held, capacity, seen, share):
+    """Rows (A M, K) of the heat (S, A M) that follows each port's flow: with the slowest state's, of port (A M,) and
+    held, they add up to what goes in, even (A M,). And (K,) J/K of what follows the air: with the slowest state's they
+    add up to the box's capacity; a rate's share is what the touched ports tell, its heat row squared over its
+    resistance, as in a state. found: (A M, A M, K). seen, share: as in _Fit."""
     rates, count = len(share), len(found)
-    rows, still = np.zeros((len(total), rates)), np.zeros(rates)
-    for j in range(len(total)):
+    rows, still = np.zeros((count, rates)), np.zeros(rates)
+    for j in range(count):
         for s in range(len(heat)):
             for k in range(rates):
                 rows[j, k] += heat[s, j] * seen[s, k]
-        _balanced(rows[j], total[j], share)
+        _balanced(rows[j], even[j] - held * port[j], share)
     least, whole = 0.0, 0.0
     for i in range(count):
         for k in range(rates):
@@ -378,7 +433,7 @@ def _warmed(found, heat, total, stored, seen, share):
             still[k] += rows[i, k] * rows[i, k] / (found[i, i, k] + least)
     for k in range(rates):
         whole += still[k]
-    scale = max(stored, 0.0) / whole if whole > 0.0 else 0.0
+    scale = max(capacity - held * held, 0.0) / whole if whole > 0.0 else 0.0
     for k in range(rates):
         still[k] *= scale
     return rows, still

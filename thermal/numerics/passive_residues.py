@@ -26,24 +26,28 @@ of 1e-15 in what is wanted came 9e-6 in what is found."""
 _TINY = 1e-300  # beside a zero
 
 
-def passive_residues(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """(K, N, N) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N)."""
-    return np.ascontiguousarray(port_residues(columns, np.ascontiguousarray(wanted)).transpose(2, 0, 1))
+def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """The same as port_residues, as (K, N, N)."""
+    return np.ascontiguousarray(
+        port_residues(columns, np.ascontiguousarray(wanted), weight).transpose(2, 0, 1)
+    )
 
 
 @njit(cache=True, error_model="numpy")
-def port_residues(columns, wanted):
-    """(N, N, K) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N)."""
+def port_residues(columns, wanted, weight):
+    """(N, N, K) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N) where
+    errors count by weight (S,)."""
     samples, rates = columns.shape
     ports = wanted.shape[1]
     scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((2, rates, rates))
-    _inverses(columns, (_RIDGE, _PENALTY), scaled, size, inverse)
+    _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
     seen, inside = np.zeros((ports, ports, rates)), np.zeros((ports, ports, rates))
     for s in range(samples):
         for i in range(ports):
             for j in range(ports):
+                value = weight[s] * wanted[s, i, j]
                 for k in range(rates):
-                    seen[i, j, k] += wanted[s, i, j] * scaled[s, k]
+                    seen[i, j, k] += value * scaled[s, k]
     for i in range(ports):
         for j in range(ports):
             for m in range(rates):
@@ -58,35 +62,36 @@ def port_residues(columns, wanted):
 
 
 @njit(cache=True, error_model="numpy")
-def free_residues(columns):
+def free_residues(columns, weight):
     """(S, K), which turns what is wanted (S,) into residues (K,) of any sign, whose sum with the columns (S, K) is
-    nearest to it but for a ridge that keeps them small."""
+    nearest to it, where errors count by weight (S,), but for a ridge that keeps them small."""
     samples, rates = columns.shape
     scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((1, rates, rates))
-    _inverses(columns, (_FREE_RIDGE,), scaled, size, inverse)
+    _inverses(columns, weight, (_FREE_RIDGE,), scaled, size, inverse)
     found = np.zeros((samples, rates))
     for s in range(samples):
         for m in range(rates):
             for k in range(rates):
                 found[s, k] += scaled[s, m] * inverse[0, m, k]
         for k in range(rates):
-            found[s, k] /= size[k]
+            found[s, k] *= weight[s] / size[k]
     return found
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _inverses(columns, ridges, scaled, size, inverse):
-    """Fills scaled (S, K) with the columns (S, K) at unit length, size (K,) with their lengths, and inverse (n, K, K)
-    with those of the normal equations with each ridge."""
+def _inverses(columns, weight, ridges, scaled, size, inverse):
+    """Fills scaled (S, K) with the columns (S, K) by weight (S,) at unit length, size (K,) with their lengths, and
+    inverse (n, K, K) with those of the normal equations with each ridge."""
     samples, rates = columns.shape
     normal = np.zeros((rates, rates))
     for k in range(rates):
         square = 0.0
         for s in range(samples):
-            square += columns[s, k] * columns[s, k]
+            scaled[s, k] = weight[s] * columns[s, k]
+            square += scaled[s, k] * scaled[s, k]
         size[k] = np.sqrt(square)
         for s in range(samples):
-            scaled[s, k] = columns[s, k] / size[k]
+            scaled[s, k] /= size[k]
     for s in range(samples):
         for k in range(rates):
             for m in range(rates):

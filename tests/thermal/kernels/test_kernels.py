@@ -61,7 +61,7 @@ def axis_kernel(tau: float, length: float, film: float, late: bool) -> np.ndarra
     nodes = 0.25 + 0.15 * NODES
     if late:
         waves, found = wave_numbers(length, film), np.empty((len(JUMPS), MODES))
-        overlaps(nodes, JUMPS, 1, length, waves, np.empty(len(nodes)), found)
+        overlaps(nodes, JUMPS, 1, length, waves, np.empty(MODES), found)
         return (found * np.exp(-(waves**2) * tau)) @ found.T
     table = np.empty((len(nodes), len(nodes)))
     images(nodes, 1, nodes, 1, True, length, film, tau, table)
