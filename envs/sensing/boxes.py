@@ -8,6 +8,7 @@ B: rows, F: fingertips, S: substeps.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -52,7 +53,7 @@ from ...thermal.kernels import (
 )
 from ..bodies import ObjectSpec
 from ..footprint import GraspBody
-from .places import BOX_ROW, MOST_PLACES, Place, Rectangle, Touched, opposite, place_of, strayed
+from .places import BOX_ROW, MOST_PLACES, NEAR, Place, Rectangle, Touched, opposite, place_of, strayed
 
 _ANYWHERE_SHARE = 3.2e-3
 """Error of the drop of a touch at rest anywhere on a box, as a share of the difference: 99 % of 1,000 drawn touches are
@@ -135,7 +136,7 @@ class BoxHeat:
         middles = np.zeros((len(self._rows), 2, 3))
         for row in rows:
             middles[row] = self._middles(row)
-        self.settle([(row, [0]) for row in rows], middles, state)
+        self.settle([(row, range(self._tips)) for row in rows], middles, state)
 
     def strayed(self, force: np.ndarray, place: np.ndarray, samples: int) -> list[tuple[int, int, list[int]]]:
         """(sample, row, fingertips) of those that begin to press in that one of a step's samples where they have no
@@ -152,8 +153,8 @@ class BoxHeat:
     def settle(
         self, strayed: Sequence[tuple[int, Sequence[int]]], middles: np.ndarray, state: np.ndarray
     ) -> None:
-        """Those fingertips of each row, and those that have no place yet, are at their middles of (B, F, 3) m from now
-        on. The heat of the objects and of fingertips in the state (B, n) stays to round-off."""
+        """Those fingertips of each row, and those without a place that are about to touch, are at their middles of
+        (B, F, 3) m from now on. The heat of the objects and of fingertips in the state (B, n) stays to round-off."""
         tables = self.tables
         for row, fingertips in strayed:
             own, last = state[row], self._touched[row]
@@ -177,9 +178,15 @@ class BoxHeat:
         is given up, in the row's state (n,), goes to its heir."""
         touched, (body, _) = self._touched[row], self._bodies[row]
         size, width, normal = body.spec.size, body.stack.width, int(self._rows["normal"][row])
+        # one that is further off will hardly find the box where it is: the first to touch pushes it
+        reach = size[normal] / 2 + NEAR * width
         if not body.anywhere:
-            middles = self._middles(row)
-        new = [f for f in range(self._tips) if touched.contacts[f] < 0 and f not in fingertips]
+            middles, reach = self._middles(row), math.inf
+        new = [
+            f
+            for f in range(self._tips)
+            if touched.contacts[f] < 0 and f not in fingertips and abs(middles[f][normal]) <= reach
+        ]
         for f in (*fingertips, *new):
             place = place_of(size, normal, width, middles[f].tolist())
             if place is not None:
@@ -292,15 +299,17 @@ class BoxHeat:
         material, size, prints = body.material, body.spec.size, self._prints[row]
         count = sum(number >= 0 for number in touched.contacts)
         under = _under(material, size, film, _stand_ins(prints, numbers[:count], size, body.stack.width))
-        feet = [(prints[number].place.face, prints[number].foot) for number in numbers]
-        patches = Patches(
-            np.array([face for face, _ in feet]),
-            np.array([foot.centre for _, foot in feet]),
-            np.array([foot.half for _, foot in feet]),
-        )
-        tips = tuple(prints[number].tip for number in numbers)
-        box = TouchedBox(material, size, film, patches, tips, count)
-        set_body(self.tables, row, touched_box(box, FIXED_LEVEL, under), numbers)
+        found = under.own
+        if len(numbers) > count:
+            feet = [(prints[number].place.face, prints[number].foot) for number in numbers]
+            patches = Patches(
+                np.array([face for face, _ in feet]),
+                np.array([foot.centre for _, foot in feet]),
+                np.array([foot.half for _, foot in feet]),
+            )
+            tips = tuple(prints[number].tip for number in numbers)
+            found = touched_box(TouchedBox(material, size, film, patches, tips, count), FIXED_LEVEL, under)
+        set_body(self.tables, row, found, numbers)
 
     def _set_contacts(self, row: int, touched: Touched) -> None:
         """The row's fingertips are on those places."""

@@ -181,8 +181,8 @@ class GraspHeat:
                 if sample == first:
                     self._touch(row, self._touches[row].moved(tip, place[row, tip]))
             step = (normal, middles, drop, info, first, last)
-            tables = self._networks.tables(self._fingertips)
             if boxed < len(drop):
+                tables = self._networks.tables(self._fingertips)
                 advance_grasps(self._laws, self._reservoirs, self._rows, self._state, *step, *tables)
             if boxed:
                 advance_boxes(self._laws, self._rows, self._state, *step, *self._boxes.tables)

@@ -59,11 +59,11 @@ class Place:
     def covered(self, size: Sequence[float], width: float) -> Rectangle:
         """What the face covers of a sensor's of that width, from the sensor's corner, to a nanometre: of two places as
         far from their face's ends it is the same."""
-        first, second = (
-            (max(round(width / 2 - middle, 9), 0.0), min(round(side - middle + width / 2, 9), width))
-            for middle, side in zip(self.middle, self.sides(size), strict=True)
+        (x, y), (first, second), half = self.middle, _SIDES[self.face // 2], width / 2
+        return (
+            (max(round(half - x, 9), 0.0), min(round(size[first] - x + half, 9), width)),
+            (max(round(half - y, 9), 0.0), min(round(size[second] - y + half, 9), width)),
         )
-        return first, second
 
     def serves(self, other: Place, size: Sequence[float], width: float) -> bool:
         """Whether a pad at the other place is on this one too."""
@@ -72,8 +72,9 @@ class Place:
         (x, y), (x0, y0) = self.middle, other.middle
         if abs(x - x0) > NEAR * width or abs(y - y0) > NEAR * width:
             return False
-        edges = zip(self.covered(size, width), other.covered(size, width), strict=True)
-        return all(max(abs(a - c), abs(b - d)) <= EDGE * width for (a, b), (c, d) in edges)
+        (a, b), (c, d) = self.covered(size, width)
+        (a0, b0), (c0, d0) = other.covered(size, width)
+        return max(abs(a - a0), abs(b - b0), abs(c - c0), abs(d - d0)) <= EDGE * width
 
 
 def opposite(place: Place, places: Sequence[Place], width: float) -> Place | None:
@@ -110,12 +111,12 @@ class Touched:
         face; the heir is -1 where none is within a sensor's width, and the place itself where it is the new one that
         has taken its number. warmth: K of each place, 0 where nothing has flowed."""
         contacts, places = list(self.contacts), list(self.places)
-        others = {number for f, number in enumerate(contacts) if f != fingertip}
         last, given_up = contacts[fingertip], None
+        others = (*contacts[:fingertip], *contacts[fingertip + 1 :])
         free = [number for number in range(len(places)) if number not in others]
-        serving = [number for number in free if places[number].serves(place, size, width)]
-        if serving:
-            number = serving[0]
+        serving = next((number for number in free if places[number].serves(place, size, width)), None)
+        if serving is not None:
+            number = serving
         elif last in free and warmth[last] == 0:
             number = last
         elif len(places) < MOST_PLACES:
@@ -124,7 +125,7 @@ class Touched:
             heirs = {number: _heir(number, places, place, width) for number in free}
             number = min(free, key=lambda number: warmth[number] * heirs[number][0] ** 2)
             given_up = number, heirs[number][1]
-        if not serving:
+        if serving is None:
             places[number : number + 1] = [_on_lattice(place, size, width, coarse=not any(warmth))]
         contacts[fingertip] = number
         return Touched(tuple(places), tuple(contacts)), given_up
