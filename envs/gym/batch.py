@@ -124,7 +124,8 @@ def infos_of(
     if randomized:
         nested: dict[str, Any] = {}
         for name, values in randomized.items():
-            nested[name], nested["_" + name] = np.where(rows, values, 0.0), rows.copy()
+            told = values.copy() if complete else np.where(rows, values, 0.0)
+            nested[name], nested["_" + name] = told, rows.copy()
         infos["randomized"], infos["_randomized"] = nested, rows.copy()
     return infos
 
