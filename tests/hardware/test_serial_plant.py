@@ -29,8 +29,9 @@ from thermograsp.hardware import (
     VirtualLine,
 )
 from thermograsp.hardware.errors import DeviceError, StoppedError
+from thermograsp.hardware.plant import SerialConfig
 from thermograsp.hardware.plant.pacing import VirtualTime
-from thermograsp.hardware.plant.serial import SerialConfig, SerialPlant, serial_plant
+from thermograsp.hardware.plant.serial import SerialPlant, serial_plant
 from thermograsp.plant import Command, Reading
 
 from .serving import QUICK, nothing_left
@@ -300,7 +301,7 @@ def test_a_line_that_is_unplugged(tmp_path: Path, gone: str) -> None:
         ),
     ],
 )
-def test_what_no_serial_plant_can_be(url: str, rows: int, config: dict[str, object], said: str) -> None:
+def test_what_no_serial_plant_can_be(url: str, rows: int, config: dict[str, Any], said: str) -> None:
     with pytest.raises(InvalidValueError, match=said):
         serial_plant(url, rows, **config)
 
