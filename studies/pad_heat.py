@@ -148,32 +148,54 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     inside: Any = top.global_coordinates()
     conductance = np.where(np.asarray(inside)[0] < _FACE, *touch.through())
     even: Any = _weighted.assemble(top, value=DiscreteField(conductance))
-    ordered, other = _ordered(lower, top), _ordered(upper, bottom)
-    both = np.concatenate([ordered, lower.N + other])
-    link = even[ordered][:, ordered]
-    join = sparse.bmat([[link, -link], [-link, link]]).tocoo()
-    size = lower.N + upper.N
-    joined = sparse.csr_matrix((join.data, (both[join.row], both[join.col])), (size, size))
-    whole: Any = sparse.block_diag(stiffness).tocsr() + joined
-    heat: Any = sparse.block_diag(mass).tocsr()
+    joined = connected(stiffness, mass, even, _ordered(lower, top), _ordered(upper, bottom))
     plate = lower.get_dofs(lambda x: x[1] < 1e-12).flatten()
-    free = np.setdiff1d(np.arange(size), plate)
-    u = np.where(np.arange(size) < lower.N, DIFFERENCE, 0.0)
+    u = np.where(np.arange(lower.N + upper.N) < lower.N, DIFFERENCE, 0.0)
     around = lower.doflocs[0] > _FACE * (1 + 1e-9)
     u[: lower.N][around] -= touch.cooled * lower.doflocs[1][around] / heights[-1]
+    drop = np.zeros(len(u))
+    drop[: lower.N] = _mean(lower, heights[1]) - _mean(lower, heights[2])
+    return marched(*joined, plate, u, drop, (0.01, 0.02, 0.05, 0.1, 0.1))
+
+
+def connected(
+    stiffness: Sequence[Any], mass: Sequence[Any], even: Any, ordered: np.ndarray, other: np.ndarray
+) -> tuple[Any, Any]:
+    """Conduction and heat capacity of two meshes, whose nodes `ordered` and `other` lie upon each other. even: what the
+    contact between them conducts, on the first one's nodes."""
+    nodes = stiffness[0].shape[0]
+    both = np.concatenate([ordered, nodes + other])
+    link = even[ordered][:, ordered]
+    join = sparse.bmat([[link, -link], [-link, link]]).tocoo()
+    whole: Any = sparse.block_diag(stiffness).tocsr()
+    whole += sparse.csr_matrix((join.data, (both[join.row], both[join.col])), whole.shape)
+    return whole, sparse.block_diag(mass).tocsr()
+
+
+def marched(
+    whole: Any, heat: Any, plate: np.ndarray, u: np.ndarray, drop: np.ndarray, steps: Sequence[float]
+) -> np.ndarray:
+    """(5,) K, the row `drop` of the temperatures at TIMES, in steps of so many s up to each. u: the first temperatures
+    of all nodes; those of the plate keep them."""
+    free = np.setdiff1d(np.arange(len(u)), plate)
     a, b = whole[free][:, free].tocsc(), heat[free][:, free].tocsc()
     load = -whole[free][:, plate] @ u[plate]
-    face = [_mean(lower, height) for height in heights[1:3]]
-    gamma, drops, t = 1 - np.sqrt(0.5), [], 0.0
-    for end, step in zip(TIMES, (0.01, 0.02, 0.05, 0.1, 0.1), strict=True):
-        solver = splu(b + gamma * step * a)
+    gamma, found, t = 1 - np.sqrt(0.5), [], 0.0
+    for end, step in zip(TIMES, steps, strict=True):
+        # symmetric and positive definite: no pivoting, which keeps the factors of 3-D meshes small
+        solver = splu(
+            (b + gamma * step * a).tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
         for _ in range(round((end - t) / step)):
             first = solver.solve(load - a @ u[free])
             second = solver.solve(load - a @ (u[free] + (1 - gamma) * step * first))
             u[free] += step * ((1 - gamma) * first + gamma * second)
         t = end
-        drops.append(float((face[0] - face[1]) @ u[: lower.N]))
-    return np.array(drops)
+        found.append(float(drop @ u))
+    return np.array(found)
 
 
 def _ordered(basis: Basis, facets: FacetBasis) -> np.ndarray:
