@@ -29,7 +29,7 @@ from skfem import Basis, BilinearForm, ElementQuad2, FacetBasis, LinearForm, Mes
 from skfem.element import DiscreteField
 from skfem.helpers import dot
 
-from thermograsp.thermal import Pad, Surface, contact_conductance, flat_contact, joint, materials
+from thermograsp.thermal import Pad, SensorStack, Surface, contact_conductance, flat_contact, joint, materials
 from thermograsp.thermal.contact import face_joint, skinned
 from thermograsp.thermal.matter import USUAL_SKIN, material, sensor
 from thermograsp.thermal.matter import skin as named_skin
@@ -108,7 +108,7 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     def cells(*counts: int) -> list[int]:
         return [max(2, round(refine * count)) for count in counts]
 
-    skin, stack, silicone = named_skin(touch.skin), sensor("seed"), material("silicone")
+    skin, stack = named_skin(touch.skin), sensor("seed")
     pad = len(stack.layers)  # as deep as these
     stack = stack if skin is None else skin.over(stack)
     heights = np.concatenate([[0.0], np.cumsum([layer.thickness for layer in stack.layers])])
@@ -122,14 +122,10 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     body, edge = material(touch.material), r[r > _FACE * (1 + 1e-9)][0]
     for basis in (lower, upper):
         x: Any = basis.global_coordinates()
-        at = np.clip(np.searchsorted(heights, np.asarray(x)[1]) - 1, 0, len(stack.layers) - 1)
-        k = np.array([layer.conductivity for layer in stack.layers])[at]
-        c = np.array([layer.density * layer.specific_heat for layer in stack.layers])[at]
-        around = (np.asarray(x)[0] > _FACE) & (at < pad)
-        k = np.where(around, silicone.conductivity, k)
-        c = np.where(around, silicone.volumetric_heat_capacity, c)
+        outside = np.asarray(x)[0] > _FACE
+        k, c = matter(np.asarray(x)[1], outside, heights, stack, pad)
         if not touch.sides:
-            k = np.where((np.asarray(x)[0] > _FACE) & (np.asarray(x)[0] < edge), 1e-9, k)  # a gap
+            k = np.where(outside & (np.asarray(x)[0] < edge), 1e-9, k)  # a gap
         if basis is upper:
             k, c = np.full_like(k, body.conductivity), np.full_like(c, body.volumetric_heat_capacity)
         stiffness.append(_conduction.assemble(basis, value=DiscreteField(k)))
@@ -156,6 +152,21 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     drop = np.zeros(len(u))
     drop[: lower.N] = _mean(lower, heights[1]) - _mean(lower, heights[2])
     return marched(*joined, plate, u, drop, (0.01, 0.02, 0.05, 0.1, 0.1))
+
+
+def matter(
+    depth: np.ndarray, outside: np.ndarray, heights: np.ndarray, stack: SensorStack, pad: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """W/(m K) and J/(m3 K) at places of that depth, m: silicone outside the sensor, beside the first `pad` layers of
+    the stack, whose boundaries are the heights."""
+    at = np.clip(np.searchsorted(heights, depth) - 1, 0, len(stack.layers) - 1)
+    k = np.array([layer.conductivity for layer in stack.layers])[at]
+    c = np.array([layer.volumetric_heat_capacity for layer in stack.layers])[at]
+    around, silicone = outside & (at < pad), material("silicone")
+    return (
+        np.where(around, silicone.conductivity, k),
+        np.where(around, silicone.volumetric_heat_capacity, c),
+    )
 
 
 def connected(

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 import pad_heat
-from pad_heat import DIFFERENCE, MATERIALS, SKINS_WORN, TIMES, Touch, connected, marched, pieces
+from pad_heat import DIFFERENCE, MATERIALS, SKINS_WORN, TIMES, Touch, connected, marched, matter, pieces
 from skfem import Basis, BilinearForm, ElementHex2, FacetBasis, LinearForm, MeshHex
 from skfem.element import DiscreteField
 from skfem.helpers import dot
@@ -52,7 +52,7 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     def cells(*counts: int) -> list[int]:
         return [max(2, round(refine * count)) for count in counts]
 
-    skin, stack, silicone = named_skin(touch.skin), sensor("seed"), material("silicone")
+    skin, stack = named_skin(touch.skin), sensor("seed")
     pad = len(stack.layers)  # as deep as these
     stack = stack if skin is None else skin.over(stack)
     heights = np.concatenate([[0.0], np.cumsum([layer.thickness for layer in stack.layers])])
@@ -69,12 +69,7 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     stiffness, mass, body = [], [], material(touch.material)
     for basis in (lower, upper):
         x: Any = np.asarray(basis.global_coordinates())
-        at = np.clip(np.searchsorted(heights, x[2]) - 1, 0, len(stack.layers) - 1)
-        k = np.array([layer.conductivity for layer in stack.layers])[at]
-        c = np.array([layer.volumetric_heat_capacity for layer in stack.layers])[at]
-        around = (np.maximum(x[0], x[1]) > _HALF) & (at < pad)
-        k = np.where(around, silicone.conductivity, k)
-        c = np.where(around, silicone.volumetric_heat_capacity, c)
+        k, c = matter(x[2], np.maximum(x[0], x[1]) > _HALF, heights, stack, pad)
         if basis is upper:
             k, c = np.full_like(k, body.conductivity), np.full_like(c, body.volumetric_heat_capacity)
         stiffness.append(_conduction.assemble(basis, value=DiscreteField(k)))
@@ -125,6 +120,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("materials", nargs="*", default=MATERIALS, help="materials of the object")
     parser.add_argument("--thickness", type=float, default=0.010, help="of the object, m (default .010)")
     options = parser.parse_args(arguments)
+    if not 0 < options.thickness < np.inf:
+        parser.error(f"--thickness must be above 0 m, got {options.thickness:g}")
     print("what the pad changes, K, at " + ", ".join(f"{t:g}" for t in TIMES) + " s: squares, discs")
     for name in options.materials:
         for skin in SKINS_WORN:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 
-from thermograsp.errors import finite, positive
+from thermograsp.errors import InvalidValueError, finite, positive
 
 from ..drivers import Axis
 from ..errors import DeviceError
@@ -13,17 +13,23 @@ from ..errors import DeviceError
 MOST_HEIGHT = 0.15  # m that an observation can tell
 _LOWERING = 0.05  # m/s at most
 _LOWEST = 5e-4  # m from position 0 that counts as there
+_MEMBERS = ("travel", "move", "position", "stop", "close")  # of an Axis
 
 
 class Lift:
     """axis: None for an arm that has none, whose height is 0 and which rates do not move. height: m, as last read.
     heard: whether the axis has heard it when it was to `halt`. Times are of one clock, s. Raises InvalidValueError for
-    an axis without travel."""
+    what is no axis, and for one without travel."""
 
     def __init__(self, axis: Axis | None) -> None:
         self.axis, self.height, self.heard = axis, 0.0, True
         self._highest = self._rate = self._read_at = 0.0
         if axis is not None:
+            missing = [name for name in _MEMBERS if not hasattr(axis, name)]
+            if missing:
+                raise InvalidValueError(
+                    f"lift must be a thermograsp.hardware.Axis; {type(axis).__name__} has no {', '.join(missing)}"
+                )
             self._highest = min(positive("the lift's travel (m)", axis.travel), MOST_HEIGHT)
 
     def move(self, rate: float, now: float, seconds: float) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, closing, suppress
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
@@ -375,10 +375,11 @@ def serial_plant(url: str, num_envs: int, lift: Axis | None = None, **config: An
     except TypeError as error:
         names = ", ".join((*SerialConfig.__slots__, "lift"))
         raise InvalidValueError(f"a serial plant takes {names}: {error}") from error
-    gripper = open_gripper(gripper_url)
-    try:
-        tips = Fingertips(parts.path, rate=settings.rate, setpoint=settings.setpoint)
-    except BaseException:
-        gripper.close()
-        raise
-    return SerialPlant(tips, gripper, settings, lift=lift)
+    with ExitStack() as opened:  # what is open when something is refused is closed again
+        gripper = opened.enter_context(closing(open_gripper(gripper_url)))
+        tips = opened.enter_context(
+            closing(Fingertips(parts.path, rate=settings.rate, setpoint=settings.setpoint))
+        )
+        plant = SerialPlant(tips, gripper, settings, lift=lift)
+        opened.pop_all()
+    return plant

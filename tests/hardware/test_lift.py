@@ -11,6 +11,7 @@ import pytest
 from thermograsp.errors import InvalidValueError
 from thermograsp.hardware import Fingertips, PtyDevice, SerialConfig, SerialPlant
 from thermograsp.hardware.errors import DeviceError, StoppedError
+from thermograsp.hardware.plant import serial
 from thermograsp.plant import Command
 
 from .serving import nothing_left
@@ -235,3 +236,30 @@ def test_the_watchdog_tells_a_lift_again_that_did_not_hear(tmp_path: Path) -> No
         assert eventually(lambda: axis.rate == 0.0)  # nobody steps
         assert "no step for" in plant.step(CLOSE).error[0]
         plant.close()
+
+
+@pytest.mark.parametrize(
+    ("lift", "said"),
+    [
+        (3.0, "float has no travel, move, position, stop, close"),
+        (object(), "object has no travel"),
+        (Arm(lambda: 0.0, travel=0.0), "travel"),
+        (Arm(lambda: 0.0, travel=float("nan")), "travel"),
+    ],
+)
+def test_what_is_no_lift_is_refused_and_both_lines_are_released(
+    monkeypatch: pytest.MonkeyPatch, lift: Any, said: str
+) -> None:
+    released = []
+
+    class Line:
+        stroke = 0.085
+
+        def close(self) -> None:
+            released.append(self)
+
+    monkeypatch.setattr(serial, "open_gripper", lambda url: Line())
+    monkeypatch.setattr(serial, "Fingertips", lambda port, **settings: Line())
+    with pytest.raises(InvalidValueError, match=said):
+        serial.serial_plant("serial:///dev/tips?gripper=robotiq:///dev/gripper", 1, lift=lift)
+    assert len(released) == 2
