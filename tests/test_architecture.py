@@ -68,6 +68,7 @@ ROOMS = {
         "readout",
         "network",
         "stack",
+        "curves",
         "batch",
         "rungs",
         "meshes",

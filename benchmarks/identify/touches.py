@@ -2,8 +2,8 @@
 
 The unknowns are drawn from the identifier's own priors: contact conductance log-uniform, temperatures normal, offset
 normal; noise and rounding are the converter's. Curves of named materials come from stepping the networks of
-thermal.press in 2 ms and from the signal chain's own filter; the identifier has other networks, evaluated in closed
-form, and interpolates between them. N: touches, n: samples.
+thermal.press in 2 ms and from the signal chain's own filter; the identifier has its curves from
+impedances, and interpolates between them. N: touches, n: samples.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from thermograsp import thermal
-from thermograsp.thermal.identification import SystemFamily, unit_response
+from thermograsp.thermal.curves import UnitCurves
 from thermograsp.thermal.identification import prior as identify_prior
 
 RATE = 100.0  # Hz
@@ -93,13 +93,13 @@ def draw(
 
 
 def draw_objects(rng: np.random.Generator, setup: thermal.TouchSetup, count: int) -> Touches:
-    """Touches of objects from the identifier's prior of any object, each with a network of its own."""
-    family = SystemFamily(setup.geometry(thermal.material("glass")))
+    """Touches of objects from the identifier's prior of any object."""
+    unit_of = UnitCurves(setup.geometry(thermal.material("glass")), times(), setup.chain.bandwidth)
     objects = [identify_prior.draw_object(rng) for _ in range(count)]
     conductance = _conductances(rng, setup, count)
     unit = np.array(
         [
-            unit_response(family.system(*one), h, times(), setup.chain.bandwidth)
+            unit_of.on(thermal.Material("object", *one, 1.0))(np.array([h]))[0]
             for one, h in zip(objects, conductance.tolist(), strict=True)
         ]
     )

@@ -28,7 +28,7 @@ from thermograsp.errors import (
 from ..matter import SensorStack
 from ..readout import ADS1115, SignalChain
 from ..stack import HeatedStack, any_sensor, converter
-from .heated import as_drops, core_layers, fitted_core, with_element
+from .heated import as_drops, fitted_core, with_element
 from .known_touch import KnownTouch
 from .model import (
     MOST_DELAY,
@@ -109,10 +109,10 @@ def fit_sensor(
     chain = converter(sensor, chain)
     if isinstance(sensor, HeatedStack):
         core = fitted_core(sensor)
-        stack, behind, hold = core.element, core_layers(core), {*hold, "seebeck"}
+        stack, hold = core.element, {*hold, "seebeck"}
         touches = as_drops(touches, core)
     else:
-        stack, behind = sensor, ()
+        stack, core = sensor, None
     noise = positive(
         "noise and resolution of the chain (V)", float(np.hypot(chain.noise, chain.resolution / 12**0.5))
     )
@@ -122,7 +122,7 @@ def fit_sensor(
                 f"{touch.name}: the voltage moves by {np.ptp(touch.voltage):.2g} V, at a noise of {noise:.2g} V rms: "
                 "nothing is felt; look at the sensor's wires and the temperatures"
             )
-    model = TouchModel(touches, stack, chain.bandwidth, behind)
+    model = TouchModel(touches, stack, chain.bandwidth, core)
     problem = _Problem(model, shared_of(stack), noise, hold)
     found = least_squares(
         problem.residuals,

@@ -1,4 +1,4 @@
-"""A heated sensor as the fit of sensors takes it: touches in kelvins of fall, and its core as layers.
+"""A heated sensor as the fit of sensors takes it: touches in kelvins of fall.
 
 The voltage of a divider is not in proportion to temperature, but its temperature is known; so voltages become what a
 sensor of the divider's slope would send of the fall below the reading before the touch, and that slope is held.
@@ -11,14 +11,11 @@ from dataclasses import replace
 
 from thermograsp.errors import InvalidValueError
 
-from ..matter import Layer, SensorStack
-from ..stack import HeatedCore, HeatedStack, Held, fallen, heated_core, require_linear
+from ..matter import SensorStack
+from ..stack import HeatedCore, HeatedStack, fallen, heated_core, require_linear
 from .known_touch import KnownTouch
 
 _STEP = 0.01  # s; a fit takes nothing of it
-_LUMP = 1e-3  # m, a layer that stands for a capacity
-_ISOTHERMAL = 1e6  # W/(m K), its conductivity
-_DEEP = 100.0  # s^0.5, a layer that stands for a half-space: nothing comes back from there within an hour
 
 
 def fitted_core(sensor: HeatedStack) -> HeatedCore:
@@ -32,8 +29,9 @@ def fitted_core(sensor: HeatedStack) -> HeatedCore:
         )
     if sensor.backing.loss:
         raise InvalidValueError(
-            f"sensor {sensor.name!r} loses heat behind ({sensor.backing.loss:g} W/(m2 K)), which its layers do not "
-            "in fit_sensor; use thermal.measured.fit_stack, or leave the loss out for touches of some seconds"
+            f"sensor {sensor.name!r} loses heat behind ({sensor.backing.loss:g} W/(m2 K)), and no touch of "
+            "fit_sensor says how warm it is there; use thermal.measured.fit_stack, or leave the loss out for touches of "
+            "some seconds"
         )
     if sensor.layers[-len(core.element.layers) :] != core.element.layers:
         raise InvalidValueError(
@@ -41,20 +39,6 @@ def fitted_core(sensor: HeatedStack) -> HeatedCore:
             "make it two layers"
         )
     return core
-
-
-def core_layers(core: HeatedCore) -> tuple[Layer, ...]:
-    """What is behind the heater's place as layers, nearest first; none for one that is held."""
-    sensor = core.sensor
-    if isinstance(sensor.law, Held):
-        return ()
-    count = len(sensor.layers) - len(core.element.layers)
-    behind = list(sensor.layers[:count][::-1])
-    if sensor.backing.capacity:
-        behind.append(Layer("lump", _LUMP, _ISOTHERMAL, sensor.backing.capacity / _LUMP, 1.0))
-    if sensor.backing.effusivity:
-        behind.append(Layer("half-space", _DEEP, sensor.backing.effusivity, sensor.backing.effusivity, 1.0))
-    return tuple(behind)
 
 
 def as_drops(touches: Sequence[KnownTouch], core: HeatedCore) -> list[KnownTouch]:

@@ -12,9 +12,11 @@ from types import MappingProxyType
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..matter import Layer, SensorStack
+from ..curves import UnitCurves
+from ..matter import SensorStack
+from ..plates import Geometry
+from ..stack import HeatedCore
 from .known_touch import KnownTouch
-from .response import SensorResponse
 
 UNITS: Mapping[str, str] = MappingProxyType(
     {"seebeck": "V/K", "offset": "V", "delay": "s", "conductivity": "W/(m K)", "heat_capacity": "J/(m3 K)"}
@@ -22,6 +24,8 @@ UNITS: Mapping[str, str] = MappingProxyType(
 POSITIVE = ("seebeck", "conductivity", "heat_capacity")  # whose slopes are by the logarithm
 MOST_DELAY = (-0.2, 1.0)  # s
 _STEP = 1e-4  # of a logarithm, for central differences
+_FIRST, _SPACING = 0.03, 0.01  # s^0.5, of the times of curves, which are even in the root of time
+_ENDS = ((1, 0.0), "not-a-knot")  # a curve rises from 0 slower than the root of time
 
 Shared = Mapping[str, float]  # a value of every key of UNITS
 
@@ -50,7 +54,7 @@ def with_shared(stack: SensorStack, shared: Shared) -> SensorStack:
 
 class TouchModel:
     """The voltage of a touch as a function of the fitted quantities. stack: what is not fitted of the sensor.
-    bandwidth: Hz of the amplifier's low-pass. behind: as in SensorResponse.
+    bandwidth: Hz of the amplifier's low-pass. core: what is behind a heated sensor's element.
 
     Voltage of a touch at t: offset + seebeck difference drop(t - delay - late; sensed layer, conductance).
     """
@@ -60,11 +64,17 @@ class TouchModel:
         touches: Sequence[KnownTouch],
         stack: SensorStack,
         bandwidth: float,
-        behind: tuple[Layer, ...] = (),
+        core: HeatedCore | None = None,
     ) -> None:
         self.touches, self._stack = tuple(touches), stack
         horizon = max(touch.t[-1] for touch in touches) - 2 * MOST_DELAY[0]
-        self._response = SensorResponse(self.touches, stack, bandwidth, horizon, behind)
+        self._times = np.append(0.0, np.arange(_FIRST, np.sqrt(horizon) + 2 * _SPACING, _SPACING))
+        of_each = [_geometry(touch, stack) for touch in touches]
+        felt = {
+            geometry: UnitCurves(geometry, self._times**2, bandwidth, core).on(geometry.material)
+            for geometry in set(of_each)
+        }
+        self._felt = [felt[geometry] for geometry in of_each]
 
     def voltage(self, touch: int, shared: Shared, conductance: float, late: float) -> np.ndarray:
         """(n,) V of a touch of the list. conductance: W/(m2 K). late: s."""
@@ -96,7 +106,9 @@ class TouchModel:
         }
 
     def _curve(self, touch: int, shared: Shared, conductance: float) -> CubicSpline:
-        return self._response.curve(touch, with_shared(self._stack, shared), conductance)
+        """K per K of difference over the root of the time after the touch, s^0.5."""
+        felt = self._felt[touch](np.array([conductance]), with_shared(self._stack, shared))
+        return CubicSpline(self._times, felt[0], bc_type=_ENDS)  # pyright: ignore[reportArgumentType]
 
     def _roots(self, touch: int, shared: Shared, late: float) -> np.ndarray:
         """s^0.5 after the touch, 0 before."""
@@ -104,3 +116,10 @@ class TouchModel:
 
     def _scale(self, touch: int, shared: Shared) -> float:
         return shared["seebeck"] * self.touches[touch].difference
+
+
+def _geometry(touch: KnownTouch, stack: SensorStack) -> Geometry:
+    """Two equal fingertips drive no heat through the middle plane: each has a plate of half the thickness."""
+    width, depth, thickness = touch.object_size
+    size = (width, depth, thickness / touch.fingertips)
+    return Geometry(stack, touch.material, "T", stack.face_area, "square", size)

@@ -3,7 +3,6 @@
 from . import prior
 from .effusivity import EffusivityPosterior
 from .identifier import Identifier, identify
-from .response import SystemFamily, unit_response
 from .result import Identification, Verdict
 from .setup import TouchSetup
 
@@ -11,10 +10,8 @@ __all__ = [
     "EffusivityPosterior",
     "Identification",
     "Identifier",
-    "SystemFamily",
     "TouchSetup",
     "Verdict",
     "identify",
     "prior",
-    "unit_response",
 ]

@@ -15,10 +15,10 @@ from threadpoolctl import threadpool_limits
 from thermograsp.files import cached_arrays
 from thermograsp.notice import busy
 
+from ..curves import UnitCurves
 from ..matter import Material, SensorStack
 from ..matter import material as named_material
 from . import prior as prior
-from .response import SystemFamily, answer
 from .setup import TouchSetup
 
 _KNOTS, _FIRST = 240, 2e-3  # s, scale on which knots begin to spread
@@ -76,13 +76,13 @@ class CurveLibrary:
 def curve_library(
     setup: TouchSetup, materials: Sequence[str | Material], *, cache: bool = True
 ) -> CurveLibrary:
-    """The curves of a setup and the named materials. The first call for a setup takes seconds (O mode: 30)."""
+    """The curves of a setup and the named materials. The first call for a setup takes a second (O mode: 10)."""
     chosen = [named_material(one) for one in materials]
     geometry = setup.geometry(chosen[0])
     knots = _FIRST * np.sinh(np.linspace(0, np.arcsinh(setup.horizon / _FIRST), _KNOTS))
     log_resistance = np.log(np.geomspace(*setup.resistance, _RESISTANCES))
     log_effusivity = np.log(np.geomspace(*prior.RANGE, _EFFUSIVITIES))
-    family = SystemFamily(geometry)
+    unit = UnitCurves(geometry, knots, setup.converter.bandwidth, setup.core)
     key = {
         "layers": [
             (each.thickness, each.conductivity, each.volumetric_heat_capacity)
@@ -100,20 +100,16 @@ def curve_library(
         "bandwidth": float(setup.converter.bandwidth),
         "heated": "" if isinstance(setup.worn, SensorStack) else repr(setup.worn),
     }
-    core = setup.core
 
-    def curves(conductivity: float, capacity: float) -> np.ndarray:
-        response = answer(family.system(conductivity, capacity), core)
-        return np.array(
-            [response.curve(c, knots, setup.converter.bandwidth) for c in np.exp(-log_resistance)]
-        )
+    def curves(material: Material) -> np.ndarray:
+        return unit.on(material)(np.exp(-log_resistance))
 
     def objects() -> dict[str, np.ndarray]:
         deviations = np.linspace(-_WIDEST, _WIDEST, _CAPACITIES)
         all_curves = []
         for e in np.exp(log_effusivity):
             for capacity in prior.heat_capacity(e, deviations):  # pyright: ignore[reportGeneralTypeIssues]
-                all_curves.append(curves(e**2 / capacity, capacity))
+                all_curves.append(curves(Material("object", e**2 / capacity, capacity, 1.0)))
         found = np.array(all_curves)
         functions = _basis(found.reshape(-1, len(knots)))
         coefficients = _project(functions, found)
@@ -121,7 +117,7 @@ def curve_library(
         return {"functions": functions, "coefficients": coefficients.reshape(shape)}
 
     def named() -> dict[str, np.ndarray]:
-        found = [curves(one.conductivity, one.volumetric_heat_capacity) for one in chosen]
+        found = [curves(one) for one in chosen]
         return {"coefficients": _project(functions, np.array(found))[:, None]}
 
     with busy("computing how materials feel to this sensor, once"):

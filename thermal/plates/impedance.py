@@ -43,12 +43,15 @@ class Sampled:
         return Sampled(self.value + other.value, self.slope + other.slope)
 
 
-def stack_impedance(layers: tuple[Layer, ...], far: Far, s: np.ndarray, kappa2: np.ndarray) -> np.ndarray:
+def stack_impedance(
+    layers: tuple[Layer, ...], far: Far | np.ndarray, s: np.ndarray, kappa2: np.ndarray
+) -> np.ndarray:
     """Impedance (..., M) m2 K/W of one lateral eigenfunction at the near face of layers (near face first).
 
-    s: (..., 1) 1/s, real or complex. kappa2: (M,) 1/m2. Transmission-line recursion from the far end.
+    s: (..., 1) 1/s, real or complex. kappa2: (M,) 1/m2. far: what is behind the last layer, an impedance (..., M) of
+    its own or an end of the two kinds. Transmission-line recursion from the far end.
     """
-    impedance: np.ndarray | None = None
+    impedance = far if isinstance(far, np.ndarray) else None
     for layer in reversed(layers):
         k = layer.conductivity
         g = np.sqrt(s / layer.diffusivity + kappa2)
@@ -134,7 +137,7 @@ def _depth_kernel(thickness: float, far: Far | None, tau: np.ndarray) -> np.ndar
 
 
 def stack_profile(
-    layers: tuple[Layer, ...], far: Far, s: np.ndarray, kappa2: np.ndarray
+    layers: tuple[Layer, ...], far: Far | np.ndarray, s: np.ndarray, kappa2: np.ndarray
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Temperatures (m2 K/W) and heat flows at the interfaces, near face first, per unit heat flux into the near face.
 
@@ -149,7 +152,7 @@ def stack_profile(
         g = np.sqrt(s / layer.diffusivity + kappa2)
         decay = np.exp(-g * layer.thickness)
         sech = 2 * decay / (1 + decay**2)
-        if i + 1 < len(layers):
+        if i + 1 < len(layers) or isinstance(far, np.ndarray):
             beyond = stack_impedance(layers[i + 1 :], far, s, kappa2)
             flow = flow * sech / (1 + beyond * k * g * np.tanh(g * layer.thickness))
             temperature = beyond * flow

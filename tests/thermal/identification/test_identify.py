@@ -16,11 +16,10 @@ from thermograsp.bench.identify.touches import (
     times,
 )
 from thermograsp.errors import InvalidValueError, UnknownNameError
+from thermograsp.thermal.curves import UnitCurves
 from thermograsp.thermal.identification import prior as identify_prior
 from thermograsp.thermal.identification.climb import _interpolate
 from thermograsp.thermal.identification.library import CurveLibrary
-from thermograsp.thermal.identification.response import SystemFamily, unit_response
-from thermograsp.thermal.matter.mounting import Mode
 
 NAMES = ("wood", "plastic", "rubber", "glass")
 T = times()
@@ -40,49 +39,18 @@ def touches() -> tuple[Touches, np.ndarray]:
 def volts(material: str, difference: float, rng: np.random.Generator, conductance: float = 5e3) -> np.ndarray:
     """(400,) V of a touch, as a converter reports them."""
     one = thermal.material(material)
-    family = SystemFamily(SETUP.geometry(one))
-    system = family.system(one.conductivity, one.volumetric_heat_capacity)
-    drop = difference * unit_response(system, conductance, T, SETUP.chain.bandwidth)
+    unit = UnitCurves(SETUP.geometry(one), T, SETUP.chain.bandwidth).on(one)
+    drop = difference * unit(np.array([conductance]))[0]
     chain = replace(SETUP.chain, bandwidth=np.inf)
     noise = rng.standard_normal((1, len(T)))
     return thermal.measure(chain, thermal.settled(np.zeros(1), 1e-3), drop[None], 1e-3, 0.01, noise)[1][0]
-
-
-@pytest.mark.parametrize(
-    ("mode", "name", "conductance"),
-    [
-        ("T", "wood", 2e4),
-        ("T", "stainless_steel", 1e4),
-        pytest.param("O", "glass", 3e3, marks=pytest.mark.slow),
-    ],
-)
-def test_curves_are_those_of_the_semi_analytic_solution(mode: Mode, name: str, conductance: float) -> None:
-    t = np.array([0.1, 0.5, 2.0])
-    one = thermal.material(name)
-    family = SystemFamily(replace(SETUP, mode=mode).geometry(one))
-    response = unit_response(family.system(one.conductivity, one.volumetric_heat_capacity), conductance, t)
-    other = thermal.press(one, mode=mode, conductance=conductance, seconds=2.0, dt=0.1, rung="semi_analytic")
-    found = np.interp(t, other.t, other.temperature_drop)
-    assert np.abs(12 * response - found).max() < 1e-3
-
-
-def test_the_low_pass_is_the_signal_chains() -> None:
-    one = thermal.material("marble")
-    system = SystemFamily(SETUP.geometry(one)).system(one.conductivity, one.volumetric_heat_capacity)
-    t = np.arange(2000) * 5e-4
-    plain = unit_response(system, 1e4, t)[None]
-    chain = thermal.SignalChain(bandwidth=30.0)
-    _, seen = thermal.measure(
-        chain, thermal.settled(np.zeros(1), 1.0), plain, 1.0, 5e-4, np.zeros_like(plain)
-    )
-    assert np.abs(seen[0] - unit_response(system, 1e4, t, 30.0)).max() < 1e-5
 
 
 def test_between_its_nodes_the_library_is_exact_enough(identifier: thermal.Identifier) -> None:
     """Half a millikelvin of 12 K is a 16th of a sample's noise."""
     library: CurveLibrary = identifier.library
     table, rng = library.objects, np.random.default_rng(1)
-    family = SystemFamily(SETUP.geometry(thermal.material("glass")))
+    unit = UnitCurves(SETUP.geometry(thermal.material("glass")), T, 30.0)
     basis, seen = library.basis(T), np.zeros((3, library.functions.shape[1]))
     distance = []
     for _ in range(40):
@@ -98,7 +66,8 @@ def test_between_its_nodes_the_library_is_exact_enough(identifier: thermal.Ident
             (np.log(resistance) - table.log_resistance[0]) / table.log_resistance[1],
             seen,
         )
-        exact = unit_response(family.system(conductivity, capacity), 1 / resistance, T, 30.0)
+        one = thermal.Material("object", conductivity, capacity, 1.0)
+        exact = unit.on(one)(np.array([1 / resistance]))[0]
         distance.append(12 * np.abs(basis @ seen[0] - exact).max())
     assert np.quantile(distance, 0.95) < 5e-4
 

@@ -23,7 +23,7 @@ from thermograsp.thermal import (
     sensor,
     solid,
 )
-from thermograsp.thermal.identification.response import SystemFamily, unit_response
+from thermograsp.thermal.curves import UnitCurves
 from thermograsp.thermal.stack import heated_stack
 
 SILICONE = SKINS["filled_silicone"]
@@ -108,9 +108,7 @@ def test_its_springs_are_those_of_a_sheet_that_cannot_bulge_where_contacts_are_w
 
 def test_curves_to_identify_by_are_those_of_the_same_layers() -> None:
     setup, glass, t = TouchSetup(skin="filled_silicone"), material("glass"), np.array([0.1, 0.5, 2.0])
-    family = SystemFamily(setup.geometry(glass))
-    system = family.system(glass.conductivity, glass.volumetric_heat_capacity)
-    found = 12 * unit_response(system, 5e3, t)
+    found = 12 * UnitCurves(setup.geometry(glass), t).on(glass)(np.array([5e3]))[0]
     exact = press("glass", sensor=setup.element, conductance=5e3, seconds=2.0, dt=0.1, rung="semi_analytic")
     assert setup.element == SILICONE.over(sensor("seed"))
     assert np.abs(found - np.interp(t, exact.t, exact.temperature_drop)).max() < 0.02

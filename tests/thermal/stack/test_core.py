@@ -9,7 +9,7 @@ import pytest
 
 from thermograsp import thermal
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal.identification.response import SystemFamily, unit_response
+from thermograsp.thermal.curves import UnitCurves
 from thermograsp.thermal.matter import Layer
 from thermograsp.thermal.stack import (
     Backing,
@@ -137,14 +137,14 @@ def test_what_no_core_can_stand_for_is_refused_with_the_reason(changes: dict[str
 
 @pytest.mark.parametrize("loss", [0.0, 200.0])
 def test_identification_expects_what_a_press_steps(loss: float) -> None:
-    """The one by eigenvectors of network and core together, the other by turns."""
+    """The one by impedances of network and core, the other by turns."""
     sensor = replace(PLAIN, backing=replace(PLAIN.backing, loss=loss))
     setup = thermal.TouchSetup(stack=sensor, sensor_temperature=(WARM, 0.1), object_temperature=(COLD, 1.0))
     wood = thermal.material("wood")
-    system = SystemFamily(setup.geometry(wood)).system(wood.conductivity, wood.volumetric_heat_capacity)
     found = pressed(sensor, conductance=1500.0)
     assert found.reading is not None
-    expected = (WARM - COLD) * unit_response(system, 1500.0, found.t, core=setup.core)
+    unit = UnitCurves(setup.geometry(wood), found.t, core=setup.core).on(wood)
+    expected = (WARM - COLD) * unit(np.array([1500.0]))[0]
     assert WARM - found.reading == pytest.approx(expected, abs=0.03)
 
 
