@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..matter import SensorStack
-from ..plates import stack_impedance, stack_profile
+from ..plates import stack_profile
 from ..stack import ConstantPower, HeatedCore, Held
 
 _UNIFORM = np.zeros(1)  # 1/m2, squared wave number

@@ -52,8 +52,8 @@ class Sides:
             self._by_band[band] = bodies, bodies.sensor.impedance(self._s), products
         bodies, sensor, products = self._by_band[band]
         faster = material.diffusivity / bodies.material.diffusivity
-        weights = _CAPACITY / material.volumetric_heat_capacity / (
-            self._s[:, None] + faster * bodies.object.rates
+        weights = (
+            _CAPACITY / material.volumetric_heat_capacity / (self._s[:, None] + faster * bodies.object.rates)
         )
         return sensor + (weights @ products).reshape(sensor.shape), None
 

@@ -70,7 +70,7 @@ class UnitCurves:
             flow *= (1 - sensor.face_lost) / (1 + (sensor.impedance - self._sampled.impedance) * flow)
             drop = sensor.read * flow + sensor.read_lost
         curves = np.zeros((len(conductance), len(self._later)))
-        curves[:, self._later] = np.concatenate((drop.real, drop.imag), axis=1) @ self._invert.T
+        curves[:, self._later] = np.concatenate((np.real(drop), np.imag(drop)), axis=1) @ self._invert.T
         return curves
 
 

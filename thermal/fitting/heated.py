@@ -30,8 +30,8 @@ def fitted_core(sensor: HeatedStack) -> HeatedCore:
     if sensor.backing.loss:
         raise InvalidValueError(
             f"sensor {sensor.name!r} loses heat behind ({sensor.backing.loss:g} W/(m2 K)), and no touch of "
-            "fit_sensor says how warm it is there; use thermal.measured.fit_stack, or leave the loss out for touches of "
-            "some seconds"
+            "fit_sensor says how warm it is there; use thermal.measured.fit_stack, or leave the loss out for touches "
+            "of some seconds"
         )
     if sensor.layers[-len(core.element.layers) :] != core.element.layers:
         raise InvalidValueError(

@@ -55,7 +55,7 @@ def test_a_continued_fraction_is_the_solution_of_the_equations() -> None:
     [
         ("T", "wood", 2e4, 1e-4),
         ("T", "stainless_steel", 1e4, 1e-4),
-        pytest.param("O", "glass", 3e3, 1e-3, marks=pytest.mark.slow),
+        ("O", "glass", 3e3, 1e-3),
     ],
 )
 def test_curves_are_those_of_the_semi_analytic_solution(

@@ -108,7 +108,6 @@ def test_slopes_are_differences_of_voltages() -> None:
         np.testing.assert_allclose(slope, difference, atol=1e-4 * abs(slope).max(), err_msg=name)
 
 
-@pytest.mark.slow
 def test_six_noisy_touches_tell_the_sensor() -> None:
     rng = np.random.default_rng(7)
     conductances = np.geomspace(3e3, 2e4, 3)
@@ -128,7 +127,6 @@ def test_six_noisy_touches_tell_the_sensor() -> None:
     assert fit.stack.layers[0] == sensor("seed").layers[0]
 
 
-@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     t, conductances = times(100.0, 2.0), (4e3, 8e3, 1e4, 1.5e4)
     names = ("glass", "aluminium", "glass", "aluminium")
@@ -149,7 +147,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     assert 0.7 < held / total < 0.9
 
 
-@pytest.mark.slow
 def test_what_cannot_be_told_is_named_and_what_is_held_stays() -> None:
     start = with_shared(sensor("seed"), TRUE)
     fit = fit_sensor([recorded("cotton", 2e3, 100.0, np.random.default_rng(3))], chain=CHAIN, start=start)
