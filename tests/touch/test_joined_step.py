@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from thermograsp.compiled import njit
-from thermograsp.thermal.kernels import Side, Tip
+from thermograsp.thermal.kernels import Tip
 from thermograsp.thermal.network import propagator
 from thermograsp.thermal.network import step as reference
+from thermograsp.thermal.numerics import ThermalNetwork
 from thermograsp.touch.heat.fields import BodyField, Place
 from thermograsp.touch.heat.step import room_of, room_size, step
 from thermograsp.touch.heat.systems import SystemPool
@@ -29,7 +30,7 @@ def stepped(
 
 def a_tip(rng: np.random.Generator, patterns: int) -> Tip:
     rates = np.sort(rng.choice([0.3, 5.0, 40.0, 900.0], 9))
-    side = Side(rates, rng.normal(size=(9, patterns)), {}, 0.0)
+    side = ThermalNetwork(rates, rng.normal(size=(9, patterns)))
     return Tip(1e-4, np.eye(patterns), np.ones(patterns), np.ones(3), side)
 
 

@@ -25,12 +25,9 @@ from thermograsp.compiled import njit
 from thermograsp.errors import positive
 
 from ..matter import Layer, SensorStack
-from ..network import SHIFTS, interpolate, truncate
-from ..plates import (
-    Far,
-    Sampled,
-    stack_impedance,
-)
+from ..network import SHIFTS
+from ..numerics import Sampled, interpolate, truncate
+from ..plates import Far, stack_impedance
 
 CELLS = 18  # along the face: half a millimetre of 9
 COSINES = 18  # along the face

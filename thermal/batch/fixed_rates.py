@@ -21,9 +21,9 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..kernels import BodyResidues, Resolution, Side
+from ..kernels import BodyResidues, Resolution
 from ..network import POLES, WEIGHTS
-from ..numerics import FAST
+from ..numerics import FAST, ThermalNetwork
 from .carry import TipRows
 from .residues import summed
 
@@ -81,7 +81,7 @@ class FixedTables(NamedTuple):
 
 
 def fixed_tables(
-    rows: int, fingertips: int, places: int, patterns: int, whole: Side, dt: float
+    rows: int, fingertips: int, places: int, patterns: int, whole: ThermalNetwork, dt: float
 ) -> FixedTables:
     """Empty tables. whole: the element under a contact with all of its face, which is element 0."""
     slow = _slow(whole)
@@ -172,7 +172,7 @@ def _rate_table(rates: np.ndarray, dt: float) -> np.ndarray:
     return np.concatenate((rates[None], left[None], scale.real, scale.imag, weighted.real, -weighted.imag))
 
 
-def tip_residues(side: Side) -> np.ndarray:
+def tip_residues(side: ThermalNetwork) -> np.ndarray:
     """(P P + 2 P + 2, K) of an element at FIXED_LEVEL's rates: a row of FixedTables.tips."""
     slow, patterns = _slow(side), side.ports.shape[1]
     rates, ports = side.rates[slow:], side.ports[slow:]
@@ -237,7 +237,7 @@ def _warmth(body, x, left, patterns, places):
     return found
 
 
-def _slow(element: Side) -> int:
+def _slow(element: ThermalNetwork) -> int:
     """How many of an element's states are its slow poles, which only the even pattern sees."""
     return int(np.argmax(np.append(element.ports[:, 1:].any(axis=1), True)))
 

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..matter import Material
-from ..network import MOST_MODES, SHIFTS, ThermalNetwork, sample_geometry
+from ..network import MOST_MODES, SHIFTS, sample_geometry
+from ..numerics import ThermalNetwork
 from ..plates import ElementSamples, Geometry, sample_element
 
 _BAND = 4.0  # ratio of the diffusivities between which one network is scaled

@@ -11,8 +11,8 @@ What other rooms build on:
 - Bodies are told by their impedance at the real MOMENTS between patterns, K/W, less their slowest state, and by its
   slope (`BoxSamples`). What lies between body and contact (a skin, a bond, a film) is composed there, before the
   network.
-- `tip` and `box_side` are networks x' = -rates x + ports q, T = ports^T x (`Side`): pure functions of place, size,
-  material and coverage, with at most `Resolution.rates` times the ports states and one more. A tip's network does not
+- `tip` and `box_side` are networks x' = -rates x + ports q, T = ports^T x (`ThermalNetwork`): pure functions of place,
+  size, material and coverage, with at most `Resolution.rates` times the ports states and one more. A tip's network does not
   depend on what it touches, so that it may touch several objects at once. `tip_at` keeps the patterns of flow of one
   `Spot`: its errors are half as large, or less. The even pattern is the same everywhere.
 - `touch_sides` makes both for one touch alone: rates and patterns are its own, so that fewer serve and errors are a
@@ -27,7 +27,7 @@ and meshes are still in plates/, network/ and meshes/.
 """
 
 from .box import BoxSamples, Patches, box_samples
-from .contact import Resolution, Side, Tip, box_side, tip, tip_at
+from .contact import Resolution, Tip, box_side, tip, tip_at
 from .coverage import THIN, Footprint, Spot, contact_patterns
 from .element import Rectangle, element_samples
 from .exponentials import residues
@@ -56,7 +56,6 @@ __all__ = [
     "Patches",
     "Rectangle",
     "Resolution",
-    "Side",
     "Spot",
     "Tip",
     "TouchedBox",

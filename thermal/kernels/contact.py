@@ -15,11 +15,11 @@ from functools import lru_cache
 import numpy as np
 
 from ..matter import Material, SensorStack
-from ..numerics import output_row
+from ..numerics import ThermalNetwork, output_row
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
 from .element import POLES, Element, element, element_samples
-from .exponentials import misfit, residues, states
+from .exponentials import residues, states
 from .patterns import GRAM
 from .samples import GRASP, OF_GRASP
 
@@ -52,17 +52,6 @@ def _decay(count: int, slowest: float, fastest: float) -> np.ndarray:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Side:
-    """One side of the contacts as a network. rates: (n,) 1/s. ports: (n, ports) sqrt(K/J). outputs: name -> (n,) rows.
-    misfit: largest error of its impedance, as a share of the whole contact's."""
-
-    rates: np.ndarray
-    ports: np.ndarray
-    outputs: dict[str, np.ndarray]
-    misfit: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Tip:
     """A fingertip's element under a contact of m2 area: basis (P, M) of the patterns kept and even (M,), the net heat
     of each; impedance (S,) K/W of the even one; side: its network, outputs "drop" (K) and "element" (J)."""
@@ -71,7 +60,7 @@ class Tip:
     basis: np.ndarray
     even: np.ndarray
     impedance: np.ndarray
-    side: Side
+    side: ThermalNetwork
 
     @property
     def uniform(self) -> np.ndarray:
@@ -124,7 +113,7 @@ def box_side(
     patches: Patches,
     tips: tuple[Tip, ...],
     level: Resolution,
-) -> Side:
+) -> ThermalNetwork:
     """The box's network, M ports a patch, its slowest state first; outputs "object" (J in it) and "loss" (W to the
     air). size: m. film: W/(m2 K). tips: on the patches."""
     kept, bases = level.patterns, [one.basis for one in tips]
@@ -148,11 +137,10 @@ def box_side(
         net = np.concatenate([one.even for one in tips])
         held[0] = box.held
         held[1:] = output_row(GRASP, heat, fast, ports, GRASP, net - box.held * port)
-    return Side(
+    return ThermalNetwork(
         rates,
         np.concatenate((port[None], ports)),
-        {"object": held, "loss": held * rates},
-        misfit(rest, found, level.decay, weight),
+        outputs={"object": held, "loss": held * rates},
     )
 
 
@@ -179,7 +167,7 @@ def _shielded(
 
 def _element_side(
     known: Element, impedance: np.ndarray, even: np.ndarray, weight: np.ndarray, level: Resolution
-) -> Side:
+) -> ThermalNetwork:
     slow = (1 / (GRASP[:, None] + known.rates)) @ known.ports**2
     rest = impedance - slow[:, None, None] * np.outer(even, even)
     found = residues(rest, level.decay, weight)
@@ -191,9 +179,8 @@ def _element_side(
         output_row(GRASP, transfer, fast, ports, weight, jump)
         for transfer, jump in zip(transfers, jumps, strict=True)
     )
-    return Side(
+    return ThermalNetwork(
         np.concatenate((known.rates, fast)),
         np.concatenate((known.ports[:, None] * even, ports)),
-        {"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
-        misfit(rest, found, level.decay, weight),
+        outputs={"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
     )

@@ -20,7 +20,8 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import SensorStack
-from ..plates import Sampled, from_nodes, log_nodes, stack_impedance, stack_profile
+from ..numerics import Sampled
+from ..plates import from_nodes, log_nodes, stack_impedance, stack_profile
 from .axis import MODES, SWITCH, images
 from .patterns import ALONG, GRAM, JUMPS, NODES
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before

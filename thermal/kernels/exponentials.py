@@ -26,12 +26,6 @@ def fades(rates: np.ndarray) -> np.ndarray:
     return 1 / (GRASP[:, None] + rates)
 
 
-def misfit(impedance: np.ndarray, found: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> float:
-    """Largest weighted error of the sum."""
-    fitted = np.tensordot(fades(rates), found, axes=1)
-    return float(np.max(np.abs(fitted - impedance) * weight[:, None, None]))
-
-
 def states(found: np.ndarray, rates: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the sum's states. least: K/W, resistance of a state that is left
     out. Larger ones fade as they come near it, so that round-off decides nothing."""

@@ -15,7 +15,8 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ..matter import SensorStack
-from .contact import Resolution, Side, Tip, tip
+from ..numerics import ThermalNetwork
+from .contact import Resolution, Tip, tip
 from .element import POLES
 
 _CELLS = 8
@@ -42,11 +43,10 @@ def glued_element(stack: SensorStack, level: Resolution) -> GluedElement:
     uneven = held.side.ports[POLES:] * (np.arange(level.patterns) > 0)
     fading = np.abs(uneven).max(axis=1, initial=0.0) > _LEAST * np.abs(uneven).max(initial=0.0)
     uneven, rest = uneven[fading], np.zeros(fading.sum())
-    side = Side(
+    side = ThermalNetwork(
         np.concatenate((rates, held.side.rates[POLES:][fading])),
         np.concatenate((modes[-1][:, None] * held.even, uneven)),
-        {"drop": np.concatenate((drop, rest)), "element": np.concatenate((heat, rest))},
-        held.side.misfit,
+        outputs={"drop": np.concatenate((drop, rest)), "element": np.concatenate((heat, rest))},
     )
     top = np.concatenate((modes[0][:, None] * held.even, 0 * uneven))
     return GluedElement(replace(held, side=side), top, side.outputs["element"])

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..matter import Material, SensorStack
-from ..numerics import output_row
-from ..plates import Sampled
+from ..numerics import Sampled, ThermalNetwork, output_row
 from .box import BoxSamples, Patches, box_samples
-from .contact import Side, Tip, contact_weight
+from .contact import Tip, contact_weight
 from .coverage import touch_patterns
 from .element import Rectangle, element, element_samples
 from .patterns import GRAM
@@ -51,7 +50,7 @@ def touch_sides(
     elements: Sequence[tuple[SensorStack, Rectangle]],
     detail: Detail,
     shared: bool = False,
-) -> tuple[tuple[Tip, ...], Side]:
+) -> tuple[tuple[Tip, ...], ThermalNetwork]:
     """The fingertips' elements and the box between them, its slowest state first; outputs as `tip` and `box_side` have
     them. size: m. film: W/(m2 K). elements: what each patch covers of a sensor's face. shared: one set of patterns for
     all contacts, which are alike."""
@@ -78,7 +77,7 @@ def _tip(stack: SensorStack, covered: Rectangle, basis: np.ndarray, detail: Deta
     )
 
 
-def _box_side(box: BoxSamples, film: float, tips: tuple[Tip, ...], detail: Detail) -> Side:
+def _box_side(box: BoxSamples, film: float, tips: tuple[Tip, ...], detail: Detail) -> ThermalNetwork:
     count, kept = len(GRAM), detail.patterns
     turn = np.zeros((len(tips) * count, len(tips) * kept))
     for f, one in enumerate(tips):
@@ -92,15 +91,15 @@ def _box_side(box: BoxSamples, film: float, tips: tuple[Tip, ...], detail: Detai
     ]
     weight = np.min(weights, axis=0)
     if film == 0:
-        rates, ports, error = states(value, slope, weight, detail.indices)
+        rates, ports = states(value, slope, weight, detail.indices)
         rates, ports = np.concatenate(([0.0], rates)), np.concatenate((port[None], ports))
         held = np.zeros(len(rates))
         held[0] = box.held
-        return Side(rates, ports, {"object": held, "loss": np.zeros(len(rates))}, error)
+        return ThermalNetwork(rates, ports, outputs={"object": held, "loss": np.zeros(len(rates))})
     value, slope, heat = _shielded(box, film, Sampled(value, slope), port, turn, tips)
-    rates, ports, error = states(value, slope, weight, detail.indices)
+    rates, ports = states(value, slope, weight, detail.indices)
     held = output_row(MOMENTS, heat, rates, ports, MOMENTS, np.concatenate([one.even for one in tips]))
-    return Side(rates, ports, {"object": held, "loss": held * rates}, error)
+    return ThermalNetwork(rates, ports, outputs={"object": held, "loss": held * rates})
 
 
 def _shielded(
@@ -125,19 +124,18 @@ def _shielded(
 
 def _element_side(
     stack: SensorStack, whole: Sampled, even: np.ndarray, weight: np.ndarray, detail: Detail
-) -> Side:
+) -> ThermalNetwork:
     known = element(stack)
     slowest, slow = np.outer(even, even), 1 / (MOMENTS[:, None] + known.rates)
     value = whole.value - (slow @ known.ports**2)[:, None, None] * slowest
     slope = whole.slope + (slow**2 @ known.ports**2)[:, None, None] * slowest
-    fast, ports, error = states(value, slope, weight, detail.indices)
+    fast, ports = states(value, slope, weight, detail.indices)
     drop = output_row(MOMENTS, np.outer(known.drop_rest, even), fast, ports, weight)
     # all heat that goes in is in
     jump = (1 - known.heat @ known.ports) * even
     heat = output_row(MOMENTS, np.outer(known.heat_rest, even), fast, ports, MOMENTS, jump)
-    return Side(
+    return ThermalNetwork(
         np.concatenate((known.rates, fast)),
         np.concatenate((known.ports[:, None] * even, ports)),
-        {"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
-        error,
+        outputs={"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
     )

@@ -1,5 +1,6 @@
 """Thermal networks of few states: reduced from impedances, joined by contacts, stepped exactly."""
 
+from ..numerics import ThermalNetwork
 from . import coupling
 from .air import free_area, with_air
 from .boxes import LEVELS, box_choice, box_system, lumped_air_error
@@ -8,8 +9,6 @@ from .choice import FIRST, Choice, Demand, candidates, responses
 from .coupling import POLES, WEIGHTS, propagator, step
 from .kernel import StepArrays, advance, step_arrays, workspace
 from .modes import patch_modes
-from .passive import ThermalNetwork
-from .reduction import interpolate, truncate
 from .states import CONDUCTANCES, MOMENTS, Orders, excited_states, reduce, state_bases
 from .system import MOST_MODES, NODE, SHIFTS, ContactSystem, assemble, sample_geometry, with_sensors
 
@@ -37,7 +36,6 @@ __all__ = [
     "coupling",
     "excited_states",
     "free_area",
-    "interpolate",
     "lumped_air_error",
     "network_for",
     "network_of",
@@ -49,7 +47,6 @@ __all__ = [
     "state_bases",
     "step",
     "step_arrays",
-    "truncate",
     "with_air",
     "with_sensors",
     "workspace",

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ..kernels import Detail, Footprint, Patches, Resolution, Side, Spot, Tip, box_side, tip_at, touch_sides
+from ..kernels import Detail, Footprint, Patches, Resolution, Spot, Tip, box_side, tip_at, touch_sides
+from ..numerics import ThermalNetwork
 from ..plates import Geometry
 from .air import with_air
 from .choice import Choice, Demand, drops
-from .passive import ThermalNetwork
 from .system import ContactSystem, with_sensors
 from .trim import trimmed
 
@@ -54,13 +54,13 @@ def box_choice(geometry: Geometry, demand: Demand, air: float) -> Choice | None:
 
         def join(sensor: ThermalNetwork, body: ThermalNetwork, patterns: int) -> ContactSystem:
             lost = body.outputs["object"] * body.rates
-            side = Side(body.rates, body.ports, {**body.outputs, "loss": lost}, box.misfit)
+            side = replace(body, outputs={**body.outputs, "loss": lost})
             return joined(geometry, side, sensor, patterns)
 
         system, error = trimmed(
             geometry,
-            network_of_tip(tips[0].side),
-            ThermalNetwork(box.rates, box.ports, np.zeros((box.ports.shape[1],) * 2), held),
+            tips[0].side,
+            replace(box, outputs=held),
             demand,
             demand.tolerance - share,
             join,
@@ -100,10 +100,10 @@ def lumped_air_error(geometry: Geometry, demand: Demand, air: float) -> float:
 def _whole(geometry: Geometry, detail: Detail, air: float) -> ContactSystem:
     """Of one touch, nothing trimmed."""
     tips, box = _sides(geometry, detail, air)
-    return joined(geometry, box, network_of_tip(tips[0].side), detail.patterns)
+    return joined(geometry, box, tips[0].side, detail.patterns)
 
 
-def _sides(geometry: Geometry, detail: Detail, air: float) -> tuple[tuple[Tip, ...], Side]:
+def _sides(geometry: Geometry, detail: Detail, air: float) -> tuple[tuple[Tip, ...], ThermalNetwork]:
     """Of one touch: the fingertips' elements, all alike, and the box between them."""
     covered = ((geometry.stack, _covered(geometry)),) * geometry.fingertips
     patches = _patches(geometry)
@@ -127,7 +127,7 @@ def box_system(geometry: Geometry, level: Resolution, air: float) -> ContactSyst
     touching = tip_at(geometry.stack, spot, level)
     tips = (touching,) * geometry.fingertips
     box = box_side(geometry.material, geometry.object_size, air, patches, tips, level)
-    return joined(geometry, box, network_of_tip(touching.side), level.patterns)
+    return joined(geometry, box, touching.side, level.patterns)
 
 
 def _covered(geometry: Geometry) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -143,13 +143,7 @@ def _patches(geometry: Geometry) -> Patches:
     return Patches(np.array([5, 4][:count]), np.array([middle] * count), np.full((count, 2), half))
 
 
-def network_of_tip(side: Side) -> ThermalNetwork:
-    """A fingertip's element as a network."""
-    patterns = side.ports.shape[1]
-    return ThermalNetwork(side.rates, side.ports, np.zeros((patterns, patterns)), side.outputs)
-
-
-def joined(geometry: Geometry, box: Side, sensor: ThermalNetwork, patterns: int) -> ContactSystem:
+def joined(geometry: Geometry, box: ThermalNetwork, sensor: ThermalNetwork, patterns: int) -> ContactSystem:
     """The system of a box between the geometry's fingertips, each on `patterns` of its ports."""
     count, order = geometry.fingertips, len(box.rates)
     touched = np.ascontiguousarray(box.ports.reshape(order, count, patterns).transpose(1, 0, 2))

@@ -19,8 +19,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from ..numerics import ThermalNetwork
 from .coupling import POLES
-from .passive import ThermalNetwork
 
 MOMENTS = np.geomspace(1 / 150, 150, 25)  # 1/s
 CONDUCTANCES = (1e2, 1e3, 1e4, 1e5, 1e7)  # W/(m2 K)

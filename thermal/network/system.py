@@ -11,16 +11,14 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from ..numerics import Sampled, ThermalNetwork, interpolate
 from ..plates import (
     BodySamples,
     ElementSamples,
     Geometry,
-    Sampled,
     sample_bodies,
 )
 from .modes import patch_modes
-from .passive import ThermalNetwork
-from .reduction import interpolate
 from .states import Orders, reduce, state_bases
 
 SHIFTS = np.geomspace(1 / 400, 4000, 18)  # 1/s: moments from under a millisecond to minutes
@@ -77,7 +75,7 @@ class GeometrySamples:
             rates = np.append(0.0, rates)
             ports = np.vstack((kelvin * np.eye(modes)[0], ports))
             rows = {key: np.append(kelvin * body.uniform_outputs[key], row) for key, row in rows.items()}
-        return ThermalNetwork(np.maximum(rates, 0.0), ports, np.zeros((modes, modes)), rows)
+        return ThermalNetwork(np.maximum(rates, 0.0), ports, outputs=rows)
 
     def networks(self, modes: int) -> dict[str, ThermalNetwork]:
         """All bodies' networks of full order."""

@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics import ThermalNetwork
 from ..plates import Geometry
 from .choice import Demand, drops
-from .passive import ThermalNetwork
 from .states import MOMENTS, StateBasis, excited_states
 from .system import ContactSystem
 

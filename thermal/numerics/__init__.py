@@ -1,4 +1,5 @@
-"""Numerical tools that know nothing of sensors: Laplace inversion, finite volumes, arrays of other libraries."""
+"""Numerical tools that know nothing of sensors: Laplace inversion, passive networks from samples, finite volumes,
+arrays of other libraries."""
 
 from .erfc_inverse import FARTHEST, HIGH, LOW, NEAREST, SERIES, erfc_inverse
 from .fastmath import FAST
@@ -8,7 +9,9 @@ from .laplace import invert
 from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
 from .outputs import output_row
+from .passive import ThermalNetwork
 from .passive_residues import free_residues, passive_residues, port_residues
+from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
 
 __all__ = [
     "BOTTOM",
@@ -20,6 +23,7 @@ __all__ = [
     "OBJECT",
     "SENSOR",
     "SERIES",
+    "Sampled",
     "TOP",
     "Array",
     "Axis",
@@ -27,11 +31,14 @@ __all__ = [
     "Grid",
     "Interface",
     "Stage",
+    "ThermalNetwork",
     "as_integers",
     "as_like",
     "erfc_inverse",
     "free_residues",
     "graded_cells",
+    "hankel_values",
+    "interpolate",
     "invert",
     "invert_many",
     "namespace_of",
@@ -40,7 +47,9 @@ __all__ = [
     "port_residues",
     "radial_axis",
     "rates",
+    "sampled_fields",
     "single_cell",
     "symmetric_axis",
+    "truncate",
     "windows",
 ]

@@ -1,6 +1,6 @@
 """Layered plates seen through a contact patch, in the Laplace domain."""
 
-from .impedance import Far, Sampled, stack_impedance, stack_profile
+from .impedance import Far, stack_impedance, stack_profile
 from .lateral_sum import from_nodes, lateral_sum, log_nodes
 from .patch import SquarePatch
 from .samples import BodySamples, ElementSamples, Geometry, sample_bodies, sample_element
@@ -10,7 +10,6 @@ __all__ = [
     "ElementSamples",
     "Far",
     "Geometry",
-    "Sampled",
     "SquarePatch",
     "from_nodes",
     "lateral_sum",

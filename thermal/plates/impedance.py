@@ -12,13 +12,13 @@ C: patterns of a patch, S: samples, M: lateral eigenfunctions.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
 from ..matter import Layer
+from ..numerics import Sampled
 from .lateral_sum import lateral_sum
 from .patch import Patch
 from .section import Rectangle, Section
@@ -30,17 +30,6 @@ _NODES = 16  # of the rule, in whole numbers of which a section's kernel is comp
 _NEGLIGIBLE_DEPTH = 20.0  # wave numbers times depth beyond which the far side is not seen, exp(-2 * 20)
 _MOST_MODES = 5e3  # of a rectangle, summed one by one; more are interpolated, which is quicker then
 _DECAYED = 45.0  # exponent of a kernel that is below round-off
-
-
-@dataclass(frozen=True, slots=True)
-class Sampled:
-    """A symmetric matrix function of s at real samples. value, slope: (S, C, C), slope the derivative by s."""
-
-    value: np.ndarray
-    slope: np.ndarray
-
-    def __add__(self, other: Sampled) -> Sampled:
-        return Sampled(self.value + other.value, self.slope + other.slope)
 
 
 def stack_impedance(

@@ -20,8 +20,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..matter import Layer, Material, Mode, SensorStack, Shape
+from ..numerics import Sampled
 from .impedance import (
-    Sampled,
     layer_impedance,
     layered_impedance,
     stack_profile,

@@ -6,7 +6,7 @@ import numpy as np
 
 from thermograsp.errors import positive
 
-from ..network import ThermalNetwork
+from ..numerics import ThermalNetwork
 from .cells import stack_chain
 from .design import HeatedStack
 
@@ -31,7 +31,6 @@ def stack_network(stack: HeatedStack, area: float, *, order: int | None = None) 
     network = ThermalNetwork(
         np.maximum(rates, 0.0),
         rows[:, [chain.face, chain.heater]],
-        np.zeros((2, 2)),
-        {"reading": rows[:, chain.readout]},
+        outputs={"reading": rows[:, chain.readout]},
     )
     return network if order is None else network.reduced(order=order)

@@ -15,7 +15,8 @@ from functools import lru_cache
 import numpy as np
 
 from ...thermal import Material
-from ...thermal.kernels import Patches, Resolution, Side, Tip, box_side, glued_element, tip
+from ...thermal.kernels import Patches, Resolution, Tip, box_side, glued_element, tip
+from ...thermal.numerics import ThermalNetwork
 from ..scene import BodyShape, PadPlace
 
 NEAR = 0.25 + 1e-6
@@ -55,7 +56,8 @@ def tip_field(pad: PadPlace, level: Resolution) -> TipField:
     if pad.bare:
         none = np.zeros(0)
         made = replace(
-            made, side=Side(none, np.zeros((0, level.patterns)), {"drop": none, "element": none}, 0.0)
+            made,
+            side=ThermalNetwork(none, np.zeros((0, level.patterns)), outputs={"drop": none, "element": none}),
         )
     return TipField(made, made.side.ports, made.uniform)
 
@@ -124,7 +126,7 @@ def _side(
     at: tuple[tuple[int, tuple[float, float]], ...],
     seen: tuple[Tip, ...],
     level: Resolution,
-) -> Side:
+) -> ThermalNetwork:
     """The network of a box of that material and size m with patches at those faces and middles."""
     half = np.empty((len(at), 2))
     for row, (face, _), tip_ in zip(half, at, seen, strict=True):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag, eigh_tridiagonal
 
-from thermograsp.thermal import Geometry, SensorStack, material, sensor
+from thermograsp.thermal import Geometry, SensorStack, ThermalNetwork, material, sensor
 from thermograsp.thermal.kernels import (
     GRAM,
     MOMENTS,
@@ -16,7 +16,6 @@ from thermograsp.thermal.kernels import (
     Footprint,
     Patches,
     Resolution,
-    Side,
     Spot,
     box_samples,
     box_side,
@@ -44,7 +43,9 @@ def placed(face: list[int], centre: list[tuple[float, float]], half: list[tuple[
 MIDDLE = placed([5], [(0.02, 0.02)], [(WIDTH / 2, WIDTH / 2)])
 
 
-def drop(sides: tuple[Side, Side], patterns: int, conductance: float, times: np.ndarray) -> np.ndarray:
+def drop(
+    sides: tuple[ThermalNetwork, ThermalNetwork], patterns: int, conductance: float, times: np.ndarray
+) -> np.ndarray:
     """(n,) K per K of difference after a touch, W/K of each pattern's contact, solved exactly."""
     box, element_side = sides
     rates = np.concatenate((box.rates, element_side.rates))

@@ -10,12 +10,46 @@ S: samples, P: ports, K: states.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.linalg import eigh
 
-from ..plates import Sampled
-
 _RANK = 1e-11  # relative size of Gram eigenvalues that round-off has not spoiled
+
+
+@dataclass(frozen=True, slots=True)
+class Sampled:
+    """A symmetric matrix function of s at real samples. value, slope: (S, P, P), slope the derivative by s."""
+
+    value: np.ndarray
+    slope: np.ndarray
+
+    def __add__(self, other: Sampled) -> Sampled:
+        return Sampled(self.value + other.value, self.slope + other.slope)
+
+
+def sampled_fields(s: np.ndarray, impedance: Sampled) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of the fields (s_i + A)^-1 B: products of those of unit size (S P, S P), products of all with A between them,
+    and what each is multiplied by to be of unit size (S P,)."""
+    value = impedance.value
+    difference = s[None, :] - s[:, None]
+    np.fill_diagonal(difference, 1.0)
+    gram = (value[:, None] - value[None, :]) / difference[:, :, None, None]
+    diagonal = np.arange(len(s))
+    gram[diagonal, diagonal] = -impedance.slope
+    pencil = (value[:, None] + value[None, :]) / 2 - (s[:, None] + s[None, :])[:, :, None, None] / 2 * gram
+    gram, pencil = _flat(gram), _flat(pencil)
+    # The samples' scales differ by decades; fields of unit size leave the rank to their directions.
+    size = np.sqrt(np.maximum(np.diag(gram), 0.0))
+    scale = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0)
+    return gram * np.outer(scale, scale), pencil, scale
+
+
+def _flat(blocks: np.ndarray) -> np.ndarray:
+    count, _, ports, _ = blocks.shape
+    matrix = blocks.transpose(0, 2, 1, 3).reshape(count * ports, count * ports)
+    return (matrix + matrix.T) / 2
 
 
 def interpolate(
@@ -27,28 +61,14 @@ def interpolate(
     heat flow at each port. K <= S P: directions that round-off has spoiled are dropped.
     """
     samples, ports = impedance.value.shape[:2]
-    z = impedance.value
-    difference = s[None, :] - s[:, None]
-    np.fill_diagonal(difference, 1.0)
-    gram = (z[:, None] - z[None, :]) / difference[:, :, None, None]
-    diagonal = np.arange(samples)
-    gram[diagonal, diagonal] = -impedance.slope
-    pencil = (z[:, None] + z[None, :]) / 2 - (s[:, None] + s[None, :])[:, :, None, None] / 2 * gram
-
-    def flat(blocks: np.ndarray) -> np.ndarray:
-        matrix = blocks.transpose(0, 2, 1, 3).reshape(samples * ports, samples * ports)
-        return (matrix + matrix.T) / 2
-
-    gram, pencil = flat(gram), flat(pencil)
-    # The samples' scales differ by decades; unit columns keep the rank decision about directions.
-    scale = 1 / np.sqrt(np.diag(gram))
-    values, vectors = eigh(gram * np.outer(scale, scale))
+    gram, pencil, scale = sampled_fields(s, impedance)
+    values, vectors = eigh(gram)
     kept = values > _RANK * values[-1]
     basis = scale[:, None] * vectors[:, kept] / np.sqrt(values[kept])
     rates, rotation = eigh(basis.T @ pencil @ basis)
     basis = basis @ rotation
     projected = {name: basis.T @ row.reshape(-1) for name, row in outputs.items()}
-    return rates, basis.T @ z.reshape(samples * ports, ports), projected
+    return rates, basis.T @ impedance.value.reshape(samples * ports, ports), projected
 
 
 def hankel_values(rates: np.ndarray, ports: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from thermograsp.thermal import ThermalNetwork
-from thermograsp.thermal.network.reduction import hankel_values, interpolate
-from thermograsp.thermal.plates.impedance import Sampled
+from thermograsp.thermal.numerics import Sampled, hankel_values, interpolate
 
 
 def random_network(rng: np.random.Generator, order: int = 30, ports: int = 3) -> ThermalNetwork:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 
 import numpy as np
 
@@ -18,14 +17,15 @@ class ThermalNetwork:
     """x' = -rates x + ports q, T = ports^T x + direct q, y = outputs x.
 
     rates: (K,) 1/s, >= 0. ports: (K, P) sqrt(K/J), heat flow q (P,) W in, temperature T (P,) K out, both over the same
-    pattern. direct: (P, P) K/W, symmetric and non-negative. outputs: name -> (K,), rows on the state (a temperature
-    drop, stored heat). Non-negative rates and equal in and out make any network of this form passive.
+    pattern. direct: (P, P) K/W, symmetric and non-negative; none where it is empty. outputs: name -> (K,), rows on the
+    state (a temperature drop, stored heat). Non-negative rates and equal in and out make any network of this form
+    passive.
     Raises InvalidValueError for shapes that do not fit, negative rates or a direct term that creates heat.
     """
 
     rates: np.ndarray
     ports: np.ndarray
-    direct: np.ndarray
+    direct: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     outputs: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -36,15 +36,16 @@ class ThermalNetwork:
             raise InvalidValueError(
                 f"rates (K,) and ports (K, P) do not fit: got {rates.shape} and {ports.shape}"
             )
+        if not direct.size:
+            direct = np.zeros((ports.shape[1],) * 2)
         if direct.shape != (ports.shape[1],) * 2:
             raise InvalidValueError(f"direct must be (P, P) = {(ports.shape[1],) * 2}, got {direct.shape}")
         if not (np.all(np.isfinite(rates)) and np.all(np.isfinite(ports)) and np.all(np.isfinite(direct))):
             raise InvalidValueError("rates, ports and direct must be finite")
         if np.any(rates < 0):
             raise InvalidValueError(f"rates must be >= 0 for a passive network, got {rates.min():g} 1/s")
-        if not np.allclose(direct, direct.T) or np.linalg.eigvalsh(direct).min(initial=0.0) < -1e-12 * np.abs(
-            direct
-        ).max(initial=0.0):
+        least = np.linalg.eigvalsh(direct).min() if direct.any() else 0.0
+        if not np.allclose(direct, direct.T) or least < -1e-12 * np.abs(direct).max(initial=0.0):
             raise InvalidValueError("direct must be symmetric and non-negative for a passive network")
         outputs = {name: np.asarray(row, float) for name, row in self.outputs.items()}
         for name, row in outputs.items():
@@ -52,7 +53,7 @@ class ThermalNetwork:
                 raise InvalidValueError(f"output {name!r} must be (K,) = {rates.shape}, got {row.shape}")
         for name, value in (("rates", rates), ("ports", ports), ("direct", direct)):
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "outputs", MappingProxyType(outputs))
+        object.__setattr__(self, "outputs", outputs)
 
     @property
     def order(self) -> int:
