@@ -12,9 +12,9 @@ What other rooms build on:
   slope (`BoxSamples`). What lies between body and contact (a skin, a bond, a film) is composed there, before the
   network.
 - `tip` and `box_side` are networks x' = -rates x + ports q, T = ports^T x (`ThermalNetwork`): pure functions of place,
-  size, material and coverage, with at most `Resolution.rates` times the ports states and one more. A tip's network does not
-  depend on what it touches, so that it may touch several objects at once. `tip_at` keeps the patterns of flow of one
-  `Spot`: its errors are half as large, or less. The even pattern is the same everywhere.
+  size, material and coverage, with at most `Resolution.rates` times the ports states and one more. A tip's network does
+  not depend on what it touches, so that it may touch several objects at once. `tip_at` keeps the patterns of flow of
+  one `Spot`: its errors are half as large, or less. The even pattern is the same everywhere.
 - `touch_sides` makes both for one touch alone: rates and patterns are its own, so that fewer serve and errors are a
   tenth. Nothing of its fields but the elements' slowest states means anything to another touch.
 - `touched_box` makes residues at fixed rates for steps that ask for no more than what is under fingertips, with places
