@@ -12,8 +12,6 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from ...thermal import (
-    LAPPED_ALUMINA,
-    THERMOSTAT_FACE,
     ContactArea,
     Geometry,
     Joint,
@@ -25,7 +23,6 @@ from ...thermal import (
     Surface,
     cylinder_contact,
     flat_contact,
-    joint,
     sphere_contact,
 )
 from ...thermal.contact import (
@@ -33,6 +30,7 @@ from ...thermal.contact import (
     bare_footprint,
     bared,
     cylinder_footprint,
+    element_joint,
     even_patch,
     face_joint,
     flat_footprint,
@@ -118,11 +116,7 @@ class GraspBody:
     def joint(self) -> Joint:
         """The opening contact's faces: the lapped element or its skin on the object (T), or the element on the
         thermostat (O)."""
-        return (
-            joint(LAPPED_ALUMINA, THERMOSTAT_FACE)
-            if self.mode == "O"
-            else face_joint(self.skin, self._surface)
-        )
+        return element_joint() if self.mode == "O" else face_joint(self.skin, self._surface)
 
     @cached_property
     def _surface(self) -> Surface:

@@ -22,16 +22,14 @@ import numpy as np
 from thermograsp.errors import InvalidValueError, celsius, length, non_negative, positive
 
 from ..contact import (
-    LAPPED_ALUMINA,
-    THERMOSTAT_FACE,
     ContactArea,
     Joint,
     Pad,
     Surface,
     contact_conductance,
+    element_joint,
     face_joint,
     flat_contact,
-    joint,
     skinned,
     stack_joints,
 )
@@ -284,5 +282,5 @@ def _contact(
         )
     pad = skinned(Pad(face=stack.width), skin)
     if mode == "O":  # the thermostat meets the element that is glued to the object
-        return joint(LAPPED_ALUMINA, THERMOSTAT_FACE), flat_contact(pad, 1.0, (stack.width, stack.width))
+        return element_joint(), flat_contact(pad, 1.0, (stack.width, stack.width))
     return face_joint(skin, Surface.of(of)), flat_contact(pad, 1.0, size[:2])

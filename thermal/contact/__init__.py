@@ -17,7 +17,7 @@ from .curved_table import (
     even_places,
     table_values,
 )
-from .fingertip import face_joint, skinned, touching
+from .fingertip import element_joint, face_joint, skinned, touching
 from .footprint import (
     LOG_LEAST,
     LOG_MOST,
@@ -123,6 +123,7 @@ __all__ = [
     "joint",
     "patch_ends",
     "patch_offset",
+    "element_joint",
     "face_joint",
     "rigid_cylinder",
     "rigid_sphere",

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..matter import Skin
 from .area import Pad
-from .rough_faces import LAPPED_ALUMINA, Joint, Surface, joint
+from .rough_faces import LAPPED_ALUMINA, THERMOSTAT_FACE, Joint, Surface, joint
 
 
 def skinned(pad: Pad, skin: Skin | None) -> Pad:
@@ -27,3 +27,8 @@ def touching(skin: Skin | None) -> Surface:
 def face_joint(skin: Skin | None, other: Surface) -> Joint:
     """The faces of a fingertip and of what it touches. Under a skin spots conduct no more than at full contact."""
     return joint(touching(skin), other, full_contact=skin is not None)
+
+
+def element_joint(other: Surface = THERMOSTAT_FACE) -> Joint:
+    """The faces of an element that is glued on an object and of what touches it, a thermostat (O mode)."""
+    return joint(LAPPED_ALUMINA, other)

@@ -13,7 +13,6 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from math import sqrt
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -27,7 +26,7 @@ from thermograsp.errors import (
 )
 
 from ...assets import asset
-from .layers import Layer
+from .layers import Conductor, Layer
 
 UNITS: Mapping[str, str] = MappingProxyType(
     {
@@ -59,7 +58,7 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 @dataclass(frozen=True, slots=True)
-class Material:
+class Material(Conductor):
     """A homogeneous material at room temperature.
 
     conductivity: W/(m K), across the grain where there is one. density: kg/m3. specific_heat: J/(kg K).
@@ -89,21 +88,6 @@ class Material:
             if value is None and name not in _REQUIRED:
                 continue
             _check(f"{self.name}: {name} ({unit})", name, value)
-
-    @property
-    def effusivity(self) -> float:
-        """W s^0.5/(m2 K), sqrt(k rho c): decides the temperature of a fresh contact."""
-        return sqrt(self.conductivity * self.volumetric_heat_capacity)
-
-    @property
-    def diffusivity(self) -> float:
-        """m2/s, k/(rho c)."""
-        return self.conductivity / self.volumetric_heat_capacity
-
-    @property
-    def volumetric_heat_capacity(self) -> float:
-        """J/(m3 K)."""
-        return self.density * self.specific_heat
 
     def layer(self, thickness: float) -> Layer:
         """A layer of this material, thickness m."""

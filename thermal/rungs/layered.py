@@ -5,8 +5,7 @@ bonded face in O mode) and adiabatic at its back and sides. So metals and thick 
 front has passed the patch's width. Any constant conductance, 0 included.
 
 Thermostat, element, contact and object stand in a row in the Laplace domain (`Column`, which `closed_form` shares).
-Layers are solved exactly by their transfer matrices (Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed.,
-section 3.7), written with decaying exponentials so that thick or fast layers do not overflow.
+Layers are solved exactly (Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed., section 3.7: plates/impedance.py).
 """
 
 from __future__ import annotations
@@ -20,6 +19,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..matter import Layer
 from ..numerics import invert
+from ..plates import stack_profile
 from .problem import PressCurves, PressProblem
 
 Impedance = Callable[[np.ndarray], np.ndarray]
@@ -80,43 +80,27 @@ class Column:
     def transform(self, s: np.ndarray) -> np.ndarray:
         """(..., 6) per kelvin of first difference: drop K, heat flow W, fall of the sensor-side surface K, rise of the
         object-side surface K, heat gained by the element J and by the object J."""
-        area = self.face_area
+        area, column, even = self.face_area, s[..., None], np.zeros(1)
+        object_side = self.object_impedance(s) / self.object_area
         if self.mode == "T":  # the element starts with the thermostat: reckon its temperature below that
-            impedance, share = _march(self.layers, np.zeros_like(s), s)
-            object_side = self.object_impedance(s) / self.object_area
-            flow = 1 / s / (impedance[-1] / area + self.contact_resistance + object_side)
-            far, near = self.sensed, self.sensed + 1
-            sensor_fall, object_rise = impedance[-1] / area * flow, object_side * flow
-            element, into_object = (share[0] - 1) * flow, flow
+            layers, far = self.layers[::-1], "isothermal"
+            near, beyond = len(layers) - 1 - self.sensed, len(layers) - self.sensed
         else:  # the element starts with the object: reckon its temperature above that
-            bond = self.object_impedance(s) * (area / self.object_area)
-            impedance, share = _march(self.layers[::-1], bond, s)
-            flow = 1 / s / (impedance[-1] / area + self.contact_resistance)
-            far = len(self.layers) - 1 - self.sensed
-            near = far + 1
-            sensor_fall, object_rise = np.zeros_like(s), impedance[-1] / area * flow
-            element, into_object = (1 - share[0]) * flow, share[0] * flow
-        drop = (impedance[near] * share[near] - impedance[far] * share[far]) / area * flow
+            layers, far = self.layers, (object_side * area)[..., None]
+            near, beyond = self.sensed, self.sensed + 1
+        profile = stack_profile(layers, far, column, even)
+        temperatures, flows = ([each[..., 0] for each in part] for part in profile)
+        own = temperatures[0] / area
+        if self.mode == "T":
+            flow = 1 / s / (own + self.contact_resistance + object_side)
+            sensor_fall, object_rise = own * flow, object_side * flow
+            element, into_object = (flows[-1] - 1) * flow, flow
+        else:
+            flow = 1 / s / (own + self.contact_resistance)
+            sensor_fall, object_rise = np.zeros_like(s), own * flow
+            element, into_object = (1 - flows[-1]) * flow, flows[-1] * flow
+        drop = (temperatures[near] - temperatures[beyond]) / area * flow
         return np.stack([drop, flow, sensor_fall, object_rise, element / s, into_object / s], axis=-1)
-
-
-def _march(
-    layers: tuple[Layer, ...], far: np.ndarray, s: np.ndarray
-) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Impedances m2 K/W at the interfaces, far end first, and the fluxes there as shares of the near end's."""
-    impedance, passed = [far], []
-    for layer in layers:
-        root = np.sqrt(s / layer.diffusivity)
-        admittance = layer.conductivity * root
-        decay = np.exp(-root * layer.thickness)
-        tangent = -np.expm1(-2 * root * layer.thickness) / (1 + decay**2)
-        denominator = 1 + admittance * impedance[-1] * tangent
-        passed.append(2 * decay / (1 + decay**2) / denominator)
-        impedance.append((impedance[-1] + tangent / admittance) / denominator)
-    share = [np.ones_like(s)]
-    for factor in reversed(passed):
-        share.insert(0, share[0] * factor)
-    return impedance, share
 
 
 def press_curves(
@@ -129,7 +113,12 @@ def press_curves(
     later = t > 0
     if later.any():
         values[later] = invert(column.transform, t[later])
-    values *= problem.temperature_difference
+    return curves_of(problem, values)
+
+
+def curves_of(problem: PressProblem, values: np.ndarray) -> PressCurves:
+    """Of the six quantities of Column.transform, (n, 6) per kelvin of first difference."""
+    values = values * problem.temperature_difference
     return PressCurves(
         temperature_drop=values[:, 0],
         heat_flow=values[:, 1],
@@ -141,14 +130,7 @@ def press_curves(
 
 def untouched(problem: PressProblem, t: np.ndarray) -> PressCurves:
     """Both bodies as they were: what a conductance of 0 leaves."""
-    n = len(sample_times(t))
-    return PressCurves(
-        temperature_drop=np.zeros(n),
-        heat_flow=np.zeros(n),
-        sensor_surface=np.full(n, problem.sensor_temperature),
-        object_surface=np.full(n, problem.object_temperature),
-        stored_heat=np.zeros((n, 2)),
-    )
+    return curves_of(problem, np.zeros((len(sample_times(t)), 6)))
 
 
 def sample_times(t: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..numerics import invert_many
 from ..plates import Geometry, lateral_sum, stack_impedance, stack_profile
-from .layered import constant_conductance, sample_times, untouched
+from .layered import constant_conductance, curves_of, sample_times, untouched
 from .network import geometry_of
 from .problem import PressCurves, PressProblem
 
@@ -46,14 +46,7 @@ def solve(problem: PressProblem, t: np.ndarray) -> PressCurves:
             _element_first(geometry, conductance) if problem.mode == "T" else _bonded(geometry, conductance)
         )
         values[t > 0] = invert_many(transform, t[t > 0])
-    values *= problem.temperature_difference
-    return PressCurves(
-        temperature_drop=values[:, 0],
-        heat_flow=values[:, 1],
-        sensor_surface=problem.sensor_temperature - values[:, 2],
-        object_surface=problem.object_temperature + values[:, 3],
-        stored_heat=values[:, 4:],
-    )
+    return curves_of(problem, values)
 
 
 def _element_first(geometry: Geometry, conductance: float) -> Transform:

@@ -51,6 +51,19 @@ class Chain:
         """The last node of the stack alone."""
         return len(self.capacity) - 1
 
+    def modes(self, area: float, beside: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of the chain over area m2, with `beside` J/K more at its face: rates (N,) 1/s, eigenvectors (N, N) of its
+        conductances between unit capacities, and (N,) the root of 1/capacity, (K/J)^0.5. Surroundings are at 0."""
+        capacity = self.capacity * area
+        capacity[-1] += beside
+        matrix = np.zeros((len(capacity), len(capacity)))
+        for i, link in enumerate(self.links * area):
+            matrix[i : i + 2, i : i + 2] += link * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        matrix[self.back, self.back] += self.loss * area
+        root = 1 / np.sqrt(capacity)
+        rates, turn = np.linalg.eigh(matrix * np.outer(root, root))
+        return np.maximum(rates, 0.0), turn, root
+
     def seen(self, s: np.ndarray, node: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """(m2 K/W, 1), (S,) each: the impedance at the face at s (S,) 1/s, and how much of the face's temperature
         arrives at a node, the face itself where it is None."""

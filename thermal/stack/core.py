@@ -155,15 +155,7 @@ def _propagator(
     chain: Chain, area: float, dt: float, answering: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(decay, heat, room) of HeatedCore, from the eigenvectors of the chain."""
-    capacity = chain.capacity * area
-    capacity[-1] += answering
-    matrix = np.zeros((len(capacity), len(capacity)))
-    for i, link in enumerate(chain.links * area):
-        matrix[i : i + 2, i : i + 2] += link * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    matrix[chain.back, chain.back] += chain.loss * area
-    root = 1 / np.sqrt(capacity)
-    rates, turn = np.linalg.eigh(matrix * np.outer(root, root))
-    rates = np.maximum(rates, 0.0)
+    rates, turn, root = chain.modes(area, answering)
     stays = np.exp(-rates * dt)
     grows = np.where(rates * dt > 1e-12, -np.expm1(-rates * dt) / np.maximum(rates, 1e-300), dt)
     rows = root[:, None] * turn

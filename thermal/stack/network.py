@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from thermograsp.errors import positive
 
 from ..numerics import ThermalNetwork
@@ -18,18 +16,12 @@ def stack_network(stack: HeatedStack, area: float, *, order: int | None = None) 
     """
     positive("area (m2)", area)
     chain = stack_chain(stack)
-    capacity = chain.capacity * area
-    matrix = np.zeros((len(capacity), len(capacity)))
-    for i, link in enumerate(chain.links * area):
-        matrix[i : i + 2, i : i + 2] += link * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    matrix[chain.back, chain.back] += chain.loss * area
-    root = 1 / np.sqrt(capacity)
-    rates, turn = np.linalg.eigh(matrix * np.outer(root, root))
+    rates, turn, root = chain.modes(area)
     if not chain.loss:
         rates[0] = 0.0  # the mean temperature of an adiabatic stack, up to round-off
     rows = turn.T * root
     network = ThermalNetwork(
-        np.maximum(rates, 0.0),
+        rates,
         rows[:, [chain.face, chain.heater]],
         outputs={"reading": rows[:, chain.readout]},
     )

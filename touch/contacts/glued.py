@@ -12,8 +12,8 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ...thermal import CONTACT_LAW, LAPPED_ALUMINA, THERMOSTAT_FACE, Pad, flat_law, joint
-from ...thermal.contact import conductance, contact
+from ...thermal import CONTACT_LAW, flat_law
+from ...thermal.contact import conductance, contact, element_joint
 from ..scene import PadPlace
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
 from .laws import SQUARE
@@ -44,10 +44,8 @@ class GluedContacts:
             self._places[e] = (element.glued, width, *element.position, *element.axes.ravel())
             for f, tip in enumerate(fingertips):
                 metal = tip.bare and tip.skin is None
-                faces = joint(LAPPED_ALUMINA, THERMOSTAT_FACE if metal else tip.face)
-                side = float(np.sqrt(tip.size.prod()))
-                pad = Pad(width=side, face=min(tip.stack.width, side))
-                self.laws[f, e] = flat_law(pad, faces, (width, width), (1, 2))
+                faces = element_joint() if metal else element_joint(tip.face)
+                self.laws[f, e] = flat_law(tip.silicone, faces, (width, width), (1, 2))
         self._redirected = np.zeros((worlds, sensors, objects + sensors, COLUMNS))
 
     def redirected(self, touches: np.ndarray, substeps: int) -> np.ndarray:

@@ -23,7 +23,7 @@ from ...thermal import (
     joint,
     sphere_law,
 )
-from ...thermal.contact import CURVED_TABLE, curved_table, skinned
+from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, skinned
 from ...thermal.pressed import PressedMesh
 from ..scene import BodyShape, PadPlace, is_round
 from .tilt import TILT, tilt_row
@@ -62,13 +62,12 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     tables: list[np.ndarray] = []
     meshes: dict[PressedMesh, list[tuple[int, int, int]]] = {}
     for f, pad in enumerate(pads):
-        width = float(math.sqrt(pad.size.prod()))
-        silicone = Pad(width=width, face=min(pad.stack.width, width))
+        silicone = pad.silicone
         sheet = skinned(silicone, pad.skin)
         # a round geom under a rod has no edge on which the rod could come to lie
         flat = not all(is_round(model, geom) for geom in pad.geoms)
         for g, (shape, geom) in enumerate(geoms):
-            faces = joint(pad.face, Surface.of(shape.material), full_contact=pad.skin is not None)
+            faces = face_joint(pad.skin, Surface.of(shape.material))
             if viewed[g] and not sum(pad.curvature) > 0:
                 for k, pressed in enumerate(
                     _pressed(model, geom, views[g, : viewed[g]], pad, silicone, shape)
@@ -88,7 +87,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                     tables.append(table)
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
-            side = min(other.stack.width, float(math.sqrt(other.size.prod())))
+            side = other.silicone.face
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
     for number, pairs in enumerate(meshes.values(), len(tables)):
         for pair in pairs:

@@ -22,7 +22,6 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ...thermal import Pad
 from ..scene import BodyShape, PadPlace
 
 BEND, CURVES = 7, 4
@@ -37,7 +36,7 @@ def bends(pads: Sequence[PadPlace]) -> np.ndarray:
     """(F, BEND)."""
     rows = np.zeros((len(pads), BEND))
     for row, pad in zip(rows, pads, strict=True):
-        sheet = Pad(width=math.sqrt(pad.size.prod()), face=min(pad.stack.width, math.sqrt(pad.size.prod())))
+        sheet = pad.silicone
         face = np.minimum(pad.stack.width, pad.size) / 2
         stiffness, half = sheet.foundation_modulus / sheet.thickness, pad.size / 2
         if pad.skin is not None:  # the sensor's face is under it and takes nearly all

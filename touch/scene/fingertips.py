@@ -14,7 +14,8 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, length, numbers
 
-from ...thermal import LAPPED_ALUMINA, SensorStack, Skin, Surface, Thermostat, material
+from ...thermal import Pad, SensorStack, Skin, Surface, Thermostat, material
+from ...thermal.contact import touching
 from ...thermal.matter import skin as named_skin
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
@@ -94,7 +95,13 @@ class PadPlace:
     @property
     def face(self) -> Surface:
         """What touches."""
-        return LAPPED_ALUMINA if self.skin is None else Surface.of(self.skin.made_of)
+        return touching(self.skin)
+
+    @property
+    def silicone(self) -> Pad:
+        """The pad without its skin, as wide as a square of its area."""
+        width = math.sqrt(self.size.prod())
+        return Pad(width=width, face=min(self.stack.width, width))
 
 
 def pads(
