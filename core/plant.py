@@ -15,6 +15,10 @@ import numpy as np
 
 from thermograsp.errors import unknown_name
 
+MAX_OPENING = 0.085  # m between the pads, that a command may ask for and an observation tell
+MAX_HEIGHT = 0.15  # m of the arm over its lowest position, that an observation tells
+MAX_LIFT_RATE = 0.05  # m/s that a command may ask for
+
 
 class Command(NamedTuple):
     """The commands of a gripper for one control step, all (B,). opening: m. force_limit: N. lift_rate: m/s.

@@ -1,7 +1,10 @@
 """What the shipped gripper, its arm and its sensors can do, and the clocks of a control step: every limit once."""
 
+from thermograsp.plant import MAX_HEIGHT as MAX_HEIGHT
+from thermograsp.plant import MAX_LIFT_RATE as MAX_LIFT_RATE
+from thermograsp.plant import MAX_OPENING as MAX_OPENING
+
 TIPS = ("left", "right")
-MAX_OPENING = 0.085  # m, between the pads
 PAD_SIDE = 0.020  # m, the square pad that takes the force
 CLEARANCE = 0.002  # m, least gap between pads (or fingers) and what they must not touch
 REACH = 0.095  # m, from the grasp centre up to the palm
@@ -9,8 +12,6 @@ LATERAL_REACH = 0.06  # m, of the arm to either side along y
 MAX_LATERAL_RATE = 0.1  # m/s
 SUBSTEPS = 10
 MAX_FORCE = 40.0  # N
-MAX_LIFT_RATE = 0.05  # m/s
-MAX_HEIGHT = 0.15  # m
 OPENING_SPEED = 0.1  # m/s, the fastest the pads move relative to each other (a Robotiq 2F-85: .02 to .15)
 LIFT_ACCELERATION = 1.0  # m/s2, how fast the commanded lift rate is followed
 SAMPLE_PERIOD = 0.01  # s, of the converter's clock, and the heat's

@@ -99,14 +99,5 @@ def setup_known() -> TouchSetup:
         env.reset(seed=0)
         plant = env.unwrapped.batch.plant  # pyright: ignore[reportAttributeAccessIssue]
         body, config = plant.bodies[0], plant.config
-        return TouchSetup(
-            stack=body.stack,
-            mode=body.mode,
-            area=body.geometry.area,
-            object_size=body.plate,
-            fingertips=2,
-            chain=config.chain,
-            object_temperature=(body.temperature, _KNOWN),
-            sensor_temperature=(config.sensor_temperatures[0], _KNOWN),
-            tolerance=config.tolerance,
-        )
+        warm = config.sensor_temperatures[0], _KNOWN
+        return body.touch_setup(config.chain, warm, _KNOWN, config.tolerance)

@@ -19,8 +19,10 @@ from ...thermal import (
     Mode,
     Pad,
     SensorStack,
+    SignalChain,
     Skin,
     Surface,
+    TouchSetup,
     cylinder_contact,
     flat_contact,
     sphere_contact,
@@ -260,6 +262,27 @@ class GraspBody:
         if spec.parts:
             shape = replace(shape, material=self.material, parts=spec.parts)
         return object_solid(shape, self.material)
+
+    def touch_setup(
+        self,
+        chain: SignalChain,
+        sensor_temperature: tuple[float, float],
+        spread: float,
+        tolerance: float,
+    ) -> TouchSetup:
+        """What an identifier may know of a touch of it beforehand. sensor_temperature: °C and its standard deviation.
+        spread: K, standard deviation of the object's temperature. tolerance: K, of its network."""
+        return TouchSetup(
+            stack=self.stack,
+            mode=self.mode,
+            area=self.geometry.area,
+            object_size=self.plate,
+            fingertips=self.fingertips,
+            chain=chain,
+            object_temperature=(self.temperature, spread),
+            sensor_temperature=sensor_temperature,
+            tolerance=tolerance,
+        )
 
     @property
     def extremes(self) -> tuple[float, ...]:

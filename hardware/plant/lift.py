@@ -6,12 +6,11 @@ import math
 from contextlib import suppress
 
 from thermograsp.errors import InvalidValueError, finite, positive
+from thermograsp.plant import MAX_HEIGHT, MAX_LIFT_RATE
 
 from ..drivers import Axis
 from ..errors import DeviceError
 
-MOST_HEIGHT = 0.15  # m that an observation can tell
-_LOWERING = 0.05  # m/s at most
 _LOWEST = 5e-4  # m from position 0 that counts as there
 _MEMBERS = ("travel", "move", "position", "stop", "close")  # of an Axis
 
@@ -30,7 +29,7 @@ class Lift:
                 raise InvalidValueError(
                     f"lift must be a thermograsp.hardware.Axis; {type(axis).__name__} has no {', '.join(missing)}"
                 )
-            self._highest = min(positive("the lift's travel (m)", axis.travel), MOST_HEIGHT)
+            self._highest = min(positive("the lift's travel (m)", axis.travel), MAX_HEIGHT)
 
     def move(self, rate: float, now: float, seconds: float) -> None:
         """Goes on at that rate, m/s, or at the one that takes it to the end of its travel in the `seconds` of a step.
@@ -57,7 +56,7 @@ class Lift:
         if self.axis is None:
             return True
         if abs(height) > _LOWEST:
-            self.axis.move(min(max(-0.8 * height / seconds, -_LOWERING), _LOWERING))
+            self.axis.move(min(max(-0.8 * height / seconds, -MAX_LIFT_RATE), MAX_LIFT_RATE))
             return False
         self.stop()
         return True

@@ -15,7 +15,7 @@ from urllib.parse import parse_qsl, urlsplit
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, positive, within
-from thermograsp.plant import Command, Reading
+from thermograsp.plant import MAX_OPENING, Command, Reading
 
 from ..drivers import Axis, Fingertips, Gripper, GripperStatus, open_gripper
 from ..errors import (
@@ -33,7 +33,6 @@ from .pacing import Pace, RealTime
 
 UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height", "lateral")
 _STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
-MOST_OPENING = 0.085  # m that a command may ask for, and an observation tell
 OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
 _STOPPED = "fingers and lift were stopped where they are; reset the environment to go on"
 _TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
@@ -48,7 +47,7 @@ class SerialPlant:
     that they are at most a step and a sample old. What goes wrong in a step or a reset stops the lift, opens the
     gripper and ends the episode: a step's reading has the last values and says why in error. What is held then falls
     from where the lift is. lift: the arm's axis that carries the gripper; it does not leave 0 .. its travel, nor 0 ..
-    0.15 m. Without one the height is 0 and lift_rate does nothing; lateral_rate does nothing; a gripper of a shorter
+    MAX_HEIGHT. Without one the height is 0 and lift_rate does nothing; lateral_rate does nothing; a gripper of a shorter
     stroke opens as far as it can. truth has `unknown`, names that only a simulation knows or that need such an axis,
     and `late`, s by which the step's end was missed. On close the fingers stay as they are, and the lift stops.
     """
@@ -69,8 +68,8 @@ class SerialPlant:
         self.counts = PaceCounts()
         self._tips, self._gripper, self._pace = fingertips, gripper, pace or RealTime()
         if widest is None:  # a gripper's class from before there was a stroke may lack it
-            stroke = positive("the gripper's stroke (m)", getattr(gripper, "stroke", MOST_OPENING))
-            widest = min(stroke, MOST_OPENING)
+            stroke = positive("the gripper's stroke (m)", getattr(gripper, "stroke", MAX_OPENING))
+            widest = min(stroke, MAX_OPENING)
         self._widest = widest
         self._lift = Lift(lift)
         self._unknown = tuple(name for name in UNKNOWN if lift is None or name != "height")
@@ -298,7 +297,7 @@ class SerialPlant:
     def _within(self, opening: Any) -> Any:
         """m; a gripper of a shorter stroke than a command may ask for opens as far as it can. Raises InvalidValueError
         for what no command may ask for."""
-        within("opening", opening, 0.0, MOST_OPENING, "m")
+        within("opening", opening, 0.0, MAX_OPENING, "m")
         return np.minimum(opening, self._widest)
 
     def _let_go(self, why: str) -> None:

@@ -161,17 +161,8 @@ class SimulatedGrasp:
     def touch_setup(self, row: int) -> TouchSetup:
         """What an identifier may know of the row's touch."""
         body = self.plant.bodies[row]
-        return TouchSetup(
-            stack=body.stack,
-            mode=body.mode,
-            area=body.geometry.area,
-            object_size=body.plate,
-            fingertips=2,
-            chain=self.plant.config.chain,
-            object_temperature=(body.temperature, SPREAD),
-            sensor_temperature=(self._choices.thermostat, 0.1),
-            tolerance=self._choices.tolerance,
-        )
+        warm = self._choices.thermostat, 0.1
+        return body.touch_setup(self.plant.config.chain, warm, SPREAD, self._choices.tolerance)
 
     def close(self) -> None:
         """Releases the plant."""

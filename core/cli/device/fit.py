@@ -6,7 +6,14 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.cli.shared import Output, add_materials_file, add_old_name, chosen_material, target
+from thermograsp.cli.shared import (
+    Output,
+    add_materials_file,
+    add_object_size,
+    add_old_name,
+    chosen_material,
+    target,
+)
 from thermograsp.errors import InvalidValueError, unknown_name
 
 if TYPE_CHECKING:
@@ -46,15 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="initial temperature of the objects for which none is given, degC",
     )
     add_old_name(parser, "--temperature", warmth)
-    size = (0.04, 0.04, 0.01)
-    add(
-        "--object-size",
-        type=float,
-        nargs=3,
-        default=size,
-        metavar=("X", "Y", "THICKNESS"),
-        help="size of the object, m",
-    )
+    add_object_size(parser)
     add(
         "--start",
         default="seed",

@@ -10,6 +10,7 @@ from thermograsp.cli.shared import (
     Output,
     add_materials_file,
     add_mode,
+    add_object_size,
     add_sensor,
     add_skin,
     add_tolerance,
@@ -48,15 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_skin(parser)
     add("--shape", default="square", help="shape of the contact: square or round")
-    size = (0.04, 0.04, 0.01)
-    add(
-        "--object-size",
-        type=float,
-        nargs=3,
-        default=size,
-        metavar=("X", "Y", "THICKNESS"),
-        help="size of the object, m",
-    )
+    add_object_size(parser)
     add("--air", type=float, default=0.0, help="coefficient of heat transfer to the air, W/(m2 K)")
     add("--sensor-temperature", type=float, default=36.0, help="initial temperature of the thermostat, degC")
     add("--object-temperature", type=float, default=24.0, help="initial temperature of the object, degC")

@@ -69,6 +69,18 @@ def add_sensor(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_object_size(parser: argparse.ArgumentParser) -> None:
+    """--object-size, of a plate of 40 x 40 x 10 mm unless it is given."""
+    parser.add_argument(
+        "--object-size",
+        type=float,
+        nargs=3,
+        default=(0.04, 0.04, 0.01),
+        metavar=("X", "Y", "THICKNESS"),
+        help="size of the object, m",
+    )
+
+
 def add_skin(parser: argparse.ArgumentParser) -> None:
     """--skin, for sensors that are bare unless it is given."""
     parser.add_argument(
