@@ -22,7 +22,6 @@ from ...thermal import (
     SignalChain,
     Skin,
     Surface,
-    TouchSetup,
     cylinder_contact,
     flat_contact,
     sphere_contact,
@@ -44,7 +43,7 @@ from ...thermal.contact import (
 from ..bodies import ObjectSpec
 
 if TYPE_CHECKING:
-    from ...thermal import Solid
+    from ...thermal import Solid, TouchSetup
     from .slipped_mesh import ClosedMesh
 
 PAD = Pad()
@@ -272,6 +271,8 @@ class GraspBody:
     ) -> TouchSetup:
         """What an identifier may know of a touch of it beforehand. sensor_temperature: °C and its standard deviation.
         spread: K, standard deviation of the object's temperature. tolerance: K, of its network."""
+        from ...thermal import TouchSetup
+
         return TouchSetup(
             stack=self.stack,
             mode=self.mode,
