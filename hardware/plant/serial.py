@@ -48,8 +48,8 @@ class SerialPlant:
     gripper and ends the episode: a step's reading has the last values and says why in error. What is held then falls
     from where the lift is. lift: the arm's axis that carries the gripper; it does not leave 0 .. its travel, nor 0 ..
     MAX_HEIGHT. Without one the height is 0 and lift_rate does nothing; lateral_rate does nothing; a gripper of a
-    shorter stroke opens as far as it can. truth has `unknown`, names that only a simulation knows or that need such an axis,
-    and `late`, s by which the step's end was missed. On close the fingers stay as they are, and the lift stops.
+    shorter stroke opens as far as it can. truth has `unknown`, names that only a simulation knows or that need such an
+    axis, and `late`, s by which the step's end was missed. On close the fingers stay as they are, and the lift stops.
     """
 
     num_envs = 1
