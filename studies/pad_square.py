@@ -59,8 +59,10 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     wide = touch.width / 2 if touch.sides else _HALF
     # nothing is steep where the quarter ends by symmetry
     near = np.sin(np.pi / 2 * np.linspace(0, 1, cells(6)[0] + 1)) * _HALF
-    beyond = pieces((_HALF, touch.width / 2, touch.size[0] / 2), cells(5, 4))
-    lines = np.concatenate([near, beyond[1:]])
+    # half a second after the touch the silicone has heat from the sensor within 0.3 mm of it
+    ring = _HALF + np.geomspace(1.5e-4, touch.width / 2 - _HALF, cells(6)[0])
+    beyond = pieces((touch.width / 2, touch.size[0] / 2), cells(4))
+    lines = np.concatenate([near, ring, beyond[1:]])
     below = pieces(heights.tolist(), cells(3, 4, 4, 2)[: len(stack.layers)])
     above = heights[-1] + np.concatenate([[0.0], np.geomspace(4e-5, touch.size[1], cells(9)[0])])
     inside = lines[lines <= wide * (1 + 1e-9)]

@@ -65,6 +65,7 @@ ROOMS = {
         "pressed",
         "plates",
         "kernels",
+        "padded",
         "readout",
         "network",
         "stack",

@@ -20,6 +20,7 @@ What other rooms build on:
 - `touched_box` makes residues at fixed rates for steps that ask for no more than what is under fingertips, with places
   that were touched before; `under_tips` makes what does not depend on these.
 - `glued_element` is the element of O mode: glued on the object, touched by a thermostat on its other face.
+- What a pad of silicone around the element changes is another room, padded/.
 - Outputs are rows on the states: a stack of other layers, read out across any of them, is another `SensorStack`.
 
 What is left out: the film is one for all faces; patches are parallel to the faces' sides; O mode, cylinders, spheres
@@ -27,18 +28,21 @@ and meshes are still in plates/, network/ and meshes/.
 """
 
 from .box import BoxSamples, Patches, box_samples
-from .contact import Resolution, Tip, box_side, tip, tip_at
-from .coverage import THIN, Footprint, Spot, contact_patterns
-from .element import Rectangle, element_samples
+from .contact import Resolution, Tip, box_side, contact_weight, tip, tip_at
+from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
+from .element import Rectangle, element, element_samples
 from .exponentials import residues
 from .glued import GluedElement, glued_element
-from .patterns import ALONG, GRAM, JUMPS, NODES
+from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES
+from .projection import states
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
-from .touch import Detail, touch_sides
+from .touch import Detail, touch_box, touch_sides
 from .touched import BodyResidues, TouchedBox, UnderTips, touched_box, under_tips
 
 __all__ = [
     "ALONG",
+    "EXPONENTS",
+    "FUNCTIONS",
     "GRAM",
     "GRASP",
     "JUMPS",
@@ -64,11 +68,16 @@ __all__ = [
     "box_samples",
     "box_side",
     "contact_patterns",
+    "contact_weight",
+    "element",
     "element_samples",
     "glued_element",
     "residues",
+    "states",
     "tip",
     "tip_at",
+    "touch_box",
+    "touch_patterns",
     "touch_sides",
     "touched_box",
     "under_tips",

@@ -60,7 +60,7 @@ def touch_sides(
     tips = tuple(
         _tip(stack, covered, basis, detail) for (stack, covered), basis in zip(elements, bases, strict=True)
     )
-    return tips, _box_side(box, film, tips, detail)
+    return tips, touch_box(box, film, tips, detail)
 
 
 def _tip(stack: SensorStack, covered: Rectangle, basis: np.ndarray, detail: Detail) -> Tip:
@@ -77,8 +77,9 @@ def _tip(stack: SensorStack, covered: Rectangle, basis: np.ndarray, detail: Deta
     )
 
 
-def _box_side(box: BoxSamples, film: float, tips: tuple[Tip, ...], detail: Detail) -> ThermalNetwork:
-    count, kept = len(GRAM), detail.patterns
+def touch_box(box: BoxSamples, film: float, tips: tuple[Tip, ...], detail: Detail) -> ThermalNetwork:
+    """The box between tips, each on its combinations of the patterns that the box was sampled with."""
+    count, kept = tips[0].basis.shape
     turn = np.zeros((len(tips) * count, len(tips) * kept))
     for f, one in enumerate(tips):
         turn[f * count : (f + 1) * count, f * kept : (f + 1) * kept] = one.basis

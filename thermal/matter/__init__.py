@@ -5,6 +5,7 @@ from .materials import SEED_MATERIALS, Material, load_materials, material, mater
 from .mounting import Mode, Shape
 from .sensors import SensorStack, load_sensors, sensor, sensors, write_sensor
 from .skins import SKINS, USUAL_SKIN, Skin, skin
+from .surrounds import Surround, surround
 
 __all__ = [
     "SEED_MATERIALS",
@@ -16,6 +17,7 @@ __all__ = [
     "SensorStack",
     "Shape",
     "Skin",
+    "Surround",
     "load_materials",
     "load_sensors",
     "material",
@@ -23,5 +25,6 @@ __all__ = [
     "sensor",
     "sensors",
     "skin",
+    "surround",
     "write_sensor",
 ]

@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
+from thermograsp.errors import InvalidValueError
+
 from ..kernels import Detail, Footprint, Patches, Resolution, Spot, Tip, box_side, tip_at, touch_sides
 from ..numerics import ThermalNetwork
+from ..padded import padded_sides
 from ..plates import Geometry
 from .air import with_air
 from .choice import Choice, Demand, drops
@@ -23,10 +26,16 @@ faces: elsewhere on the box, or with a part of the sensor's face on it, the judg
 1.8e-2 for finer ones."""
 DETAILS = ((Detail(8, 3), 30.0), (Detail(10, 3, 1 / 600), 600.0))
 """Of networks of one touch, and the longest s after it for which they are made."""
+PADDED_DETAILS = ((Detail(12, 3), 30.0), (Detail(14, 3, 1 / 600), 600.0))
+"""The same with a pad around the element, whose fields are of more kinds."""
 SHARE = 8e-4
 """Largest error of the drop of any of DETAILS from FIRST s on as a share of the difference, before anything is trimmed;
 measured as for LEVELS."""
 STRONGEST = 1e5  # W/(m2 K)
+PADDED_SHARE = 2.9e-3
+"""The same with a pad around the element: concentric squares, one even flow beside the face."""
+PADDED_STRONGEST = 3e5
+"""W/(m2 K), as of skins on smooth faces: no other network serves there."""
 _AIR = 1.25, 1e-4
 """Of what the air's mean temperature is measured to leave, and of the difference: beside grids with the air and without
 it, T and O mode, 10 to 50 W/(m2 K), glass to aluminium, it left at most 1.14 of it or 6e-5 of the difference more."""
@@ -40,13 +49,22 @@ def served(geometry: Geometry) -> bool:
 
 
 def box_choice(geometry: Geometry, demand: Demand, air: float) -> Choice | None:
-    """The cheapest network of this touch that keeps the demand in air W/(m2 K); None where none is known to."""
-    share = SHARE * abs(demand.difference)
-    if not served(geometry) or max(demand.conductances) > STRONGEST or share > demand.tolerance:
-        return None
-    detail = next((detail for detail, longest in DETAILS if demand.horizon <= longest), None)
-    if detail is None:
-        return None
+    """The cheapest network of this touch that keeps the demand in air W/(m2 K); None where none is known to. Raises
+    InvalidValueError where the fingertip has a surround, which no other network knows."""
+    share = (SHARE if geometry.surround is None else PADDED_SHARE) * abs(demand.difference)
+    padded = geometry.surround is not None
+    strongest = PADDED_STRONGEST if padded else STRONGEST
+    details = PADDED_DETAILS if padded else DETAILS
+    detail = next((detail for detail, longest in details if demand.horizon <= longest), None)
+    kept = served(geometry) and max(demand.conductances) <= strongest and share <= demand.tolerance
+    if detail is None or not kept:
+        if not padded:
+            return None
+        raise InvalidValueError(
+            f"no network with a surround keeps {demand.tolerance:g} K over {demand.horizon:g} s at "
+            f"{max(demand.conductances):g} W/(m2 K): give a tolerance of {share:.2g} K or more, conductances of at "
+            f"most {strongest:g} W/(m2 K) and at most {details[-1][1]:g} s"
+        )
     # in one thread, or the number of threads would decide last bits
     with _BLAS.limit(limits=1, user_api="blas"):
         tips, box = _sides(geometry, detail, air)
@@ -105,9 +123,11 @@ def _whole(geometry: Geometry, detail: Detail, air: float) -> ContactSystem:
 
 def _sides(geometry: Geometry, detail: Detail, air: float) -> tuple[tuple[Tip, ...], ThermalNetwork]:
     """Of one touch: the fingertips' elements, all alike, and the box between them."""
+    made, size, patches = geometry.material, geometry.object_size, _patches(geometry)
+    if geometry.surround is not None:
+        return padded_sides(made, size, air, patches, geometry.stack, geometry.surround, detail)
     covered = ((geometry.stack, _covered(geometry)),) * geometry.fingertips
-    patches = _patches(geometry)
-    return touch_sides(geometry.material, geometry.object_size, air, patches, covered, detail, shared=True)
+    return touch_sides(made, size, air, patches, covered, detail, shared=True)
 
 
 def box_system(geometry: Geometry, level: Resolution, air: float) -> ContactSystem:
@@ -138,9 +158,9 @@ def _covered(geometry: Geometry) -> tuple[tuple[float, float], tuple[float, floa
 
 
 def _patches(geometry: Geometry) -> Patches:
-    half, count = float(np.sqrt(geometry.area)) / 2, geometry.fingertips
+    half, count = np.array(geometry.front) / 2, geometry.fingertips
     middle = [geometry.object_size[0] / 2, geometry.object_size[1] / 2]
-    return Patches(np.array([5, 4][:count]), np.array([middle] * count), np.full((count, 2), half))
+    return Patches(np.array([5, 4][:count]), np.array([middle] * count), np.tile(half, (count, 1)))
 
 
 def joined(geometry: Geometry, box: ThermalNetwork, sensor: ThermalNetwork, patterns: int) -> ContactSystem:

@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..matter import Layer, Material, Mode, SensorStack, Shape
+from ..matter import Layer, Material, Mode, SensorStack, Shape, Surround
 from ..numerics import Sampled
 from .impedance import (
     layer_impedance,
@@ -33,7 +33,8 @@ from .section import Disc, Rectangle, Section
 
 @dataclass(frozen=True, slots=True)
 class Geometry:
-    """What the networks of a contact depend on. fingertips: 1, or 2 on opposite faces. Others as in PressProblem."""
+    """What the networks of a contact depend on. fingertips: 1, or 2 on opposite faces. surround: around the element,
+    with its depth; the area is then of all that touches. Others as in PressProblem."""
 
     stack: SensorStack
     material: Material
@@ -42,6 +43,16 @@ class Geometry:
     shape: Shape
     object_size: tuple[float, float, float]
     fingertips: Literal[1, 2] = 1
+    surround: Surround | None = None
+
+    @property
+    def front(self) -> tuple[float, float]:
+        """m, the sides of the rectangle that touches."""
+        if self.surround is None:
+            side = float(np.sqrt(self.area))
+            return side, side
+        width = self.surround.width
+        return min(width, self.object_size[0]), min(width, self.object_size[1])
 
     @property
     def element_capacity(self) -> float:

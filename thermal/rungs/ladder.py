@@ -139,6 +139,8 @@ def _solved(
     if orders and base != "network":
         raise InvalidValueError(f"rung {base!r} has no orders: write {base!r} instead of {name!r}")
     if base == "network":
+        if orders and problem.surround is not None:
+            raise InvalidValueError(f"{name!r}: with a surround the orders cannot be given, use 'network'")
         if orders:
             parsed = Orders.parse(orders)
             system = network_of(geometry_of(problem, parsed.fingertips), parsed, cache=cache)
@@ -153,8 +155,8 @@ def _solved(
     assert solver is not None
     if not problem.plain:
         raise InvalidValueError(
-            f"rung {base!r} has one fingertip and an ideal thermostat: use 'network' for a second one, a real one or a "
-            "heater's own law"
+            f"rung {base!r} has one fingertip without a surround and an ideal thermostat: use 'network' for a second "
+            "one, a surround, a real thermostat or a heater's own law"
         )
     return Rung(base, "", np.nan, "asked for"), solver(problem, t)
 

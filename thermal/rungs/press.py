@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, numbers, positive
 
-from ..matter import Material, Mode, SensorStack, Shape, Skin
+from ..matter import Material, Mode, SensorStack, Shape, Skin, Surround
 from ..matter import material as named_material
 from ..matter import skin as named_skin
+from ..matter import surround as named_surround
 from ..readout import Thermostat
 from ..stack import HeatedStack, any_sensor, heated_core
 from .ladder import Rung, solve_rung
@@ -64,6 +65,7 @@ def press(
     rung: str | Rung = "auto",
     opposite: Conductance | None = None,
     thermostat: Thermostat | None = None,
+    surround: str | Material | Surround | None = None,
     cache: bool = True,
 ) -> Press:
     """Presses the sensor on the middle of a face of an object, both uniform at first.
@@ -76,10 +78,14 @@ def press(
     contact, at most the sensor's face, None for 81e-6 or that face where it is smaller. shape: "square" or "round".
     object_size: (width, depth, thickness) m. air: W/(m2 K) on the object's free faces. Temperatures in °C. seconds, dt:
     samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of temperature drop from 0.05 s on, which rung="auto" (and
-    "network") keeps for the sensor by itself, without a pad around it (docs/physics.md). rung: a name of thermal.RUNGS,
+    "network") keeps. rung: a name of thermal.RUNGS,
     "auto", "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same
     kind on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power, at
-    sensor_temperature at first, None for an ideal one. cache: keep networks on disk.
+    sensor_temperature at first, None for an ideal one. surround: what holds the element and touches the object around
+    its face: the name of a material or a Material for a square pad of 20 mm, or a Surround; None for a sensor by
+    itself. All of the pad that the object's face reaches then touches, as warm as the thermostat at first, and the same
+    conductance is taken for it; heat_flow, the surfaces' temperatures and stored_heat are those of the whole front and
+    of element and pad together. It is in mode "T", on an ideal thermostat. cache: keep networks on disk.
 
     A heated sensor (one with a `touch` table) has been at sensor_temperature for long, in air of object_temperature,
     and its heater's law goes on from there; a controller's setpoint is that temperature. Its element in front of the
@@ -89,6 +95,14 @@ def press(
     """
     named_skin(skin, mode)  # checks it
     pressed = pressed_sensor(sensor, conductance, force, skin)
+    size = numbers("object_size (m)", object_size, 3)
+    around = named_surround(surround, mode)
+    if around is not None:
+        if area is not None:
+            raise InvalidValueError("with a surround all of it touches: leave area out")
+        worn = named_skin(skin)
+        around = around.around(_bare(pressed.stack, worn is not None))
+        area = min(around.width, size[0]) * min(around.width, size[1])
     problem = PressProblem(
         stack=pressed.stack,
         material=named_material(material),
@@ -96,7 +110,7 @@ def press(
         conductance=pressed.conductance,
         area=min(_FACE, pressed.stack.face_area) if area is None else area,
         shape=shape,
-        object_size=numbers("object_size (m)", object_size, 3),  # pyright: ignore[reportArgumentType]
+        object_size=size,  # pyright: ignore[reportArgumentType]
         air=air,
         sensor_temperature=sensor_temperature,
         object_temperature=object_temperature,
@@ -104,11 +118,17 @@ def press(
         thermostat=thermostat,
         heated=pressed.heated,
         force=pressed.force,
+        surround=around,
     )
     positive("tolerance (K)", tolerance)
     t = sample_times(seconds, dt)
     used, curves = solve_rung(str(rung), problem, t, tolerance, cache)
     return press_of(problem, t, curves, used)
+
+
+def _bare(stack: SensorStack, skinned: bool) -> SensorStack:
+    """The element under its skin."""
+    return replace(stack, layers=stack.layers[:-1]) if skinned else stack
 
 
 def sample_times(seconds: float, dt: float) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, length, non_negative, positive
 
-from ..matter import Material, Mode, SensorStack, Shape
+from ..matter import Material, Mode, SensorStack, Shape, Surround
 from ..readout import Thermostat
 from ..stack import HeatedStack
 
@@ -29,7 +29,8 @@ class PressProblem:
     whose ambient is object_temperature. Temperatures in °C. opposite: W/(m2 K), a second fingertip of the
     same kind on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power
     that is settled at sensor_temperature at first, None for an ideal one. heated: a sensor with a heater of its own in
-    place of a thermostat, whose element `stack` then is. force: N on it, a number or a function of time in s.
+    place of a thermostat, whose element `stack` then is. force: N on it, a number or a function of time in s. surround:
+    around the element, with its depth; area is then of all of its front that touches.
     """
 
     stack: SensorStack
@@ -46,6 +47,7 @@ class PressProblem:
     thermostat: Thermostat | None = None
     heated: HeatedStack | None = None
     force: Conductance = np.inf
+    surround: Surround | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -57,7 +59,9 @@ class PressProblem:
         if self.opposite is not None and not callable(self.opposite):
             non_negative("opposite (W/(m2 K))", self.opposite)
         positive("area (m2)", self.area)
-        if self.area > self.stack.face_area * (1 + 1e-9):
+        if self.surround is not None:
+            self._check_surround()
+        elif self.area > self.stack.face_area * (1 + 1e-9):
             raise InvalidValueError(
                 f"area {self.area:g} m2 is more than the face of sensor {self.stack.name!r}, "
                 f"{self.stack.face_area:g} m2: give at most that"
@@ -82,10 +86,27 @@ class PressProblem:
         celsius("sensor_temperature (°C)", self.sensor_temperature)
         celsius("object_temperature (°C)", self.object_temperature)
 
+    def _check_surround(self) -> None:
+        if self.mode == "O" or self.shape == "round":
+            raise InvalidValueError(
+                f"a surround is square, around the element of mode 'T': with mode {self.mode!r} and shape "
+                f"{self.shape!r} leave it out"
+            )
+        if self.heated is not None or self.thermostat is not None:
+            raise InvalidValueError(
+                "a surround sits on an ideal thermostat: leave the surround out, or the thermostat of finite power and "
+                "the sensor with a heater of its own"
+            )
+
     @property
     def plain(self) -> bool:
-        """Whether one fingertip presses, on an ideal thermostat."""
-        return self.opposite is None and self.thermostat is None and self.heated is None
+        """Whether one fingertip without a surround presses, on an ideal thermostat."""
+        return (
+            self.opposite is None
+            and self.thermostat is None
+            and self.heated is None
+            and self.surround is None
+        )
 
     @property
     def temperature_difference(self) -> float:

@@ -72,6 +72,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="W",
         help="limit of the thermostat's heating power, W (default: an ideal thermostat)",
     )
+    add(
+        "--surround",
+        metavar="MATERIAL",
+        help="material of a pad of 20 mm around the sensor, which gives heat too (default: no pad)",
+    )
     add_mesh_arguments(parser)
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
     add("--csv", metavar="FILE", help="write the curves as a table")

@@ -26,6 +26,7 @@ PLATES = {
     "shape": "square",
     "rung": "auto",
     "opposite": None,
+    "surround": None,
     "object_size": (0.04, 0.04, 0.01),
 }
 """Defaults of the keywords that only `press` has."""

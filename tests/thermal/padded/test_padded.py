@@ -1,0 +1,135 @@
+"""The pad around a sensor's element: limits that are known exactly, balance of heat, convergence and refusals. Beside
+finite elements it is in tests/studies/test_pad_square.py."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermograsp import thermal
+from thermograsp.errors import InvalidValueError, UnknownNameError
+from thermograsp.thermal import Layer, Material, SensorStack, Surround
+from thermograsp.thermal.matter import sensor, skin
+from thermograsp.thermal.padded import squares
+from thermograsp.thermal.padded.fingertip import padded_samples
+
+BLOCK = (0.04, 0.03, 0.01)
+NOTHING = Material("nothing", conductivity=1e-3, density=1.0, specific_heat=1e3)
+
+
+def _press(name: str, **words) -> thermal.Press:
+    return thermal.press(
+        name, **{"object_size": BLOCK, "conductance": 1e4, "seconds": 10.0, "dt": 0.05} | words
+    )
+
+
+@pytest.mark.parametrize("name", ["wood", "glass", "aluminium"])
+def test_a_pad_that_hardly_conducts_changes_hardly_anything(name: str) -> None:
+    alone, padded = _press(name), _press(name, surround=NOTHING)
+    late = alone.t >= 0.05
+    assert np.abs(padded.temperature_drop - alone.temperature_drop)[late].max() < 0.05
+
+
+@pytest.mark.parametrize("name", ["wood", "glass", "aluminium"])
+def test_a_pad_of_the_elements_own_material_makes_a_wider_element(name: str) -> None:
+    """Heat through the front is then that of an element as wide as the pad, which needs no squares."""
+    layer = Layer("rubber", 0.003, 0.3, 1300.0, 1200.0)
+    small = SensorStack("small", (layer,), 0.009, 0, 1e-3)
+    wide = SensorStack("wide", (layer,), 0.020, 0, 1e-3)
+    rubber = Material("rubber", conductivity=0.3, density=1300.0, specific_heat=1200.0)
+    padded = _press(name, sensor=small, surround=rubber)
+    whole = _press(name, sensor=wide, area=4e-4, tolerance=0.02)
+    late = padded.t >= 0.05
+    scale = whole.heat_flow[late].max()
+    np.testing.assert_allclose(padded.heat_flow[late], whole.heat_flow[late], atol=0.015 * scale)
+    np.testing.assert_allclose(
+        padded.stored_heat, whole.stored_heat, atol=0.015 * abs(whole.stored_heat).max()
+    )
+
+
+@pytest.mark.parametrize("words", [{}, {"skin": "filled_silicone"}, {"opposite": 5e3}, {"air": 20.0}])
+def test_what_flows_through_the_front_is_in_the_object(words: dict) -> None:
+    pressed = _press("glass", dt=0.01, surround="silicone", **words)
+    if "opposite" in words or "air" in words:
+        assert np.isfinite(pressed.temperature_drop).all()
+        alone = _press("glass", dt=0.01, **words)
+        assert 0.1 < abs(pressed.temperature_drop - alone.temperature_drop).max() < 0.6
+        return
+    flow = pressed.heat_flow
+    gained = np.concatenate(([0.0], np.cumsum((flow[1:] + flow[:-1]) / 2 * 0.01)))
+    settled = pressed.t > 0.5
+    first = np.flatnonzero(settled)[0]
+    gain = pressed.stored_heat[:, 1]
+    np.testing.assert_allclose(
+        (gain - gain[first])[settled], (gained - gained[first])[settled], rtol=2e-3, atol=2e-3
+    )
+
+
+def test_the_drop_converges_with_the_squares_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    def samples() -> np.ndarray:
+        squares.bonded.cache_clear()
+        padded_samples.cache_clear()
+        stack = sensor("seed")
+        known = Surround().around(stack)
+        return padded_samples(stack, known, 4e-4).drop[:, [0, -1]].copy()
+
+    found = [samples()]
+    for name, shares in (("_WIDTH", 2.0), ("_DEPTH", 2.0), ("_BETWEEN", 2.0)):
+        monkeypatch.setattr(squares, name, getattr(squares, name) / shares)
+    monkeypatch.setattr(squares, "_GROWTH", 1.12)
+    found.append(samples())
+    monkeypatch.undo()
+    samples()
+    np.testing.assert_allclose(found[0], found[1], rtol=2e-3, atol=2e-3 * abs(found[1]).max())
+
+
+def test_networks_are_passive_and_reciprocal() -> None:
+    stack = skin("filled_silicone").over(sensor("seed"))  # pyright: ignore[reportOptionalMemberAccess]
+    known = Surround().around(sensor("seed"))
+    seen = padded_samples(stack, known, 4e-4)
+    np.testing.assert_allclose(seen.impedance, seen.impedance.transpose(0, 2, 1), rtol=1e-9)
+    for value, slope in zip(seen.impedance, seen.slope, strict=True):
+        size = np.sqrt(np.diag(value))
+        assert np.linalg.eigvalsh(value / np.outer(size, size)).min() > -1e-9
+        size = np.sqrt(-np.diag(slope))
+        assert np.linalg.eigvalsh(-slope / np.outer(size, size)).min() > -1e-6
+
+
+def test_a_wider_pad_and_a_narrower_object_are_served() -> None:
+    narrow = _press("glass", object_size=(0.012, 0.03, 0.01), surround="silicone")
+    wide = _press("glass", surround=Surround("silicone", width=0.028))
+    usual = _press("glass", surround="silicone")
+    assert abs(wide.temperature_drop - usual.temperature_drop).max() < 0.1
+    assert np.isfinite(narrow.temperature_drop).all()
+    assert narrow.rung.error <= 0.05
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ({"mode": "O"}, "mode 'O'"),
+        ({"shape": "round"}, "square"),
+        ({"area": 5e-5}, "area"),
+        ({"thermostat": thermal.Thermostat()}, "ideal thermostat"),
+        ({"sensor": "heated_thermistor"}, "heater"),
+        ({"rung": "semi_analytic"}, "surround"),
+        ({"rung": "network:2/4/4"}, "orders"),
+        ({"tolerance": 1e-3}, "tolerance"),
+        ({"conductance": 1e7}, "conductances"),
+        ({"seconds": 1000.0, "dt": 1.0}, "600 s"),
+        ({"surround": Surround(width=0.008)}, "leaves nothing"),
+        ({"surround": Surround(depth=0.01)}, "deeper|more than"),
+        ({"surround": 3.0}, "material"),
+    ],
+)
+def test_what_a_surround_cannot_do_is_refused(words: dict, says: str) -> None:
+    with pytest.raises(InvalidValueError, match=says):
+        _press("glass", **{"surround": "silicone"} | words)
+
+
+def test_bad_surrounds_are_named() -> None:
+    with pytest.raises(UnknownNameError, match="silicone"):
+        _press("glass", surround="silicone_rubber")
+    for words in ({"width": -1.0}, {"width": float("nan")}, {"depth": 0.0}):
+        with pytest.raises(InvalidValueError, match="surround"):
+            Surround("silicone", **words)
