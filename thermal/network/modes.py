@@ -13,6 +13,7 @@ import numpy as np
 
 from ..plates import BodySamples, Geometry
 
+_ROUND_OFF = 1e-12  # of a flux of size 1, which need not be at right angles to the uniform pattern
 _CONDUCTANCES = (1e3, 1e4, 1e5, 1e9)  # W/(m2 K)
 
 
@@ -34,5 +35,10 @@ def patch_modes(geometry: Geometry, bodies: dict[str, BodySamples], s: np.ndarra
             flux = np.linalg.solve(touched + sensor + identity / conductance, uniform)
             other = flux - np.outer(flux @ uniform, uniform)
             patterns.append(other / np.linalg.norm(flux, axis=1, keepdims=True))
-    left, _, _ = np.linalg.svd(np.concatenate(patterns).T, full_matrices=False)
-    return np.column_stack((uniform, left[:, : count - 1]))
+    left, sizes, _ = np.linalg.svd(np.concatenate(patterns).T, full_matrices=False)
+    modes = np.column_stack((uniform, left[:, : count - 1]))
+    arisen = 1 + int(np.sum(sizes[: count - 1] > _ROUND_OFF))
+    if arisen < count:  # as on an object that is no wider than the contact: any others at right angles do
+        others, _ = np.linalg.qr(np.column_stack((modes[:, :arisen], np.eye(len(uniform)))))
+        modes[:, arisen:] = others[:, arisen:count]
+    return modes

@@ -64,19 +64,6 @@ class Chain:
         rates, turn = np.linalg.eigh(matrix * np.outer(root, root))
         return np.maximum(rates, 0.0), turn, root
 
-    def seen(self, s: np.ndarray, node: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """(m2 K/W, 1), (S,) each: the impedance at the face at s (S,) 1/s, and how much of the face's temperature
-        arrives at a node, the face itself where it is None."""
-        admittance, arrives = np.zeros_like(s), np.ones_like(s)
-        for i, capacity in enumerate(self.capacity):
-            if i:
-                link = self.links[i - 1]
-                if node is not None and i > node:
-                    arrives = arrives * link / (link + admittance)
-                admittance = link * admittance / (link + admittance)
-            admittance = admittance + s * capacity + (self.loss if i == self.back else 0.0)
-        return 1 / admittance, arrives
-
 
 def stack_chain(stack: HeatedStack, intervals: int = _INTERVALS) -> Chain:
     """The stack alone, from the depth of its backing to its face. intervals: of each layer's pieces between places."""

@@ -34,7 +34,8 @@ class HeatedCore:
     between heater and readout, its `seebeck` is the divider's slope at 25 °C. readout: node of the core that is read,
     None where the reading is the heater's place less the drop over the sensed layer. dt: s. decay: (N, N), heat: (N,)
     K/W of the heater's place over a step, room: (N,) K per K of the surroundings. answering: J/K of the element's
-    that is stepped with the core. chain: what is behind the heater's place, per area."""
+    that is stepped with the core. chain: what is behind the heater's place, per area. behind: its layers, the heater's
+    place last, of which as many as `ahead` are between readout and heater."""
 
     sensor: HeatedStack
     element: SensorStack
@@ -45,6 +46,8 @@ class HeatedCore:
     room: np.ndarray
     answering: float
     chain: Chain
+    behind: tuple[Layer, ...]
+    ahead: int
 
     @property
     def leak(self) -> float:
@@ -136,11 +139,13 @@ def heated_core(sensor: HeatedStack, dt: float) -> HeatedCore:
                 f"sensor {sensor.name!r}: {len(between)} layers ({names}) lie between heater and readout, and a "
                 "simulated fingertip is read across one: join them into one layer of their resistance and capacity"
             )
+    nearer: tuple[Layer, ...] = ()
     if between:
         chain, _ = layers_chain(behind, sensor.backing, ())
     else:
         deeper, nearer = _cut(behind, heater + ahead)
-        chain, nodes = layers_chain((*deeper, *nearer), sensor.backing, ())
+        behind = (*deeper, *nearer)
+        chain, nodes = layers_chain(behind, sensor.backing, ())
         readout = nodes[Place(len(deeper), 0.0)] if nearer else len(chain.capacity) - 1
     slope = float(np.abs(np.diff(sensor.divider.voltage(_SLOPE)))[0])
     element = SensorStack(sensor.name, (*between, *front), sensor.width, 0, slope)
@@ -148,7 +153,7 @@ def heated_core(sensor: HeatedStack, dt: float) -> HeatedCore:
     held = isinstance(sensor.law, Held)
     answering = element.answering(dt)
     decay, heat, room = _unmoved(chain) if held else _propagator(chain, area, dt, answering)
-    return HeatedCore(sensor, element, readout, dt, decay, heat, room, answering, chain)
+    return HeatedCore(sensor, element, readout, dt, decay, heat, room, answering, chain, behind, len(nearer))
 
 
 def _propagator(

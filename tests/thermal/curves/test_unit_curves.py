@@ -9,23 +9,40 @@ from thermograsp.thermal import material, press, sensor
 from thermograsp.thermal.curves import UnitCurves
 from thermograsp.thermal.curves.fraction import fraction
 from thermograsp.thermal.matter import Layer, Mode, SensorStack
-from thermograsp.thermal.plates import Geometry, stack_impedance, stack_profile
-from thermograsp.thermal.stack import Backing
-from thermograsp.thermal.stack.cells import layers_chain
+from thermograsp.thermal.plates import Geometry
+from thermograsp.thermal.stack import (
+    Backing,
+    ConstantPower,
+    CutAtContact,
+    HeatedStack,
+    Held,
+    Off,
+    Place,
+    Recorder,
+    Sample,
+    Touches,
+    heated_core,
+    heated_stack,
+    touch_curves,
+)
 
 SEED = sensor("seed")
 assert isinstance(SEED, SensorStack)
 PLATE = (0.04, 0.04, 0.01)
+PLAIN = replace(heated_stack("heated_thermistor"), recorder=Recorder())
+BLOCK = (Layer("core", 3e-3, 0.3, 1500.0, 1200.0), *PLAIN.layers)
 T = np.array([0.1, 0.5, 2.0])
 
 
-def expected(name: str, stack: SensorStack, mode: Mode, conductance: float) -> np.ndarray:
+def expected(
+    name: str, stack: SensorStack, mode: Mode, conductance: float, size: tuple[float, float, float] = PLATE
+) -> np.ndarray:
     """K of 12 K, by the semi-analytic rung."""
     found = press(
         name,
         sensor=stack,
         mode=mode,
-        object_size=PLATE,
+        object_size=size,
         conductance=conductance,
         seconds=2.0,
         dt=0.1,
@@ -66,6 +83,13 @@ def test_curves_are_those_of_the_semi_analytic_solution(
     np.testing.assert_allclose(found, expected(name, SEED, mode, conductance), atol=within)
 
 
+def test_an_object_as_wide_as_the_sensor_has_no_uneven_flow() -> None:
+    size, glass = (SEED.width, SEED.width, 0.01), material("glass")
+    unit = UnitCurves(Geometry(SEED, glass, "T", 81e-6, "square", size), T)
+    found = 12 * unit.on(glass)(np.array([5e3]))[0]
+    np.testing.assert_allclose(found, expected("glass", SEED, "T", 5e3, size), atol=1e-4)
+
+
 def test_layers_of_other_properties_are_followed() -> None:
     """Those of a sensed layer between which a fit goes to and fro."""
     layers = list(SEED.layers)
@@ -88,18 +112,28 @@ def test_before_the_touch_there_is_nothing_and_conductances_do_not_mix() -> None
     np.testing.assert_allclose(both[1:], alone, rtol=1e-12)
 
 
-def test_a_chain_is_seen_as_its_layers_are() -> None:
-    """Eight intervals a layer, so within a percent where heat enters a quarter of a layer; exact where it settles."""
-    layers = (Layer("block", 2e-3, 0.5, 1500.0, 1200.0), Layer("plate", 1e-3, 20.0, 500.0, 7800.0))
-    backing = Backing(capacity=3e3, loss=80.0)
-    chain, nodes = layers_chain(layers, backing, ())
-    s = np.array([1e-9, 1e-2, 0.1, 1.0], complex)
-    seen, arrived = chain.seen(s, chain.back)
-    behind = 1 / (s * backing.capacity + backing.loss)
-    exact = stack_impedance(layers[::-1], behind[:, None], s[:, None], np.zeros(1))[:, 0]
-    profile, _ = stack_profile(layers[::-1], behind[:, None], s[:, None], np.zeros(1))
-    np.testing.assert_allclose(seen, exact, rtol=0.01)
-    np.testing.assert_allclose(arrived, (profile[-1] / profile[0])[:, 0], atol=0.01)
-    resistance = sum(layer.thickness / layer.conductivity for layer in layers)
-    assert seen[0].real == pytest.approx(resistance + 1 / backing.loss, rel=1e-4)
-    assert chain.seen(s)[1] == pytest.approx(np.ones(4)) and len(nodes) == 4
+@pytest.mark.parametrize(
+    "sensor",
+    [
+        PLAIN,
+        replace(PLAIN, law=Held()),
+        replace(PLAIN, law=Off(), backing=Backing(capacity=500.0, effusivity=400.0)),
+        replace(PLAIN, law=ConstantPower(), backing=Backing()),
+        replace(PLAIN, law=CutAtContact(0.1), backing=Backing(capacity=3e3, loss=200.0)),
+        replace(PLAIN, layers=BLOCK, heater=Place(0, 0.9), readout=Place(0, 0.8), law=Off()),
+        replace(PLAIN, layers=BLOCK, heater=Place(1, 0.0), readout=Place(1, 1.0), law=Off()),
+    ],
+    ids=["cut", "held", "half-space", "nothing behind", "loss", "read behind", "a block behind"],
+)
+def test_in_one_dimension_heated_sensors_read_what_a_chain_of_lumps_does(sensor: HeatedStack) -> None:
+    """Stepped in 20 ms, which it differs by; the power before is what its loss takes."""
+    wood, t = material("wood"), np.arange(0.0, 4.001, 0.02)
+    touches = Touches(t, np.full((1, len(t)), 4.0), *(np.array([x]) for x in (32.0, 0.0, 22.0, 22.0)))
+    sample = Sample(wood.conductivity, wood.volumetric_heat_capacity, 0.01)
+    marched = 32.0 - touch_curves(sensor, [sample], touches).reading[0]
+    core = heated_core(sensor, 0.02)
+    geometry = Geometry(core.element, wood, "T", core.element.face_area, "square", (0.009, 0.009, 0.01))
+    conductance = sensor.contact.at(np.array([4.0]))
+    found = 10 * UnitCurves(geometry, t, core=core).on(wood)(conductance)[0]
+    assert found[-1] > 0.2
+    np.testing.assert_allclose(found, marched, atol=0.03)
