@@ -87,7 +87,7 @@ def test_an_object_as_wide_as_the_sensor_has_no_uneven_flow() -> None:
     size, glass = (SEED.width, SEED.width, 0.01), material("glass")
     unit = UnitCurves(Geometry(SEED, glass, "T", 81e-6, "square", size), T)
     found = 12 * unit.on(glass)(np.array([5e3]))[0]
-    np.testing.assert_allclose(found, expected("glass", SEED, "T", 5e3, size), atol=1e-4)
+    np.testing.assert_allclose(found, expected("glass", SEED, "T", 5e3, size), atol=2e-4)
 
 
 def test_layers_of_other_properties_are_followed() -> None:
@@ -120,7 +120,7 @@ def test_before_the_touch_there_is_nothing_and_conductances_do_not_mix() -> None
         replace(PLAIN, law=Off(), backing=Backing(capacity=500.0, effusivity=400.0)),
         replace(PLAIN, law=ConstantPower(), backing=Backing()),
         replace(PLAIN, law=CutAtContact(0.1), backing=Backing(capacity=3e3, loss=200.0)),
-        replace(PLAIN, layers=BLOCK, heater=Place(0, 0.9), readout=Place(0, 0.8), law=Off()),
+        replace(PLAIN, layers=BLOCK, heater=Place(0, 0.98), readout=Place(0, 0.94), law=Off()),
         replace(PLAIN, layers=BLOCK, heater=Place(1, 0.0), readout=Place(1, 1.0), law=Off()),
     ],
     ids=["cut", "held", "half-space", "nothing behind", "loss", "read behind", "a block behind"],
@@ -136,4 +136,4 @@ def test_in_one_dimension_heated_sensors_read_what_a_chain_of_lumps_does(sensor:
     conductance = sensor.contact.at(np.array([4.0]))
     found = 10 * UnitCurves(geometry, t, core=core).on(wood)(conductance)[0]
     assert found[-1] > 0.2
-    np.testing.assert_allclose(found, marched, atol=0.03)
+    np.testing.assert_allclose(found, marched, atol=0.01)
