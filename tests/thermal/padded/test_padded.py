@@ -120,6 +120,7 @@ def test_a_wider_pad_and_a_narrower_object_are_served() -> None:
         ({"surround": Surround(width=0.008)}, "leaves nothing"),
         ({"surround": Surround(depth=0.01)}, "deeper|more than"),
         ({"surround": 3.0}, "material"),
+        ({"surround": "aluminium"}, "conducts 237"),
     ],
 )
 def test_what_a_surround_cannot_do_is_refused(words: dict, says: str) -> None:
