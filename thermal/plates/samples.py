@@ -43,7 +43,7 @@ class Geometry:
     shape: Shape
     object_size: tuple[float, float, float]
     fingertips: Literal[1, 2] = 1
-    surround: Surround | None = None
+    surround: Surround | None = field(default=None, kw_only=True)
 
     @property
     def front(self) -> tuple[float, float]:

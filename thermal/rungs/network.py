@@ -38,7 +38,7 @@ def geometry_of(problem: PressProblem, fingertips: Literal[1, 2] | None = None) 
         problem.shape,
         problem.object_size,
         fingertips or pressing,
-        problem.surround,
+        surround=problem.surround,
     )
 
 
