@@ -20,8 +20,8 @@ class Surround:
     """A square pad with the sensor's element in its middle, bonded to the element's sides, on the same thermostat and
     flush with the element's face.
 
-    material: a name of thermal.materials() or a Material, of at most MOST_CONDUCTIVE W/(m K). width: m, the pad's side. depth: m, None for as deep as the
-    element without a skin; a skin lies over both. Raises UnknownNameError and InvalidValueError."""
+    material: a name of thermal.materials() or a Material, of at most MOST_CONDUCTIVE W/(m K). width: m, the pad's side.
+    depth: m, None for as deep as the element without a skin; a skin lies over both. Raises UnknownNameError and InvalidValueError."""
 
     material: str | Material = "silicone"
     width: float = 0.020
@@ -31,7 +31,7 @@ class Surround:
         made = material(self.material)
         if made.conductivity > MOST_CONDUCTIVE:
             raise InvalidValueError(
-                f"surround: {made.name} conducts {made.conductivity:g} W/(m K), and one even flow beside the face tells "
+                f"surround: {made.name} conducts {made.conductivity:g} W/(m K), and one flow beside the face tells "
                 f"what pads of at most {MOST_CONDUCTIVE:g} W/(m K) do: take one such as silicone"
             )
         positive("surround: width (m)", self.width)
