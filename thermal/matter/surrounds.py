@@ -21,7 +21,8 @@ class Surround:
     flush with the element's face.
 
     material: a name of thermal.materials() or a Material, of at most MOST_CONDUCTIVE W/(m K). width: m, the pad's side.
-    depth: m, None for as deep as the element without a skin; a skin lies over both. Raises UnknownNameError and InvalidValueError."""
+    depth: m, None for as deep as the element without a skin; a skin lies over both. Raises UnknownNameError and
+    InvalidValueError."""
 
     material: str | Material = "silicone"
     width: float = 0.020
