@@ -9,8 +9,8 @@ from thermograsp.doors import opened
 
 if TYPE_CHECKING:
     from thermograsp.bench.kinds import Progress, Record
-    from thermograsp.bench.measured_on import provenance
+    from thermograsp.bench.measured_on import caption, provenance
 
-__all__ = ["Progress", "Record", "provenance"]
+__all__ = ["Progress", "Record", "caption", "provenance"]
 
 __getattr__ = opened(__name__)

@@ -24,6 +24,14 @@ def provenance(seed: int) -> dict[str, object]:
     return {"machine": machine, "versions": versions, "seed": seed}
 
 
+def caption(found: dict[str, object]) -> str:
+    """One line of what provenance() returned, for a figure."""
+    machine, versions = found["machine"], found["versions"]
+    assert isinstance(machine, dict) and isinstance(versions, dict)
+    named = ", ".join(f"{name} {version}" for name, version in versions.items())
+    return f"{machine['processor']}, {machine['cores']} cores, {machine['system']} · {named} · seed {found['seed']}"
+
+
 def _processor() -> str:
     info = Path("/proc/cpuinfo")
     if info.is_file():
