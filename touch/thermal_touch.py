@@ -605,6 +605,25 @@ class ThermalTouch:
         )
         self._near, self._near_at, self._hear_step = data, self._hearing.address, hearer()
 
+    def hearing(self, data: mujoco.MjData) -> int:
+        """The address of what `hear` takes of a step of these data, until anything else is called; 0 where a step is
+        more than that. For `heard`."""
+        return self._near_at if data is self._near else 0
+
+    def heard(self, data: mujoco.MjData, found: int) -> int:
+        """What is left to do after a step of which `hear` has returned `found`, or, where `hearing` was 0, ELSEWHERE:
+        `update` in two parts, for who takes the first in compiled code. Returns the `hearing` of the next step."""
+        if found == ELSEWHERE:
+            self.update(data)
+        else:
+            self._finish(found)
+        return self.hearing(data)
+
+    def due(self, time: float) -> None:
+        """Makes the reading that was due at that time s, the last one so far, where `hear` has returned DUE. Behind the
+        last of several steps once does for all of them."""
+        self._reading = self._electronics.reading(np.array([time]), self._reader.broken)
+
     def _finish(self, heard: int) -> TouchReading:
         """What is left to do where `hear` found something to do."""
         if heard == BROKEN:

@@ -4,7 +4,20 @@ from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_co
 from .columns import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FORCE, LENGTH, NORMAL, PLACE
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
-from .pointers import called, called_two, chains, entry, flags, floats, integers, table, words
+from .memory import clock_of
+from .pointers import (
+    asked,
+    called,
+    called_one,
+    called_two,
+    chains,
+    entry,
+    flags,
+    floats,
+    integers,
+    table,
+    words,
+)
 from .reader import ContactReader, read_contacts, sense_contacts
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
@@ -30,10 +43,13 @@ __all__ = [
     "SensorPlaces",
     "TouchContacts",
     "array_contacts",
+    "asked",
     "bends",
     "called",
+    "called_one",
     "called_two",
     "chains",
+    "clock_of",
     "curves",
     "entry",
     "flags",

@@ -62,6 +62,12 @@ class ContactMemory:
         self._said[:] = _contacts(self._data), self._data.efc_force.ctypes.data
 
 
+def clock_of(data: mujoco.MjData) -> int | None:
+    """The address of the data's time s, which holds while they live; None where it is not known."""
+    clock = _clock()
+    return None if clock is None else data._address + clock[0]
+
+
 def _contacts(data: mujoco.MjData) -> int:
     """The address of the first mjContact."""
     found = data.contact

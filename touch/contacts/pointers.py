@@ -24,7 +24,8 @@ def table(arrays: Sequence[np.ndarray], numbers: Sequence[int] = ()) -> np.ndarr
 
 
 def entry(kernel: Any, arguments: int) -> int:
-    """The address of a compiled function of two or four integers that returns one, for `called_two` and `called`."""
+    """The address of a compiled function of one, two or four integers that returns one, for `called_one`, `called_two`
+    and `called`."""
     kinds = (types.int64,) * arguments
     kernel.compile(kinds)
     compiled = kernel.overloads[kinds]
@@ -57,6 +58,10 @@ def _chains(context, address):
 
 def _pointer(context, builder, signature, arguments):
     return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
+
+
+def _called_one(context, address, first):
+    return types.int64(types.int64, types.int64), _call
 
 
 def _called_two(context, address, first, second):
@@ -95,8 +100,10 @@ laws: Any = intrinsic(_laws)
 chains: Any = intrinsic(_chains)
 """Of an address, what numba.carray takes: of floating-point numbers, of integers of 32 and 64 bits, of
 booleans, of CONTACT_LAW and of CHAIN_NUMBERS."""
+called_one: Any = intrinsic(_called_one)
 called_two: Any = intrinsic(_called_two)
 called: Any = intrinsic(_called)
-"""What the function at an address returns of two or four integers. It is not compiled into its caller once more."""
+"""What the function at an address returns of one, two or four integers. It is not compiled into its caller once
+more."""
 asked: Any = intrinsic(_asked)
 """What Python's function at an address, ctypes.CFUNCTYPE(c_int64, c_int64), returns of a number."""

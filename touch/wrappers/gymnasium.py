@@ -31,8 +31,8 @@ class AddThermalObservation(gymnasium.Wrapper):
 
     A Dict observation gains the entry; any other becomes Dict(observation=..., voltage=...). info["touch"] is the last
     TouchReading. fingertips, objects and further words: those of ThermalTouch. Every substep is heard, also where the
-    environment takes several in one call of mj_step: while it steps, mujoco.mj_step is replaced by one that takes such
-    calls apart, so environments that step in several threads of a process are not served. An environment that makes its
+    environment takes several in one call of mj_step: while it steps, mujoco.mj_step is replaced by one that hears them,
+    so environments that step in several threads of a process are not served. An environment that makes its
     model anew at a reset gets a ThermalTouch anew.
     """
 

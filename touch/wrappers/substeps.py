@@ -11,7 +11,9 @@ from typing import Any
 import mujoco
 
 from ..thermal_touch import ThermalTouch
+from .clock import heard_steps
 
+_RK4 = mujoco.mjtIntegrator.mjINT_RK4
 Simulation = Callable[[], tuple[mujoco.MjModel, mujoco.MjData]]
 
 
@@ -36,28 +38,33 @@ class SteppedTouch:
 
         Both are replaced in the module for that time, so environments that step in several threads of one process are
         not served. Of steps that were taken otherwise, by a function imported by name or in a rollout, the last
-        contacts stand for all."""
+        contacts stand for all. While MuJoCo takes several steps in one call, they are heard by its clock (clock.py);
+        what goes wrong with one is raised at the end of the call."""
         _, data = self._simulation()
-        step, second, update = self._wrapped = mujoco.mj_step, mujoco.mj_step2, self.touch.update
+        step, second, touch = self._wrapped = mujoco.mj_step, mujoco.mj_step2, self.touch
         self._data, self._heard = data, None
+        update, model = touch.update, touch.model
+        options = model.opt
 
-        def heard_step(model: mujoco.MjModel, stepped: mujoco.MjData, nstep: int = 1) -> None:
-            if stepped is not data:
-                step(model, stepped, nstep)
+        def each_step(m: mujoco.MjModel, d: mujoco.MjData, nstep: int = 1) -> None:
+            if d is not data:
+                step(m, d, nstep)
                 return
-            for _ in range(nstep):
-                step(model, stepped)
-                update(stepped)
-            self._heard = stepped.time
+            at_once = nstep > 1 and m is model and options.integrator != _RK4
+            if not (at_once and heard_steps(touch, step, m, d, nstep)):
+                for _ in range(nstep):
+                    step(m, d)
+                    update(d)
+            self._heard = d.time
 
-        def heard_second(model: mujoco.MjModel, stepped: mujoco.MjData) -> None:
-            second(model, stepped)
-            if stepped is data:
-                update(stepped)
+        def each_second(m: mujoco.MjModel, d: mujoco.MjData) -> None:
+            second(m, d)
+            if d is data:
+                update(d)
 
-        mujoco.mj_step, mujoco.mj_step2 = heard_step, heard_second
+        mujoco.mj_step, mujoco.mj_step2 = each_step, each_second
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        mujoco.mj_step, mujoco.mj_step2, update = self._wrapped
+        mujoco.mj_step, mujoco.mj_step2, touch = self._wrapped
         if kind is None and self._data.time != self._heard:  # else a call that would find nothing
-            update(self._data)
+            touch.update(self._data)
