@@ -32,8 +32,9 @@ SHARE = 8e-4
 """Largest error of the drop of any of DETAILS from FIRST s on as a share of the difference, before anything is trimmed;
 measured as for LEVELS."""
 STRONGEST = 1e5  # W/(m2 K)
-PADDED_SHARE = 2.9e-3
-"""The same with a pad around the element: concentric squares, one even flow beside the face."""
+PADDED_SHARE = 3.4e-3
+"""The same with a pad around the element (concentric squares, one even flow beside the face), beside three-dimensional
+finite elements (docs/physics.md), most of it on thin metal half a second after the touch."""
 PADDED_STRONGEST = 3e5
 """W/(m2 K), as of skins on smooth faces: no other network serves there."""
 _AIR = 1.25, 1e-4
