@@ -118,7 +118,11 @@ BY_MJLAB = {(f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "keep_cu
 """mjlab itself imports its tasks; the door goes on without it."""
 WHERE_INSTALLED = {("benchmarks/speed/fetch.py", "gymnasium_robotics")}
 """The benchmark leaves its rows out elsewhere."""
-BY_NUMBA = {("touch/contacts/pointers.py", "llvmlite"), ("touch/heat/lanes.py", "llvmlite")}
+BY_NUMBA = {
+    ("touch/contacts/pointers.py", "llvmlite"),
+    ("touch/heat/lanes.py", "llvmlite"),
+    ("touch/wrappers/clock.py", "llvmlite"),
+}
 """numba cannot be installed without it."""
 NEVER_NAMED = {"jax", "fem"}
 """thermal.array_fingertips takes its functions from the arrays that it is given; fem is a part of bench."""
