@@ -14,6 +14,9 @@ from .sensors import SensorStack
 MOST_CONDUCTIVE = 0.5
 """W/(m K). On glass the drop is off three-dimensional finite elements by .007 K of 12 K at 0.3, and by .043 K at 1."""
 
+_LEAST_WIDER = 1.1
+"""Times the element's width. With foams on a rim of a quarter of a millimetre the network of one touch is off by .1 K."""
+
 
 @dataclass(frozen=True, slots=True)
 class Surround:
@@ -50,11 +53,11 @@ class Surround:
 
     def around(self, stack: SensorStack) -> Surround:
         """The pad around that bare element, as deep as it unless a depth is given. Raises InvalidValueError for a pad
-        that is no wider than the element, and for one that is deeper."""
-        if self.width <= stack.width * (1 + 1e-9):
+        that is less than a tenth wider than the element, and for one that is deeper."""
+        if self.width < _LEAST_WIDER * stack.width * (1 - 1e-9):
             raise InvalidValueError(
-                f"surround: width {self.width:g} m leaves nothing around sensor {stack.name!r}, which is "
-                f"{stack.width:g} m wide: give a wider one"
+                f"surround: width {self.width:g} m leaves hardly anything around sensor {stack.name!r}, "
+                f"which is {stack.width:g} m wide: give {_LEAST_WIDER * stack.width:g} m or more"
             )
         depth = stack.thickness if self.depth is None else self.depth
         if depth > stack.thickness * (1 + 1e-9):
