@@ -15,7 +15,7 @@ MOST_CONDUCTIVE = 0.5
 """W/(m K). On glass the drop is off three-dimensional finite elements by .007 K of 12 K at 0.3, and by .043 K at 1."""
 
 _LEAST_WIDER = 1.1
-"""Times the element's width. With foams on a rim of a quarter of a millimetre the network of one touch is off by .1 K."""
+"""Times the element's width. With foams in a rim of a quarter of a millimetre, networks are off by .1 K."""
 
 
 @dataclass(frozen=True, slots=True)
