@@ -18,6 +18,8 @@ from thermograsp.errors import unknown_name
 MAX_OPENING = 0.085  # m between the pads, that a command may ask for and an observation tell
 MAX_HEIGHT = 0.15  # m of the arm over its lowest position, that an observation tells
 MAX_LIFT_RATE = 0.05  # m/s that a command may ask for
+LATERAL_REACH = 0.06  # m of the arm to either side of its middle, that an observation tells
+MAX_LATERAL_RATE = 0.1  # m/s that a command may ask for
 
 
 class Command(NamedTuple):
@@ -107,6 +109,7 @@ _SCHEMES: Mapping[str, str] = MappingProxyType(
         "simulated-pair": "thermograsp.envs.plant.pair:pair_plant",
         "serial": "thermograsp.hardware.plant.serial:serial_plant",
         "twin": "thermograsp.twin.plant:twin_plant",
+        "twin-pair": "thermograsp.twin.plant:twin_pair_plant",
     }
 )
 

@@ -1,4 +1,4 @@
-"""Emulated fingertips, gripper and lift that belong together: one simulated plant is what they move and feel."""
+"""Emulated fingertips, gripper and arm that belong together: one simulated plant is what they move and feel."""
 
 from __future__ import annotations
 
@@ -8,7 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from thermograsp.envs.limits import MAX_HEIGHT, MAX_LIFT_RATE, SAMPLE_PERIOD
+from thermograsp.envs.limits import (
+    LATERAL_REACH,
+    MAX_HEIGHT,
+    MAX_LATERAL_RATE,
+    MAX_LIFT_RATE,
+    SAMPLE_PERIOD,
+)
 from thermograsp.envs.plant import SimulatedPlant
 from thermograsp.errors import InvalidValueError, within
 from thermograsp.hardware import (
@@ -29,22 +35,22 @@ _REHEARSAL = 50  # control steps, in which the fingers reach an object
 _PAUSE = 1.0  # s without a sample, in which the simulation stands still
 
 
-class SimulatedLift:
-    """The lift of a simulated hand, an Axis without a line. rate: m/s that it was told last; the simulation follows it
-    with its own acceleration, and stops at its ends. height: m after the last control step."""
+class SimulatedAxis:
+    """An axis of a simulated hand's arm, an Axis without a line. name: of its rate. travel: m. most_rate: m/s. rate:
+    m/s that it was told last; the simulation follows it with its own acceleration, and stops at its ends. place: m
+    after the last control step."""
 
-    travel = MAX_HEIGHT
-
-    def __init__(self) -> None:
-        self.rate = self.height = 0.0
+    def __init__(self, name: str, travel: float, most_rate: float) -> None:
+        self.travel, self.rate, self.place = travel, 0.0, 0.0
+        self._name, self._most_rate = name, most_rate
 
     def move(self, rate: float) -> None:
         """See Axis. Raises InvalidValueError for a rate that the simulated arm does not have."""
-        self.rate = float(within("lift_rate", rate, -MAX_LIFT_RATE, MAX_LIFT_RATE, "m/s"))
+        self.rate = float(within(self._name, rate, -self._most_rate, self._most_rate, "m/s"))
 
     def position(self) -> float:
         """See Axis."""
-        return self.height
+        return self.place
 
     def stop(self) -> None:
         """See Axis."""
@@ -55,13 +61,15 @@ class SimulatedLift:
 
 
 class SimulatedHand:
-    """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too. `lift` is the axis
-    of its arm, which stands still unless it is moved.
+    """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too. `lift` is an axis
+    of its arm, and `lateral` the one along the table where two objects lie, else None. Both stand still unless they are
+    moved.
 
     A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., stands between the
-    fingers whenever an active gripper is wide open. Once `draw_next` has been called, objects come from it alone. The
-    simulation goes on, a control step whenever one is due for the next sample, from the first command to close or to
-    lift until the next object. While the gripper is not active nothing is between the fingers. Their speed is the
+    fingers whenever an active gripper is wide open. Two objects stay where they are until the
+    gripper is activated anew, since the fingers open between them. Once `draw_next` has been called, objects come from
+    it alone. The simulation goes on, a control step whenever one is due for the next sample, from the first command to
+    close or to move the arm until the next object. While the gripper is not active nothing is between the fingers. Their speed is the
     simulation's, whatever the command says, and the plates keep the simulation's temperature. Two threads may serve the
     two lines.
 
@@ -79,7 +87,11 @@ class SimulatedHand:
         self._rehearse()
         self._plates = simulation.config.sensor_temperatures
         self._last_command = (model.units.stroke, 0.0)
-        self.lift = SimulatedLift()
+        self.lift = SimulatedAxis("lift_rate", MAX_HEIGHT, MAX_LIFT_RATE)
+        self.lateral: SimulatedAxis | None = None
+        if simulation.layout.lateral:
+            self.lateral = SimulatedAxis("lateral_rate", LATERAL_REACH, MAX_LATERAL_RATE)
+        self._arm = [axis for axis in (self.lift, self.lateral) if axis is not None]
         self.reading: Reading | None = None
         self._asked = False
         self._begun: float | None = None  # s, of the control step that the reading is of
@@ -92,7 +104,7 @@ class SimulatedHand:
         """Takes the object away. The next one is drawn from `rng`, with the reset options of the simulation."""
         with self._lock:
             self.reading = self._begun = None
-            self.lift.height = 0.0
+            self._arm_back()
             self._next, self._asked = (rng, options), True
 
     def move(self, target: float, force: float, speed: float, seconds: float) -> None:
@@ -111,6 +123,10 @@ class SimulatedHand:
     def _active(self) -> bool:
         return self.gripper.state.activation == Activation.DONE
 
+    def _arm_back(self) -> None:
+        for axis in self._arm:
+            axis.place = 0.0
+
     def _rehearse(self) -> None:
         """A grasp that nobody sees: what is compiled or loaded at a first touch must not keep a line waiting."""
         self._simulation.reset([0], [np.random.default_rng(self._seed)], {})
@@ -123,10 +139,15 @@ class SimulatedHand:
             if (
                 self._active
                 and wide
-                and (self.reading is None or (self._begun is not None and not self._asked))
+                and (
+                    self.reading is None
+                    or (self._begun is not None and not self._asked and self.lateral is None)
+                )
             ):
                 self._put_object()
-            if self.reading is None or (self._begun is None and wide and not self.lift.rate):
+            if self.reading is None or (
+                self._begun is None and wide and not any(axis.rate for axis in self._arm)
+            ):
                 return Feel(thermostat=self._plates)
             return self._simulated(now)
 
@@ -134,7 +155,8 @@ class SimulatedHand:
         rng, options = self._next or (np.random.default_rng(self._seed + self.episodes), {})
         self._next = None
         self.reading, self._begun = self._simulation.reset([0], [rng], options), None
-        self.opening, self.contact, self.lift.height = self._stroke, Contact.NONE, 0.0
+        self.opening, self.contact = self._stroke, Contact.NONE
+        self._arm_back()
         self.episodes += 1
 
     def _simulated(self, now: float) -> Feel:
@@ -155,11 +177,14 @@ class SimulatedHand:
 
     def _step(self) -> None:
         target, force = self._last_command
-        reading = self._simulation.step(
-            Command(np.array([target]), np.array([force]), np.array([self.lift.rate]))
-        )
+        command = Command(np.array([target]), np.array([force]), np.array([self.lift.rate]))
+        if self.lateral is not None:
+            command = command._replace(lateral_rate=np.array([self.lateral.rate]))
+        reading = self._simulation.step(command)
         self.reading, self.opening = reading, float(reading.opening[0])
-        self.lift.height = float(reading.height[0])
+        self.lift.place = float(reading.height[0])
+        if self.lateral is not None and reading.lateral is not None:
+            self.lateral.place = float(reading.lateral[0])
         pressing = reading.force[0, :, 0].min() > _PRESSING
         standing = abs(reading.opening_rate[0]) < _STANDING and self.opening > target + _SHORT
         self.contact = Contact.CLOSING if pressing and standing else Contact.NONE

@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--twin",
         action="store_true",
-        help="score through emulated devices and their serial protocols, on the tasks grasp and identify",
+        help="score through emulated devices and their serial protocols",
     )
     add(
         "--force-range",
@@ -53,10 +53,6 @@ def run(args: argparse.Namespace) -> int:
     from thermograsp.agents.learning import HELD_OUT, learning_task, score
 
     task = learning_task(args.task)
-    if args.twin and task.env_id == "thermograsp/Sort-v0":
-        raise InvalidValueError(
-            f"--twin: a gripper on a serial line has no lateral axis, which {task.name} needs"
-        )
     if args.force_range and not args.twin:
         raise InvalidValueError("--force-range is of an emulated gripper: give --twin, too")
     changes = {"gripper": args.gripper} if args.gripper else {}

@@ -7,9 +7,10 @@ from typing import Any
 
 from thermograsp.errors import InvalidValueError
 
-from ..plant import Goal, SimulationConfig
+from ..plant import HOTTER, Goal, SimulationConfig
 from ..spaces import SortObserver
 from ..tasks import SortTask
+from .keywords import simulates
 from .single import TouchEnv
 from .vector import TouchVectorEnv
 
@@ -46,8 +47,10 @@ class SortEnv(TouchEnv):
     Keywords: goal ("material", "hotter"), material (a list, or None for the ten seed materials; an episode draws two
     of them, or one for "hotter"), object_temperature (°C; for "hotter" a pair, the cooler one first, 20 and 28 by
     default), hold_seconds and seconds (s), objects (an ObjectSpec, or a list to draw from; it applies to both
-    objects, with .1 kg and friction .8 by default), render_mode, and others as GraspEnv's, in T mode. The plant is
-    simulated.
+    objects, with .1 kg and friction .8 by default), plant ("simulated", "twin" or a URL), render_mode, and others as
+    GraspEnv's, in T mode. A real gripper needs its arm's axis along y, lateral, and is told what is asked:
+    reset(options={"asked": name}), and with "right": 0 or 1 also where that is, so that success can be judged by what
+    the arm lifts.
     """
 
     def __init__(
@@ -78,12 +81,22 @@ class SortVectorEnv(TouchVectorEnv):
 
 
 def _prepared(goal: Goal, config: dict[str, Any]) -> dict[str, Any]:
-    """The batch's keywords."""
-    plant = config.pop("plant", "simulated")
-    if plant != "simulated":
+    """The batch's keywords: of a pair of objects that are simulated, or of real ones, for which there are none."""
+    plant, choices = config.pop("plant", "simulated"), _choices(goal, config.get("material"))
+    config = {**config, "observer": partial(SortObserver, goals=len(choices))}
+    if simulates(plant):
+        scheme, colon, rest = plant.partition(":")
+        return {**config, "plant": f"{scheme}-pair{colon}{rest}", "goal": goal}
+    if plant.startswith("serial:") and config.get("lateral") is None:
         raise InvalidValueError(
-            f"plant {plant!r}: Sort-v0 needs to know which object is right, and a lateral axis; give 'simulated'"
+            f"plant {plant!r}: Sort-v0 moves the gripper along the table to one of two objects; give lateral=, that "
+            "axis of its arm (a thermograsp.hardware.Axis, as for lift)"
         )
-    goals = 1 if goal == "hotter" else len(SimulationConfig(material=config.get("material")).choices)
-    observer = partial(SortObserver, goals=goals)
-    return {**config, "plant": "simulated-pair", "goal": goal, "observer": observer}
+    return {**{name: value for name, value in config.items() if name != "material"}, "plant": plant, "goals": choices}
+
+
+def _choices(goal: Goal, material: Any) -> tuple[str, ...]:
+    """Names of what can be asked."""
+    if goal == "hotter":
+        return (HOTTER,)
+    return tuple(each.name for each in SimulationConfig(material=material).choices)

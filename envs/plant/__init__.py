@@ -1,7 +1,7 @@
 """The simulated plants: mechanics, heat and electronics of a batch of environments, and what may be drawn at random."""
 
 from .config import SimulationConfig
-from .pair import Goal
+from .pair import HOTTER, Goal, pair_plant
 from .randomization import (
     EVERYTHING,
     Delay,
@@ -20,6 +20,7 @@ from .truth import Truth
 
 __all__ = [
     "EVERYTHING",
+    "HOTTER",
     "Delay",
     "Friction",
     "Gain",
@@ -35,5 +36,6 @@ __all__ = [
     "Size",
     "ThermostatError",
     "Truth",
+    "pair_plant",
     "simulated_plant",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gymnasium
 import numpy as np
 
+from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Reading
 
 from ..limits import LATERAL_REACH
@@ -30,9 +31,15 @@ class SortObserver(Observer):
         return *super().arrays, self._lateral, self._goal
 
     def observe(self, reading: Reading, force_limit: np.ndarray, observed: np.ndarray) -> Observation:
-        """See Observer; needs a plant with a lateral axis that says what is asked."""
+        """See Observer. Raises InvalidValueError for a plant without a lateral axis, and one that does not say what is
+        asked."""
         observation = super().observe(reading, force_limit, observed)
-        assert reading.lateral is not None
+        if reading.lateral is None or "goal" not in reading.truth:
+            lacks = "lateral place" if reading.lateral is None else "goal in their truth"
+            raise InvalidValueError(
+                f"this plant's readings have no {lacks}, which sorting needs: give one with a lateral axis that takes "
+                "the keyword goals, such as 'simulated' or thermograsp.hardware.SerialPlant"
+            )
         bound = np.float32(_FURTHEST)
         self._lateral[observed, 0] = np.clip(reading.lateral[observed].astype(np.float32), -bound, bound)
         self._goal[observed] = reading.truth["goal"][observed]

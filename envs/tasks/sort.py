@@ -64,23 +64,24 @@ class SortTask:
     def judge(
         self, state: np.ndarray, dt: float, action: np.ndarray, reading: Reading
     ) -> tuple[np.ndarray, Outcome]:
-        """After a control step of dt s. Raises InvalidValueError for a plant that does not know which object is
-        right."""
+        """After a control step of dt s. Where a plant's truth has no `object_force`, the object that the arm is over
+        (0 at lateral places below 0) is what the pads press, and the arm's height stands for how high it is while both
+        press it; nothing breaks. Where nobody told which is `right`, reward is 0 and success never comes. Raises
+        InvalidValueError for a plant without a lateral axis."""
         del action
-        truth = reading.truth
-        if "right" not in truth:
-            raise InvalidValueError("this plant does not know two objects: sorting needs a simulated pair")
-        rows, right = np.arange(len(state)), truth["right"]
-        lift, other = truth["lift"][rows, right], truth["lift"][rows, 1 - right]
-        normal = truth["object_force"][..., 0]  # (B, O, F)
-        pressing = normal[rows, right].min(axis=1) > TOUCHING
+        heights, normal, crushing = _objects(reading)
+        rows = np.arange(len(state))
+        told = np.full(len(state), "right" in reading.truth)
+        right = np.asarray(reading.truth.get("right", np.zeros(len(state), int)))
+        lift, other = heights[rows, right], heights[rows, 1 - right]
+        pressing = told & (normal[rows, right].min(axis=1) > TOUCHING)
         at_height = pressing & (lift >= LIFTED * 0.98)
         after = np.empty_like(state)
         after["elapsed"] = elapsed = state["elapsed"] + dt
         after["held"] = held = np.where(at_height, state["held"] + dt, 0.0)
         after["lifted"] = lifted = state["lifted"] | at_height
-        wrong = other >= WRONG
-        crushed = (normal.max(axis=2) > truth["crushing_force"]).any(axis=1)
+        wrong = told & (other >= WRONG)
+        crushed = (normal.max(axis=2) > crushing).any(axis=1)
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
         failed = wrong | crushed | dropped
         # In float steps of dt a rounding must not cost a control step.
@@ -99,3 +100,17 @@ class SortTask:
             info={},
         )
         return after, outcome
+
+
+def _objects(reading: Reading) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of both objects: heights (B, O) m, normal forces (B, O, F) N on them, and those that crush them (B, O) N."""
+    truth = reading.truth
+    if "object_force" in truth:
+        return truth["lift"], truth["object_force"][..., 0], truth["crushing_force"]
+    if reading.lateral is None:
+        raise InvalidValueError("this plant has no lateral axis and does not know two objects: sorting needs one")
+    rows, over = np.arange(len(reading.height)), (reading.lateral >= 0).astype(int)
+    heights, normal = np.zeros((len(rows), 2)), np.zeros((len(rows), 2, reading.force.shape[1]))
+    normal[rows, over] = reading.force[..., 0]
+    heights[rows, over] = np.where(normal[rows, over].min(axis=1) > TOUCHING, reading.height, 0.0)
+    return heights, normal, np.full(heights.shape, np.inf)

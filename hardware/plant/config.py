@@ -12,8 +12,9 @@ class SerialConfig:
     """rate: Hz of the voltage. dt: s, the control period, a whole number of samples. setpoint: °C of both thermostats.
     speed: m/s of the fingers. most_force: N on a pad, of either sign, above which the gripper lets go; so it does where
     a load cell is at an end of its range (62.4 N in docs/firmware.md), whatever this is. watchdog: s without a step
-    after which it lets go; 0 for never. settle_within, open_within, lower_within: s that a reset waits for the
-    thermostats, for the fingers to open, and for the lift to go down."""
+    after which it lets go; 0 for never. settle_within, open_within, lower_within,
+    centre_within: s that a reset waits for the thermostats, for the fingers to open, for the lift to go down, and for
+    the lateral axis to come to its middle."""
 
     rate: int = 100
     dt: float = 0.02
@@ -24,9 +25,11 @@ class SerialConfig:
     settle_within: float = 60.0
     open_within: float = 6.0
     lower_within: float = 10.0
+    centre_within: float = 10.0
 
     def __post_init__(self) -> None:
-        for name in ("dt", "speed", "most_force", "settle_within", "open_within", "lower_within"):
+        waits = ("settle_within", "open_within", "lower_within", "centre_within")
+        for name in ("dt", "speed", "most_force", *waits):
             positive(f"serial plant: {name}", getattr(self, name))
         for name in ("setpoint", "watchdog"):
             finite(f"serial plant: {name}", getattr(self, name))

@@ -27,29 +27,34 @@ from ..errors import (
     StoppedError,
 )
 from ..protocol import Flag, Samples
+from .asked import Asked
 from .config import PaceCounts, SerialConfig
-from .lift import Lift
+from .limited_axis import LATERAL, LIFT, LimitedAxis
 from .pacing import Pace, RealTime
 
 UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height", "lateral")
 _STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
 OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
-_STOPPED = "fingers and lift were stopped where they are; reset the environment to go on"
+_STOPPED = "fingers and arm were stopped where they are; reset the environment to go on"
 _TOLERATED = Flag.SATURATED_LEFT | Flag.SATURATED_RIGHT  # the observation saturates as well
 _WARMING = Flag.OFF_SETPOINT_LEFT | Flag.OFF_SETPOINT_RIGHT | _TOLERATED
 _SETTLING = 0.2  # s between looks at a thermostat that warms up
 
 
 class SerialPlant:
-    """A plant (thermograsp.plant.Plant) of real fingertips, a real gripper and maybe a lift, which it owns and closes.
+    """A plant (thermograsp.plant.Plant) of real fingertips, a real gripper and maybe axes of its arm, which it owns and
+    closes.
 
     A step sends the command, waits for the step's end, and reads. The voltages are the oldest samples not yet read, so
-    that they are at most a step and a sample old. What goes wrong in a step or a reset stops the lift, opens the
+    that they are at most a step and a sample old. What goes wrong in a step or a reset stops the arm, opens the
     gripper and ends the episode: a step's reading has the last values and says why in error. What is held then falls
-    from where the lift is. lift: the arm's axis that carries the gripper; it does not leave 0 .. its travel, nor 0 ..
-    MAX_HEIGHT. Without one the height is 0 and lift_rate does nothing; lateral_rate does nothing; a gripper of a
-    shorter stroke opens as far as it can. truth has `unknown`, names that only a simulation knows or that need such an
-    axis, and `late`, s by which the step's end was missed. On close the fingers stay as they are, and the lift stops.
+    from where the lift is. lift: the arm's axis that raises the gripper; it does not leave 0 .. its travel, nor 0 ..
+    MAX_HEIGHT. Without one the height is 0 and lift_rate does nothing. lateral: the axis that moves it along the table,
+    across the fingers' motion, position 0 in the middle between two objects and positions above 0 on object 1's side;
+    it does not leave +- its travel, nor +- LATERAL_REACH. Without one readings have no lateral place and lateral_rate
+    does nothing. goals: what Sort-v0 can ask for; see Asked. A gripper of a shorter stroke opens as far as it can.
+    truth has `unknown`, names that only a simulation knows or that need such an axis, and `late`, s by which the step's
+    end was missed. On close the fingers stay as they are, and the arm stops.
     """
 
     num_envs = 1
@@ -62,6 +67,8 @@ class SerialPlant:
         pace: Pace | None = None,
         widest: float | None = None,
         lift: Axis | None = None,
+        lateral: Axis | None = None,
+        goals: Sequence[str] = (),
     ) -> None:
         self.config = config or SerialConfig()
         self.dt, self.sample_rate = self.config.dt, float(self.config.rate)
@@ -71,8 +78,11 @@ class SerialPlant:
             stroke = positive("the gripper's stroke (m)", getattr(gripper, "stroke", MAX_OPENING))
             widest = min(stroke, MAX_OPENING)
         self._widest = widest
-        self._lift = Lift(lift)
-        self._unknown = tuple(name for name in UNKNOWN if lift is None or name != "height")
+        self._lift, self._lateral = LimitedAxis(lift, LIFT), LimitedAxis(lateral, LATERAL)
+        self._arm = (self._lift, self._lateral)
+        self._asked = Asked(goals)
+        told = {"height": lift, "lateral": lateral}
+        self._unknown = tuple(name for name in UNKNOWN if told.get(name) is None)
         self._queue: deque[tuple[np.ndarray, np.ndarray, np.ndarray]] = deque()
         self._held = (np.zeros(2), np.zeros((2, 3)), np.full(2, np.nan))
         self._opening = 0.0
@@ -93,11 +103,11 @@ class SerialPlant:
     def reset(
         self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
     ) -> Reading:
-        """Lowers the lift, then opens the gripper, and waits for them and for the thermostats. Nothing is drawn: the
-        object is what lies there. Raises DeviceError and its kinds, InvalidValueError for options."""
+        """Lowers the lift, opens the gripper, takes it to the middle, and waits for them and for the thermostats.
+        Nothing is drawn: the objects are what lies there. options: see Asked. Raises DeviceError and its kinds,
+        InvalidValueError and UnknownNameError for options."""
         del rows, rngs
-        if options:
-            raise InvalidValueError(f"a serial plant has no reset options, got {sorted(options)}")
+        self._asked.begin(options)
         try:
             self._prepare()
         except StoppedError as error:
@@ -110,14 +120,16 @@ class SerialPlant:
 
     def _prepare(self) -> None:
         self._armed = self._holding = self._stopped = False
-        self._lift.heard = True
+        self._lift.heard = self._lateral.heard = True
         self._await(self._heated, self.config.open_within, "the fingertips to answer")
-        self._await(self._lowered, self.config.lower_within, "the lift to go down")
+        lowered, centred = self._returned(self._lift), self._returned(self._lateral)
+        self._await(lowered, self.config.lower_within, "the lift to go down")
         self._require_unstopped()
         self._gripper.activate()
         self._require_unstopped()
         self._gripper.move(self._widest, 0.0, self.config.speed)
         self._await(lambda: not self._gripper.status().moving, self.config.open_within, "the gripper to open")
+        self._await(centred, self.config.centre_within, "the lateral axis to come to its middle")
         self._await(self._settled, self.config.settle_within, "the thermostats to reach their setpoint")
         self._opening = self._gripper.status().opening
         self._take(self._tips.wait(1, self.config.open_within))
@@ -141,9 +153,12 @@ class SerialPlant:
                 opening, force = float(command.opening[0]), float(command.force_limit[0])
                 self._gripper.move(self._within(opening), force, self.config.speed)
                 self._lift.move(float(command.lift_rate[0]), self._pace.now(), self.dt)
+                sideways = 0.0 if command.lateral_rate is None else float(command.lateral_rate[0])
+                self._lateral.move(sideways, self._pace.now(), self.dt)
             self._pace.until(self._end - _STATUS_LEAD)
             status = self._checked(self._gripper.status())
-            self._lift.read(self._pace.now())
+            for axis in self._arm:
+                axis.read(self._pace.now())
             self._pace.until(self._end)
             self._take(self._tips.take())
             voltage = self._oldest()
@@ -162,34 +177,38 @@ class SerialPlant:
         return self._reading(voltage, rate, late)
 
     def stop(self) -> None:
-        """Stops lift and fingers where they are, from another thread, before what a step or a reset asks of them, and
-        ends the episode: nothing moves them until the next reset. Raises what their own `stop` raises, after both have
+        """Stops arm and fingers where they are, from another thread, before what a step or a reset asks of them, and
+        ends the episode: nothing moves them until the next reset. Raises what their own `stop` raises, after all have
         been told."""
         self._stopped = True
         try:
-            self._stop_both()
+            self._stop_all()
         finally:
             with self._guarding:  # a step may have been about to move them
                 self._end_episode(_STOPPED)
-                self._stop_both()
+                self._stop_all()
 
     def quantised(self, command: Command) -> Command:
-        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps; without a
-        lift axis no lift."""
+        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps; no rate of
+        an axis that the arm does not have."""
         wanted = self._within(command.opening)
         opening, force, _ = self._gripper.quantised(wanted, command.force_limit, self.config.speed)
         return Command(
-            opening, force, np.zeros_like(opening) if self._lift.axis is None else command.lift_rate
+            opening,
+            force,
+            np.zeros_like(opening) if self._lift.axis is None else command.lift_rate,
+            None if self._lateral.axis is None else command.lateral_rate,
         )
 
     def close(self) -> None:
-        """Ends the watchdog, stops the lift and releases all lines. Does nothing the second time."""
+        """Ends the watchdog, stops the arm and releases all lines. Does nothing the second time."""
         self._closing.set()
         if self._guard is not None:
             self._guard.join()
         if not self._closed:
             self._closed = True
-            self._lift.close()
+            for axis in self._arm:
+                axis.close()
         self._tips.close()
         self._gripper.close()
 
@@ -204,13 +223,14 @@ class SerialPlant:
         return Reading(
             opening=np.array([self._opening]),
             opening_rate=np.array([rate]),
-            height=np.array([self._lift.height]),
+            height=np.array([self._lift.place]),
             force=force[None].copy(),
             voltage=voltage[None],
             thermostat=thermostat[None].copy(),
-            truth={"unknown": unknown, "late": np.array([late])},
+            truth={"unknown": unknown, "late": np.array([late]), **self._asked.truth},
             error=(self._trouble,),
-            info_names=("unknown", "late"),
+            info_names=("unknown", "late", *self._asked.info_names),
+            lateral=None if self._lateral.axis is None else np.array([self._lateral.place]),
         )
 
     def _take(self, samples: Samples) -> None:
@@ -258,10 +278,15 @@ class SerialPlant:
         samples.require_healthy(but=_WARMING)
         return len(samples) > 0 and not int(samples.flags[-1]) & int(_WARMING & ~_TOLERATED)
 
-    def _lowered(self) -> bool:
-        with self._guarding:
-            self._require_unstopped()
-            return self._lift.lowered(self._pace.now(), _SETTLING)
+    def _returned(self, axis: LimitedAxis) -> Callable[[], bool]:
+        """What tells whether that axis is at its position 0, and sends it there."""
+
+        def returned() -> bool:
+            with self._guarding:
+                self._require_unstopped()
+                return axis.returned(self._pace.now(), _SETTLING)
+
+        return returned
 
     def _heated(self) -> bool:
         try:
@@ -301,25 +326,28 @@ class SerialPlant:
         return np.minimum(opening, self._widest)
 
     def _let_go(self, why: str) -> None:
-        """Stops the lift and opens the gripper; where they do not hear, the watchdog tells them again and again. What
+        """Stops the arm and opens the gripper; where they do not hear, the watchdog tells them again and again. What
         was stopped stays as it is."""
         with self._guarding:
             if self._stopped:
                 return self._end_episode(_STOPPED)
             self._trouble, self._armed, self._holding = why, False, True
-            self._lift.halt()
+            self._halt()
             self._open()
 
     def _end_episode(self, why: str) -> None:
-        """The fingers stay as they are, and the lift stops."""
+        """The fingers stay as they are, and the arm stops."""
         self._trouble, self._armed, self._holding = why, False, False
-        self._lift.halt()
+        self._halt()
 
-    def _stop_both(self) -> None:
-        try:
-            self._lift.stop()
-        finally:
-            self._gripper.stop()
+    def _stop_all(self) -> None:
+        with ExitStack() as each:  # the last that is pushed comes first, and all come
+            for part in (self._gripper, self._lateral, self._lift):
+                each.callback(part.stop)
+
+    def _halt(self) -> None:
+        for axis in self._arm:
+            axis.halt()
 
     def _open(self) -> None:
         with suppress(Exception):  # of whatever kind: another package's gripper may raise anything
@@ -333,10 +361,11 @@ class SerialPlant:
             silent = self._pace.now() - self._fed
             if self._armed and silent > self.config.watchdog:
                 self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
-            elif self._holding or not self._lift.heard:
+            elif self._holding or not all(axis.heard for axis in self._arm):
                 with self._guarding:
-                    if not self._lift.heard:
-                        self._lift.halt()
+                    for axis in self._arm:
+                        if not axis.heard:
+                            axis.halt()
                     if self._holding:
                         self._open()
 
@@ -356,9 +385,16 @@ def without_maps(config: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in config.items() if name not in _SIMULATED}
 
 
-def serial_plant(url: str, num_envs: int, lift: Axis | None = None, **config: Any) -> SerialPlant:
+def serial_plant(
+    url: str,
+    num_envs: int,
+    lift: Axis | None = None,
+    lateral: Axis | None = None,
+    goals: Sequence[str] = (),
+    **config: Any,
+) -> SerialPlant:
     """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
-    as open_gripper takes it. lift: see SerialPlant. config: SerialConfig's. Raises InvalidValueError for anything else,
+    as open_gripper takes it. lift, lateral, goals: see SerialPlant. config: SerialConfig's. Raises InvalidValueError for anything else,
     and DeviceError."""
     parts = urlsplit(url)
     options = dict(parse_qsl(parts.query))
@@ -372,13 +408,13 @@ def serial_plant(url: str, num_envs: int, lift: Axis | None = None, **config: An
     try:
         settings = SerialConfig(**without_maps(config))
     except TypeError as error:
-        names = ", ".join((*SerialConfig.__slots__, "lift"))
+        names = ", ".join((*SerialConfig.__slots__, "lift", "lateral"))
         raise InvalidValueError(f"a serial plant takes {names}: {error}") from error
     with ExitStack() as opened:  # what is open when something is refused is closed again
         gripper = opened.enter_context(closing(open_gripper(gripper_url)))
         tips = opened.enter_context(
             closing(Fingertips(parts.path, rate=settings.rate, setpoint=settings.setpoint))
         )
-        plant = SerialPlant(tips, gripper, settings, lift=lift)
+        plant = SerialPlant(tips, gripper, settings, lift=lift, lateral=lateral, goals=goals)
         opened.pop_all()
     return plant
