@@ -92,7 +92,11 @@ def _prepared(goal: Goal, config: dict[str, Any]) -> dict[str, Any]:
             f"plant {plant!r}: Sort-v0 moves the gripper along the table to one of two objects; give lateral=, that "
             "axis of its arm (a thermograsp.hardware.Axis, as for lift)"
         )
-    return {**{name: value for name, value in config.items() if name != "material"}, "plant": plant, "goals": choices}
+    return {
+        **{name: value for name, value in config.items() if name != "material"},
+        "plant": plant,
+        "goals": choices,
+    }
 
 
 def _choices(goal: Goal, material: Any) -> tuple[str, ...]:

@@ -108,7 +108,9 @@ def _objects(reading: Reading) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if "object_force" in truth:
         return truth["lift"], truth["object_force"][..., 0], truth["crushing_force"]
     if reading.lateral is None:
-        raise InvalidValueError("this plant has no lateral axis and does not know two objects: sorting needs one")
+        raise InvalidValueError(
+            "this plant has no lateral axis and does not know two objects: sorting needs one"
+        )
     rows, over = np.arange(len(reading.height)), (reading.lateral >= 0).astype(int)
     heights, normal = np.zeros((len(rows), 2)), np.zeros((len(rows), 2, reading.force.shape[1]))
     normal[rows, over] = reading.force[..., 0]

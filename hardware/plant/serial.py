@@ -27,12 +27,13 @@ from ..errors import (
     StoppedError,
 )
 from ..protocol import Flag, Samples
+from .arm import Arm
 from .asked import Asked
 from .config import PaceCounts, SerialConfig
-from .limited_axis import LATERAL, LIFT, LimitedAxis
+from .limited_axis import LimitedAxis
 from .pacing import Pace, RealTime
 
-UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung", "height", "lateral")
+UNKNOWN = ("material", "temperature_drop", "contact_area", "conductance", "rung")
 _STATUS_LEAD = 0.008  # s before the end of a step when the gripper is asked, whose answer takes 4 to 7 ms
 OVERRUN = 1e-3  # s by which a step's end must be missed to count; the next step then begins as late
 _STOPPED = "fingers and arm were stopped where they are; reset the environment to go on"
@@ -78,11 +79,8 @@ class SerialPlant:
             stroke = positive("the gripper's stroke (m)", getattr(gripper, "stroke", MAX_OPENING))
             widest = min(stroke, MAX_OPENING)
         self._widest = widest
-        self._lift, self._lateral = LimitedAxis(lift, LIFT), LimitedAxis(lateral, LATERAL)
-        self._arm = (self._lift, self._lateral)
-        self._asked = Asked(goals)
-        told = {"height": lift, "lateral": lateral}
-        self._unknown = tuple(name for name in UNKNOWN if told.get(name) is None)
+        self._arm, self._asked = Arm(lift, lateral), Asked(goals)
+        self._unknown = (*UNKNOWN, *self._arm.unknown)
         self._queue: deque[tuple[np.ndarray, np.ndarray, np.ndarray]] = deque()
         self._held = (np.zeros(2), np.zeros((2, 3)), np.full(2, np.nan))
         self._opening = 0.0
@@ -103,7 +101,7 @@ class SerialPlant:
     def reset(
         self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
     ) -> Reading:
-        """Lowers the lift, opens the gripper, takes it to the middle, and waits for them and for the thermostats.
+        """Stops the arm, lowers the lift, opens the gripper, takes it to the middle, and waits for them and for the thermostats.
         Nothing is drawn: the objects are what lies there. options: see Asked. Raises DeviceError and its kinds,
         InvalidValueError and UnknownNameError for options."""
         del rows, rngs
@@ -120,9 +118,10 @@ class SerialPlant:
 
     def _prepare(self) -> None:
         self._armed = self._holding = self._stopped = False
-        self._lift.heard = self._lateral.heard = True
+        with self._guarding:
+            self._arm.halt()  # it may be going on at the last step's rates
         self._await(self._heated, self.config.open_within, "the fingertips to answer")
-        lowered, centred = self._returned(self._lift), self._returned(self._lateral)
+        lowered, centred = self._returned(self._arm.lift), self._returned(self._arm.lateral)
         self._await(lowered, self.config.lower_within, "the lift to go down")
         self._require_unstopped()
         self._gripper.activate()
@@ -152,13 +151,10 @@ class SerialPlant:
                 self._require_unreleased()
                 opening, force = float(command.opening[0]), float(command.force_limit[0])
                 self._gripper.move(self._within(opening), force, self.config.speed)
-                self._lift.move(float(command.lift_rate[0]), self._pace.now(), self.dt)
-                sideways = 0.0 if command.lateral_rate is None else float(command.lateral_rate[0])
-                self._lateral.move(sideways, self._pace.now(), self.dt)
+                self._arm.move(command, self._pace.now(), self.dt)
             self._pace.until(self._end - _STATUS_LEAD)
             status = self._checked(self._gripper.status())
-            for axis in self._arm:
-                axis.read(self._pace.now())
+            self._arm.read(self._pace.now())
             self._pace.until(self._end)
             self._take(self._tips.take())
             voltage = self._oldest()
@@ -193,12 +189,7 @@ class SerialPlant:
         an axis that the arm does not have."""
         wanted = self._within(command.opening)
         opening, force, _ = self._gripper.quantised(wanted, command.force_limit, self.config.speed)
-        return Command(
-            opening,
-            force,
-            np.zeros_like(opening) if self._lift.axis is None else command.lift_rate,
-            None if self._lateral.axis is None else command.lateral_rate,
-        )
+        return self._arm.possible(command._replace(opening=opening, force_limit=force))
 
     def close(self) -> None:
         """Ends the watchdog, stops the arm and releases all lines. Does nothing the second time."""
@@ -207,8 +198,7 @@ class SerialPlant:
             self._guard.join()
         if not self._closed:
             self._closed = True
-            for axis in self._arm:
-                axis.close()
+            self._arm.close()
         self._tips.close()
         self._gripper.close()
 
@@ -223,14 +213,14 @@ class SerialPlant:
         return Reading(
             opening=np.array([self._opening]),
             opening_rate=np.array([rate]),
-            height=np.array([self._lift.place]),
+            height=self._arm.height,
             force=force[None].copy(),
             voltage=voltage[None],
             thermostat=thermostat[None].copy(),
             truth={"unknown": unknown, "late": np.array([late]), **self._asked.truth},
             error=(self._trouble,),
             info_names=("unknown", "late", *self._asked.info_names),
-            lateral=None if self._lateral.axis is None else np.array([self._lateral.place]),
+            lateral=self._arm.place,
         )
 
     def _take(self, samples: Samples) -> None:
@@ -332,22 +322,19 @@ class SerialPlant:
             if self._stopped:
                 return self._end_episode(_STOPPED)
             self._trouble, self._armed, self._holding = why, False, True
-            self._halt()
+            self._arm.halt()
             self._open()
 
     def _end_episode(self, why: str) -> None:
         """The fingers stay as they are, and the arm stops."""
         self._trouble, self._armed, self._holding = why, False, False
-        self._halt()
+        self._arm.halt()
 
     def _stop_all(self) -> None:
-        with ExitStack() as each:  # the last that is pushed comes first, and all come
-            for part in (self._gripper, self._lateral, self._lift):
-                each.callback(part.stop)
-
-    def _halt(self) -> None:
-        for axis in self._arm:
-            axis.halt()
+        try:
+            self._arm.stop()
+        finally:
+            self._gripper.stop()
 
     def _open(self) -> None:
         with suppress(Exception):  # of whatever kind: another package's gripper may raise anything
@@ -361,11 +348,9 @@ class SerialPlant:
             silent = self._pace.now() - self._fed
             if self._armed and silent > self.config.watchdog:
                 self._let_go(f"no step for {silent:.2f} s: the gripper let go; reset the environment")
-            elif self._holding or not all(axis.heard for axis in self._arm):
+            elif self._holding or not self._arm.heard:
                 with self._guarding:
-                    for axis in self._arm:
-                        if not axis.heard:
-                            axis.halt()
+                    self._arm.halt(again=True)
                     if self._holding:
                         self._open()
 
@@ -394,8 +379,8 @@ def serial_plant(
     **config: Any,
 ) -> SerialPlant:
     """The plant of "serial:///dev/ttyACM0?gripper=robotiq:///dev/ttyUSB0": the fingertips' port, and the gripper's URL
-    as open_gripper takes it. lift, lateral, goals: see SerialPlant. config: SerialConfig's. Raises InvalidValueError for anything else,
-    and DeviceError."""
+    as open_gripper takes it. lift, lateral, goals: see SerialPlant. config: SerialConfig's. Raises InvalidValueError
+    for anything else, and DeviceError."""
     parts = urlsplit(url)
     options = dict(parse_qsl(parts.query))
     gripper_url = options.pop("gripper", "")
