@@ -62,16 +62,16 @@ class SimulatedAxis:
 
 class SimulatedHand:
     """Serve `fingertips` and `gripper`, each on a line of its own; it is the gripper's Fingers, too. `lift` is an axis
-    of its arm, and `lateral` the one along the table where two objects lie, else None. Both stand still unless they are
-    moved.
+    of its arm, and `lateral` the one along the table where two objects lie, else None. They stand still unless they
+    are moved.
 
     A fresh object, drawn by SimulatedPlant.reset from default_rng(seed), default_rng(seed + 1), ..., stands between the
-    fingers whenever an active gripper is wide open. Two objects stay where they are until the
-    gripper is activated anew, since the fingers open between them. Once `draw_next` has been called, objects come from
-    it alone. The simulation goes on, a control step whenever one is due for the next sample, from the first command to
-    close or to move the arm until the next object. While the gripper is not active nothing is between the fingers. Their speed is the
-    simulation's, whatever the command says, and the plates keep the simulation's temperature. Two threads may serve the
-    two lines.
+    fingers whenever an active gripper is wide open. Two objects stay until the gripper is activated anew, since the
+    fingers open on the way from one to the other. Once `draw_next` has been called, objects come from it alone. The
+    simulation goes on, a control step whenever one is due for the next sample, from the first command to close or to
+    move the arm until the next object. While the gripper is not active nothing is between the fingers. Their speed is
+    the simulation's, whatever the command says, and the plates keep the simulation's temperature. Two threads may serve
+    the two lines.
 
     opening, contact, current: see Fingers. episodes: objects so far. reading: the simulation's last, None while nothing
     is between the fingers. Raises InvalidValueError for a plant of more than one environment.

@@ -14,8 +14,8 @@ from .limited_axis import LATERAL, LIFT, LimitedAxis
 
 
 class Arm:
-    """lift: raises the gripper. lateral: moves it along the table. Either may be None. Times are of one clock, s. Raises
-    InvalidValueError as LimitedAxis does, and where both are the same."""
+    """lift: raises the gripper. lateral: moves it along the table. Either may be None. Times are of one clock, s.
+    Raises InvalidValueError as LimitedAxis does, and where both are the same."""
 
     def __init__(self, lift: Axis | None, lateral: Axis | None) -> None:
         if lift is not None and lift is lateral:

@@ -101,9 +101,9 @@ class SerialPlant:
     def reset(
         self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
     ) -> Reading:
-        """Stops the arm, lowers the lift, opens the gripper, takes it to the middle, and waits for them and for the thermostats.
-        Nothing is drawn: the objects are what lies there. options: see Asked. Raises DeviceError and its kinds,
-        InvalidValueError and UnknownNameError for options."""
+        """Stops the arm, lowers it, opens the gripper, takes it to the middle, and waits for all that and for the
+        thermostats. Nothing is drawn: the objects are what lies there. options: see Asked. Raises DeviceError and its
+        kinds, InvalidValueError and UnknownNameError for options."""
         del rows, rngs
         self._asked.begin(options)
         try:
@@ -185,8 +185,8 @@ class SerialPlant:
                 self._stop_all()
 
     def quantised(self, command: Command) -> Command:
-        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps; no rate of
-        an axis that the arm does not have."""
+        """What the gripper makes of it, so that a simulation can do the same: opening and force in its steps, and no
+        rate of an axis that the arm does not have."""
         wanted = self._within(command.opening)
         opening, force, _ = self._gripper.quantised(wanted, command.force_limit, self.config.speed)
         return self._arm.possible(command._replace(opening=opening, force_limit=force))

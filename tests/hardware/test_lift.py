@@ -238,17 +238,18 @@ def test_the_watchdog_tells_a_lift_again_that_did_not_hear(tmp_path: Path) -> No
         plant.close()
 
 
+@pytest.mark.parametrize("name", ["lift", "lateral"])
 @pytest.mark.parametrize(
-    ("lift", "said"),
+    ("axis", "said"),
     [
-        (3.0, "float has no travel, move, position, stop, close"),
-        (object(), "object has no travel"),
-        (Arm(lambda: 0.0, travel=0.0), "travel"),
-        (Arm(lambda: 0.0, travel=float("nan")), "travel"),
+        (3.0, "{} must be .* float has no travel, move, position, stop, close"),
+        (object(), "{} must be .* object has no travel"),
+        (Arm(lambda: 0.0, travel=0.0), "the {}.* travel"),
+        (Arm(lambda: 0.0, travel=float("nan")), "the {}.* travel"),
     ],
 )
-def test_what_is_no_lift_is_refused_and_both_lines_are_released(
-    monkeypatch: pytest.MonkeyPatch, lift: Any, said: str
+def test_what_is_no_axis_is_refused_and_both_lines_are_released(
+    monkeypatch: pytest.MonkeyPatch, name: str, axis: Any, said: str
 ) -> None:
     released = []
 
@@ -260,6 +261,6 @@ def test_what_is_no_lift_is_refused_and_both_lines_are_released(
 
     monkeypatch.setattr(serial, "open_gripper", lambda url: Line())
     monkeypatch.setattr(serial, "Fingertips", lambda port, **settings: Line())
-    with pytest.raises(InvalidValueError, match=said):
-        serial.serial_plant("serial:///dev/tips?gripper=robotiq:///dev/gripper", 1, lift=lift)
+    with pytest.raises(InvalidValueError, match=said.format(name)):
+        serial.serial_plant("serial:///dev/tips?gripper=robotiq:///dev/gripper", 1, **{name: axis})
     assert len(released) == 2

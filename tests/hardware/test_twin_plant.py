@@ -10,7 +10,13 @@ import pytest
 import thermograsp  # noqa: F401  registers the environments
 from thermograsp.cli import main
 from thermograsp.envs import STAKES, action_of
+from thermograsp.envs.plant import pair_plant
 from thermograsp.errors import InvalidValueError, UnknownKeywordError
+from thermograsp.hardware import Fingertips, GripperModel, RobotiqGripper, VirtualLine
+from thermograsp.hardware.plant import SerialPlant, VirtualTime
+from thermograsp.plant import Command, Reading
+from thermograsp.twin.plant import twin_pair_plant
+from thermograsp.twin.simulated_hand import SimulatedHand
 
 CLOSE = np.array([-1.0, 0.5, 1.0], np.float32)
 
@@ -101,6 +107,83 @@ def test_the_arm_goes_where_a_simulation_alone_has_it(twin: gymnasium.Env) -> No
     alone.close()
 
 
+@pytest.mark.parametrize("forces", [[], ["--force-range", "1", "40"]])
+@pytest.mark.parametrize(
+    ("task", "policy"), [("sort", "trained"), ("hotter", "trained"), ("hotter", "scripted")]
+)
+def test_objects_are_sorted_and_judged_through_the_line(
+    task: str, policy: str, forces: list[str], capsys: Any
+) -> None:
+    words = ["score", policy, "--task", task, "--twin", "--episodes", "4", "--json", *forces]
+    assert main(words + ["--no-load"] * (policy == "trained")) == 0
+    assert json.loads(capsys.readouterr().out)["successes"] == 4
+
+
+def to(place: float, reading: Reading, opening: float) -> Command:
+    """Sideways to that place, m."""
+    assert reading.lateral is not None
+    rate = np.clip((place - reading.lateral) / 0.1, -0.1, 0.1)
+    return Command(np.array([opening]), np.array([20.0]), np.zeros(1), rate)
+
+
+def test_a_pair_is_felt_as_in_the_simulation_alone_and_stays_while_the_fingers_open() -> None:
+    """There and back between two objects, which keep what heat they have been given."""
+    keywords: dict[str, Any] = {"material": ["glass", "copper"]}
+    alone, behind = pair_plant("alone", 1, **keywords), twin_pair_plant("twin-pair", 1, **keywords)
+    seen, bits = [], []
+    for _ in range(2):
+        expected = alone.reset([0], [np.random.default_rng(7)], {})
+        reading = behind.reset([0], [np.random.default_rng(7)], {})
+        episodes, worst, largest, touched = behind._hand.episodes, 0.0, 0.0, []
+        for side in (0, 1, 0):
+            for k in range(140):
+                opening = 0.085 if k < 50 or k > 105 else 0.0
+                command = to(alone.layout.places[side], reading, opening)  # pyright: ignore[reportAttributeAccessIssue]
+                expected = alone.step(behind._serial.quantised(command))
+                reading = behind.step(command)
+                assert reading.error == ("",)
+                np.testing.assert_allclose(reading.lateral, expected.lateral, atol=1e-12)  # pyright: ignore[reportArgumentType, reportCallIssue]
+                worst = max(worst, float(abs(reading.voltage - expected.voltage).max()))
+                largest = max(largest, float(abs(reading.voltage).max()))
+                bits.append(reading.voltage.tobytes() + reading.force.tobytes())
+            touched.append(expected.truth["touched"][0].tolist())
+        assert touched == [[0, 0], [1, 1], [0, 0]]
+        assert behind._hand.episodes == episodes and largest > 3e-3
+        assert worst <= 1e-9  # V, the wire's unit
+        assert behind._hand.reading is not None
+        for name in ("object_temperatures", "right", "goal"):
+            np.testing.assert_array_equal(behind._hand.reading.truth[name], expected.truth[name])
+        np.testing.assert_array_equal(reading.truth["goal"], expected.truth["goal"])
+        seen.append(bits.copy())
+        bits.clear()
+    assert seen[0] == seen[1]  # the same seed, the same bits
+    behind.close()
+    with pytest.raises(InvalidValueError, match="num_envs must be 1"):
+        twin_pair_plant("twin-pair", 2)
+
+
+def test_a_hand_that_draws_by_itself_keeps_a_pair_until_it_is_activated_anew() -> None:
+    hand = SimulatedHand(
+        pair_plant("behind", 1, material=["glass", "copper"]), model=GripperModel(activation_speed=1.0)
+    )
+    lines = VirtualLine(hand.fingertips), VirtualLine(hand.gripper)
+    gripper = RobotiqGripper(lines[1].open, clock=lines[1].clock, sleep=lines[1].advance)
+    tips = Fingertips(lines[0].open, clock=lines[0].clock, background=False, setpoint=36.0)
+    plant = SerialPlant(tips, gripper, pace=VirtualTime(lines), lift=hand.lift, lateral=hand.lateral)
+    reading = plant.reset([0], [np.random.default_rng(0)], {})
+    for opening in (0.085, 0.0, 0.085):
+        for _ in range(60):
+            reading = plant.step(to(0.03, reading, opening))
+    assert hand.episodes == 1 and reading.lateral == pytest.approx(0.03, abs=1e-3)
+    reading = plant.reset([0], [np.random.default_rng(0)], {})
+    assert hand.episodes == 1 and reading.lateral == pytest.approx(0.0, abs=5e-4)
+    hand.gripper.power_cycle()
+    plant.step(to(0.0, reading, 0.085))
+    plant.reset([0], [np.random.default_rng(0)], {})
+    assert hand.episodes == 2
+    plant.close()
+
+
 def test_what_no_line_has_is_refused(twin: gymnasium.Env, capsys: Any) -> None:
     with pytest.raises(InvalidValueError, match="unknown reset options"):
         twin.reset(options={"colour": "red"})
@@ -124,7 +207,5 @@ def test_what_no_line_has_is_refused(twin: gymnasium.Env, capsys: Any) -> None:
         gymnasium.make_vec(
             "thermograsp/Grasp-v0", num_envs=2, plant="twin", vectorization_mode="vector_entry_point"
         )
-    assert main(["score", "trained", "--task", "sort", "--twin"]) == 2
-    assert "no lateral axis" in capsys.readouterr().err
     assert main(["score", "trained", "--task", "grasp", "--force-range", "1", "40"]) == 2
     assert "give --twin" in capsys.readouterr().err
