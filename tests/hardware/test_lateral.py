@@ -179,7 +179,7 @@ def test_what_is_asked_comes_from_whoever_laid_the_objects_there() -> None:
     assert "right" not in asked(plant, asked="glass")  # of this episode nobody said it
     assert asked(sliding(Hand(), goals=("the hotter one",))[0])["goal"].tolist() == [[1.0]]
     refused: list[tuple[dict[str, Any], type[Exception], str]] = [
-        ({}, InvalidValueError, r"options={'asked': NAME}, one of glass, copper"),
+        ({}, InvalidValueError, "'asked': NAME}.*one of glass, copper"),
         ({"asked": "coper"}, UnknownNameError, "did you mean 'copper'"),
         ({"asked": "glass", "right": 2}, InvalidValueError, "right must be 0.*got 2"),
         ({"asked": "glass", "left": 0}, InvalidValueError, r"options asked, right, got \['asked', 'left'\]"),
@@ -213,8 +213,8 @@ def test_two_real_objects_are_sorted_on_ports(tmp_path: Path) -> None:
         assert env.observation_space == simulated.observation_space
         assert env.action_space == simulated.action_space
         for right in (1, 0):
-            observation, info = env.reset(seed=0, options={"asked": "steel", "right": right})
-            assert observation["goal"].sum() == 1.0 and (info["asked"], info["right"]) == ("steel", right)
+            observation, info = env.reset(seed=0, options={"asked": "iron", "right": right})
+            assert observation["goal"].sum() == 1.0 and (info["asked"], info["right"]) == ("iron", right)
             ended = False
             while not ended:
                 place = float(observation["lateral"][0])

@@ -11,7 +11,7 @@ from numba.core.dispatcher import Dispatcher
 
 import thermograsp.envs.spaces
 import thermograsp.envs.tasks
-from thermograsp.envs import GraspTask, IdentifyTask
+from thermograsp.envs import GraspTask, IdentifyTask, SortTask
 from thermograsp.plant import Reading
 
 
@@ -36,13 +36,17 @@ def reading(rng: np.random.Generator, rows: int) -> Reading:
         truth={
             "lift": rng.uniform(0, 0.06, rows),
             "crushing_force": rng.uniform(0.5, 3.0, rows),
+            "right": rng.integers(2, size=rows),
             "material": rng.choice(["wood", "glass", "copper", "unknown"], rows).astype(object),
         },
         error=("",) * rows,
+        lateral=rng.uniform(-0.05, 0.05, rows),
     )
 
 
-@pytest.mark.parametrize("task", [GraspTask(most_slip=0.01), IdentifyTask(("wood", "glass", "copper"), 0.2)])
+@pytest.mark.parametrize(
+    "task", [GraspTask(most_slip=0.01), IdentifyTask(("wood", "glass", "copper"), 0.2), SortTask(0.04, 0.2)]
+)
 def test_a_row_does_not_depend_on_the_others(task) -> None:
     """To the last bit, for any number of rows."""
     rng = np.random.default_rng(5)

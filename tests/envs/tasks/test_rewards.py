@@ -17,6 +17,7 @@ from thermograsp.envs import (
     sliding_action_of,
 )
 from thermograsp.envs.limits import MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
+from thermograsp.envs.spaces import SortObserver
 from thermograsp.errors import InvalidValueError
 from thermograsp.plant import Reading
 
@@ -206,3 +207,39 @@ def test_a_plant_that_tells_its_truth_in_a_plain_dict_is_judged_by_it():
     with pytest.raises(InvalidValueError, match=r"'lift' of shape \(2, 2\).*\(2,\)"):
         wrong = reading(pressing, arm)._replace(truth={"lift": np.zeros((2, 2))})
         task.judge(task.fresh(2), 0.02, np.zeros((2, 3)), wrong)
+
+
+def pressed(places: list[float], height: float, force: float = 10.0) -> Reading:
+    """Of arms over real objects, at these lateral places."""
+    rows = len(places)
+    told = reading(np.full((rows, 2, 3), force), np.full(rows, height))
+    return told._replace(lateral=np.array(places), truth={"right": np.array([1] * rows)})
+
+
+def test_real_objects_are_told_apart_by_the_side_that_the_arm_is_on():
+    """Nothing else tells which of the two is lifted."""
+    task, action = SortTask(hold_seconds=0.02), np.zeros((2, 4))
+    state, outcome = task.judge(task.fresh(2), 0.02, action, pressed([0.03, -0.03], 0.04))
+    assert outcome.reasons["wrong"].tolist() == [False, True] and not outcome.success.any()
+    assert outcome.reward[0] == pytest.approx(0.3 * 0.8)
+    state, outcome = task.judge(state, 0.02, action, pressed([0.03, 0.0], 0.05))
+    assert outcome.success.tolist() == [True, True]  # the middle counts as object 1's side
+    _, outcome = task.judge(state, 0.02, action, pressed([0.03, 0.03], 0.05, force=0.0))
+    assert outcome.reasons["dropped"].tolist() == [True, True]
+    _, outcome = task.judge(task.fresh(2), 0.02, action, pressed([0.03, -0.03], 0.05)._replace(truth={}))
+    assert not (outcome.success | outcome.terminated).any() and not outcome.reward.any()  # nobody told
+    with pytest.raises(InvalidValueError, match="no lateral axis"):
+        task.judge(task.fresh(2), 0.02, action, pressed([0.03, 0.03], 0.05)._replace(lateral=None))
+
+
+def test_an_observer_of_two_objects_says_what_a_plant_lacks():
+    observer, everything = SortObserver(1, goals=2), np.ones(1, bool)
+    there = pressed([0.03], 0.0)._replace(truth={"goal": np.array([[0.0, 1.0]])})
+    seen = observer.observe(there, np.zeros(1), everything)
+    assert seen["goal"].tolist() == [[0.0, 1.0]] and seen["lateral"] == pytest.approx(0.03)
+    for lacking, said in (
+        (there._replace(lateral=None), "no lateral place"),
+        (there._replace(truth={}), "no goal"),
+    ):
+        with pytest.raises(InvalidValueError, match=said):
+            observer.observe(lacking, np.zeros(1), everything)
