@@ -12,6 +12,7 @@ from thermograsp.envs import (
     GraspTask,
     GraspVectorEnv,
     IdentifyVectorEnv,
+    SortTask,
     SortVectorEnv,
     action_of,
     sliding_action_of,
