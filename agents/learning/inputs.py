@@ -64,7 +64,9 @@ class Inputs:
 
 
 class Memory:
-    """The frames of `num_envs` environments. An episode begins with its first frame in place of all earlier ones.
+    """The frames of `num_envs` environments. An episode begins with its first frame in place of all earlier ones, in
+    which voltages count as 0. So they are in a simulation, whose fingertips the air has not begun to cool; real ones
+    have been in the air for long, and agents would meet first frames that they have never seen.
 
     A touch moves through the last frames while it lasts, and an agent would have to learn each of its places anew. In
     what the voltages have done since the fingers began to close, a touch is always at about the same place."""
@@ -90,6 +92,7 @@ class Memory:
         frames, count = np.roll(self._frames[at], 1, axis=1), self._count[at]
         frames[:, 0] = frame
         begins = count == 0
+        frame[begins, _VOLTAGES] = 0.0
         frames[begins] = frame[begins, None]
         opening = observation["gripper"][:, 0]
         self._closed[at] = closed = np.where(begins | (opening > _OPEN), 0, self._closed[at] + 1)

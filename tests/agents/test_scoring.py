@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,11 @@ import numpy as np
 import pytest
 
 from thermograsp.agents import learning
-from thermograsp.agents.learning import Agent, learning_task, load_agent, score
+from thermograsp.agents.learning import HELD_OUT, TASKS, Agent, learning_task, load_agent, score
 from thermograsp.agents.learning.agent import Acting
 from thermograsp.agents.learning.inputs import AGES, CLOSING, FRAME, REPEAT, Inputs, Memory
 from thermograsp.agents.learning.scoring import wilson
-from thermograsp.agents.policies import load_policy
+from thermograsp.agents.policies import load_policy, policy
 from thermograsp.assets import asset
 from thermograsp.cli import main
 from thermograsp.errors import InvalidValueError, UnknownNameError
@@ -201,7 +202,11 @@ def test_the_newest_frame_comes_first_and_the_first_stands_for_all_before() -> N
     observation, _ = env.reset(seed=0)
     memory = Memory(Inputs(goals=10), 2)
     memory.restart(np.arange(2))
+    untouched = memory.vector(observation)
+    observation["voltage"] += 2e-5  # V, of fingertips that have been in the air
+    memory.restart(np.arange(2))
     first = memory.vector(observation)
+    np.testing.assert_array_equal(first, untouched)
     assert first.shape == (2, Inputs(goals=10).size)
     frames = first[:, : FRAME * len(AGES)].reshape(2, len(AGES), FRAME)
     assert (frames == frames[:, :1]).all()
@@ -227,6 +232,7 @@ def test_what_voltages_do_while_fingers_close_has_a_fixed_place() -> None:
         return memory.vector(observation)[0, start : start + 4 * CLOSING].reshape(CLOSING, 2, 2)
 
     felt(0.085, 1e-3, 0.0)
+    felt(0.085, 1e-3, 0.0)  # an episode's first frame counts as 0 V
     felt(0.06, 1e-3, 0.0)
     touched = felt(0.04, 1e-3, 2e-3)
     assert (touched[2, :, 1] > 1.0).all() and not touched[1].any() and not touched[3:].any()
@@ -237,6 +243,28 @@ def test_what_voltages_do_while_fingers_close_has_a_fixed_place() -> None:
     opened = felt(0.085, 3e-3, 0.0)
     assert (opened[0, :, 0] > 1.0).all() and not opened[1:].any()
     assert not felt(0.06, 3e-3, 0.0)[1:].any()
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_a_shipped_agent_may_begin_with_fingertips_that_have_been_in_the_air(name: str) -> None:
+    """As real ones have: they show some 20 uV before they touch anything."""
+    rows = 4
+    with closing(learning_task(name).make(rows)) as env:
+        (size,) = env.single_action_space.shape  # pyright: ignore[reportGeneralTypeIssues]
+        still = np.zeros((rows, size), np.float32)
+        still[:, :2] = (-1.0, -1.0) if name == "identify" else (1.0, -1.0)  # open, no force
+        observation, _ = env.reset(seed=HELD_OUT)
+        for _ in range(25):
+            observation = env.step(still)[0]
+        assert (observation["voltage"][:, :, -8:].mean(axis=2) > 5e-6).all()  # V
+        agent = policy(env, "trained")
+        agent.restart(range(rows), range(rows))
+        over, won = np.zeros(rows, bool), np.zeros(rows, bool)
+        while not over.all():
+            observation, _, terminated, truncated, info = env.step(agent.action(observation))
+            won |= info["success"] & ~over
+            over |= terminated | truncated
+        assert won.all()
 
 
 def test_wilsons_interval_is_that_of_the_literature() -> None:
