@@ -22,8 +22,10 @@ from ...thermal import (
     SurfacePatch,
 )
 from ...thermal.meshes import (
+    PLACED_SHARE,
     TouchedBody,
     field_carried,
+    placed_body,
     surface_normal,
     touched_body,
 )
@@ -136,6 +138,10 @@ def _body(
     film: float,
     cache: bool,
 ) -> TouchedBody:
+    # contents behind a film make other modes
+    empty = film == 0.0
+    if empty and demand.tolerance >= PLACED_SHARE * abs(demand.difference):
+        return placed_body(body, patches, stack, demand.difference, fingertips=fingertips, cache=cache)
     return touched_body(body, patches, stack, demand, fingertips=fingertips, film=film, cache=cache)
 
 

@@ -27,13 +27,14 @@ What is left out: the film is one for all faces; patches are parallel to the fac
 and meshes are still in plates/, network/ and meshes/.
 """
 
-from .box import BoxSamples, Patches, box_samples
+from .box import BoxSamples, Patches, box_kernel, box_samples
 from .contact import Resolution, Tip, box_side, contact_weight, tip, tip_at
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
 from .exponentials import residues
+from .exponentials import states as residue_states
 from .glued import GluedElement, glued_element
-from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES
+from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES, basis_jumps, basis_terms
 from .projection import states
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
 from .touch import Detail, touch_box, touch_sides
@@ -64,7 +65,10 @@ __all__ = [
     "Tip",
     "TouchedBox",
     "UnderTips",
+    "basis_jumps",
+    "basis_terms",
     "before",
+    "box_kernel",
     "box_samples",
     "box_side",
     "contact_patterns",
@@ -72,6 +76,7 @@ __all__ = [
     "element",
     "element_samples",
     "glued_element",
+    "residue_states",
     "residues",
     "states",
     "tip",

@@ -120,7 +120,7 @@ def grid_axes(
     axes = []
     for axis in range(3):
         fine: dict[float, float] = {}
-        breaks = [low[axis], high[axis], *_planes(triangles, axis)]
+        breaks = [low[axis], high[axis], *flat_places(triangles, axis)]
         for patch, layer in zip(patches, layers, strict=True):
             at = float(np.clip(patch.centre[axis], low[axis], high[axis]))
             if not patch.aligned and np.abs(patch.sides[:, axis]).max() < ALONG:
@@ -136,7 +136,7 @@ def grid_axes(
                 places, length = _along_relief(patch, axis)
             for place in np.clip(at + places, low[axis], high[axis]).tolist():
                 fine[place] = min(length, fine.get(place, length))
-        axes.append(_staggered(_distinct(breaks), fine, gridding.growth, largest))
+        axes.append(_staggered(distinct(breaks), fine, gridding.growth, largest))
     return axes[0], axes[1], axes[2]
 
 
@@ -256,7 +256,7 @@ def snapped(triangles: np.ndarray, edges: Edges) -> np.ndarray:
     return moved
 
 
-def _planes(triangles: np.ndarray, axis: int) -> list[float]:
+def flat_places(triangles: np.ndarray, axis: int) -> list[float]:
     """m along an axis at which the surface has flat pieces across it, together _LEAST_PLANE of its area or more."""
     a, b, c = np.moveaxis(triangles, 1, 0)
     areas = np.cross(b - a, c - a)
@@ -270,7 +270,7 @@ def _planes(triangles: np.ndarray, axis: int) -> list[float]:
     return list(triangles[flat, 0, axis][first[weight > _LEAST_PLANE * size.sum()]])
 
 
-def _distinct(values: Sequence[float] | np.ndarray) -> np.ndarray:
+def distinct(values: Sequence[float] | np.ndarray) -> np.ndarray:
     """Sorted values, of those closer than a few snaps only one; the ends stay."""
     ordered = np.sort(np.asarray(values, float))
     kept = [ordered[0]]

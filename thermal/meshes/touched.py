@@ -45,6 +45,7 @@ _COARSE = (
 )
 _CUTS = np.geomspace(0.1, 1e-7, 25)  # weight below which states are left out
 _LEAST_WEIGHT = 1e-7  # singular values below that share of the largest are left out
+_LEAST_PORT = 0.03  # of the largest, below which a combination of flows is hardly seen
 _TIMES = np.concatenate(([0.0], np.geomspace(1e-3, 300.0, 40)))  # s, over which a field is followed
 
 
@@ -53,7 +54,8 @@ class TouchedBody:
     """A body of any shape with the networks of its patches. geometry: what it remembers of fingertips and object.
     sensor: a fingertip's network. object: the object's, M ports a patch, its state 0 the mean. patches, and centres (P,
     3) m: where on the surface they are. error: K of temperature drop that its fewer states were measured to be off, in
-    the demand's cases, from all of the grid's."""
+    the demand's cases, from all of the grid's. shared: of the object's states, the first ones that are the body's own
+    modes, whatever its patches."""
 
     geometry: BodyGeometry
     sensor: ThermalNetwork
@@ -61,6 +63,7 @@ class TouchedBody:
     patches: tuple[SurfacePatch, ...]
     centres: np.ndarray
     error: float
+    shared: int = 0
 
     @property
     def modes(self) -> int:
@@ -173,7 +176,7 @@ def touched_body(
         whole = body_network(body, patches, patterns=patterns, walls=walls, cache=False)
         learned = sample_geometry(plate).networks(modes)
         basis = state_bases(learned, area)["sensor"]
-        geometry = _geometry(plate, whole, body, fingertips)
+        geometry = geometry_of(plate, whole, body, fingertips)
         centres = np.array([place_patch(body.outside, patch, np.eye(3)).centre for patch in patches])
         full = TouchedBody(geometry, learned["sensor"], whole, patches, centres, 0.0)
         reduced = _smallest(full, basis.vectors, basis.weights, demand, film)
@@ -182,7 +185,7 @@ def touched_body(
 
     arrays = cached_arrays(key, build, enabled=cache)
     sensor, whole = _unpack("sensor", arrays), _unpack("object", arrays)
-    geometry = _geometry(plate, whole, body, fingertips)
+    geometry = geometry_of(plate, whole, body, fingertips)
     return TouchedBody(geometry, sensor, whole, patches, arrays["centres"], float(arrays["error"]))
 
 
@@ -216,12 +219,32 @@ def field_carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:
     at _TIMES after them are mapped on each other by least squares, and any field that was made through these patches is
     a sum of such. The object's heat stays the same to round-off, since its mean is a state of its own."""
     common = [patch for patch in source.patches if patch in target.patches]
+    if source.shared and source.shared == target.shared:
+        return _by_rates(source, target, common)
     before, after = (_pulses(each, common) for each in (source, target))
     left, weights, right = np.linalg.svd(before, full_matrices=False)
     kept = weights > _LEAST_WEIGHT * weights.max(initial=0.0)
     carried = np.zeros((target.object.order, source.object.order))
     carried[1:, 1:] = (after @ right[kept].T / weights[kept]) @ left[:, kept].T
     carried[0, 0] = 1.0
+    return carried
+
+
+def _by_rates(source: TouchedBody, target: TouchedBody, common: list[SurfacePatch]) -> np.ndarray:
+    """field_carried's between networks whose slow modes are the body's, which stay, and of which the others fade at the
+    same rates: such a state is what has flowed through the patches, as it has faded, by its ports."""
+    carried = np.zeros((target.object.order, source.object.order))
+    carried[: source.shared, : source.shared] = np.eye(source.shared)
+    before, after = (
+        each.object.ports.reshape(each.object.order, len(each.patches), each.modes)[
+            :, [each.patches.index(patch) for patch in common]
+        ].reshape(each.object.order, -1)
+        for each in (source, target)
+    )
+    old, new = (np.arange(each.object.order) >= each.shared for each in (source, target))
+    for rate in np.unique(source.object.rates[source.shared :]):
+        was, now = old & (source.object.rates == rate), new & (target.object.rates == rate)
+        carried[np.ix_(now, was)] = after[now] @ np.linalg.pinv(before[was], rcond=_LEAST_PORT)
     return carried
 
 
@@ -234,7 +257,8 @@ def _pulses(body: TouchedBody, common: list[SurfacePatch]) -> np.ndarray:
     return (chosen[:, :, None] * faded[:, None, :]).reshape(len(chosen), -1)
 
 
-def _geometry(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: int) -> BodyGeometry:
+def geometry_of(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips: int) -> BodyGeometry:
+    """What a contact system keeps of a body. plate: the one that its sensors were learned on. whole: its network."""
     capacity = float(whole.outputs["heat"][0] ** 2)
     return BodyGeometry(
         plate.stack,

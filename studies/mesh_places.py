@@ -1,0 +1,250 @@
+"""Networks of meshes from their modes beside grids that are fine at the patch.
+
+A sensor of the paper touches a body at one place, or at two at once. The drop of its temperature follows from the
+network that environments use (thermal/meshes/placed.py), and from one whose states are fields of a grid that is fine at
+the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
+CONDUCTANCES over TIMES.
+
+    python studies/mesh_places.py                  every case, some minutes
+    python studies/mesh_places.py rim --json       those with "rim" in their name
+"""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import trimesh
+
+from thermograsp import thermal
+from thermograsp.thermal import Solid, SurfacePatch
+from thermograsp.thermal.meshes import body_network
+from thermograsp.thermal.meshes.placed import centred_tip, face_patterns, placed_network
+from thermograsp.thermal.network import ThermalNetwork
+from thermograsp.thermal.surfaces import SolidPart
+
+CONDUCTANCES = 1e3, 1e4, 1e5  # W/(m2 K)
+TIMES = 0.02 * np.arange(3, 300)  # s
+DIFFERENCE = 12.0  # K
+MATERIALS = "wood", "ceramic", "aluminium"
+STACK = thermal.sensor("seed")
+AREA = STACK.width**2
+TIP = centred_tip(STACK, AREA)
+
+Vector = tuple[float, float, float]
+
+
+def _mug() -> trimesh.Trimesh:
+    """60 mm wide, 80 mm high, its wall and foot 3 mm."""
+    profile = [(0, -0.04), (0.03, -0.04), (0.03, 0.04), (0.027, 0.04), (0.027, -0.037), (0, -0.037)]
+    return trimesh.creation.revolve(profile, sections=96)
+
+
+def _block(*size: float) -> Callable[[], trimesh.Trimesh]:
+    return lambda: trimesh.creation.box(size)
+
+
+def _round(radius: float, height: float) -> Callable[[], trimesh.Trimesh]:
+    return lambda: trimesh.creation.cylinder(radius, height, sections=96)
+
+
+def _egg() -> trimesh.Trimesh:
+    return trimesh.creation.icosphere(subdivisions=4).apply_transform(np.diag([0.02, 0.02, 0.028, 1]))
+
+
+def _at(centre: Vector, normal: Vector) -> SurfacePatch:
+    return SurfacePatch(centre, normal, AREA)
+
+
+def _beside(angle: float, height: float) -> SurfacePatch:
+    """On the mug's wall."""
+    x, y = math.cos(angle), math.sin(angle)
+    return _at((0.03 * x, 0.03 * y, height), (x, y, 0.0))
+
+
+def _on(axis: int, x: float, y: float, z: float) -> SurfacePatch:
+    at = [x, y, z]
+    return _at((x, y, z), tuple(np.sign(at[axis]) * np.eye(3)[axis]))
+
+
+BODIES: dict[str, Callable[[], trimesh.Trimesh]] = {
+    "mug": _mug,
+    "cube": _block(0.04, 0.04, 0.04),
+    "small cube": _block(0.012, 0.012, 0.012),
+    "bar": _block(0.01, 0.07, 0.024),
+    "sheet of 1 mm": _block(0.04, 0.04, 0.001),
+    "sheet of .3 mm": _block(0.06, 0.03, 0.0003),
+    "cylinder": _round(0.015, 0.05),
+    "can": _round(0.025, 0.05),
+    "rod": _round(0.006, 0.06),
+    "ball": lambda: trimesh.creation.icosphere(subdivisions=4, radius=0.02),
+    "egg": _egg,
+    "cone": lambda: trimesh.creation.cone(0.02, 0.05, sections=96),
+    "ring": lambda: trimesh.creation.torus(0.025, 0.006),
+}
+SLANT = math.sqrt(0.5)
+ONE: dict[str, tuple[str, SurfacePatch]] = {
+    "mug, wall": ("mug", _beside(0.0, 0.0)),
+    "mug, low": ("mug", _beside(0.0, -0.0352)),
+    "mug, just above the foot": ("mug", _beside(0.0, -0.031)),
+    "mug, just below the rim": ("mug", _beside(0.0, 0.0353)),
+    "mug, over the rim": ("mug", _beside(0.0, 0.0365)),
+    "mug, half over the rim": ("mug", _beside(0.0, 0.04)),
+    "mug, over the foot's edge": ("mug", _beside(0.0, -0.036)),
+    "mug, on the rim": ("mug", _at((0.0285, 0.0, 0.04), (0.0, 0.0, 1.0))),
+    "mug, foot": ("mug", _at((0.0, 0.0, -0.04), (0.0, 0.0, -1.0))),
+    "mug, foot below the wall": ("mug", _at((0.024, 0.0, -0.04), (0.0, 0.0, -1.0))),
+    "cube": ("cube", _on(0, 0.02, 0.0, 0.0)),
+    "cube, corner": ("cube", _on(0, 0.02, 0.0154, 0.0153)),
+    "cube, half over an edge": ("cube", _on(0, 0.02, 0.02, 0.0)),
+    "cube, on an edge": ("cube", _at((0.02, 0.02, 0.0), (SLANT, SLANT, 0.0))),
+    "small cube": ("small cube", _on(0, 0.006, 0.0, 0.0)),
+    "bar": ("bar", _on(0, 0.005, 0.02, 0.0)),
+    "sheet of 1 mm": ("sheet of 1 mm", _on(2, 0.0, 0.0, 0.0005)),
+    "sheet of .3 mm": ("sheet of .3 mm", _on(2, 0.02, 0.0, 0.00015)),
+    "cylinder": ("cylinder", _on(0, 0.015, 0.0, 0.0)),
+    "cylinder, near its end": ("cylinder", _on(0, 0.015, 0.0, 0.0204)),
+    "cylinder, end": ("cylinder", _on(2, 0.0, 0.0, 0.025)),
+    "cylinder, side of its end": ("cylinder", _on(2, 0.009, 0.0, 0.025)),
+    "can, slanted": ("can", _at((0.02, 0.015, 0.01), (0.8, 0.6, 0.0))),
+    "rod": ("rod", _on(0, 0.006, 0.0, 0.0)),
+    "ball": ("ball", _on(0, 0.02, 0.0, 0.0)),
+    "ball, slanted": ("ball", _at((0.012, 0.012, 0.0105), (0.6, 0.6, 0.53))),
+    "egg": ("egg", _on(0, 0.02, 0.0, 0.0)),
+    "egg, slanted": ("egg", _at((0.012, 0.0, 0.022), (0.6, 0.0, 0.6))),
+    "cone": ("cone", _at((0.01, 0.0, 0.025), (0.9285, 0.0, 0.3714))),
+    "ring": ("ring", _on(0, 0.031, 0.0, 0.0)),
+}
+"""One place: body, and patch."""
+TWO: dict[str, tuple[str, SurfacePatch, SurfacePatch]] = {
+    "cube, opposite": ("cube", _on(0, 0.02, 0.0, 0.0), _on(0, -0.02, 0.0, 0.0)),
+    "cube, overlapping": ("cube", _on(0, 0.02, -0.006, 0.0), _on(0, 0.02, 0.0, 0.003)),
+    "cube, on either side of an edge": ("cube", _on(0, 0.02, 0.014, 0.0), _on(1, 0.014, 0.02, 0.0)),
+    "bar, opposite": ("bar", _on(0, 0.005, 0.01, 0.0), _on(0, -0.005, 0.005, 0.0)),
+    "mug, opposite": ("mug", _beside(0.0, 0.0), _beside(math.pi, 0.0)),
+    "mug, above each other": ("mug", _beside(0.0, 0.0), _beside(0.0, 0.006)),
+    "mug, a quarter round": ("mug", _beside(0.0, 0.0), _beside(math.pi / 2, 0.0)),
+    "mug, over and below the rim": ("mug", _beside(0.0, 0.037), _beside(0.0, 0.03)),
+}
+_UP = _on(2, 0.0, 0.0, 0.02)
+PARTS: dict[str, tuple[str, tuple[str, str], SurfacePatch, SurfacePatch]] = {
+    "glass on aluminium, opposite": ("slab", ("glass", "aluminium"), _UP, _on(2, 0.0, 0.0, -0.02)),
+    "glass on aluminium, overlapping": ("slab", ("glass", "aluminium"), _UP, _on(2, 0.006, 0.003, 0.02)),
+    "aluminium on wood, overlapping": ("slab", ("aluminium", "wood"), _UP, _on(2, 0.006, 0.003, 0.02)),
+    "aluminium on wood, beside": ("slab", ("aluminium", "wood"), _UP, _on(0, 0.02, 0.003, 0.0)),
+    "wood round aluminium": ("core", ("wood", "aluminium"), _on(0, 0.02, 0.0, 0.0), _on(0, -0.02, 0.0, 0.0)),
+}
+"""Two places of a body of two materials, the outer or upper first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """error: K of DIFFERENCE, with its sign, at time s and conductance W/(m2 K), the largest. drop: K there."""
+
+    case: str
+    material: str
+    error: float
+    drop: float
+    time: float
+    conductance: float
+
+
+def whole(name: str, material: str) -> Solid:
+    """A body of BODIES."""
+    return Solid((_part(BODIES[name](), material),))
+
+
+def parted(name: str, materials: tuple[str, str]) -> Solid:
+    """A slab of 4 mm on a block, or a shell of 3 mm round a ball."""
+    outer, inner = materials
+    if name == "core":
+        shells = (trimesh.creation.icosphere(subdivisions=4, radius=r) for r in (0.02, 0.017))
+        return Solid(tuple(_part(mesh, of) for mesh, of in zip(shells, materials, strict=True)))
+    slab, block = _block(0.04, 0.04, 0.004)(), _block(0.04, 0.04, 0.036)()
+    slab.apply_translation((0.0, 0.0, 0.018))
+    block.apply_translation((0.0, 0.0, -0.002))
+    return Solid((_part(slab, outer), _part(block, inner)))
+
+
+def _part(mesh: trimesh.Trimesh, material: str) -> SolidPart:
+    return SolidPart(np.array(mesh.vertices), np.array(mesh.faces), thermal.material(material))
+
+
+def drops(network: ThermalNetwork, conductance: float) -> np.ndarray:
+    """(TIMES, patches) K: a fingertip on each of the network's patches from time 0 on."""
+    side, patterns = TIP.side, TIP.side.ports.shape[1]
+    fingertips, order = network.ports.shape[1] // patterns, len(network.rates)
+    rates = np.concatenate([network.rates, *[side.rates] * fingertips])
+    ports, rows = np.zeros((len(rates), network.ports.shape[1])), np.zeros((fingertips, len(rates)))
+    ports[:order] = network.ports
+    for tip in range(fingertips):
+        own = slice(order + tip * len(side.rates), order + (tip + 1) * len(side.rates))
+        ports[own, tip * patterns : (tip + 1) * patterns] = -side.ports
+        rows[tip, own] = side.outputs["drop"]
+    matrix = np.diag(rates) + conductance * AREA * ports @ ports.T
+    drive = conductance * AREA * DIFFERENCE * ports[:, ::patterns].sum(axis=1)
+    fades, turn = np.linalg.eigh(matrix)
+    fades = np.maximum(fades, 1e-14)
+    return -np.expm1(-np.outer(TIMES, fades)) / fades * (turn.T @ drive) @ (rows @ turn).T
+
+
+def compared(case: str, material: str, body: Solid, patches: Sequence[SurfacePatch]) -> Row:
+    """The network that environments use beside the fine grid's, for each patch with one whose axes are along it."""
+    fast, _ = placed_network(body, patches, STACK)
+    worst = Row(case, material, 0.0, 0.0, 0.0, 0.0)
+    for n, patch in enumerate(patches):
+        others = [other for other in patches if other is not patch]
+        fine = body_network(body, [*others, patch], patterns=face_patterns(TIP))
+        for conductance in CONDUCTANCES:
+            expected = drops(fine, conductance)[:, -1]
+            error = drops(fast, conductance)[:, n] - expected
+            at = int(np.abs(error).argmax())
+            if abs(error[at]) > abs(worst.error):
+                worst = Row(
+                    case, material, float(error[at]), float(expected[at]), float(TIMES[at]), conductance
+                )
+    return worst
+
+
+def rows(chosen: str) -> list[Row]:
+    """Of the cases with this in their name."""
+    found = []
+    for name, (body, *patches) in (ONE | TWO).items():
+        if chosen in name:
+            found += [compared(name, material, whole(body, material), patches) for material in MATERIALS]
+    for name, (body, materials, *patches) in PARTS.items():
+        if chosen in name:
+            found.append(compared(name, " and ".join(materials), parted(body, materials), patches))
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=str(__doc__).split("\n", 1)[0])
+    parser.add_argument("case", nargs="?", default="", help="part of a case's name")
+    parser.add_argument("--json", action="store_true")
+    chosen = parser.parse_args()
+    found = rows(chosen.case)
+    if not found:
+        parser.error(f"no case has {chosen.case!r} in its name: {', '.join(ONE | TWO | PARTS)}")
+    if chosen.json:
+        print(json.dumps([asdict(row) for row in found], indent=2))
+        return 0
+    for row in found:
+        print(
+            f"{row.case:36}{row.material:22}{row.error:+.3f} K of {row.drop:.2f} K at {row.time:.2f} s, "
+            f"{row.conductance:.0e} W/(m2 K)"
+        )
+    worst = max(found, key=lambda row: abs(row.error))
+    print(f"at most {abs(worst.error):.3f} K: {worst.case}, {worst.material}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

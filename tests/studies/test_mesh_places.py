@@ -1,0 +1,37 @@
+"""The study of meshes' networks runs, says what it compared, and finds what the docs say."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def study() -> Iterator[ModuleType]:
+    sys.path.insert(0, str(ROOT / "studies"))
+    yield importlib.import_module("mesh_places")
+    sys.path.remove(str(ROOT / "studies"))
+    del sys.modules["mesh_places"]
+
+
+def test_places_at_a_mug_s_rim_keep_the_bound(study: ModuleType, monkeypatch, capsys) -> None:
+    monkeypatch.setattr(sys, "argv", ["mesh_places.py", "rim", "--json"])
+    assert study.main() == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {row["case"] for row in found} >= {"mug, over the rim", "mug, over and below the rim"}
+    assert all(abs(row["error"]) < 0.036 for row in found)
+
+
+def test_an_unknown_case_is_refused_with_those_there_are(study: ModuleType, monkeypatch, capsys) -> None:
+    monkeypatch.setattr(sys, "argv", ["mesh_places.py", "teapot"])
+    with pytest.raises(SystemExit):
+        study.main()
+    assert "cube, corner" in capsys.readouterr().err

@@ -1,0 +1,207 @@
+"""A mesh's network from its modes, wherever it is touched, beside grids that are fine there and closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from thermograsp import thermal
+from thermograsp.errors import MeshError
+from thermograsp.thermal.meshes import body_network, field_carried, placed_body
+from thermograsp.thermal.meshes.beneath import beneath
+from thermograsp.thermal.meshes.modes import body_modes
+from thermograsp.thermal.meshes.placed import PLACED_SHARE, centred_tip, face_patterns, placed_network
+from thermograsp.thermal.surfaces import Solid, SolidPart, SurfacePatch
+
+STACK = thermal.sensor("seed")
+AREA = STACK.width**2
+TIP = centred_tip(STACK, AREA)
+TIMES = 0.02 * np.arange(3, 200)
+DIFFERENCE = 12.0
+
+
+def part(mesh: trimesh.Trimesh, material: str) -> SolidPart:
+    return SolidPart(np.array(mesh.vertices), np.array(mesh.faces), thermal.material(material))
+
+
+def of(mesh: trimesh.Trimesh, material: str = "glass") -> Solid:
+    return Solid((part(mesh, material),))
+
+
+def at(*centre: float, normal: tuple[float, float, float]) -> SurfacePatch:
+    x, y, z = centre
+    return SurfacePatch((x, y, z), normal, AREA)
+
+
+def cup() -> trimesh.Trimesh:
+    return trimesh.creation.revolve(
+        [(0, -0.02), (0.02, -0.02), (0.02, 0.02), (0.017, 0.02), (0.017, -0.017), (0, -0.017)], sections=64
+    )
+
+
+def slab(upper: str, lower: str) -> Solid:
+    meshes = trimesh.creation.box((0.03, 0.03, 0.003)), trimesh.creation.box((0.03, 0.03, 0.02))
+    meshes[0].apply_translation((0, 0, 0.0115))
+    return Solid(tuple(part(mesh, name) for mesh, name in zip(meshes, (upper, lower), strict=True)))
+
+
+def drops(network, conductance: float, tip: int = 0) -> np.ndarray:
+    """K at TIMES on one of the patches, with a fingertip on each from time 0 on."""
+    side, patterns = TIP.side, TIP.side.ports.shape[1]
+    fingertips, order = network.ports.shape[1] // patterns, len(network.rates)
+    rates = np.concatenate([network.rates, *[side.rates] * fingertips])
+    ports = np.zeros((len(rates), network.ports.shape[1]))
+    ports[:order] = network.ports
+    for n in range(fingertips):
+        own = slice(order + n * len(side.rates), order + (n + 1) * len(side.rates))
+        ports[own, n * patterns : (n + 1) * patterns] = -side.ports
+    row = np.zeros(len(rates))
+    row[order + tip * len(side.rates) : order + (tip + 1) * len(side.rates)] = side.outputs["drop"]
+    fades, turn = np.linalg.eigh(np.diag(rates) + conductance * AREA * ports @ ports.T)
+    fades = np.maximum(fades, 1e-14)
+    drive = turn.T @ (conductance * AREA * DIFFERENCE * ports[:, ::patterns].sum(axis=1))
+    return -np.expm1(-np.outer(TIMES, fades)) / fades * drive @ (row @ turn)
+
+
+def worst(body: Solid, *patches: SurfacePatch) -> float:
+    """K, the largest error of any fingertip's drop beside the grid that is aligned with its patch."""
+    network, _ = placed_network(body, patches, STACK)
+    found = 0.0
+    for n, patch in enumerate(patches):
+        ordered = [*(other for other in patches if other is not patch), patch]
+        fine = body_network(body, ordered, patterns=face_patterns(TIP))
+        for conductance in (1e3, 1e5):
+            error = drops(network, conductance, n) - drops(fine, conductance, len(patches) - 1)
+            found = max(found, float(np.abs(error).max()))
+    return found
+
+
+def test_a_block_s_modes_are_cosines() -> None:
+    sides = np.array([0.04, 0.03, 0.02])
+    modes = body_modes(of(trimesh.creation.box(sides)))
+    waves = np.indices((8, 8, 8)).reshape(3, -1)
+    expected = np.sort(np.sum((np.pi * waves / sides[:, None]) ** 2, axis=0))[:40]
+    assert modes.rates[0] == 0.0
+    assert modes.rates[1:40] == pytest.approx(expected[1:], rel=0.02)  # of 8,000 cells
+    capacity = modes.grid.capacity
+    gram = modes.fields.T @ (capacity[:, None] * modes.fields)
+    assert gram == pytest.approx(np.eye(len(gram)), abs=1e-6)
+    assert capacity.sum() == pytest.approx(sides.prod())
+
+
+def test_a_material_only_scales_the_modes() -> None:
+    mesh = trimesh.creation.box((0.02, 0.02, 0.02))
+    glass, wood = body_modes(of(mesh, "glass")), body_modes(of(mesh, "wood"))
+    assert glass.fields is wood.fields
+    assert glass.diffusivity == thermal.material("glass").diffusivity != wood.diffusivity
+
+
+PLACES = {
+    "wall": (cup, at(0.02, 0.0, 0.0, normal=(1, 0, 0)), True),
+    "foot": (cup, at(0.0, 0.0, -0.02, normal=(0, 0, -1)), True),
+    "rim": (cup, at(0.02, 0.0, 0.0175, normal=(1, 0, 0)), False),
+    "rod": (
+        lambda: trimesh.creation.cylinder(0.006, 0.05, sections=64),
+        at(0.006, 0.0, 0.0, normal=(1, 0, 0)),
+        False,
+    ),
+    "corner": (lambda: trimesh.creation.box((0.03,) * 3), at(0.015, 0.0103, 0.0, normal=(1, 0, 0)), True),
+    "edge": (lambda: trimesh.creation.box((0.03,) * 3), at(0.015, 0.015, 0.0, normal=(1, 0, 0)), False),
+    "ball": (lambda: trimesh.creation.icosphere(4, 0.02), at(0.02, 0.0, 0.0, normal=(1, 0, 0)), True),
+}
+"""Mesh, patch, and whether it is plain there."""
+QUICK = ("wall", "ceramic"), ("rim", "aluminium"), ("ball", "wood")
+
+
+@pytest.mark.parametrize(
+    ("place", "material"),
+    [
+        pytest.param(place, material, marks=() if (place, material) in QUICK else pytest.mark.slow)
+        for place in PLACES
+        for material in ("wood", "ceramic", "aluminium")
+    ],
+)
+def test_a_touch_is_within_the_stated_share(place: str, material: str) -> None:
+    mesh, patch, plain = PLACES[place]
+    body = of(mesh(), material)
+    assert beneath(body.outside, patch).plain is plain
+    assert worst(body, patch) < PLACED_SHARE * DIFFERENCE
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        pytest.param(
+            at(0.015, 0.0, 0.0, normal=(1, 0, 0)),
+            at(-0.015, 0.002, 0.0, normal=(-1, 0, 0)),
+            marks=pytest.mark.slow,
+            id="opposite",
+        ),
+        pytest.param(
+            at(0.015, 0.0, 0.0, normal=(1, 0, 0)),
+            at(0.015, 0.006, 0.002, normal=(1, 0, 0)),
+            marks=pytest.mark.slow,
+            id="overlapping",
+        ),
+        pytest.param(
+            at(0.015, 0.009, 0.0, normal=(1, 0, 0)),
+            at(0.009, 0.015, 0.0, normal=(0, 1, 0)),
+            id="across an edge",
+        ),
+    ],
+)
+def test_two_fingertips_share_a_body(first: SurfacePatch, second: SurfacePatch) -> None:
+    body = of(trimesh.creation.box((0.03, 0.03, 0.03)), "ceramic")
+    assert worst(body, first, second) < PLACED_SHARE * DIFFERENCE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", [("glass", "aluminium"), ("aluminium", "wood")])
+def test_two_materials_have_modes_of_their_own(pair: tuple[str, str]) -> None:
+    top, body = at(0.0, 0.0, 0.013, normal=(0, 0, 1)), slab(*pair)
+    assert worst(body, top, at(0.006, 0.003, 0.013, normal=(0, 0, 1))) < PLACED_SHARE * DIFFERENCE
+    assert worst(body, at(0.0, 0.0, -0.01, normal=(0, 0, -1)), top) < PLACED_SHARE * DIFFERENCE
+
+
+def test_the_mean_holds_all_heat_and_nothing_grows() -> None:
+    body = of(cup(), "ceramic")
+    network, _ = placed_network(body, [at(0.02, 0.0, 0.0, normal=(1, 0, 0))], STACK)
+    assert network.rates[0] == 0.0 and np.all(network.rates[1:] > 0)
+    capacity = thermal.material("ceramic").volumetric_heat_capacity * body.parts[0].volume
+    assert network.ports[0, 0] == pytest.approx(capacity**-0.5, rel=1e-3)
+    assert network.outputs["heat"] @ network.ports[:, 0] == pytest.approx(1.0)
+    assert network.outputs["heat"] @ network.ports[:, 1:] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_field_goes_from_network_to_network_and_back() -> None:
+    """A place more changes nothing of what the slow modes hold, and nothing of how a known place answers."""
+    body = of(cup(), "ceramic")
+    one, two = at(0.02, 0.0, 0.0, normal=(1, 0, 0)), at(0.0, 0.02, 0.0, normal=(0, 1, 0))
+    alone, both = (placed_body(body, patches, STACK, DIFFERENCE) for patches in ((one,), (one, two)))
+    carried, back = field_carried(alone, both), field_carried(both, alone)
+    shared = alone.shared
+    assert shared == both.shared > 1
+    assert (back @ carried)[:shared, :shared] == pytest.approx(np.eye(shared))
+    late = np.array([0.05, 0.2, 1.0, 5.0])
+    heated = alone.object.ports[:, 0]
+    for seconds in late:
+        field = np.exp(-alone.object.rates * seconds) * heated
+        before = alone.object.ports[:, 0] @ field
+        assert both.object.ports[:, 0] @ (carried @ field) == pytest.approx(before, rel=0.01)
+
+
+def test_the_same_places_give_the_same_bits() -> None:
+    patches = at(0.02, 0.0, 0.0, normal=(1, 0, 0)), at(0.02, 0.0, 0.0175, normal=(1, 0, 0))
+    first, again = (placed_network(of(cup(), "ceramic"), patches, STACK)[0] for _ in range(2))
+    assert np.array_equal(first.ports, again.ports) and np.array_equal(first.rates, again.rates)
+
+
+def test_what_is_no_solid_or_meets_no_surface_is_refused() -> None:
+    one, other = (part(trimesh.creation.box((0.01, 0.01, 0.01)), "glass") for _ in range(2))
+    vertices = np.concatenate([one.vertices, other.vertices + [0.05, 0.0, 0.0]])
+    pieces = SolidPart(vertices, np.concatenate([one.faces, other.faces + len(one.vertices)]), one.material)
+    with pytest.raises(MeshError, match="piece"):
+        placed_network(Solid((pieces,)), [at(0.005, 0.0, 0.0, normal=(1, 0, 0))], STACK)
+    with pytest.raises(MeshError, match="surface"):
+        placed_network(of(cup()), [at(0.1, 0.0, 0.2, normal=(1, 0, 0))], STACK)

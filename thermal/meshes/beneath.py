@@ -1,0 +1,167 @@
+"""What lies beneath a place on a body's surface: its depth there, its curvature, and where its face ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..surfaces import FACING, SurfacePatch
+from .place import ABOVE, PlacedPatch, place_patch
+
+_FAR = 0.05  # m, from where on an end is not felt
+_SAMPLES = (1.0, 1.3, 1.7, 2.2, 3.0, 4.0)  # half widths from the middle at which a face is looked for
+_BEND = 0.6  # of the half width, where the surface's height tells its curvature
+_ASIDE = np.array([1.1e-5, 0.7e-5])  # m, beside edges of triangles
+_ALONG, _LEVEL = 0.95, 0.3  # cosine to a face's normal, and half widths from it, for a patch to be on it
+_EDGE = 1e-9  # of a triangle's side, that a line may lie beyond it
+_ROUND = 0.33  # curvature times half width, up to which its terms of second order serve
+_UNSMOOTH = 0.08  # half widths, by which the surface may differ from its curvature's, as with large facets
+_DEEP = 6e-3  # m, depth from which on no difference is felt before the body's modes take over
+_UNEVEN = 0.15  # of the depth, by which it may differ around a place
+_AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y])  # half widths
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beneath:
+    """What lies beneath a place. depth: m. curvature: (2,) 1/m along its sides. ends: (2, 2) m along each side to where
+    the face ends either way. plain: whether it is as a box there, bent a little: covered wholly, and of one depth."""
+
+    placed: PlacedPatch
+    depth: float
+    curvature: np.ndarray
+    ends: np.ndarray
+    plain: bool
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """m of the box that stands for it."""
+        x, y = self.ends.sum(axis=1)
+        return float(x), float(y), self.depth
+
+    def on_box(self, other: PlacedPatch) -> tuple[int, np.ndarray, np.ndarray] | None:
+        """The face of that box on which a patch lies, as kernels.Patches has it, with its middle and half widths (2,) m
+        there; None where it lies on no face."""
+        axes = np.stack((*self.placed.sides, self.placed.normal))
+        size, half = np.array(self.size), other.half_width
+        middle = axes @ (other.centre - self.placed.centre) + [*self.ends[:, 0], self.depth]
+        along = axes @ other.normal
+        axis = int(np.argmax(np.abs(along)))
+        far = along[axis] > 0
+        rest = [k for k in range(3) if k != axis]
+        level = abs(middle[axis] - (size[axis] if far else 0.0)) < _LEVEL * half
+        if (
+            abs(along[axis]) < _ALONG
+            or not level
+            or np.any(middle[rest] < 0)
+            or np.any(middle[rest] > size[rest])
+        ):
+            return None
+        low, high = (np.clip(middle[rest] + way * half, 0.0, size[rest]) for way in (-1, 1))
+        return 2 * axis + far, (low + high) / 2, (high - low) / 2
+
+
+class _Column:
+    """Heights m above a place at which lines along its normal leave and enter the body, beside it by (2,) m along its
+    sides."""
+
+    def __init__(self, triangles: np.ndarray, placed: PlacedPatch) -> None:
+        local = (triangles - placed.centre) @ np.stack((*placed.sides, placed.normal)).T
+        near = local[_within(local[:, :, :2], _SAMPLES[-1] * placed.half_width)]
+        up = np.cross(near[:, 1] - near[:, 0], near[:, 2] - near[:, 0])
+        slope = up[:, 2] / np.linalg.norm(up, axis=1)
+        self._left = _Faces(near[slope > FACING])
+        self._entered = _Faces(near[slope < -FACING])
+
+    def tops(self, at: np.ndarray) -> np.ndarray:
+        return self._left.heights(at)
+
+    def bottoms(self, at: np.ndarray) -> np.ndarray:
+        return self._entered.heights(at)
+
+
+class _Faces:
+    """Triangles (F, 3, 3) m seen along the third axis."""
+
+    def __init__(self, triangles: np.ndarray) -> None:
+        self._a, first, second = (
+            triangles[:, 0],
+            triangles[:, 1] - triangles[:, 0],
+            triangles[:, 2] - triangles[:, 0],
+        )
+        across = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        self._u = np.stack((second[:, 1], -second[:, 0])) / across
+        self._v = np.stack((-first[:, 1], first[:, 0])) / across
+        self._rise = first[:, 2], second[:, 2]
+
+    def heights(self, at: np.ndarray) -> np.ndarray:
+        x, y = at[0] - self._a[:, 0], at[1] - self._a[:, 1]
+        u, v = self._u[0] * x + self._u[1] * y, self._v[0] * x + self._v[1] * y
+        inside = (u >= -_EDGE) & (v >= -_EDGE) & (u + v <= 1 + _EDGE)
+        return self._a[inside, 2] + u[inside] * self._rise[0][inside] + v[inside] * self._rise[1][inside]
+
+
+def beneath(triangles: np.ndarray, patch: SurfacePatch) -> Beneath:
+    """triangles: (F, 3, 3) m of the body. Raises MeshError where the patch meets no surface."""
+    # a place's rays leave its middle by half a side at most
+    sides = np.linalg.svd(patch.direction[None])[2][1:]
+    close = _within((triangles - np.array(patch.centre)) @ sides.T, 2 * patch.half_width)
+    placed = place_patch(triangles[close], patch, np.eye(3))
+    column, half = _Column(triangles, placed), placed.half_width
+
+    def heights(offset: np.ndarray) -> np.ndarray:
+        return column.tops(_ASIDE + offset)
+
+    curvature, ends = np.zeros(2), np.full((2, 2), _FAR)
+    for n, along in enumerate(np.eye(2)):
+        for sign in (-1.0, 1.0):
+            found = heights(sign * _BEND * half * along)
+            found = found[np.abs(found) < half]
+            if len(found):
+                height = found[np.argmin(np.abs(found))]  # of a circle's arc
+                curvature[n] -= height / ((_BEND * half) ** 2 + height**2)
+        for k, sign in enumerate((-1.0, 1.0)):
+
+            def there(u: float, n: int = n, way: np.ndarray = sign * along) -> bool:
+                found = heights(u * way) + curvature[n] * u * u / 2
+                return bool(len(found)) and float(np.abs(found).min()) < 0.2 * u
+
+            ends[n, k] = _end(there, half)
+
+    def thickness(offset: np.ndarray) -> float:
+        """m from the surface down to the next; 0 where it is not within half a side of the place's height."""
+        above, below = heights(offset), column.bottoms(_ASIDE + offset)
+        if not len(above) or abs(top := above[np.argmin(np.abs(above))]) > half:
+            return 0.0
+        return float(np.min(top - below[below < top - ABOVE], initial=_FAR))
+
+    def bent(offset: np.ndarray) -> float:
+        """m from the curved face to the surface."""
+        found = heights(offset) + curvature @ offset**2 / 2
+        return float(np.min(np.abs(found), initial=np.inf))
+
+    depth = thickness(np.zeros(2))
+    around = [thickness(half * offset) for offset in _AROUND]
+    even = np.abs(np.minimum(around, _DEEP) - min(depth, _DEEP)).max() <= _UNEVEN * min(depth, _DEEP)
+    smooth = all(abs(bent(half * offset)) <= _UNSMOOTH * half for offset in _AROUND)
+    plain = even and smooth and ends.min() >= half and np.abs(curvature).max() * half <= _ROUND
+    return Beneath(placed, depth, curvature, ends, bool(plain))
+
+
+def _within(along: np.ndarray, reach: float) -> np.ndarray:
+    """Which of triangles (F, 3, 2) m come within reach of 0 along both axes."""
+    return np.all((along.min(axis=1) <= reach) & (along.max(axis=1) >= -reach), axis=1)
+
+
+def _end(there: Callable[[float], bool], half: float) -> float:
+    low = 0.0
+    for share in _SAMPLES:
+        high = share * half
+        if not there(high):
+            for _ in range(8):
+                middle = (low + high) / 2
+                low, high = (middle, high) if there(middle) else (low, middle)
+            return low
+        low = high
+    return _FAR

@@ -1,0 +1,282 @@
+"""A body touched anywhere: its network from its modes and from what lies beneath a place.
+
+The heat kernel between patches is that of the body's slow modes once heat has spread over a few millimetres, and before
+that the local one: of a box as thick as the body is there and as wide as its face goes on, curved as it is (the terms
+of first and second order in the curvature, from the impedances of cylinder and sphere). So a network is a function of
+place in milliseconds. Where that box would not be the body (rims, edges, strong curvature, layers of other materials),
+a patch's own impedance is a grid's that is fine there, in tenths of a second. Its states are the body's slowest modes,
+whatever the place, and what fades sooner, at rates that are the same for all places, its residues positive
+semidefinite.
+
+P: patches, M: patterns, R: modes, T: times, S: moments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations
+
+import numpy as np
+
+from ..kernels import (
+    FUNCTIONS,
+    GRASP,
+    NODES,
+    OF_GRASP,
+    TIMES,
+    TO_MOMENTS,
+    Patches,
+    Resolution,
+    Tip,
+    basis_jumps,
+    basis_terms,
+    before,
+    box_kernel,
+    residue_states,
+    residues,
+    tip,
+)
+from ..matter import SensorStack
+from ..network import ThermalNetwork
+from ..plates import Geometry
+from ..surfaces import Solid, SurfacePatch
+from .beneath import Beneath, beneath
+from .modes import BodyModes, body_modes
+from .network import body_network
+from .patch import patch_on_grid
+from .patterns import PatchPatterns
+from .place import PlacedPatch
+from .touched import PLATE, PLATE_MATERIAL, TouchedBody, geometry_of
+
+LEVEL = Resolution(12, 3, slowest=3e-3)
+PLACED_SHARE = 3.2e-3
+"""Error of the drop of a touch, as a share of the first difference, at most: 0.036 K of 12 K in 119 touches of blocks,
+bars, sheets, cylinders, balls, cones, rings and a mug of wood, ceramic and aluminium, and of bodies of two materials,
+at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
+_SLOW = 60  # modes that are states
+_SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes
+_FELT = 6e-3  # m between patches, across which heat goes before the modes tell
+_PITCH = 2.7  # between rates
+_KEPT = 256  # places
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). impedance: (S,
+    M, M) K/W at GRASP of what is faster than the slow modes, and before them all of it; None where the local box tells.
+    """
+
+    below: Beneath
+    seen: np.ndarray
+    impedance: np.ndarray | None
+
+
+def placed_network(
+    body: Solid, patches: Sequence[SurfacePatch], stack: SensorStack, *, cache: bool = True
+) -> tuple[ThermalNetwork, list[Beneath]]:
+    """The body's network with M ports a patch, in orthonormal patterns of the sensor's whole face, and what lies
+    beneath each. Output "heat" is the J that the body has gained, "mean" K. Raises MeshError where a patch meets no
+    surface, or the body is no solid in one piece."""
+    modes = body_modes(body, cache=cache)
+    one = centred_tip(stack, patches[0].area)
+    places = [_placed(body, patch, stack, cache) for patch in patches]
+    below = [place.below for place in places]
+    seen = np.concatenate([place.seen for place in places])
+    taus = modes.diffusivity * TIMES
+    kept = slice(0, min(_SLOW, len(modes.rates)))
+    fast = slice(kept.stop, None)
+    kernel = _faded(seen[:, fast], modes.rates[fast], taus)
+    if len(body.parts) == 1:
+        over = _over(taus)[:, None, None]
+        slow = _faded(seen[:, kept], modes.rates[kept], taus)
+        local = _local(below, one, taus) / modes.capacity
+        kernel = over * kernel + (1 - over) * (local - slow)
+    impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
+    count = LEVEL.patterns
+    at = [slice(n * count, (n + 1) * count) for n in range(len(places))]
+    for n, place in enumerate(places):
+        if place.impedance is None:
+            ports = np.arange(n * count, (n + 1) * count)
+            impedance[:, ports, ports] += before(modes.diffusivity) / (modes.capacity * one.area)
+            continue
+        impedance[:, at[n], at[n]] = place.impedance
+    for n, m in combinations(range(len(places)), 2):
+        if _close(places[n], places[m]):
+            pair = _pair(body, patches[n], patches[m], stack, cache)
+            impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
+    rates = modes.diffusivity * modes.rates[kept]
+    alone = impedance[:, ::count, ::count] + _impedance(seen[::count, kept], rates)
+    weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(below))], axis=0)
+    slowest = max(float(rates[-1]), LEVEL.slowest)
+    decay = np.geomspace(
+        slowest, LEVEL.fastest, max(4, int(np.ceil(np.log(LEVEL.fastest / slowest) / np.log(_PITCH))) + 1)
+    )
+    fading, ports = residue_states(residues(impedance, decay, weight), decay, LEVEL.least / weight[-1])
+    whole = np.concatenate((rates, fading))
+    still = np.eye(len(whole))[0]
+    held = np.sqrt(modes.capacity * modes.grid.capacity.sum())
+    network = ThermalNetwork(
+        whole,
+        np.concatenate((seen[:, kept].T, ports)),
+        np.zeros((len(seen), len(seen))),
+        {"heat": held * still, "mean": still / held},
+    )
+    return network, below
+
+
+@lru_cache(maxsize=_KEPT)
+def _placed(body: Solid, patch: SurfacePatch, stack: SensorStack, cache: bool) -> Placed:
+    modes, one = body_modes(body, cache=cache), centred_tip(stack, patch.area)
+    below, patterns = beneath(body.outside, patch), face_patterns(one)
+    seen = _seen(modes, body.outside, below.placed, patterns) / np.sqrt(modes.capacity)
+    if below.plain and len(body.parts) == 1:
+        return Placed(below, seen, None)
+    fine = body_network(body, (patch,), patterns=patterns, cache=cache)
+    slow = slice(0, min(_SLOW, len(modes.rates)))
+    rates = modes.diffusivity * modes.rates[slow]
+    impedance = _impedance(fine.ports[1:].T, fine.rates[1:])
+    impedance -= _impedance(seen[:, 1 : slow.stop], rates[1:])
+    return Placed(below, seen, impedance)
+
+
+def _close(one: Placed, other: Placed) -> bool:
+    """Whether one feels the other before the modes tell, where no box stands for the body beneath both."""
+    if one.impedance is None and other.impedance is None:
+        return False
+    apart = one.below.placed.centre - other.below.placed.centre
+    return float(np.linalg.norm(apart)) < 2 * one.below.placed.half_width + _FELT
+
+
+@lru_cache(maxsize=_KEPT)
+def _pair(body: Solid, one: SurfacePatch, other: SurfacePatch, stack: SensorStack, cache: bool) -> np.ndarray:
+    """(S, M, M) K/W at GRASP between two patches, less the slow modes'."""
+    modes, patterns = body_modes(body, cache=cache), face_patterns(centred_tip(stack, one.area))
+    fine = body_network(body, (one, other), patterns=patterns, cache=cache)
+    first, second = (_placed(body, patch, stack, cache).seen for patch in (one, other))
+    slow, count = slice(1, min(_SLOW, len(modes.rates))), LEVEL.patterns
+    impedance = _impedance(fine.ports[1:].T, fine.rates[1:])[:, :count, count:]
+    return impedance - _impedance(first[:, slow], modes.diffusivity * modes.rates[slow], second[:, slow])
+
+
+def _faded(seen: np.ndarray, rates: np.ndarray, taus: np.ndarray) -> np.ndarray:
+    """(T, M, M) of ports (M, R) whose states fade at these rates."""
+    return np.einsum("ir,tr,jr->tij", seen, np.exp(-np.outer(taus, rates)), seen, optimize=True)
+
+
+def _impedance(seen: np.ndarray, rates: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
+    """(S, M, M) K/W at GRASP of ports (M, R), or between these and others."""
+    others = seen if others is None else others
+    return np.einsum("ir,sr,jr->sij", seen, 1 / (GRASP[:, None] + rates), others, optimize=True)
+
+
+def _over(taus: np.ndarray) -> np.ndarray:
+    """(T,) how far the kernel is the modes', from 0 to 1 within a factor of four."""
+    over = np.clip((np.log2(taus / _SWITCH) + 1) / 2, 0.0, 1.0)
+    return over * over * (3 - 2 * over)
+
+
+def placed_body(
+    body: Solid,
+    patches: Sequence[SurfacePatch],
+    stack: SensorStack,
+    difference: float,
+    *,
+    fingertips: int = 2,
+    cache: bool = True,
+) -> TouchedBody:
+    """As touched_body's, in milliseconds a place once its modes are known. difference: K between sensor and body at
+    first, of which the error is PLACED_SHARE. Raises as placed_network does."""
+    patches = tuple(patches)
+    network, below = placed_network(body, patches, stack, cache=cache)
+    one = centred_tip(stack, patches[0].area).side
+    count = one.ports.shape[1]
+    sensor = ThermalNetwork(one.rates, one.ports, np.zeros((count, count)), one.outputs)
+    plate = Geometry(stack, PLATE_MATERIAL, "T", patches[0].area, "square", PLATE)
+    geometry = geometry_of(plate, network, body, fingertips)
+    centres = np.array([each.placed.centre for each in below])
+    return TouchedBody(geometry, sensor, network, patches, centres, PLACED_SHARE * abs(difference), _SLOW)
+
+
+def centred_tip(stack: SensorStack, area: float) -> Tip:
+    """The sensor's element under a square contact of m2 in the middle of its face."""
+    low = (stack.width - min(area**0.5, stack.width)) / 2
+    side = low, stack.width - low
+    return tip(stack, (side, side), LEVEL)
+
+
+def _seen(
+    modes: BodyModes, triangles: np.ndarray, placed: PlacedPatch, patterns: PatchPatterns
+) -> np.ndarray:
+    """(M, R) of the modes by a patch's patterns, at the surface: a field that is level at the wall is a parabola from
+    there to the first two nodes."""
+    grid = modes.grid
+    shares = patch_on_grid(grid, triangles, placed, patterns).shares
+    cells = np.flatnonzero(shares.any(axis=1))
+    each = shares[cells]
+    seen = each.T @ modes.fields[cells]
+    for axis, along in enumerate(placed.normal):
+        inward = grid.neighbours[cells, 2 * axis + (0 if along > 0 else 1)]
+        met = inward >= 0
+        rise = modes.fields[cells[met]] - modes.fields[inward[met]]
+        seen += along**2 / 8 * each[met].T @ rise
+    return seen
+
+
+def face_patterns(one: Tip) -> PatchPatterns:
+    """The tip's, by their integrals from the middle."""
+    half = len(NODES) // 2
+    edges = NODES[half:]
+    flows = np.concatenate(
+        (np.zeros((len(FUNCTIONS), 1)), np.cumsum(FUNCTIONS[:, half:] * np.diff(edges), axis=1)), axis=1
+    )
+    first = np.concatenate((one.basis[: len(FUNCTIONS)].T @ flows, np.zeros((0, len(edges)))))
+    second = one.basis[len(FUNCTIONS) :].T @ flows[1:]
+    sums = first.T[:, None] * edges[None, :, None] + edges[:, None, None] * second.T[None]
+    return PatchPatterns(edges, sums)
+
+
+def _local(below: Sequence[Beneath], one: Tip, taus: np.ndarray) -> np.ndarray:
+    """(T, P M, P M) 1/m3, of unit material: of patches by themselves and of those on the faces of one box; zero where
+    no box stands for the body."""
+    count = LEVEL.patterns
+    kernel = np.zeros((len(taus), len(below) * count, len(below) * count))
+    at = [slice(n * count, (n + 1) * count) for n in range(len(below))]
+    for n, each in enumerate(below):
+        if not each.plain:
+            continue
+        bent, on = _bent(each, taus), each.on_box(each.placed)
+        assert on is not None
+        kernel[:, at[n], at[n]] = bent * _box(each, [on], one, taus)
+        for m, other in enumerate(below):
+            far = each.on_box(other.placed)
+            if m == n or far is None or (other.plain and m > n):
+                continue
+            pair = bent * _box(each, [on, far], one, taus)[:, :count, count:]
+            kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
+    return kernel
+
+
+def _box(
+    each: Beneath, others: Sequence[tuple[int, np.ndarray, np.ndarray]], one: Tip, taus: np.ndarray
+) -> np.ndarray:
+    """(T, M N, M N) 1/m3 between N patches of the box beneath one of them: a face, middle and half widths of each."""
+    faces, middles, halves = zip(*others, strict=True)
+    jumps = np.array([basis_jumps(one.basis)] * len(others))
+    patches = Patches(np.array(faces), np.array(middles), np.array(halves))
+    terms = basis_terms(LEVEL.patterns)
+    kernel, _, port, _, _ = box_kernel(each.size, 1.0, 1.0, 0.0, patches, jumps, terms, len(others), taus)
+    return kernel + np.outer(port, port)
+
+
+def _bent(each: Beneath, taus: np.ndarray) -> np.ndarray:
+    """(T, 1, 1) of a flat body's kernel, by the surface's curvature: heat has less room under a round one. Through a
+    wall's thickness, no further."""
+    first, second = each.curvature
+    reach = np.minimum(np.sqrt(np.pi * taus), each.depth)
+    bend = (first + second) / 2 * reach
+    bend = bend + (0.75 * (first**2 + second**2) + 0.5 * first * second) / np.pi * reach**2
+    # heat that is even seen along the normal is thinner where the surface is slanted
+    level = 1 - (first**2 + second**2) * each.placed.half_width**2 / 6
+    return (level * (1 + bend))[:, None, None]
