@@ -71,11 +71,11 @@ class ThermalTouch:
     fingertips: label -> name of a geom, site or body, or a Fingertip. objects: name of a body or geom -> material or
     ThermalBody, or of many worlds a list of one for each; those that the MJCF describes (<custom><text
     name="thermograsp:NAME" data="aluminium 5.0"/>) need not be named. dt: s between readings, whole steps of the model.
-    tolerance: K of temperature drop that the heat models are made for; the pad around the sensor is in none of them and
-    changes the drop by more (docs/physics.md). ambient: °C, and air: W/(m2 K), of the air round
-    the objects. chain: the electronics, a SignalChain or one of thermal.SIGNAL_CHAINS. seed: of their noise, until the
-    first reset. worlds: how many, of recorded contact sensors (touch.prepare); None for the one of an MjData. World w's
-    noise is that of seed + w.
+    tolerance: K of temperature drop that the heat models are made for; the pad around a sensor, which changes the drop
+    by more, is in them where a Fingertip has a surround (docs/physics.md). ambient: °C, and air: W/(m2 K), of the air
+    round the objects. chain: the electronics, a SignalChain or one of thermal.SIGNAL_CHAINS. seed: of their noise,
+    until the first reset. worlds: how many, of recorded contact sensors (touch.prepare); None for the one of an MjData.
+    World w's noise is that of seed + w.
 
     Heat is advanced once per sample of the converter, a hundredth of a second or the nearest whole part of dt. What two
     fingertips feel through an object follows its box (BodyShape).

@@ -28,7 +28,17 @@ from thermograsp.mjlab import (
 )
 from thermograsp.mjlab.heat import WorldsHeat
 from thermograsp.touch import Fingertip, FixedTouch, TouchContacts, grasp_touch
-from thermograsp.touch.contacts import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, LENGTH, NORMAL, PLACE
+from thermograsp.touch.contacts import (
+    AREA,
+    ASIDE,
+    BESIDE,
+    CLOSED,
+    COLUMNS,
+    CONDUCTANCE,
+    LENGTH,
+    NORMAL,
+    PLACE,
+)
 from thermograsp.touch.heat import JoinedHeat
 from thermograsp.touch.scene import BodyShape, PadPlace, bodies, pads
 
@@ -174,7 +184,7 @@ def test_it_is_the_heat_of_the_cpu_environments(held: Held) -> None:
     for contacts, drop in zip(held.contacts, held.drop, strict=True):
         step = fixed.reads.of_step(contacts, material, fixed.of_object)
         touches[:, :, :1, CONDUCTANCE], touches[:, :, :1, AREA] = step.conductance, step.area
-        touches[:, :, :1, ASIDE:] = step.area[..., None] * step.shares
+        touches[:, :, :1, ASIDE:BESIDE] = step.area[..., None] * step.shares
         touches[:, :, :1, LENGTH], touches[:, :, :1, CLOSED] = step.area * step.length, step.area > 0
         heat.advance(touches, 1)
         np.testing.assert_allclose(drop, heat.drop, rtol=0, atol=1e-4)

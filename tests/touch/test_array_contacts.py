@@ -13,6 +13,7 @@ from thermograsp.touch import Fingertip, prepare
 from thermograsp.touch.contacts import (
     AREA,
     ASIDE,
+    BESIDE,
     CONDUCTANCE,
     FORCE,
     LENGTH,
@@ -103,6 +104,8 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
             area = read[:, AREA]
             np.testing.assert_allclose(step.length[world, :, 0] * area, read[:, LENGTH], rtol=1e-6)
             shares = step.shares[world, :, 0] * area[:, None]
-            np.testing.assert_allclose(shares, read[:, ASIDE:], rtol=1e-6, atol=1e-9 * area.max(initial=1e-9))
+            np.testing.assert_allclose(
+                shares, read[:, ASIDE:BESIDE], rtol=1e-6, atol=1e-9 * area.max(initial=1e-9)
+            )
         touched += (step.conductance > 0).all(axis=(0, 2)).sum() >= feeling
     assert touched > 50

@@ -21,10 +21,12 @@ def stepped(
 ):
     room = room_of(numbers, len(resistance), patterns)
     for c in range(len(flow)):
-        room.resistance[c], room.difference[c] = resistance[c], difference[c]
+        for p in range(patterns):
+            room.resistance[c * patterns + p], room.difference[c * patterns + p] = resistance[c], 0.0
+        room.difference[c * patterns] = difference[c]
     lost = step(DT, at, integers, ports, grams, paces, patterns, states, 0, stride, held, room)
     for c in range(len(flow)):
-        flow[c] = room.flow[c]
+        flow[c] = room.flow[c * patterns]
     return lost
 
 

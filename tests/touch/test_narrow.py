@@ -23,7 +23,18 @@ from thermograsp.thermal.kernels import (
     element_samples,
 )
 from thermograsp.touch import Fingertip, ThermalTouch
-from thermograsp.touch.contacts import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, LENGTH, NORMAL, PLACE
+from thermograsp.touch.contacts import (
+    AREA,
+    ASIDE,
+    BESIDE,
+    CLOSED,
+    COLUMNS,
+    CONDUCTANCE,
+    ENDS,
+    LENGTH,
+    NORMAL,
+    PLACE,
+)
 from thermograsp.touch.heat import JoinedHeat, narrow_tables
 from thermograsp.touch.heat.narrow import spread
 from thermograsp.touch.scene import PadPlace
@@ -217,7 +228,7 @@ def test_nothing_jumps_where_a_face_slides_over_an_edge(shape: str, skin: str | 
             row = reader.touches[0, 0, 0]
             found = 0.0
             if row[AREA] > 0:
-                placed = row[ASIDE:] / row[AREA]
+                placed = row[ASIDE:BESIDE] / row[AREA]
                 length = row[LENGTH] / row[AREA]
                 if spread(tables[own], tables[other], FACE, row[AREA], length, placed[:2], placed[2:], root):
                     found = float((root**2 / (1.0 + LEVEL.decay)).sum())
@@ -261,7 +272,7 @@ def test_wherever_contacts_are_nothing_grows_and_no_heat_is_lost(touch: ThermalT
     for _ in range(2000):
         first, second = 10.0 ** rng.uniform(-9, -1, 2)
         row[CONDUCTANCE], row[AREA] = 10.0 ** rng.uniform(-6, 3), first * second
-        row[LENGTH], row[ASIDE:] = row[AREA] * second, row[AREA] * rng.uniform(-0.5, 1.5, 4)
+        row[LENGTH], row[ASIDE:BESIDE] = row[AREA] * second, row[AREA] * rng.uniform(-0.5, 1.5, 4)
         heat.advance(touches, 1)
         assert 0 <= heat.drop[0, 0] <= touch._pads[0].temperature - 24.0
     balance = heat.balance(0)

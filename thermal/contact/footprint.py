@@ -229,6 +229,23 @@ def conductance(law, pressure):
 
 
 @njit(cache=True, error_model="numpy")
+def beside_face(law, halves, force, place, areas):
+    """W/(m2 K) where a flat object touches a pad beside the sensor's face, at a normal force N > 0 on the pad, whose
+    own pressure is less there than on the face under a skin; the surfaces are the face's. Fills areas (R,) m2 of what
+    it touches of rings around the face, of which halves (R,) m are half the outer sides. place: as contact's."""
+    on_pad, within = _overlap(law, place)
+    bearing, touched = on_pad + (law.ratio - 1.0) * within, False
+    for ring in range(len(halves)):
+        whole = 1.0
+        for side in range(2):
+            whole *= _common(halves[ring], law.size[side] / 2, place[law.across[side]])
+        areas[ring] = max(whole - within, 0.0)
+        touched = touched or areas[ring] > 0.0
+        within = whole
+    return conductance(law, force / bearing) if touched and bearing > 0.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
 def solid_conduction(law, area, load):
     """W/K of an area m2 of the face under a force N on it; law: a FOOTPRINT_LAW.
 

@@ -28,7 +28,7 @@ and meshes are still in plates/, network/ and meshes/.
 """
 
 from .box import BoxSamples, Patches, box_kernel, box_samples
-from .contact import Resolution, Tip, box_side, contact_weight, tip, tip_at
+from .contact import Resolution, Tip, at_rates, box_side, contact_weight, tip, tip_at
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
 from .exponentials import residues
@@ -65,6 +65,7 @@ __all__ = [
     "Tip",
     "TouchedBox",
     "UnderTips",
+    "at_rates",
     "basis_jumps",
     "basis_terms",
     "before",

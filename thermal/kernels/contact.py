@@ -127,8 +127,7 @@ def box_side(
     rate, heat = box.rate, None
     if film > 0:
         rate, rest, heat = _shielded(box, film, rest, tips)
-    found = residues(rest, level.decay, weight)
-    fast, ports = states(found, level.decay, level.least / weight[-1])
+    fast, ports = at_rates(rest, level, weight)
     rates = np.concatenate(([rate], fast))
     held = np.zeros(len(rates))
     if heat is None:
@@ -142,6 +141,13 @@ def box_side(
         np.concatenate((port[None], ports)),
         outputs={"object": held, "loss": held * rates},
     )
+
+
+def at_rates(impedance: np.ndarray, level: Resolution, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
+    at GRASP. weight: (S,) W/K of its errors."""
+    found = residues(impedance, level.decay, weight)
+    return states(found, level.decay, level.least / weight[-1])
 
 
 def _shielded(
@@ -170,8 +176,7 @@ def _element_side(
 ) -> ThermalNetwork:
     slow = (1 / (GRASP[:, None] + known.rates)) @ known.ports**2
     rest = impedance - slow[:, None, None] * np.outer(even, even)
-    found = residues(rest, level.decay, weight)
-    fast, ports = states(found, level.decay, level.least / weight[-1])
+    fast, ports = at_rates(rest, level, weight)
     # neither output jumps with heat at the face, but all heat that goes in is in
     transfers = (np.outer(rest[OF_GRASP], even) for rest in (known.drop_rest, known.heat_rest))
     jumps = (-(known.drop @ known.ports) * even, (1 - known.heat @ known.ports) * even)

@@ -33,8 +33,8 @@ SHARE = 8e-4
 measured as for LEVELS."""
 STRONGEST = 1e5  # W/(m2 K)
 PADDED_SHARE = 3.4e-3
-"""The same with a pad around the element (concentric squares, one even flow beside the face), beside three-dimensional
-finite elements (docs/physics.md), most of it on thin metal half a second after the touch."""
+"""The same with a pad around the element (concentric squares, three rings beside the face), beside three-dimensional
+finite elements (studies/pad_square.py --press), most of it on metals half a second after the touch."""
 PADDED_STRONGEST = 3e5
 """W/(m2 K), as of skins on smooth faces: no other network serves there."""
 _AIR = 1.25, 1e-4

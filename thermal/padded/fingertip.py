@@ -3,8 +3,7 @@
 What the element is without a pad is known exactly (kernels), and so is the pad cut apart from it, under an even flow.
 What the bond between them changes comes from concentric squares (squares.py).
 
-S: moments, P: patterns of the element's face (kernels), Q = P + 1: with the even flow over all of the front that
-touches.
+S: moments, P: patterns of the element's face (kernels), R: rings of the front around it, M: patterns kept.
 """
 
 from __future__ import annotations
@@ -17,42 +16,49 @@ import numpy as np
 from ..kernels import ALONG, GRAM, MOMENTS, element, element_samples
 from ..matter import Layer, SensorStack, Surround
 from ..plates import stack_impedance, stack_profile
-from .squares import PORTS, bonded
+from .squares import FACE, bonded
 
 _TINY = 1e-30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PaddedSamples:
-    """impedance: (S, Q, Q) K/W between flows of 1 W in each pattern of the element's face, and evenly into all that
-    touches; slope: its derivative by the moment. drop: (S, Q) K/W over the sensed layer. heat: (S, Q) J/W in element
-    and pad. face, front: m2 of the element's face and of all that touches."""
+class RingedSamples:
+    """impedance: (S, P + R, P + R) K/W between flows of 1 W in each pattern of the element's face, and evenly into each
+    of R rings around it; slope: its derivative by the moment. drop: (S, P + R) K/W over the sensed layer. heat: (S, P +
+    R) J/W in element and pad. face: m2 of the element's face, and areas: (R,) m2 of the rings."""
 
     impedance: np.ndarray
     slope: np.ndarray
     drop: np.ndarray
     heat: np.ndarray
     face: float
-    front: float
+    areas: np.ndarray
+
+    @property
+    def front(self) -> float:
+        """m2 of all that touches."""
+        return self.face + float(self.areas.sum())
 
     def orthonormal(self, face_basis: np.ndarray) -> np.ndarray:
-        """(Q, M + 1) of combinations that are orthonormal over the front, the even one first, from those of the face
-        (P, M), the even one first: a conductance per area is the same number for all of them."""
-        kept, share = face_basis.shape[1], self.face / self.front
-        basis = np.zeros((len(face_basis) + 1, kept + 1))
-        basis[-1, 0] = 1.0
-        if share < 1:
-            basis[:-1, 1] = face_basis[:, 0]
-            basis[-1, 1] = -1.0
-            basis[:, 1] /= np.sqrt(1 / share - 1)
-        basis[:-1, 2:] = face_basis[:, 1:] * np.sqrt(share)
+        """(P + R, M + R) of combinations that are orthonormal over the front, the even one first, then what sets face
+        and rings against one another, from those of the face (P, M), the even one first: a conductance per area is the
+        same number for all of them."""
+        kept, count, rings = face_basis.shape[1], len(face_basis), len(self.areas)
+        shares = np.array([self.face, *self.areas]) / self.front
+        regions = np.linalg.qr(np.column_stack((np.sqrt(shares), np.eye(rings + 1)[:, 1:])))[0]
+        regions *= np.sign(regions[0, 0]) * np.sqrt(shares)[:, None]
+        basis = np.zeros((count + rings, kept + rings))
+        basis[:count, : rings + 1] = np.outer(face_basis[:, 0], regions[0])
+        basis[count:, : rings + 1] = regions[1:]
+        basis[:count, rings + 1 :] = face_basis[:, 1:] * np.sqrt(shares[0])
         return basis
 
 
-def _means() -> np.ndarray:
-    """(PORTS, P + 1): the flows of squares.py that stand for the face's patterns and the even flow beside the face."""
-    matrix = np.zeros((PORTS, len(GRAM) + 1))
-    matrix[0, 0] = matrix[-1, -1] = 1.0
+def _means(rings: int) -> np.ndarray:
+    """(Q, P + R): the flows of squares.py that stand for the face's patterns and the even flows into rings."""
+    matrix = np.zeros((FACE + rings, len(GRAM) + rings))
+    matrix[0, 0] = 1.0
+    matrix[FACE:, len(GRAM) :] = np.eye(rings)
     for pattern, (first, second) in enumerate(ALONG):
         function = max(first, second)
         if function:
@@ -60,19 +66,15 @@ def _means() -> np.ndarray:
     return matrix
 
 
-_STAND_FOR = _means()
-
-
 @lru_cache(maxsize=64)
-def padded_samples(stack: SensorStack, surround: Surround, front: float) -> PaddedSamples:
-    """stack: the element with its skin, if it wears one. surround: with its depth. front: m2 of the pad's front that
-    touches, the element's whole face in it; what touches beside the face is taken as a square around it."""
-    face, count = stack.face_area, len(GRAM)
-    change = bonded(stack, surround, float(np.sqrt(front)))
-    width, known = stack.width, element(stack)
-    alone = element_samples(stack, ((0.0, width), (0.0, width)))
-    shape = len(MOMENTS), count + 1
-    impedance, slope = np.zeros((*shape, count + 1)), np.zeros((*shape, count + 1))
+def ringed_samples(stack: SensorStack, surround: Surround, rings: tuple[float, ...]) -> RingedSamples:
+    """stack: the element with its skin, if it wears one. surround: with its depth. rings: m, the outer sides of the
+    squares of the pad's front that touch, ascending, the element's whole face in them."""
+    count, width = len(GRAM), stack.width
+    change, stand_for = bonded(stack, surround, rings), _means(len(rings))
+    known, alone = element(stack), element_samples(stack, ((0.0, width), (0.0, width)))
+    shape = len(MOMENTS), count + len(rings)
+    impedance, slope = np.zeros((*shape, shape[1])), np.zeros((*shape, shape[1]))
     drop, heat = np.zeros(shape), np.zeros(shape)
     impedance[:, :count, :count], slope[:, :count, :count] = alone.value, alone.slope
     slow = 1 / (MOMENTS[:, None] + known.rates)
@@ -81,23 +83,23 @@ def padded_samples(stack: SensorStack, surround: Surround, front: float) -> Padd
         (heat, known.heat, known.heat_rest),
     ):
         row[:, :count] = np.outer(slow @ (of_states * known.ports) + rest, GRAM[0])
-    layers, beside = _beside(stack, surround), front - face
-    if beside > 0:
-        turned = (MOMENTS * (1 + 1j * _TINY))[:, None]
-        through = stack_impedance(layers, "isothermal", turned, np.zeros(1))[:, 0] / beside
-        impedance[:, -1, -1], slope[:, -1, -1] = through.real, through.imag / (MOMENTS * _TINY)
-        _, flows = stack_profile(layers, "isothermal", MOMENTS[:, None], np.zeros(1))
-        heat[:, -1] = (flows[0] - flows[-1])[:, 0] / MOMENTS
-    impedance += _STAND_FOR.T @ change.impedance @ _STAND_FOR
-    slope += _STAND_FOR.T @ change.slope @ _STAND_FOR
-    drop, heat = drop + change.drop @ _STAND_FOR, heat + change.heat @ _STAND_FOR
-    # the even flow over the whole front in place of that beside the face
-    turn = np.eye(count + 1)
-    turn[0, -1], turn[-1, -1] = face / front, beside / front
-    found = turn.T @ impedance @ turn, turn.T @ slope @ turn, drop @ turn, heat @ turn
-    for each in found:
+    layers, areas = _beside(stack, surround), np.diff((width**2, *(side**2 for side in rings)))
+    turned = (MOMENTS * (1 + 1j * _TINY))[:, None]
+    through = stack_impedance(layers, "isothermal", turned, np.zeros(1))[:, 0]
+    _, flows = stack_profile(layers, "isothermal", MOMENTS[:, None], np.zeros(1))
+    for ring, area in enumerate(areas.tolist(), count):
+        if area > 0:
+            impedance[:, ring, ring] = np.real(through) / area
+            slope[:, ring, ring] = np.imag(through) / (MOMENTS * _TINY) / area
+            heat[:, ring] = (flows[0] - flows[-1])[:, 0] / MOMENTS
+    impedance += stand_for.T @ change.impedance @ stand_for
+    slope += stand_for.T @ change.slope @ stand_for
+    found = RingedSamples(
+        impedance, slope, drop + change.drop @ stand_for, heat + change.heat @ stand_for, width**2, areas
+    )
+    for each in (found.impedance, found.slope, found.drop, found.heat):
         each.setflags(write=False)
-    return PaddedSamples(*found, face, front)
+    return found
 
 
 def _beside(stack: SensorStack, surround: Surround) -> tuple[Layer, ...]:

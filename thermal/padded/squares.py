@@ -6,26 +6,30 @@ pad changes is the difference between two such bodies, bonded and cut apart, in 
 either one nearly cancels; each apart is known exactly (fingertip.py). studies/pad_square.py compares with
 three-dimensional finite elements.
 
-S: moments, X: cells from the middle outward, Z: cells from the thermostat to the front, Q: flows (PORTS).
+S: moments, X: cells from the middle outward, Z: cells from the thermostat to the front, R: rings of the pad's front
+around the element's face, Q = FACE + R: flows.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import solveh_banded
 
 from ..kernels import EXPONENTS, FUNCTIONS, MOMENTS, NODES
 from ..matter import SensorStack, Surround
+from ..numerics import graded_cells
 
-PORTS = 2 + len(EXPONENTS)
-"""Of the front: an even flow into the element's face, flows crowded toward its edges by each exponent, and an even flow
-into what of the pad around it touches."""
-_WIDTH, _DEPTH, _BETWEEN, _GROWTH = 2e-5, 1.5e-5, 6e-5, 1.25
-"""m of the cells at the element's sides, at the front and at other interfaces, and of each by the next one's. Cells of
-half this size and growth change the drop by .001 K of 12 K at most, under a skin by .003 K."""
+FACE = 1 + len(EXPONENTS)
+"""Flows into the element's face: an even one, and those crowded toward its edges by each exponent. Behind them are even
+ones into each ring of the pad around it that touches."""
+_WIDTH, _DEPTH, _BETWEEN, _GROWTH = 2e-5, 1.5e-5, 6e-5, 0.25
+"""m of the cells at the element's sides and where the front touches no more, at the front, and at other interfaces and
+between rings; and how many m longer a cell is for each m away from there. Cells of half this size and growth change the
+drop by .001 K of 12 K at most, under a skin by .003 K."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,10 +44,10 @@ class Bonded:
 
 
 @lru_cache(maxsize=64)
-def bonded(stack: SensorStack, surround: Surround, touched: float) -> Bonded:
-    """stack: the element with its skin. surround: with its depth. touched: m, the side of the square of the front that
-    touches. A few hundredths of a second, once."""
-    squares = _Squares(stack, surround, touched)
+def bonded(stack: SensorStack, surround: Surround, rings: tuple[float, ...]) -> Bonded:
+    """stack: the element with its skin. surround: with its depth. rings: m, the outer sides of the squares around the
+    face that touch, ascending; the last one's may be the face's. A few hundredths of a second, once."""
+    squares = _Squares(stack, surround, rings)
     found = [
         [one - other for one, other in zip(squares.solved(s, False), squares.solved(s, True), strict=True)]
         for s in MOMENTS
@@ -57,11 +61,16 @@ def bonded(stack: SensorStack, surround: Surround, touched: float) -> Bonded:
 class _Squares:
     """The fingertip's cells: heat capacity (X, Z) J/K and conductances W/K in depth, to the thermostat and outward."""
 
-    def __init__(self, stack: SensorStack, surround: Surround, touched: float) -> None:
-        face, depth = stack.width / 2, surround.layer.thickness
+    def __init__(self, stack: SensorStack, surround: Surround, rings: tuple[float, ...]) -> None:
+        face, depth, end = stack.width / 2, surround.layer.thickness, surround.width / 2
         levels = np.concatenate(([0.0], np.cumsum([layer.thickness for layer in stack.layers])))
-        edges = self._outward(face, touched / 2, surround.width / 2)
-        height = self._upward(np.unique(np.concatenate((levels, [depth]))))
+        outer = [min(side / 2, end) for side in rings]
+        fine = {side: _BETWEEN for side in outer if side < end * (1 - 1e-9)}
+        fine |= {side: _WIDTH for side in (face, outer[-1]) if side < end * (1 - 1e-9)}
+        edges = graded_cells((0.0, *sorted({*fine, end})), fine, _GROWTH, np.inf)
+        marks = np.unique(np.concatenate((levels, [depth])))
+        fine = dict.fromkeys(marks.tolist(), _BETWEEN) | {float(marks[-1]): _DEPTH}
+        height = graded_cells(marks.tolist(), fine, _GROWTH, np.inf)
         inside = edges[1:] <= face * (1 + 1e-9)
         middles = (height[1:] + height[:-1]) / 2
         at = np.searchsorted(levels, middles) - 1
@@ -77,34 +86,22 @@ class _Squares:
         across = wide[:, None] / 2 / conductivity
         self._out = 8 * edges[1:-1, None] * thick / (across[:-1] + across[1:])
         self._inside, self._shares = inside, area[inside] / area[inside].sum()
-        touches = edges[1:] <= touched / 2 * (1 + 1e-9)
-        # the links outward from the element's sides, and from where the front touches no more
-        ends = [np.flatnonzero(kept)[-1] for kept in (inside, touches)]
-        self._cuts = np.array([end for end in ends if end < len(self._out)])
-        self._density = self._densities(edges / face, inside, touches & ~inside, area)
+        within = [edges[1:] <= side * (1 + 1e-9) for side in (face, *outer)]
+        # the links outward from the element's sides, from each ring, and from where the front touches no more
+        ends = {int(np.flatnonzero(kept)[-1]) for kept in within}
+        self._cuts = np.array(sorted(end for end in ends if end < len(self._out)), int)
+        parts = [kept & ~before for before, kept in pairwise(within)]
+        self._density = self._densities(edges / face, inside, parts, area)
         self._flow = self._density * area[:, None]
         self._sensed = [int(np.argmin(abs(height - levels[stack.sensed + n]))) for n in (0, 1)]
 
     @staticmethod
-    def _outward(face: float, touched: float, end: float) -> np.ndarray:
-        parts = [_graded(0.0, face, np.inf, _WIDTH)]
-        marks = [face, *([touched] if face * (1 + 1e-9) < touched < end * (1 - 1e-9) else []), end]
-        for low, high in zip(marks[:-1], marks[1:], strict=True):
-            parts.append(_graded(low, high, _WIDTH, _WIDTH if high < end else np.inf)[1:])
-        return np.concatenate(parts)
-
-    @staticmethod
-    def _upward(levels: np.ndarray) -> np.ndarray:
-        parts, last = [levels[:1]], len(levels) - 2
-        for n, (low, high) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
-            parts.append(_graded(low, high, _BETWEEN, _DEPTH if n == last else _BETWEEN)[1:])
-        return np.concatenate(parts)
-
-    @staticmethod
-    def _densities(edges: np.ndarray, inside: np.ndarray, ring: np.ndarray, area: np.ndarray) -> np.ndarray:
+    def _densities(
+        edges: np.ndarray, inside: np.ndarray, rings: list[np.ndarray], area: np.ndarray
+    ) -> np.ndarray:
         """(X, Q) 1/m2 of unit flows. edges: over half the element's width."""
-        density = np.zeros((len(area), PORTS))
-        density[:, 0], density[:, -1] = inside, ring
+        density = np.zeros((len(area), FACE + len(rings)))
+        density[:, 0] = inside / area[inside].sum()
         half = NODES[len(NODES) // 2 :]
         u = np.minimum(edges, 1.0)
         for n in range(len(EXPONENTS)):
@@ -113,10 +110,11 @@ class _Squares:
             grown = np.concatenate(([0.0], np.cumsum(along * np.diff(half))))
             within = 4 * u * np.interp(u, half, grown)
             ring_area = np.where(inside, np.diff(4 * u**2), 1.0)
-            density[:, 1 + n] = np.where(inside, np.diff(within) / ring_area, 0.0)
-        of = np.full(PORTS, area[inside].sum())
-        of[-1] = area[ring].sum()
-        return density / np.where(of > 0, of, 1.0)
+            density[:, 1 + n] = np.where(inside, np.diff(within) / ring_area, 0.0) / area[inside].sum()
+        for ring, kept in enumerate(rings, FACE):
+            if kept.any():
+                density[:, ring] = kept / area[kept].sum()
+        return density
 
     def solved(self, s: float, cut: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Impedance (Q, Q), its slope, drop (Q,) and heat (Q,) at s 1/s."""
@@ -132,11 +130,11 @@ class _Squares:
         banded[0, :-1] += out
         banded[0, 1:] += out
         banded[1, :, :-1], banded[deep, :-1] = -self._up, -out
-        heat = np.zeros((cells, deep, PORTS))
+        heat = np.zeros((cells, deep, self._flow.shape[1]))
         heat[:, -1] = self._flow
         warm = solveh_banded(
             banded.reshape(deep + 1, -1),
-            heat.reshape(-1, PORTS),
+            heat.reshape(cells * deep, -1),
             lower=True,
             overwrite_ab=True,
             check_finite=False,
@@ -151,25 +149,10 @@ class _Squares:
     def _level(self, warm: np.ndarray, n: int) -> np.ndarray:
         """(Q,) K, the element's mean between the cells n - 1 and n; the thermostat's where n is 0."""
         if n == 0:
-            return np.zeros(PORTS)
+            return np.zeros(warm.shape[2])
         inside = warm[self._inside]
         if n == warm.shape[1]:
             return self._shares @ (inside[:, -1] + (self._density * self._half[:, -1:])[self._inside])
         below, above = 1 / self._half[self._inside, n - 1], 1 / self._half[self._inside, n]
         mean = below[:, None] * inside[:, n - 1] + above[:, None] * inside[:, n]
         return self._shares @ (mean / (below + above)[:, None])
-
-
-def _graded(low: float, high: float, first: float, last: float) -> np.ndarray:
-    """Boundaries from low to high of cells about so long at either end, which grow away from it; inf: as it comes."""
-    if np.isinf(first):
-        return low + (high - _graded(low, high, last, first)[::-1])
-    if not np.isinf(last):
-        # where cells that grow from either end are equally long
-        middle = (low + high) / 2 + (last - first) / (2 * (_GROWTH - 1))
-        middle = min(max(middle, low + (high - low) / 4), high - (high - low) / 4)
-        one, other = _graded(low, middle, first, np.inf), _graded(middle, high, np.inf, last)
-        return np.concatenate((one, other[1:]))
-    count = max(2, int(np.ceil(np.log1p((high - low) / first * (_GROWTH - 1)) / np.log(_GROWTH))))
-    sizes = _GROWTH ** np.arange(count)
-    return low + (high - low) * np.concatenate(([0.0], np.cumsum(sizes))) / sizes.sum()

@@ -1,10 +1,10 @@
 """Fingertips with pads around their elements on a box, as networks for one touch.
 
-Ports are flows over the whole front that touches, the even one first, then the element's face against the pad around
-it, then what is crowded toward the face's edges. The pad's own contact is taken to conduct as well as the face's: the
-silicone behind it is by far the larger resistance.
+Ports are flows over the whole front that touches, the even one first, then the element's face and rings of the pad
+around it against one another, then what is crowded toward the face's edges. The pad's own contact is taken to conduct
+as well as the face's: the silicone behind it is by far the larger resistance.
 
-F: fingertips, P: patterns of the element's face (kernels), Q = P + 1, S: moments.
+F: fingertips, P: patterns of the element's face (kernels), R: rings, Q = P + R, S: moments.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ from ..kernels import (
 )
 from ..matter import Material, SensorStack, Surround
 from ..numerics import ThermalNetwork, output_row
-from .fingertip import PaddedSamples, padded_samples
+from .fingertip import RingedSamples, ringed_samples
+from .rings import RINGS, WIDTHS, nested_sides, to_rings
 
 
 def padded_sides(
@@ -42,10 +43,11 @@ def padded_sides(
     """The fingertips, all alike, and the box between them, as touch_sides makes them; a tip's output "element" has the
     pad's heat in it. size: m. film: W/(m2 K), not on what the fingertips cover. fronts: what of each pad touches, the
     element's whole face in its middle. stack: with its skin. surround: with its depth."""
-    seen = padded_samples(stack, surround, float(fronts.areas[0]))
+    sides = nested_sides(stack.width, float(np.sqrt(fronts.areas[0])))
+    seen = ringed_samples(stack, surround, sides)
     box = _seen(material, size, film, fronts, stack.width)
     count, tips = len(GRAM), len(fronts.face)
-    faces = np.concatenate([np.arange(count) + f * (count + 1) for f in range(tips)])
+    faces = np.concatenate([np.arange(count) + f * (count + RINGS) for f in range(tips)])
     across = [seen.impedance[:, :count, :count]] * tips
     areas = np.full(tips, seen.face)
     whole = box.whole()[:, faces[:, None], faces]
@@ -54,7 +56,7 @@ def padded_sides(
     return made, touch_box(box, film, made, detail)
 
 
-def _tip(seen: PaddedSamples, basis: np.ndarray, detail: Detail) -> Tip:
+def _tip(seen: RingedSamples, basis: np.ndarray, detail: Detail) -> Tip:
     impedance, slope = basis.T @ seen.impedance @ basis, basis.T @ seen.slope @ basis
     even = np.eye(basis.shape[1])[0]
     seen_even = impedance[:, 0, 0].copy()
@@ -70,29 +72,31 @@ def _tip(seen: PaddedSamples, basis: np.ndarray, detail: Detail) -> Tip:
 def _seen(
     material: Material, size: tuple[float, float, float], film: float, fronts: Patches, width: float
 ) -> BoxSamples:
-    """The box's samples between Q flows of each fingertip: the patterns of its element's face, of that width, and an
-    even one over its front."""
-    count, tips = len(GRAM), len(fronts.face)
+    """The box's samples between Q flows of each fingertip: the patterns of its element's face, of that width, and even
+    ones into rings of its front."""
+    count, tips, each = len(GRAM), len(fronts.face), 1 + RINGS
+    parts = np.concatenate(([0.0], WIDTHS))[:, None]
     nested = Patches(
-        np.repeat(fronts.face, 2),
-        np.repeat(fronts.centre, 2, axis=0),
-        np.stack((np.full_like(fronts.half, width / 2), fronts.half), axis=1).reshape(-1, 2),
+        np.repeat(fronts.face, each),
+        np.repeat(fronts.centre, each, axis=0),
+        np.concatenate([width / 2 + parts * (half - width / 2) for half in fronts.half]),
     )
     box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, nested)
     early = before(material.conductivity / material.volumetric_heat_capacity)
-    impedance = box.impedance.copy()
-    for f, area in enumerate(fronts.areas):
-        # before the first time the face's part of the front is a half-space under the front's even flow
-        face, front = np.arange(count) + 2 * f * count, (2 * f + 1) * count
-        shared = early / material.volumetric_heat_capacity / area * GRAM[0]
-        impedance[:, face, front] += shared
-        impedance[:, front, face] += shared
-    flows = np.concatenate([np.arange(count + 1) + 2 * f * count for f in range(tips)])
+    early /= material.volumetric_heat_capacity
+    impedance, flows = box.impedance.copy(), count + RINGS
+    turn = np.zeros((impedance.shape[1], tips * flows))
+    for f in range(tips):
+        face, first = f * each * count, f * flows
+        turn[face : face + count, first : first + count] = np.eye(count)
+        rows, squares = slice(face, face + count), [face + ring * count for ring in range(1, each)]
+        areas = nested.areas[f * each : (f + 1) * each].tolist()
+        to_rings(impedance, turn, (rows, GRAM[0]), squares, areas, early, first + count)
     return BoxSamples(
-        impedance[:, flows[:, None], flows],
-        box.slope[:, flows[:, None], flows],
+        turn.T @ impedance @ turn,
+        turn.T @ box.slope @ turn,
         box.rate,
-        box.port[flows],
+        box.port @ turn,
         box.held,
-        None if box.heat is None else box.heat[:, flows],
+        None if box.heat is None else box.heat @ turn,
     )

@@ -78,14 +78,14 @@ def press(
     contact, at most the sensor's face, None for 81e-6 or that face where it is smaller. shape: "square" or "round".
     object_size: (width, depth, thickness) m. air: W/(m2 K) on the object's free faces. Temperatures in °C. seconds, dt:
     samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of temperature drop from 0.05 s on, which rung="auto" (and
-    "network") keeps. rung: a name of thermal.RUNGS,
-    "auto", "network:ORDERS" as a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same
-    kind on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power, at
-    sensor_temperature at first, None for an ideal one. surround: what holds the element and touches the object around
-    its face: the name of a material or a Material for a square pad of 20 mm, or a Surround; None for a sensor by
-    itself. All of the pad that the object's face reaches then touches, as warm as the thermostat at first, and the same
-    conductance is taken for it; heat_flow, the surfaces' temperatures and stored_heat are those of the whole front and
-    of element and pad together. It is in mode "T", on an ideal thermostat. cache: keep networks on disk.
+    "network") keeps. rung: a name of thermal.RUNGS, "auto", "network:ORDERS" as a Rung prints itself, or a Rung.
+    opposite: conductance of a second fingertip of the same kind on the opposite face, None for none; the curves are the
+    first one's. thermostat: one of finite power, at sensor_temperature at first, None for an ideal one. surround: what
+    holds the element and touches the object around its face: the name of a material or a Material for a square pad of
+    20 mm, or a Surround; None for a sensor by itself. All of the pad that the object's face reaches then touches, as
+    warm as the thermostat at first, and the same conductance is taken for it; heat_flow, the surfaces' temperatures and
+    stored_heat are those of the whole front and of element and pad together. It is in mode "T", on an ideal thermostat.
+    cache: keep networks on disk.
 
     A heated sensor (one with a `touch` table) has been at sensor_temperature for long, in air of object_temperature,
     and its heater's law goes on from there; a controller's setpoint is that temperature. Its element in front of the

@@ -1,7 +1,7 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
 from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_contacts
-from .columns import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FORCE, LENGTH, NORMAL, PLACE
+from .columns import AREA, ASIDE, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FORCE, LENGTH, NORMAL, PLACE
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
 from .memory import clock_of
@@ -25,6 +25,7 @@ from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
 __all__ = [
     "AREA",
     "ASIDE",
+    "BESIDE",
     "BOND",
     "CLOSED",
     "COLUMNS",

@@ -26,15 +26,17 @@ from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import (
     CURVED_TABLE,
     CYLINDER,
+    beside_face,
     conductance,
     contact,
     curved_contact,
     curved_shares,
     flat_patch,
 )
+from ...thermal.padded import RINGS, ring_sides
 from ...thermal.pressed import PressedMesh
 from ..scene import BodyShape, PadPlace
-from .columns import AREA, ASIDE, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
+from .columns import AREA, ASIDE, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 from .laws import pair_laws, stacked
 from .memory import (
     CONTACTS,
@@ -64,11 +66,13 @@ DEPTH = (
 RIM = 0.0005  # m beyond the pad's sides
 LOOKING = 0.6  # least cosine between the pad's normal and the contact's
 
-_AXES, _HALF, _WIDTH, _PAD = 3, 12, 14, 15
-"""Where a pad's axes, half sides m and its sensor's width m stand behind its position m in the frame of its body."""
+_AXES, _HALF, _WIDTH, _AROUND, _PAD = 3, 12, 14, 15, 15 + RINGS
+"""Where a pad's axes, half sides m, its sensor's width m and half the outer sides m of its rings, 0 where it has no
+heat, stand behind its position m in the frame of its body."""
 _KNOWN, _FRAME = 12, 13
 """Of a pad in the world: its middle m, normal, y and z, and behind them whether these are of this substep."""
-_SPOT = 11  # numbers of a contact under way: a place, two axes of the pad, and by how much it lies at ends
+_SPOT = 11 + RINGS
+"""Numbers of a contact under way: a place, two axes of the pad, by how much it lies at ends, and areas of rings."""
 
 
 class ContactReader:
@@ -89,7 +93,9 @@ class ContactReader:
         self._pads = np.zeros((count, _PAD))
         for f, pad in enumerate(pads):
             self._role[list(pad.geoms)] = f
-            self._pads[f] = (*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width)
+            self._pads[f, :_AROUND] = (*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width)
+            if pad.surround is not None:
+                self._pads[f, _AROUND:] = np.array(ring_sides(pad.stack.width, pad.surround)) / 2
         geoms = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
         self._role[[geom for _, geom in geoms]] = count + np.arange(len(geoms))
         # of what a pad may meet: the target, the geom (-1 for a fingertip), its body, of meshes their views; of
@@ -554,7 +560,7 @@ def _feel(
 ):  # fmt: skip
     """Adds what presses on the pads to the touches. Returns whether every table that it needs could be made."""
     tips, part_count = len(pads), len(parts)
-    place, sides, shares = spot[:3], spot[3:7], spot[7:]
+    place, sides, shares, rings = spot[:3], spot[3:7], spot[7:11], spot[11:]
     for f in range(tips):
         if frames[f, _KNOWN] == 0.0:
             continue  # nothing has met it
@@ -655,6 +661,15 @@ def _feel(
                 if target != last:
                     touch[CLOSED] += weight
                     last = target
+            if pads[f, _AROUND] > 0 and geom >= 0:
+                # of objects that are one flat box each, which the scene sees to
+                through = beside_face(law, pads[f, _AROUND:], force, place, rings)
+                for ring in range(RINGS):
+                    if rings[ring] > 0:
+                        at = BESIDE + 3 * ring
+                        touch[at] += weight * through * rings[ring]
+                        touch[at + 1] += weight * rings[ring]
+                        touch[at + 2] += weight
             touch[FORCE] += weight * force
             x, y, z = middle[0] - xpos[body, 0], middle[1] - xpos[body, 1], middle[2] - xpos[body, 2]
             for i in range(3):

@@ -65,6 +65,12 @@ def install(
     substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
+    for pad in found:
+        if pad.surround is not None:
+            raise InvalidValueError(
+                f"fingertip {pad.label!r}: heat inside MuJoCo's step knows a sensor without the pad around it: leave "
+                "surround out, or call ThermalTouch.update after every step"
+            )
     numbers = packed(
         model,
         found,

@@ -9,7 +9,7 @@ n: states, M: patterns of a contact, N: places.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from ...thermal import Material
 from ...thermal.kernels import Patches, Resolution, Tip, box_side, glued_element, tip
 from ...thermal.numerics import ThermalNetwork
+from ...thermal.padded import RINGS, PaddedTip, box_in_pads, padded_tip, ring_sides
 from ..scene import BodyShape, PadPlace
 
 NEAR = 0.25 + 1e-6
@@ -26,23 +27,38 @@ MOST_PLACES = 2
 """Of an object that are remembered besides those in use."""
 
 _LEVELS = ((0.04, Resolution(8, 3)), (0.015, Resolution(12, 4)), (0.0, Resolution(18, 5)))
+_PADDED_LEVELS = (
+    (0.04, Resolution(12, 3, slowest=3e-3)),
+    (0.015, Resolution(12, 4, slowest=3e-3)),
+    (0.0, Resolution(18, 5, slowest=3e-3)),
+)
+"""The same where a fingertip has a pad, which touches more of an object: there heat stays for longer."""
+_PADDED_MOMENTS = 12
 AFTERWARDS = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
 _LEAST = 7e-4  # singular values below that share of the largest are left out
 
 
-def resolution(tolerance: float) -> Resolution:
-    """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K."""
-    return next(level for least, level in _LEVELS if tolerance >= least)
+def resolution(tolerance: float, padded: bool = False) -> Resolution:
+    """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K. padded:
+    whether a fingertip has a pad around its element."""
+    levels = _PADDED_LEVELS if padded else _LEVELS
+    return next(level for least, level in levels if tolerance >= least)
+
+
+Rings = tuple[float, ...]
+"""m, the outer sides of the rings of a pad."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TipField:
     """A fingertip's or a glued element's network. tip: of its whole face. face: (n, M) sqrt(K/J), its ports for another
-    fingertip that touches it. uniform: (n,) states of one that is 1 K warm throughout."""
+    fingertip that touches it. uniform: (n,) states of one that is 1 K warm throughout. padded: in its pad, whose heat
+    the network has too; None for an element without one."""
 
     tip: Tip
     face: np.ndarray
     uniform: np.ndarray
+    padded: PaddedTip | None = None
 
 
 def tip_field(pad: PadPlace, level: Resolution) -> TipField:
@@ -51,6 +67,9 @@ def tip_field(pad: PadPlace, level: Resolution) -> TipField:
     if pad.glued is not None:
         element = glued_element(pad.stack, level)
         return TipField(element.bond, element.top, element.uniform)
+    if pad.surround is not None:
+        padded = padded_tip(pad.stack, pad.surround, level, _PADDED_MOMENTS)
+        return TipField(padded.tip, padded.tip.side.ports, padded.tip.uniform, padded)
     whole = (0.0, pad.stack.width)
     made = tip(pad.stack, (whole, whole), level)
     if pad.bare:
@@ -75,17 +94,28 @@ class Place:
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyField:
     """An object's network of the places where it is touched. rates: (n,) 1/s. ports: (n, N M) sqrt(K/J). heat: (n,) J
-    and loss: (n,) W of a state; only the first one, the mean temperature's, has any."""
+    and loss: (n,) W of a state; only the first one, the mean temperature's, has any. beside: (n, N RINGS) ports
+    under the pads around the elements, no columns where no fingertip has one."""
 
     places: tuple[Place, ...]
     rates: np.ndarray
     ports: np.ndarray
     heat: np.ndarray
     loss: np.ndarray
+    beside: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def port(self, place: int, patterns: int) -> np.ndarray:
         """(n, M) of one place."""
         return self.ports[:, place * patterns : (place + 1) * patterns]
+
+    def in_rings(self, place: int) -> np.ndarray:
+        """(n, RINGS) of the pad around one place."""
+        return self.beside[:, place * RINGS : (place + 1) * RINGS]
+
+
+def rings_of(pad: PadPlace) -> Rings | None:
+    """Of the pad around a fingertip's element."""
+    return None if pad.surround is None else ring_sides(pad.stack.width, pad.surround)
 
 
 def near(one: Place, other: Place, reach: float) -> bool:
@@ -103,20 +133,26 @@ def untouched(shape: BodyShape, film: float) -> BodyField:
 
 
 def touched(
-    shape: BodyShape, film: float, places: tuple[Place, ...], tips: tuple[Tip, ...], level: Resolution
+    shape: BodyShape,
+    film: float,
+    places: tuple[Place, ...],
+    tips: tuple[Tip, ...],
+    rings: tuple[Rings | None, ...],
+    level: Resolution,
 ) -> BodyField:
-    """An object and its places. tips: of all fingertips, by number. The air takes heat from its mean temperature."""
+    """An object and its places. tips: of all fingertips, by number. rings: of their pads, None for those without one.
+    The air takes heat from the object's mean temperature."""
     x, y, z = shape.size.tolist()
     at = tuple((place.face, place.middle) for place in places)
     seen = tuple(tips[place.fingertip] for place in places)
-    side = _side(shape.material, (x, y, z), at, seen, level)
+    around = tuple(rings[place.fingertip] for place in places)
+    side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
     bare = untouched(shape, film)
     rates = side.rates.copy()
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
-    return BodyField(
-        places, rates, side.ports, np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
-    )
+    heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
+    return BodyField(places, rates, side.ports, heat, loss, beside)
 
 
 @lru_cache(maxsize=2048)
@@ -125,15 +161,20 @@ def _side(
     size: tuple[float, float, float],
     at: tuple[tuple[int, tuple[float, float]], ...],
     seen: tuple[Tip, ...],
+    around: tuple[Rings | None, ...],
     level: Resolution,
-) -> ThermalNetwork:
-    """The network of a box of that material and size m with patches at those faces and middles."""
+) -> tuple[ThermalNetwork, np.ndarray]:
+    """The network of a box of that material and size m with patches at those faces and middles; and its ports beside
+    them."""
     half = np.empty((len(at), 2))
     for row, (face, _), tip_ in zip(half, at, seen, strict=True):
         others = [size[i] for i in range(3) if i != face // 2]
         row[:] = [min(np.sqrt(tip_.area), side) / 2 for side in others]
     patches = Patches(np.array([face for face, _ in at]), np.array([middle for _, middle in at]), half)
-    return box_side(material, size, 0.0, patches, seen, level)
+    if any(sides is not None for sides in around):
+        return box_in_pads(material, size, patches, seen, around, level)
+    side = box_side(material, size, 0.0, patches, seen, level)
+    return side, np.zeros((len(side.rates), 0))
 
 
 @lru_cache(maxsize=1024)
@@ -159,6 +200,9 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
 def _future(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
     """(temperatures, n - 1) of the places' patterns at AFTERWARDS, each weighted by the time that it stays."""
     at = [field.places.index(place) for place in common]
-    ports = np.concatenate([field.port(place, patterns) for place in at], axis=1)[1:]
+    seen = [field.port(place, patterns) for place in at]
+    if field.beside.size:
+        seen += [field.in_rings(place) for place in at]
+    ports = np.concatenate(seen, axis=1)[1:]
     faded = np.exp(-np.outer(field.rates[1:], AFTERWARDS)) * np.sqrt(np.maximum(AFTERWARDS, AFTERWARDS[1]))
     return (ports[:, :, None] * faded[:, None, :]).reshape(len(ports), -1).T

@@ -20,6 +20,7 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import Material
 from ...thermal.numerics import Array
+from ...thermal.padded import RINGS
 from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts, table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
@@ -31,6 +32,7 @@ from .fields import (
     carried,
     near,
     resolution,
+    rings_of,
     tip_field,
     touched,
     untouched,
@@ -38,7 +40,7 @@ from .fields import (
 from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
-from .narrow import Side, narrow_sides, narrow_table, narrow_tables
+from .narrow import Beside, Side, narrow_sides, narrow_table, narrow_tables
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
@@ -98,14 +100,23 @@ class JoinedHeat:
         self._pads, self._shapes = pads, tuple(shapes)
         self._glued = GluedContacts(fingertips, glued, len(shapes), worlds) if glued else None
         self._dt, self._film, self._ambient = dt, film, ambient
-        self._level = resolution(tolerance)
+        self._level = resolution(tolerance, any(pad.surround is not None for pad in pads))
         self._tip_fields = tuple(tip_field(pad, self._level) for pad in pads)
         self._tips = tuple(field.tip for field in self._tip_fields)
-        self._widths = np.array([pad.stack.width for pad in pads])
+        # pads around elements, which are contacts of their own behind the sensors'
+        around = [(f, field.padded) for f, field in enumerate(self._tip_fields) if field.padded is not None]
+        self._around = tuple(around)
+        self._rings = tuple(map(rings_of, pads))
+        self._owners = np.array([*range(len(pads)), *(f for f, _ in around)])
+        self._around_of = np.full(len(pads), -1)
+        self._around_of[self._owners[len(pads) :]] = np.arange(len(pads), len(self._owners))
+        wide = [np.sqrt(padded.areas) for _, padded in around]
+        self._widths = np.concatenate(([pad.stack.width for pad in pads], *wide))
         self._boxes = np.array(
             [np.concatenate((s.size, s.extent, s.centre, s.axes.ravel())) for s in self._shapes]
         )
         count, objects, fields = len(pads), len(shapes), len(shapes) + len(pads)
+        contacts, lanes = len(self._owners), len(self._widths)
         self._known: dict[tuple[int, Material, tuple[Place, ...]], BodyField] = {}
         self._materials = [tuple(shape.material for shape in shapes)] * worlds
         bare = self._bare(self._materials[0])
@@ -122,18 +133,18 @@ class JoinedHeat:
         # the places for which these were found to do, and those for which one is to be found
         self._sought_faces, self._sought_middles = self._faces.copy(), self._middles.copy()
         self._new_faces, self._new_middles = self._faces.copy(), self._middles.copy()
-        self._closed = np.zeros((worlds, count, fields), bool)
+        self._closed = np.zeros((worlds, contacts, fields), bool)
         self._stale = np.zeros(worlds, bool)
         self._plan = np.full((worlds, min(count, fields)), -1)
         self._nets = np.zeros((worlds, fields), np.int64)
-        self._given, self._air = np.zeros((worlds, count, fields)), np.zeros(worlds)
+        self._given, self._air = np.zeros((worlds, lanes, fields)), np.zeros(worlds)
         self._x = np.zeros((worlds, fields, max(self._rows.shape[1], 1)))
         self._started = np.zeros((worlds, objects))
-        self._narrow = np.zeros((worlds, count, fields, self._level.rates))
+        self._narrow = np.zeros((worlds, lanes, fields, self._level.rates))
         # narrow contacts: the numbers of the tables of the two sides of each
         self._table_of: dict[tuple[Side, float], int] = {}
         self._tables = narrow_table((None, 0.0), 0.0, self._level)[None]
-        self._kinds = np.zeros((worlds, count, fields, 2), np.int64)
+        self._kinds = np.zeros((worlds, lanes, fields, 2), np.int64)
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face. It stays where it is."""
         self.warmth = np.zeros((worlds, objects))
@@ -144,7 +155,8 @@ class JoinedHeat:
         self._busy, self._seconds, self._reach = np.zeros(fields, bool), np.array([dt]), NEAR * self._widths
         kept = np.exp(-dt * self._level.decay)
         self._decay = np.array([self._level.decay, kept, (1 - kept) / self._level.decay])
-        self._roots, self._placed = np.zeros((count * fields, self._level.rates)), np.zeros(4)
+        ports = contacts * fields * self._level.patterns
+        self._roots, self._placed = np.zeros((ports, self._level.rates)), np.zeros(4)
         self._touches, self._touches_at = np.zeros(0), 0
         self._table: np.ndarray | None = None
         self._forget()
@@ -224,13 +236,21 @@ class JoinedHeat:
                 *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._tables),
                 *(self._kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
                 *(self.warmth, self._seconds, self._roots, self._room, self._placed),
+                *(self._around_of, self._owners),
             )
             worlds, tips, objects = self._current.shape
             sizes = (
                 *(worlds, tips, objects, self._level.patterns, self._plan.shape[1]),
                 *(len(pool.starts), len(pool.integers), len(pool.ports), len(pool.grams)),
                 *(len(self._fade), self._x.shape[2], self._rows.shape[1], len(self._tables)),
-                *(self._level.rates, len(pool.paces), len(self._room), pool.most),
+                *(
+                    self._level.rates,
+                    len(pool.paces),
+                    len(self._room),
+                    pool.most,
+                    len(self._owners),
+                    len(self._widths),
+                ),
             )
             self._pointed = arrays  # which must live as long as their addresses are in use
             self._table = np.zeros(TABLE, np.int64)
@@ -350,13 +370,19 @@ class JoinedHeat:
         new = faces.copy(), middles.copy()
         closed, stale = np.zeros((1, tips, objects), bool), np.zeros(1, bool)
         known = faces, middles, faces, middles
-        settle(touches, self._boxes, self._widths, self._widths, *known, *new, closed, stale)
+        none = np.full(tips, -1)
+        settle(touches, self._boxes, self._widths, self._widths, *known, *new, closed, stale, none)
         return [
             [self._wanted(f, int(new[0][0, f, o]), new[1][0, f, o]) for o in range(objects)]
             for f in range(tips)
         ]
 
     def _refuse_backs(self) -> None:
+        if self._around:
+            raise InvalidValueError(
+                "fixed places know elements without a pad alone: leave surround= of the fingertips out, or update a "
+                "ThermalTouch step by step"
+            )
         if self._backs or self._glued is not None:
             raise InvalidValueError(
                 "fixed places know fingertips on ideal thermostats alone: leave out thermostat=, heated sensors and "
@@ -401,7 +427,10 @@ class JoinedHeat:
     def balance(self, world: int) -> HeatBalance:
         """Where a world's heat has gone."""
         objects = len(self._shapes)
-        given, elements = self._given[world].copy(), self._in_tips()[world]
+        sensors = len(self._pads)
+        given, elements = self._given[world, :sensors].copy(), self._in_tips()[world]
+        for r, (f, _) in enumerate(self._around):
+            given[f] += self._given[world, sensors + r * RINGS : sensors + (r + 1) * RINGS].sum(axis=0)
         for back in self._backs:
             elements[back.tip] += back.gained[world]
         tips = int((self._on < 0).sum())
@@ -473,7 +502,7 @@ class JoinedHeat:
         if (o, material, places) not in self._known:
             shape = replace(self._shapes[o], material=material)
             self._known[o, material, places] = (
-                touched(shape, self._film, places, self._tips, self._level)
+                touched(shape, self._film, places, self._tips, self._rings, self._level)
                 if places
                 else untouched(shape, self._film)
             )
@@ -483,7 +512,8 @@ class JoinedHeat:
         """Systems are made anew when they are wanted."""
         self._table = None
         faces = [field.face for field in self._tip_fields]
-        self._pool = SystemPool(self._tips, faces, len(self._shapes), self._level.patterns, self._dt)
+        around = [(f, padded.rings) for f, padded in self._around]
+        self._pool = SystemPool(self._tips, faces, len(self._shapes), self._level.patterns, self._dt, around)
         self._numbers: dict[BodyField, int] = {}
         self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
         in_use = {field for fields in self._fields for field in fields}
@@ -502,13 +532,22 @@ class JoinedHeat:
             for t, target in enumerate((*self._materials[w], *range(len(self._pads)))):
                 other = target if isinstance(target, Material) else self._pads[target]
                 for s, side in enumerate(narrow_sides(pad, other)):
-                    key = side, pad.stack.width
-                    if key not in self._table_of:
-                        number = self._table_of[key] = len(self._table_of)
-                        if number == len(self._tables):
-                            self._tables = np.concatenate((self._tables, np.zeros_like(self._tables)))
-                        self._tables[number] = narrow_table(*key, self._level)
-                    self._kinds[w, f, t, s] = self._table_of[key]
+                    self._kinds[w, f, t, s] = self._narrow_number((side, pad.stack.width))
+        each = [one for _, padded in self._around for one in padded.impedance.T.tolist()]
+        for lane, impedance in enumerate(each, len(self._pads)):
+            width = float(self._widths[lane])
+            self._kinds[w, lane, :, 0] = self._narrow_number(((Beside(tuple(impedance)), 0.0), width))
+            # the object has a patch of what the ring covers
+            self._kinds[w, lane, :, 1] = self._narrow_number(((None, 0.0), width))
+
+    def _narrow_number(self, key: tuple[Side, float]) -> int:
+        """Of a table of narrow contacts."""
+        if key not in self._table_of:
+            number = self._table_of[key] = len(self._table_of)
+            if number == len(self._tables):
+                self._tables = np.concatenate((self._tables, np.zeros_like(self._tables)))
+            self._tables[number] = narrow_table(*key, self._level)
+        return self._table_of[key]
 
     def _renumber(self, w: int) -> None:
         """Which networks a world's fields have."""
@@ -586,9 +625,10 @@ class JoinedHeat:
         objects = len(self._shapes)
         pairs: list[Pair] = [(f, t) for f, t in np.argwhere(self._closed[w]).tolist()]
         self._plan[w] = -1
-        for number, group in enumerate(groups(pairs, objects)):
+        owners = self._pool.owners
+        for number, group in enumerate(groups(pairs, objects, owners)):
             fields = {t: self._fields[w][t] for t in sorted({t for _, t in group if t < objects})}
-            current = {(f, t): int(self._current[w, f, t]) for f, t in group if t < objects}
+            current = {(owners[f], t): int(self._current[w, owners[f], t]) for f, t in group if t < objects}
             self._plan[w, number] = self._pool.number(group, fields, current)
 
 

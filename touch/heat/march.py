@@ -10,9 +10,11 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
+from ...thermal.padded import RINGS
 from ..contacts import (
     AREA,
     ASIDE,
+    BESIDE,
     CLOSED,
     COLUMNS,
     CONDUCTANCE,
@@ -27,7 +29,7 @@ from .narrow import STEPS, spread
 from .step import CONTACTS, HEADER, PACE, room_of, step
 
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
-TABLE = 53
+TABLE = 57
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
 _TIE = 1e-6
@@ -38,16 +40,17 @@ the grid than to the one before: round-off does not decide where a pad is in the
 @njit(cache=True, error_model="numpy")
 def settle(
     touches, boxes, widths, reach, faces, middles, sought_faces, sought_middles, new_faces, new_middles,
-    closed, stale,
+    closed, stale, pads,
 ):  # fmt: skip
-    """Notes which contacts are closed, (W, F, T), and where; stale (W,) where that is no longer what it was.
+    """Notes which contacts are closed, (W, F + pads, T), those of pads around the sensors last, and where; stale (W,)
+    where that is no longer what it was. pads: (F,) number of each one's pad, from F on, -1 for none.
 
     boxes: (O, 18) size, extent and centre m and the axes, row by row. widths: (F,) m of the sensors. reach: (F,) m.
     faces (W, F, O) and middles (W, F, O, 2): the places in use, face -1 for none. A contact that has left its place is
     told by new_faces, else -1, and new_middles, of the nearest place of the grid; not again where that is the one that
     was asked for last, for which the place in use was found to do. Returns how many have left theirs, and how many
     worlds are stale."""
-    worlds, tips, targets = closed.shape
+    worlds, tips, targets = touches.shape[:3]
     objects, moved = len(boxes), 0
     position, looking, outdated = np.empty(3), np.empty(3), 0
     for w in range(worlds):
@@ -56,6 +59,13 @@ def settle(
                 now = touches[w, f, t, CONDUCTANCE] > 0
                 if now != closed[w, f, t]:
                     closed[w, f, t], stale[w] = now, True
+                if pads[f] >= 0:
+                    around = False
+                    for ring in range(RINGS):
+                        around = around or touches[w, f, t, BESIDE + 3 * ring] > 0
+                    if around != closed[w, pads[f], t]:
+                        closed[w, pads[f], t], stale[w] = around, True
+                    now = now or around
                 if t >= objects:
                     continue
                 new_faces[w, f, t] = -1
@@ -104,65 +114,67 @@ def sample(entries_at, touches_at, substeps, settled):
     were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
     many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
     entries = carray(words(entries_at), TABLE)
-    worlds, tips, objects = entries[36], entries[37], entries[38]
+    worlds, tips, objects, contacts, lanes = entries[38], entries[39], entries[40], entries[55], entries[56]
     targets = tips + objects
     touches, widths = (
         carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
-        carray(floats(entries[1]), tips),
+        carray(floats(entries[1]), lanes),
     )
     if settled == 0:
         moved, stale = settle(
             touches,
             carray(floats(entries[0]), (objects, 18)),
             widths,
-            carray(floats(entries[2]), tips),
+            carray(floats(entries[2]), lanes),
             carray(words(entries[3]), (worlds, tips, objects)),
             carray(floats(entries[4]), (worlds, tips, objects, 2)),
             carray(words(entries[5]), (worlds, tips, objects)),
             carray(floats(entries[6]), (worlds, tips, objects, 2)),
             carray(words(entries[7]), (worlds, tips, objects)),
             carray(floats(entries[8]), (worlds, tips, objects, 2)),
-            carray(flags(entries[9]), (worlds, tips, targets)),
+            carray(flags(entries[9]), (worlds, contacts, targets)),
             carray(flags(entries[10]), worlds),
+            carray(words(entries[36]), tips),
         )
         if moved or stale:
             return moved + stale
-    states, rates = entries[46], entries[49]
+    states, rates = entries[48], entries[51]
     decays = carray(floats(entries[22]), (3, rates))
     _march(
         carray(floats(entries[32]), 1)[0],
         substeps,
-        entries[39],
+        entries[41],
         touches,
         carray(floats(entries[11]), (worlds, tips)),
-        carray(words(entries[12]), (worlds, entries[40])),
-        carray(words(entries[13]), entries[41]),
-        carray(words(entries[14]), entries[42]),
-        carray(floats(entries[15]), entries[43]),
-        carray(floats(entries[16]), entries[44]),
-        carray(floats(entries[17]), entries[50] * PACE),
-        carray(floats(entries[18]), (entries[45], states)),
+        carray(words(entries[12]), (worlds, entries[42])),
+        carray(words(entries[13]), entries[43]),
+        carray(words(entries[14]), entries[44]),
+        carray(floats(entries[15]), entries[45]),
+        carray(floats(entries[16]), entries[46]),
+        carray(floats(entries[17]), entries[52] * PACE),
+        carray(floats(entries[18]), (entries[47], states)),
         carray(floats(entries[19]), (worlds, objects)),
-        carray(floats(entries[20]), (tips, entries[47])),
+        carray(floats(entries[20]), (tips, entries[49])),
         carray(words(entries[21]), (worlds, targets)),
         decays[0],
         decays[1],
         decays[2],
-        carray(floats(entries[23]), (entries[48], 2, 2, STEPS, STEPS, rates)),
-        carray(words(entries[24]), (worlds, tips, targets, 2)),
+        carray(floats(entries[23]), (entries[50], 2, 2, STEPS, STEPS, rates)),
+        carray(words(entries[24]), (worlds, lanes, targets, 2)),
         widths,
+        carray(words(entries[37]), contacts),
         carray(floats(entries[25]), (worlds, targets, states)),
         carray(floats(entries[25]), worlds * targets * states),
-        carray(floats(entries[26]), (worlds, tips, targets, rates)),
-        carray(floats(entries[27]), (worlds, tips, targets)),
+        carray(floats(entries[26]), (worlds, lanes, targets, rates)),
+        carray(floats(entries[27]), (worlds, lanes, targets)),
         carray(floats(entries[28]), worlds),
         carray(floats(entries[29]), (worlds, tips)),
         carray(flags(entries[30]), targets),
         carray(floats(entries[31]), (worlds, objects)),
-        carray(floats(entries[33]), (tips * targets, rates)),
-        carray(floats(entries[34]), entries[51]),
+        carray(floats(entries[33]), (contacts * targets * entries[41], rates)),
+        carray(floats(entries[34]), entries[53]),
         carray(floats(entries[35]), 4),
-        entries[52],
+        entries[54],
     )
     return 0
 
@@ -170,8 +182,8 @@ def sample(entries_at, touches_at, substeps, settled):
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, ports, grams, paces, fade, held, rows, nets,
-    decay, kept, grown, tables, kinds, widths, x, states, narrow, given, air, drop, busy, warmth, roots, numbers,
-    placed, most,
+    decay, kept, grown, tables, kinds, widths, owners, x, states, narrow, given, air, drop, busy, warmth, roots,
+    numbers, placed, most,
 ):  # fmt: skip
     """One step of dt s of every world.
 
@@ -183,19 +195,24 @@ def _march(
 
     Narrow contacts (narrow.py): decay (R,) 1/s their rates, kept and grown (R,) what of a state is there after a
     step, and s of a flow, tables (N, 2, 2, J, J, R), kinds (W, F, T, 2) which of these the sides of each contact have,
-    widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Within a step these follow
+    widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Behind the fingertips stand
+    the rings of pads around sensors, each as a square of its area that is touched from one side to the other; owners
+    (F + pads,) tells of contacts whose they are. Within a step these follow
     the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses in a
     resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
-    tips, targets, rates = narrow.shape[1], narrow.shape[2], len(decay)
+    tips, targets, rates = len(rows), narrow.shape[2], len(decay)
     room = room_of(numbers, most, patterns)
     resistances, differences, flow = room.resistance, room.difference, room.flow
     for w in range(worlds):
-        for f in range(tips):
+        for lane in range(narrow.shape[1]):
+            f, conducts = lane, CONDUCTANCE
+            if lane >= tips:
+                f, conducts = owners[tips + (lane - tips) // RINGS], BESIDE + 3 * ((lane - tips) % RINGS)
             for t in range(targets):
-                if not touches[w, f, t, CONDUCTANCE] > 0:
+                if not touches[w, f, t, conducts] > 0:
                     for k in range(rates):
-                        narrow[w, f, t, k] *= kept[k]
+                        narrow[w, lane, t, k] *= kept[k]
         for b in range(fields):
             busy[b] = False
         for c in range(plan.shape[1]):
@@ -205,23 +222,43 @@ def _march(
             contacts, joined = integers[start + CONTACTS], start + HEADER
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
-                touch, root = touches[w, f, t], roots[i]
-                behind, resistance = 0.0, substeps / touch[CONDUCTANCE]
-                area = touch[AREA] / touch[CLOSED]
-                for j in range(4):
-                    placed[j] = touch[ASIDE + j] / touch[AREA]
-                own, other = tables[kinds[w, f, t, 0]], tables[kinds[w, f, t, 1]]
-                length = touch[LENGTH] / touch[AREA]
-                if spread(own, other, widths[f], area, length, placed[:2], placed[2:], root):
-                    for k in range(rates):
-                        mean = grown[k] / dt  # of a state that fades, over the step
-                        behind += root[k] * mean * narrow[w, f, t, k]
-                        resistance += root[k] * root[k] * (1 - mean) / decay[k]
-                else:
-                    for k in range(rates):
-                        root[k] = 0.0
-                resistances[i] = resistance
-                differences[i] = warm[w, f] - (warm[w, t - objects] if t >= objects else 0.0) - behind
+                owner = owners[f]
+                touch = touches[w, owner, t]
+                differs = warm[w, owner] - (warm[w, t - objects] if t >= objects else 0.0)
+                lane, parts, column = f, 1, CONDUCTANCE
+                if f >= tips:
+                    lane, parts, column = tips + (f - tips) * RINGS, RINGS, BESIDE
+                for p in range(patterns):
+                    port = i * patterns + p
+                    if p >= parts:  # of the face's other patterns, which nothing drives
+                        resistances[port] = resistances[port - 1]
+                        differences[port] = 0.0
+                        continue
+                    root, behind = roots[port], 0.0
+                    if not touch[column] > 0:  # a ring that is not covered
+                        resistances[port], differences[port] = np.inf, 0.0
+                        lane, column = lane + 1, column + 3
+                        continue
+                    resistance = substeps / touch[column]
+                    if f < tips:
+                        area, length = touch[AREA] / touch[CLOSED], touch[LENGTH] / touch[AREA]
+                        for j in range(4):
+                            placed[j] = touch[ASIDE + j] / touch[AREA]
+                    else:
+                        area, length = touch[column + 1] / touch[column + 2], widths[lane]
+                        for j in range(4):
+                            placed[j] = 0.0
+                    own, other = tables[kinds[w, lane, t, 0]], tables[kinds[w, lane, t, 1]]
+                    if spread(own, other, widths[lane], area, length, placed[:2], placed[2:], root):
+                        for k in range(rates):
+                            mean = grown[k] / dt  # of a state that fades, over the step
+                            behind += root[k] * mean * narrow[w, lane, t, k]
+                            resistance += root[k] * root[k] * (1 - mean) / decay[k]
+                    else:
+                        for k in range(rates):
+                            root[k] = 0.0
+                    resistances[port], differences[port] = resistance, differs - behind
+                    lane, column = lane + 1, column + 3
             air[w] += dt * step(
                 dt,
                 start,
@@ -238,10 +275,18 @@ def _march(
             )
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
-                busy[objects + f], busy[t] = True, True
-                given[w, f, t] += dt * flow[i]
-                for k in range(rates):
-                    narrow[w, f, t, k] = kept[k] * narrow[w, f, t, k] + grown[k] * roots[i, k] * flow[i]
+                busy[objects + owners[f]], busy[t] = True, True
+                lane, parts, column = f, 1, CONDUCTANCE
+                if f >= tips:
+                    lane, parts, column = tips + (f - tips) * RINGS, RINGS, BESIDE
+                for p in range(parts):
+                    port = i * patterns + p
+                    if touches[w, owners[f], t, column + 3 * p] > 0:
+                        given[w, lane + p, t] += dt * flow[port]
+                        for k in range(rates):
+                            narrow[w, lane + p, t, k] = (
+                                kept[k] * narrow[w, lane + p, t, k] + grown[k] * roots[port, k] * flow[port]
+                            )
         for b in range(fields):
             if busy[b]:
                 continue

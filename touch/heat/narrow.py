@@ -17,6 +17,7 @@ J: widths of a table, K: rates, S: moments, T: times.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -53,7 +54,16 @@ _EVEN_TEMPERATURE = 0.08
 over k times its side (Yovanovich & Marotta, Thermal spreading and contact resistances, in Bejan & Kraus, Heat Transfer
 Handbook, 2003)."""
 
-Side = tuple[Material | SensorStack | None, float]
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """A ring of the pad around a sensor's element under a part of its front: as much more impedance as the part is
+    smaller. impedance: K/W of all of it at GRASP."""
+
+    impedance: tuple[float, ...]
+
+
+Side = tuple[Material | SensorStack | Beside | None, float]
 """What spreads heat on one side of a contact, None for nothing, and W/(m2 K) of the contact if that matters."""
 
 
@@ -79,7 +89,9 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
     if matter is None:
         return table
     widths = width * 2.0 ** (-np.arange(STEPS) / 2)
-    if isinstance(matter, SensorStack):
+    if isinstance(matter, Beside):
+        known = _of_part(np.array(matter.impedance), width**2 / np.outer(widths, widths))
+    elif isinstance(matter, SensorStack):
         known = _of_stack(matter, conducts, widths)
     else:
         known = _of_half_space(matter, conducts, widths)
@@ -118,6 +130,11 @@ def _of_stack(stack: SensorStack, conducts: float, widths: np.ndarray) -> np.nda
             value = 1 / (flow @ GRAM[0]) - loose
             known[first, second, i, j] = known[second, first, j, i] = value
     return known
+
+
+def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:
+    """(2, 2, J, J, S) K/W, of which all has an impedance (S,), of parts that are a ratio-th (J, J) of it."""
+    return np.broadcast_to(ratio[..., None] * impedance, (2, 2, *ratio.shape, len(impedance)))
 
 
 def _of_half_space(material: Material, conducts: float, widths: np.ndarray) -> np.ndarray:

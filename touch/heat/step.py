@@ -28,7 +28,7 @@ PACE = 21
 poles, how flows there push it, and push its mean: real parts, then imaginary ones."""
 _PAIRS = len(POLES)
 _LAGS = WEIGHTS / POLES
-_MOST = 1e100  # K/W, of a contact
+_MOST = 1e100  # K/W, of a port
 
 
 def pace(rate: float, dt: float) -> np.ndarray:
@@ -55,7 +55,7 @@ def gram(rates: np.ndarray, ports: np.ndarray, dt: float) -> np.ndarray:
 
 
 class Room(NamedTuple):
-    """Memory of `step`. Of each contact: resistance K/W, difference K and flow W. By column, a lane's port: heard and
+    """Memory of `step`. Of each port: resistance K/W, difference K and flow W. By column, a lane's port: heard and
     flows (2 Q, columns), and into (columns,), all flat. Of the solution, complex lanes, one pole each: matrix (m, m),
     solved and factors (m,). Lanes by rate: summed."""
 
@@ -74,22 +74,22 @@ class Room(NamedTuple):
 def room_size(contacts: int, patterns: int, rates: int) -> int:
     """Numbers of which `room_of` makes a Room for so many contacts and rates of a field."""
     m, columns = contacts * patterns, contacts * LANES * lanes(patterns)
-    return 3 * contacts + (4 * _PAIRS + 1) * columns + 2 * LANES * (m * m + 2 * m) + LANES * rates
+    return 3 * m + (4 * _PAIRS + 1) * columns + 2 * LANES * (m * m + 2 * m) + LANES * rates
 
 
 @njit(cache=True, inner=True, borrows=True, forceinline=True)
 def room_of(numbers, contacts, patterns):
     """A Room for so many contacts."""
     m, columns = contacts * patterns, contacts * LANES * ((patterns + LANES - 1) // LANES)
-    heard = 3 * contacts
+    heard = 3 * m
     flows, into = heard + 2 * _PAIRS * columns, heard + 4 * _PAIRS * columns
     solved = into + columns
     factors, matrix = solved + 2 * LANES * m, solved + 4 * LANES * m
     summed = matrix + 2 * LANES * m * m
     return Room(
-        numbers[:contacts],
-        numbers[contacts : 2 * contacts],
-        numbers[2 * contacts : heard],
+        numbers[:m],
+        numbers[m : 2 * m],
+        numbers[2 * m : heard],
         numbers[heard:flows],
         numbers[flows:into],
         numbers[into:solved],
@@ -105,7 +105,7 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
     """One step of dt s of a group, whose integers begin at `at`. states: flat, in place; from `first` on the
     world's fields, each `stride` behind the last. held: (O,) J
     of the mean's state, the first of an object. ports, grams: of all groups. paces: (R PACE,). room: with the
-    contacts' resistances and differences; their mean flows are filled. Returns what the air takes of its objects, W."""
+    ports' resistances and differences; their mean flows are filled. Returns what the air takes of its objects, W."""
     contacts, fields = integers[at + CONTACTS], integers[at + FIELDS]
     objects, wide = len(held), LANES * ((patterns + LANES - 1) // LANES)
     columns, m = contacts * wide, contacts * patterns
@@ -131,9 +131,9 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
         listed = paced + 1 + rates
     row, own_gram = 2 * LANES * m, integers[at + GRAM]
     for c in range(contacts):
-        resists, differs = min(resistance[c], _MOST) / dt, difference[c] / dt
         for p in range(patterns):
             a = c * patterns + p
+            resists, differs = min(resistance[a], _MOST) / dt, difference[a] / dt
             diagonal = a * row + 2 * LANES * a
             for n in range(diagonal, (a + 1) * row, LANES):
                 put(matrix, n, grams, own_gram + n)
@@ -143,18 +143,16 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
                 real, imag = 2 * LANES * a + q, 2 * LANES * a + LANES + q
                 solved[real] = -heard[q * columns + c * wide + p]
                 solved[imag] = -heard[(_PAIRS + q) * columns + c * wide + p]
-                if p == 0:
-                    solved[real] += differs
+                solved[real] += differs
     _solve(matrix, solved, room.factors, m)
     for c in range(contacts):
-        flow[c] = 0.0
         for p in range(patterns):
+            flow[c * patterns + p] = 0.0
             for q in range(_PAIRS):
                 at_pole = 2 * LANES * (c * patterns + p) + q
                 real, imag = solved[at_pole], solved[at_pole + LANES]
                 flows[q * columns + c * wide + p], flows[(_PAIRS + q) * columns + c * wide + p] = real, imag
-                if p == 0:
-                    flow[c] -= 2 * (_LAGS[q].real * real - _LAGS[q].imag * imag)
+                flow[c * patterns + p] -= 2 * (_LAGS[q].real * real - _LAGS[q].imag * imag)
     listed, port, lost = at + HEADER + 2 * contacts, integers[at + PORTS], 0.0
     for _ in range(fields):
         field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]

@@ -4,7 +4,9 @@ Contacts join fields into groups: a tip and the object it is on, and whatever el
 for itself. What a group's step needs depends on its contacts and on the objects' networks alone, so that the same
 numbers serve every world and every time that it comes again.
 
-Contacts are pairs (tip, target); targets are the objects, then the tips. Fields are numbered likewise.
+Contacts are pairs (tip, target); targets are the objects, then the tips. Fields are numbered likewise. A pad around a
+tip's element is a contact of the same field by other ports, those of its rings in place of patterns: behind the tips,
+pads are numbered as tips are, and no target.
 """
 
 from __future__ import annotations
@@ -22,32 +24,42 @@ from .step import PACE, gram, lanes, pace
 Pair = tuple[int, int]
 
 
-def groups(pairs: Sequence[Pair], objects: int) -> list[tuple[Pair, ...]]:
-    """The pairs in sets that share no field, each in its own order."""
+def groups(pairs: Sequence[Pair], objects: int, owners: Sequence[int]) -> list[tuple[Pair, ...]]:
+    """The pairs in sets that share no field, each in its own order. owners: the tip of each tip and pad."""
     rest, found = list(pairs), []
     while rest:
-        reached, members = {objects + rest[0][0], rest[0][1]}, []
+        reached, members = {objects + owners[rest[0][0]], rest[0][1]}, []
         while True:
-            more = [pair for pair in rest if objects + pair[0] in reached or pair[1] in reached]
+            more = [pair for pair in rest if objects + owners[pair[0]] in reached or pair[1] in reached]
             if not more:
                 break
             members += more
             rest = [pair for pair in rest if pair not in more]
             for tip, target in more:
-                reached |= {objects + tip, target}
+                reached |= {objects + owners[tip], target}
         found.append(tuple(sorted(members)))
     return found
 
 
 class SystemPool:
-    """Systems of groups, each made once. faces: (n, patterns) ports of each tip for another that touches it. starts:
-    where each one's integers begin (step.py), and ports, grams and paces: what these refer to. most: contacts of the
-    largest. rates: of the field that has most."""
+    """Systems of groups, each made once. faces: (n, patterns) ports of each tip for another that touches it. pads: tip
+    and ports (n, RINGS) of each pad. owners: the tip of each tip and pad. starts: where each one's integers begin
+    (step.py), and ports, grams and paces: what these refer to. most: contacts of the largest. rates: of the field that
+    has most."""
 
     def __init__(
-        self, tips: Sequence[Tip], faces: Sequence[np.ndarray], objects: int, patterns: int, dt: float
+        self,
+        tips: Sequence[Tip],
+        faces: Sequence[np.ndarray],
+        objects: int,
+        patterns: int,
+        dt: float,
+        pads: Sequence[tuple[int, np.ndarray]] = (),
     ) -> None:
         self._tips, self._faces, self._objects = tuple(tips), tuple(faces), objects
+        rings = [_in_place(ports, patterns) for _, ports in pads]
+        self._own_ports = [*(tip.side.ports for tip in tips), *rings]
+        self.owners = (*range(len(tips)), *(tip for tip, _ in pads))
         self._patterns, self._dt = patterns, dt
         self._known: dict[tuple[object, ...], int] = {}
         self._rates: dict[tuple[float, ...], int] = {}
@@ -61,7 +73,11 @@ class SystemPool:
 
     def number(self, pairs: tuple[Pair, ...], fields: dict[int, BodyField], current: dict[Pair, int]) -> int:
         """Of the group's system. fields: of its objects. current: each pair's place among its object's."""
-        key = (pairs, tuple(fields.items()), tuple(current.get(pair, -1) for pair in pairs))
+        key = (
+            pairs,
+            tuple(fields.items()),
+            tuple(current.get((self.owners[pair[0]], pair[1]), -1) for pair in pairs),
+        )
         if key not in self._known:
             self._known[key] = self._make(pairs, fields, current)
         return self._known[key]
@@ -77,10 +93,14 @@ class SystemPool:
             rates = fields[member].rates if member < objects else self._tips[member - objects].side.rates
             seen = {}  # its ports, by contact
             for number, (tip, target) in enumerate(pairs):
-                if member == objects + tip:
-                    seen[number] = -self._tips[tip].side.ports
+                if member == objects + self.owners[tip]:
+                    seen[number] = -self._own_ports[tip]
                 elif member == target and target < objects:
-                    seen[number] = fields[target].port(current[tip, target], patterns)
+                    place = current[self.owners[tip], target]
+                    if tip < len(self._tips):
+                        seen[number] = fields[target].port(place, patterns)
+                    else:
+                        seen[number] = _in_place(fields[target].in_rings(place), patterns)
                 elif member == target:
                     seen[number] = self._faces[target - objects]
             ports, padded = np.zeros((len(rates), m)), np.zeros((len(rates), len(seen), of_contact * LANES))
@@ -119,8 +139,13 @@ class SystemPool:
         return self._rates[rates]
 
     def _tips_of(self, pair: Pair) -> list[int]:
-        tip, target = pair
+        tip, target = self.owners[pair[0]], pair[1]
         return [tip] if target < self._objects else [tip, target - self._objects]
+
+
+def _in_place(rings: np.ndarray, patterns: int) -> np.ndarray:
+    """(n, patterns) of a contact by ports (n, RINGS), of which there are no more."""
+    return np.pad(rings, ((0, 0), (0, patterns - rings.shape[1])))
 
 
 def _written(pool: np.ndarray, first: int, values: np.ndarray) -> np.ndarray:

@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, length, numbers
 
-from ...thermal import Pad, SensorStack, Skin, Surface, Thermostat, material
+from ...thermal import Material, Pad, SensorStack, Skin, Surface, Surround, Thermostat, material
 from ...thermal.contact import touching
 from ...thermal.matter import skin as named_skin
+from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
 from .faces import flat_faces, largest_face, rotation, triangles
@@ -37,6 +38,9 @@ class Fingertip:
     touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there. skin:
     over the sensor's face, a name of thermal.SKINS or a Skin, None for bare alumina. Heat passes it, the
     contact's conductance is its own, and bodies press its springs; bare, balls and cylinders touch a rigid face.
+    surround: the pad around the sensor, which gives heat to the sensor's sides and to objects: its material by name or
+    a Material, as wide as a square of the pad's area, or a Surround that is no wider; None for a sensor by itself. A
+    fingertip with one touches objects of one box each, on an ideal thermostat.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
     objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it, and as
@@ -51,9 +55,24 @@ class Fingertip:
     temperature: float = 36.0
     thermostat: Thermostat | None = None
     skin: str | Skin | None = None
+    surround: str | Material | Surround | None = None
 
     def __post_init__(self) -> None:
         celsius(f"fingertip {self.name!r}: temperature (°C)", self.temperature)
+        if self.surround is not None:
+            for value, why in (
+                (self.thermostat is not None, "a thermostat of finite power: leave thermostat out"),
+                (
+                    self.sensor is None,
+                    "no sensor (sensor=None), around which it could be: leave surround out",
+                ),
+                (
+                    isinstance(self.sensor, HeatedStack),
+                    "a sensor with a heater of its own: leave surround out",
+                ),
+            ):
+                if value:
+                    raise InvalidValueError(f"fingertip {self.name!r}: no pad (surround) goes with {why}")
         if (self.position is None) != (self.normal is None):
             raise InvalidValueError(f"fingertip {self.name!r}: give position and normal together, or neither")
         for field, count in (("position", 3), ("normal", 3), ("size", 2)):
@@ -75,7 +94,7 @@ class PadPlace:
     heater's place. heated: the whole sensor, where it has a heater of its own. bare: the thermostat
     itself, no sensor. glued: the number of the object that it is an element on, None for a fingertip. thermostat: of
     finite power, None for an ideal one. skin: over the sensor's face, whose last layer it is, None for a bare one.
-    curvature: 1/m along y and z, of a pad that bulges out."""
+    curvature: 1/m along y and z, of a pad that bulges out. surround: the pad around the sensor, with its depth."""
 
     label: str
     body: int
@@ -91,6 +110,7 @@ class PadPlace:
     thermostat: Thermostat | None = None
     skin: Skin | None = None
     curvature: tuple[float, float] = (0.0, 0.0)
+    surround: Surround | None = None
 
     @property
     def face(self) -> Surface:
@@ -129,7 +149,29 @@ def pads(
         towards = [np.mean(others, axis=0)] if others else []
         towards += [data.xpos[o.body] + data.xmat[o.body].reshape(3, 3) @ o.centre for o in objects]
         placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middles[label]))
+        if placed[-1].surround is not None:
+            _require_boxes(model, label, objects)
     return tuple(placed)
+
+
+def _require_boxes(model: mujoco.MjModel, label: str, objects: Sequence[BodyShape]) -> None:
+    """Raises InvalidValueError for an object that a fingertip in its pad cannot touch."""
+    for shape in objects:
+        if shape.elements:
+            raise InvalidValueError(
+                f"fingertip {label!r}: a pad (surround) touches objects alone, and elements are glued on "
+                f"{shape.name!r}: leave surround out"
+            )
+        kinds = [mujoco.mjtGeom(int(model.geom_type[geom])) for geom in shape.geoms]
+        if kinds != [mujoco.mjtGeom.mjGEOM_BOX]:
+            what = ", ".join(
+                f"{geom_label(model, geom)} ({kind.name.removeprefix('mjGEOM_').lower()})"
+                for geom, kind in zip(shape.geoms, kinds, strict=True)
+            )
+            raise InvalidValueError(
+                f"fingertip {label!r}: a pad (surround) touches objects that are one box each, and {shape.name!r} is "
+                f"{what}: leave surround out, or name a box geom as the object"
+            )
 
 
 def _require_different_geoms(
@@ -213,6 +255,7 @@ def _pad(
     if one.size is not None:
         size = np.asarray(one.size, float)
     stack = bare_thermostat(size) if one.sensor is None else any_sensor(one.sensor)
+    surround = _surround(label, one, stack, size, curvature)
     skin = named_skin(one.skin)
     if skin is not None:
         stack = skin.over(stack)
@@ -239,7 +282,41 @@ def _pad(
         one.thermostat,
         skin,
         curvature,
+        surround,
     )
+
+
+def _surround(
+    label: str,
+    one: Fingertip,
+    stack: SensorStack | HeatedStack,
+    size: np.ndarray,
+    curvature: tuple[float, float],
+) -> Surround | None:
+    """The pad around a fingertip's bare sensor, of size (2,) m and curvature 1/m. Raises InvalidValueError for what it
+    cannot be around, or as wide as."""
+    around = named_surround(one.surround)
+    if around is None:
+        return None
+    if isinstance(stack, HeatedStack):
+        raise InvalidValueError(
+            f"fingertip {label!r}: no pad (surround) goes with {stack.name!r}, a sensor with a heater of its own: "
+            "leave surround out"
+        )
+    if sum(curvature) > 0:
+        raise InvalidValueError(
+            f"fingertip {label!r}: its pad bulges out, and the heat of a pad (surround) is known of flat ones: leave "
+            "surround out, or give a flat pad by position=, normal= and size="
+        )
+    width = math.sqrt(size.prod())
+    if not isinstance(one.surround, Surround):
+        around = replace(around, width=width)
+    elif around.width > width * (1 + 1e-9):
+        raise InvalidValueError(
+            f"fingertip {label!r}: surround is {around.width:g} m wide, and the pad is as large as a square of "
+            f"{width:g} m: give Surround(width=) at most that"
+        )
+    return around.around(stack)
 
 
 def bare_thermostat(size: np.ndarray) -> SensorStack:

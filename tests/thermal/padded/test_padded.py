@@ -9,12 +9,30 @@ import pytest
 from thermograsp import thermal
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.thermal import Layer, Material, SensorStack, Surround
+from thermograsp.thermal.kernels import GRAM
 from thermograsp.thermal.matter import sensor, skin
-from thermograsp.thermal.padded import squares
-from thermograsp.thermal.padded.fingertip import padded_samples
+from thermograsp.thermal.padded import RINGS, squares
+from thermograsp.thermal.padded.fingertip import RingedSamples, ringed_samples
+from thermograsp.thermal.padded.rings import nested_sides
 
 BLOCK = (0.04, 0.03, 0.01)
 NOTHING = Material("nothing", conductivity=1e-3, density=1.0, specific_heat=1e3)
+
+
+def _seed_in_silicone(worn: str | None = None) -> RingedSamples:
+    stack, known = sensor("seed"), skin(worn)
+    around = Surround().around(stack)
+    return ringed_samples(stack if known is None else known.over(stack), around, nested_sides(0.009, 0.02))
+
+
+def test_what_tells_rings_apart_is_orthonormal_over_the_front() -> None:
+    seen = _seed_in_silicone()
+    basis = seen.orthonormal(np.eye(len(GRAM), 1))
+    # of each combination W/m2 times the front's area, in face and rings
+    densities = np.concatenate((basis[:1] / seen.face, basis[len(GRAM) :] / seen.areas[:, None])) * seen.front
+    shares = np.array([seen.face, *seen.areas]) / seen.front
+    np.testing.assert_allclose(densities.T @ (shares[:, None] * densities), np.eye(1 + RINGS), atol=1e-12)
+    np.testing.assert_allclose(densities[:, 0], 1.0, rtol=1e-12)
 
 
 def _press(name: str, **words) -> thermal.Press:
@@ -68,15 +86,13 @@ def test_what_flows_through_the_front_is_in_the_object(words: dict) -> None:
 def test_the_drop_converges_with_the_squares_cells(monkeypatch: pytest.MonkeyPatch) -> None:
     def samples() -> np.ndarray:
         squares.bonded.cache_clear()
-        padded_samples.cache_clear()
-        stack = sensor("seed")
-        known = Surround().around(stack)
-        return padded_samples(stack, known, 4e-4).drop[:, [0, -1]].copy()
+        ringed_samples.cache_clear()
+        return _seed_in_silicone().drop[:, [0, *range(-RINGS, 0)]].copy()
 
     found = [samples()]
     for name, shares in (("_WIDTH", 2.0), ("_DEPTH", 2.0), ("_BETWEEN", 2.0)):
         monkeypatch.setattr(squares, name, getattr(squares, name) / shares)
-    monkeypatch.setattr(squares, "_GROWTH", 1.12)
+    monkeypatch.setattr(squares, "_GROWTH", 0.12)
     found.append(samples())
     monkeypatch.undo()
     samples()
@@ -84,9 +100,7 @@ def test_the_drop_converges_with_the_squares_cells(monkeypatch: pytest.MonkeyPat
 
 
 def test_networks_are_passive_and_reciprocal() -> None:
-    stack = skin("filled_silicone").over(sensor("seed"))  # pyright: ignore[reportOptionalMemberAccess]
-    known = Surround().around(sensor("seed"))
-    seen = padded_samples(stack, known, 4e-4)
+    seen = _seed_in_silicone("filled_silicone")
     np.testing.assert_allclose(seen.impedance, seen.impedance.transpose(0, 2, 1), rtol=1e-9)
     for value, slope in zip(seen.impedance, seen.slope, strict=True):
         size = np.sqrt(np.diag(value))
