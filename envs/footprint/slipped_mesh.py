@@ -61,7 +61,7 @@ class ClosedMesh:
         found = []
         for side in (1, -1):
             view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side)
-            found.append(_between(view.places, view.touched[..., :2], across @ place - begin))
+            found.append(_between(view, across @ place - begin))
         both = [each for each in found if each.any()]
         mean = np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
         area, share = (np.interp(*_LOADS, column) for column in mean.T)
@@ -109,12 +109,22 @@ def _view(
     return view, axes[1:], (corners @ axes[1:].T).min(axis=0) - pad.face / 2
 
 
-def _between(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """(forces, n) of values (forces, P, P, n) at a place (2,) m among places (2, P); beyond them none."""
-    for axis in range(2):
-        if not places[axis, 0] < at[axis] < places[axis, -1]:
-            return np.zeros((len(values), values.shape[-1]))
-        k = int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, 0, places.shape[1] - 2))
+def _between(view: PressedView, at: np.ndarray) -> np.ndarray:
+    """(forces, 2): area and share of the force at a place (2,) m among the view's; beyond them none."""
+    places = view.places
+    if not all(places[axis, 0] < at[axis] < places[axis, -1] for axis in range(2)):
+        return np.zeros((FORCES, 2))
+    i, j = (
+        int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, 0, places.shape[1] - 2)) for axis in range(2)
+    )
+    values = _around(view, i, j)
+    for axis, k in enumerate((i, j)):
         share = (at[axis] - places[axis, k]) / (places[axis, k + 1] - places[axis, k])
-        values = (1 - share) * values[:, k] + share * values[:, k + 1]
+        values = (1 - share) * values[:, 0] + share * values[:, 1]
     return values
+
+
+@lru_cache(maxsize=1024)
+def _around(view: PressedView, i: int, j: int) -> np.ndarray:
+    """(forces, 2, 2, 2): area and share of the force at the places round one of the view's cells."""
+    return view.touched((i, i + 2), (j, j + 2))[..., :2]

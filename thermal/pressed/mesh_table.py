@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -37,7 +36,7 @@ from ..contact import (
     table_values,
 )
 from ..matter import Material, Skin
-from .height_map import height_map, map_heights
+from .height_map import HeightMap, height_map, map_heights
 
 _POINTS = 40  # along the pad's side, of the foundation
 _FINER = 4  # times as many on the face
@@ -69,15 +68,34 @@ class PressedMesh:
         return _conducting(view, flat_law(sheet, faces, (sheet.width, sheet.width)))
 
 
-class PressedView(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class PressedView:
     """What a pad touches of a mesh along one direction. places: (2, PLACES) m of the pad's middle along the two axes
-    across the direction, from where the face begins to meet the mesh. touched: (FORCES, PLACES, PLACES, 7), m2 of the
-    face in contact, its share of the force, m, the length along the second axis of a rectangle of that area that is as
-    long to broad as the contact, and the shares by which it lies at an end of the face along both axes, and of the mesh
-    (thermal/contact/patch_place.py)."""
+    across the direction, from where the face begins to meet the mesh. pad: with its skin's springs. seen: the mesh in
+    that direction. begin: (2,) m, of the places. spans: (2,) m, of the places."""
 
     places: np.ndarray
-    touched: np.ndarray
+    pad: Pad
+    seen: HeightMap
+    begin: np.ndarray
+    spans: np.ndarray
+
+    def touched(
+        self, rows: tuple[int, int] = (0, PLACES), columns: tuple[int, int] = (0, PLACES)
+    ) -> np.ndarray:
+        """(FORCES, rows, columns, 7) at the places from one up to another: m2 of the face in contact, its share of the
+        force, m, the length along the second axis of a rectangle of that area that is as long to broad as the contact,
+        and the shares by which it lies at an end of the face along both axes, and of the mesh
+        (thermal/contact/patch_place.py). Only areas and shares of the force mean anything at the first and last place,
+        where nothing is touched."""
+        touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], 7))
+        loads = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
+        loads *= self.pad.thickness / self.pad.foundation_modulus
+        some = np.array([rows, columns])
+        points = _points(self.pad)
+        _press(*self.seen, self.begin, self.places, some, *points, loads, self.spans, self.pad.face, touched)
+        touched.flags.writeable = False
+        return touched
 
 
 @lru_cache(maxsize=256)
@@ -90,12 +108,8 @@ def pressed_view(pad: Pad, vertices: bytes, faces: bytes, axes: bytes) -> Presse
     across = corners @ seen.axes[1:].T
     low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
     places = np.stack([_places(pad.face, float(span)) for span in high - low])
-    touched = np.zeros((FORCES, PLACES, PLACES, 7))
-    loads = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)) * pad.thickness / pad.foundation_modulus
-    _press(*seen, low, places, *_points(pad), loads, high - low, pad.face, touched)
-    for array in (places, touched):
-        array.flags.writeable = False
-    return PressedView(places, touched)
+    places.flags.writeable = False
+    return PressedView(places, pad, seen, low, high - low)
 
 
 def _places(face: float, span: float) -> np.ndarray:
@@ -125,26 +139,36 @@ def _middles(side: float, count: int) -> np.ndarray:
 
 def _conducting(view: PressedView, law: np.void) -> np.ndarray:
     """(CURVED_TABLE,) of a view. law: a CONTACT_LAW of the faces."""
+    touched = view.touched().copy()
+    # where a contact vanishes it is a strip at both ends
+    for end, beside in ((0, 1), (-1, -2)):
+        touched[:, end, :, 2:] = touched[:, beside, :, 2:]
+        touched[:, end, :, 3], touched[:, end, :, 5] = 1.0, 1.0
+    for end, beside in ((0, 1), (-1, -2)):
+        touched[:, :, end, 3:] = touched[:, :, beside, 3:]
+        touched[:, :, end, 2], touched[:, :, end, 4], touched[:, :, end, 6] = 0.0, 1.0, 1.0
     table = np.empty(CURVED_TABLE)
     table[: 2 * PLACES] = view.places.ravel()
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    _conduct(law, forces, view.touched, *table_values(table))
+    _conduct(law, forces, touched, *table_values(table))
     table.flags.writeable = False
     return table
 
 
 @njit(cache=True, error_model="numpy")
 def _press(
-    axes, corner, height, pitch, begin, places, points, areas, stiffness, on_face, loads, spans, face, touched
+    axes, corner, height, pitch, begin, places, some, points, areas, stiffness, on_face, loads, spans, face, touched
 ):  # fmt: skip
-    """Fills touched. on_face: how many points. loads: m3, forces over the stiffness of springs around the face. spans:
-    (2,) m of places, the mesh's outline and the face's side."""
+    """Fills touched, some of the places: (2, 2) from which to before which. on_face: how many points. loads: m3, forces
+    over the stiffness of springs around the face. spans: (2,) m of places, the mesh's outline and the face's side."""
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
     slopes, touching = np.zeros(on_face), np.zeros(on_face)
-    for a in range(1, places.shape[1] - 1):  # nothing is touched at the ends
-        for b in range(1, places.shape[1] - 1):
+    last = places.shape[1] - 1  # nothing is touched at the ends
+    for a in range(max(some[0, 0], 1), min(some[0, 1], last)):
+        for b in range(max(some[1, 0], 1), min(some[1, 1], last)):
+            at = touched[:, a - some[0, 0], b - some[1, 0]]
             for k in range(3):
                 frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
             map_heights(axes, corner, height, pitch, frame, points, heights, cover)
@@ -165,27 +189,19 @@ def _press(
                     sunk = depth - heights[i]
                     touching[i] = cover[i] * _part(sunk, slopes[i])
                     held += cover[i] * stiffness[i] * max(sunk, 0.0)
-                touched[n, a, b, 0], touched[n, a, b, 1] = touching.sum(), held / loads[n]
-                _lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, touched[n, a, b])
+                at[n, 0], at[n, 1] = touching.sum(), held / loads[n]
+                _lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, at[n])
             # between forces a power of them is taken, which must not begin at nothing
             for n in range(len(loads) - 4, -1, -2):
                 for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
-                    if touched[n, a, b, k] < faded * touched[n + 2, a, b, k]:
-                        touched[n, a, b, k] = faded * touched[n + 2, a, b, k]
-                        touched[n, a, b, 3:] = touched[n + 2, a, b, 3:]
+                    if at[n, k] < faded * at[n + 2, k]:
+                        at[n, k] = faded * at[n + 2, k]
+                        at[n, 3:] = at[n + 2, 3:]
             for n in range(1, len(loads), 2):
                 above = min(n + 1, len(loads) - 2)
-                touched[n, a, b, 0] = math.sqrt(touched[n - 1, a, b, 0] * touched[above, a, b, 0])
+                at[n, 0] = math.sqrt(at[n - 1, 0] * at[above, 0])
                 for k in range(1, 7):
-                    touched[n, a, b, k] = (touched[n - 1, a, b, k] + touched[above, a, b, k]) / 2
-    # where a contact vanishes it is a strip at both ends
-    last = places.shape[1] - 1
-    for a, beside in ((0, 1), (last, last - 1)):
-        touched[:, a, :, 2:] = touched[:, beside, :, 2:]
-        touched[:, a, :, 3], touched[:, a, :, 5] = 1.0, 1.0
-    for b, beside in ((0, 1), (last, last - 1)):
-        touched[:, :, b, 3:] = touched[:, :, beside, 3:]
-        touched[:, :, b, 2], touched[:, :, b, 4], touched[:, :, b, 6] = 0.0, 1.0, 1.0
+                    at[n, k] = (at[n - 1, k] + at[above, k]) / 2
 
 
 @njit(cache=True, error_model="numpy")
