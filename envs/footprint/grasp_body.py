@@ -22,6 +22,7 @@ from ...thermal import (
     SignalChain,
     Skin,
     Surface,
+    Surround,
     cylinder_contact,
     flat_contact,
     sphere_contact,
@@ -58,7 +59,8 @@ class GraspBody:
     sits. stack: the sensor. fingertips: how many carry one. roughness_factor: on the object's surface. ambient: °C of
     the air, None for the object's. anywhere: its heat knows where it is touched, as a mesh's always does in T mode.
     any_size: its size is drawn from any, so that its network is made where it can be and not searched. skin: of the
-    fingertips, whose layer is the stack's last; None where they are bare."""
+    fingertips, whose layer is the stack's last; None where they are bare. surround: the pad around the sensor, with its
+    depth, which exchanges heat with it and with the object; None for none."""
 
     spec: ObjectSpec
     material: Material
@@ -71,6 +73,7 @@ class GraspBody:
     anywhere: bool = False
     any_size: bool = False
     skin: Skin | None = None
+    surround: Surround | None = None
 
     @cached_property
     def pad(self) -> Pad:
@@ -126,8 +129,25 @@ class GraspBody:
 
     @cached_property
     def geometry(self) -> Geometry:
-        """The networks' geometry; a curved object's patch is that of NOMINAL_FORCE, its middle before the pad's. On a
-        bare face it is wider than what touches: see even_patch."""
+        """The networks' geometry, with a surround on all of it that the plate reaches."""
+        area, (width, depth, _) = self.face_area, self.plate
+        if self.surround is not None:
+            area = min(self.surround.width, width) * min(self.surround.width, depth)
+        return Geometry(
+            self.stack,
+            self.material,
+            self.mode,
+            area,
+            "square",
+            self.plate,
+            self.fingertips,
+            surround=self.surround,
+        )
+
+    @cached_property
+    def face_area(self) -> float:
+        """m2 that touch the sensor's face; a curved object's patch is that of NOMINAL_FORCE, its middle before the
+        pad's. On a bare face it is wider than what touches: see even_patch."""
         nominal = self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, 0.0))
         area = float(nominal.face)
         if self._on_bare_face:
@@ -138,8 +158,7 @@ class GraspBody:
             raise InvalidValueError(
                 f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face"
             )
-        area = min(area, self.stack.face_area)
-        return Geometry(self.stack, self.material, self.mode, area, "square", self.plate, self.fingertips)
+        return min(area, self.stack.face_area)
 
     def contact(self, force: np.ndarray) -> ContactArea:
         """Areas and force share at that normal force N on a pad, at the height at which the fingers are to close."""
@@ -276,7 +295,7 @@ class GraspBody:
         return TouchSetup(
             stack=self.stack,
             mode=self.mode,
-            area=self.geometry.area,
+            area=self.face_area,
             object_size=self.plate,
             fingertips=self.fingertips,
             chain=chain,

@@ -29,15 +29,17 @@ from ...thermal import (
     SensorStack,
     SignalChain,
     Skin,
+    Surround,
     Thermostat,
     material,
     materials,
 )
 from ...thermal.matter import USUAL_SKIN
 from ...thermal.matter import skin as named_skin
+from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, converter, heated_core, highest_voltage
 from ..bodies import ObjectSpec, scaled
-from ..footprint import GraspBody
+from ..footprint import PAD, GraspBody
 from ..grippers import SHIPPED_GRIPPER, GripperModel
 from ..limits import MOST_VOLTAGE, SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
 from ..mechanics import SHIPPED, SolverSettings
@@ -66,7 +68,8 @@ class SimulationConfig:
     from per episode (density and friction are the material's where a shape gives none). scene: objects that are all
     there in place of one, the first is the one to grasp; where they have no material of their own it is drawn for each.
     tolerance: K of temperature drop that the thermal network keeps; what air at the object's mean temperature adds is
-    left out (docs/environments.md), and so is what the pad around the sensor does (docs/physics.md). air: W/(m2 K).
+    left out (docs/environments.md), and so is what the pad around the sensor does without `surround` (docs/physics.md).
+    air: W/(m2 K).
     Temperatures in °C, that of the sensors one or each fingertip's; an object with a temperature of its own has that,
     and the room is as warm as object_temperature unless ambient_temperature is given. thermostat: one of finite power
     (its setpoint is sensor_temperature, its ambient the room where that is given), None for an ideal one. placement: m
@@ -79,7 +82,9 @@ class SimulationConfig:
     fingertips, a name of thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose
     material is `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n,
     m) of the map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each
-    sensor's face (T mode), None for none."""
+    sensor's face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to
+    boxes: the name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for a
+    sensor by itself. It conducts as well as the sensor's contact."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -105,6 +110,7 @@ class SimulationConfig:
     taxels: tuple[int, int] | None = None
     face_temperature: tuple[int, int] | None = None
     skin: str | Skin | None = AUTO
+    surround: str | Material | Surround | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):
@@ -138,6 +144,8 @@ class SimulationConfig:
         _ = self.tactile  # checks it
         if self.face_temperature is not None:
             self._check_face()
+        if self.surround is not None:
+            self._check_surround()
         if self.scene is not None and (self.objects is not None or self.mode == "O" or not len(self.scene)):
             raise InvalidValueError(
                 f"scene of {len(self.scene)} objects, objects {self.objects!r}, mode {self.mode!r}: a scene needs "
@@ -171,6 +179,41 @@ class SimulationConfig:
         ):
             return None
         return named_skin(USUAL_SKIN)
+
+    @cached_property
+    def around(self) -> Surround | None:
+        """The pad around the sensor, with its depth. Raises UnknownNameError for a name that is none, and
+        InvalidValueError for a pad that is none or that cannot be around the sensor."""
+        found, stack = named_surround(self.surround, self.mode), any_sensor(self.sensor)
+        if found is None:
+            return None
+        if isinstance(stack, HeatedStack):
+            raise InvalidValueError(
+                f"sensor {stack.name!r} has a heater of its own, which goes with no surround: leave surround out"
+            )
+        if found.width > PAD.width * (1 + 1e-9):
+            raise InvalidValueError(
+                f"surround is {found.width:g} m wide, and the pad {PAD.width:g} m: give Surround(width=) at most that"
+            )
+        return found.around(stack)
+
+    def _check_surround(self) -> None:
+        """Raises InvalidValueError for what has no pad around the sensor."""
+        _ = self.around  # checks it
+        for given, why in (
+            (self.thermostat is not None, "a thermostat of finite power: leave thermostat out"),
+            (self.anywhere, "anywhere=True: its networks are those of flat plates; leave anywhere out"),
+            (self.face_temperature is not None, "a map of face_temperature: leave it out"),
+        ):
+            if given:
+                raise InvalidValueError(f"surround {self.surround!r} does not go with {why}")
+        for shape in (*self.shapes, *self.others):
+            if shape.shape != "box" or shape.parts or shape.reservoir is not None:
+                what = f"is a {shape.shape}" if shape.shape != "box" else "has parts or contents"
+                raise InvalidValueError(
+                    f"surround {self.surround!r}: object {shape.name!r} {what}, and the heat of a pad around the "
+                    "sensor is known on boxes of one material: leave surround out, or give boxes"
+                )
 
     @property
     def _sensor(self) -> SensorStack | HeatedStack:
@@ -367,6 +410,7 @@ class SimulationConfig:
             self.anywhere,
             self.any_size,
             self.worn,
+            self.around,
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
@@ -412,7 +456,7 @@ class SimulationConfig:
     def any_size(self) -> bool:
         """Whether sizes are drawn, and each object may have any of them: its network comes from heat kernels."""
         drawn = next((cause for cause in self.randomize if isinstance(cause, Size)), None)
-        if drawn is None or self.mode == "O":
+        if drawn is None or self.mode == "O" or self.surround is not None:
             return False
         if self.anywhere:
             return self.by_kernels

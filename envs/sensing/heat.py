@@ -344,6 +344,8 @@ class GraspHeat:
             capacity = geometry.whole_capacity
         free = free_area(geometry)
         record = self._rows[row]
+        # a network's contact is all of the pad's front, which conducts as well as the face
+        record["front"] = 1.0 if body.surround is None else geometry.area / body.face_area
         record["lasting"] = touches is not None
         record["capacity"] = capacity
         record["air"] = self._air * free

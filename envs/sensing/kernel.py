@@ -73,6 +73,8 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
             for k in range(first, last):
                 if row.lasting == 0 and _renewed(step, conducts, k):
                     forget_row(tables, row.network, x)
+                for f in range(2):
+                    conducts[k, f] *= row.front
                 advance_row(tables, row.network, x, conducts[k], row.difference, around, room, reading, 0, k)
                 _add(step, reading, drop[b], k, samples, tips)
         if last < samples:

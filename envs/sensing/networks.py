@@ -18,6 +18,7 @@ from ...thermal import (
     network_of,
 )
 from ...thermal.batch import TipRows, carry_matrix, no_heat_tables, tip_rows
+from ...thermal.network import box_choice
 
 if TYPE_CHECKING:
     from .touches import Touches
@@ -59,6 +60,10 @@ class HeatNetworks:
     def of_plate(self, geometry: Geometry, demand: Demand, film: float) -> int:
         """Number of the plate's that keeps the demand, losing heat through a film of W/(m2 K)."""
         key = (geometry, demand.difference, film)
+        if key not in self._numbers and geometry.surround is not None:
+            choice = box_choice(geometry, demand, film)
+            assert choice is not None  # or it raises
+            self._add(key, choice.system, film, f"network:{choice.system.orders}")
         if key not in self._numbers:
             system = network_for(geometry, demand, cache=self._cache).system
             if 0 < system.orders.sensor < self._least_sensor_states:

@@ -15,7 +15,8 @@ import numpy as np
 # temperature. enthalpy: J of its reservoir. network: the index of the environment's network. begun: something
 # has touched, or the object is not as warm as what is around it. glued: the elements sit on the object (O mode).
 # lasting: a new patch finds the object's field, not its mean. fed: the reservoir is a node of the network.
-# boxed: the row is a box of FixedTables, which has no number.
+# boxed: the row is a box of FixedTables, which has no number. front: times a contact with the sensor's face, what the
+# network's contact conducts: 1, or more with the pad around the sensor.
 HEAT_ROW = np.dtype(
     [
         ("difference", "f8", (2,)),
@@ -30,6 +31,7 @@ HEAT_ROW = np.dtype(
         ("air", "f8"),
         ("ambient", "f8"),
         ("enthalpy", "f8"),
+        ("front", "f8"),
         ("network", "i8"),
         ("touching", "u1", (2,)),
         ("known", "u1", (2,)),

@@ -32,7 +32,7 @@ SHARE = 8e-4
 """Largest error of the drop of any of DETAILS from FIRST s on as a share of the difference, before anything is trimmed;
 measured as for LEVELS."""
 STRONGEST = 1e5  # W/(m2 K)
-PADDED_SHARE = 3.4e-3
+PADDED_SHARE = 3.25e-3
 """The same with a pad around the element (concentric squares, three rings beside the face), beside three-dimensional
 finite elements (studies/pad_square.py --press), most of it on metals half a second after the touch."""
 PADDED_STRONGEST = 3e5
