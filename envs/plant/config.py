@@ -84,7 +84,8 @@ class SimulationConfig:
     m) of the map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each
     sensor's face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to
     boxes: the name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for a
-    sensor by itself. It conducts as well as the sensor's contact."""
+    sensor by itself. It conducts as well as the sensor's contact, and heat flows, heat and surfaces' temperatures that
+    an environment tells are then those of element and pad together."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"

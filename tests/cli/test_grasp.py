@@ -51,6 +51,14 @@ def test_a_row_of_a_batch_is_the_grasp_alone() -> None:
     assert together[1].events == alone.events
 
 
+def test_a_pad_around_the_sensor_cools_it_less(capsys: pytest.CaptureFixture[str]) -> None:
+    drops = []
+    for words in ("", " --surround silicone"):
+        assert main(f"grasp --material stainless_steel --seconds 4.5 --seed 3 --json{words}".split()) == 0
+        drops.append(json.loads(capsys.readouterr().out)["peak_temperature_drop_left_K"])
+    assert 0.05 < drops[0] - drops[1] < 0.6
+
+
 def test_a_weak_grip_is_a_failure(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("grasp --material iron --force 0.5 --seconds 4".split()) == 1
     assert "not lifted and held" in capsys.readouterr().out

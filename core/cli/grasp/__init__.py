@@ -14,6 +14,7 @@ from thermograsp.cli.shared import (
     add_old_name,
     add_seed,
     add_sensor,
+    add_surround,
     add_tolerance,
     chosen_material,
     load_mujoco,
@@ -97,6 +98,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="name of a skin over the sensor's face, in T mode only; none for a bare one; or auto for filled_silicone "
         "with --object and on objects other than boxes",
     )
+    add_surround(parser)
     add(
         "--gripper",
         metavar="FILE",
@@ -147,6 +149,7 @@ def run(args: argparse.Namespace) -> int:
         object_temperature=args.temperature if args.object is None else _ROOM,
         sensor=args.sensor,
         skin=None if args.skin == "none" else args.skin,
+        surround=args.surround,
         gripper=args.gripper,
         cache=not args.no_cache,
         **placement,

@@ -13,6 +13,7 @@ from thermograsp.cli.shared import (
     add_object_size,
     add_sensor,
     add_skin,
+    add_surround,
     add_tolerance,
     chosen_material,
     target,
@@ -72,11 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="W",
         help="limit of the thermostat's heating power, W (default: an ideal thermostat)",
     )
-    add(
-        "--surround",
-        metavar="MATERIAL",
-        help="material of a pad of 20 mm around the sensor, which gives heat too (default: no pad)",
-    )
+    add_surround(parser)
     add_mesh_arguments(parser)
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
     add("--csv", metavar="FILE", help="write the curves as a table")

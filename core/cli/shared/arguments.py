@@ -81,6 +81,15 @@ def add_object_size(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_surround(parser: argparse.ArgumentParser) -> None:
+    """--surround, for sensors by themselves unless it is given."""
+    parser.add_argument(
+        "--surround",
+        metavar="MATERIAL",
+        help="material of a pad of 20 mm around the sensor, which gives heat too (default: no pad)",
+    )
+
+
 def add_skin(parser: argparse.ArgumentParser) -> None:
     """--skin, for sensors that are bare unless it is given."""
     parser.add_argument(
