@@ -199,6 +199,25 @@ def test_whatever_the_rings_do_nothing_grows_and_no_heat_is_lost(place: tuple[fl
     assert np.isfinite(heat.state().narrow).all()
 
 
+@pytest.mark.parametrize("surround", [None, "silicone"])
+@pytest.mark.parametrize(
+    ("name", "size"), [("glass", (0.03, 0.025, 0.004)), ("polypropylene", (0.04, 0.04, 0.001))]
+)
+def test_a_fingertip_may_go_anywhere_as_often_as_it_likes(
+    name: str, size: tuple[float, float, float], surround: str | None
+) -> None:
+    """Each new place tells the box's field anew, and it must not grow by that."""
+    rng, heat, found = np.random.default_rng(7), joined(name, size, surround=surround), []
+    for _ in range(150):
+        touches = touching(size, tuple(rng.uniform(-0.012, 0.012, 2)))
+        for _ in range(20):
+            heat.advance(touches, 1)
+            found.append(heat.drop[0, 0])
+    assert min(found) > 0 and max(found) < 12
+    balance = heat.balance(0)
+    assert balance.objects.sum() == pytest.approx(balance.given.sum(), rel=1e-10)
+
+
 def test_worlds_are_as_alone_and_go_on_from_a_state() -> None:
     places = ((0.0, 0.0), (0.013, 0.0), (0.002, -0.016))
     many, record = joined("glass", worlds=3), np.concatenate([touching(BLOCK, at) for at in places])

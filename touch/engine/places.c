@@ -86,7 +86,8 @@ size_t heat_carry_room(const Numbers* numbers) {
 }
 
 /* The field x on the states of a network with other places, nearest to what both see alike from then on: by the singular
-values of what is seen, found by one-sided rotations of its columns (Hestenes). */
+values of what is seen, found by one-sided rotations of its columns (Hestenes). What the states store, the sum of their
+squares, does not grow by it: all but the mean is made smaller where it would. */
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room) {
   int from[before->count + 1], to[before->count + 1], common = 0;
   from[0] = to[0] = 0;
@@ -100,7 +101,8 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
   }
   int columns = after->n - 1, rows = common * numbers->patterns * AFTERWARDS, old = before->n - 1;
   int stride = rows + columns; /* behind what is seen of a state stands how it is turned */
-  double *wanted = room, *seen = wanted + rows;
+  double *wanted = room, *seen = wanted + rows, stored = 0, now = 0;
+  for (int i = 0; i < old; i++) stored += x[i + 1] * x[i + 1];
   future(numbers, before, common, from, seen, rows);
   memset(wanted, 0, sizeof(double) * rows);
   for (int i = 0; i < old; i++)
@@ -150,6 +152,8 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
         for (int i = 0; i < columns; i++) x[i + 1] += column[rows + i] * met * left / (size * size);
     }
   }
+  for (int i = 0; i < columns; i++) now += x[i + 1] * x[i + 1];
+  for (int i = 0; now > stored && i < columns; i++) x[i + 1] *= sqrt(stored / now);
 }
 
 /* The network of the places that an object has now; made where it is neither in use nor aside, in place of that aside which

@@ -197,6 +197,18 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     return matrix
 
 
+def carried_states(before: BodyField, after: BodyField, patterns: int, states: np.ndarray) -> np.ndarray:
+    """(n after,) the field of those states (n before,), on the states of a network with other places.
+
+    The sum of their squares is what a passive network stores, which nothing but heat from outside makes grow. Least
+    squares may: from place to place a field would grow without end. Then all of it but the mean is made smaller."""
+    found = carried(before, after, patterns) @ states
+    stored, now = float(np.linalg.norm(states[1:])), float(np.linalg.norm(found[1:]))
+    if now > stored:
+        found[1:] *= stored / now
+    return found
+
+
 def _future(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
     """(temperatures, n - 1) of the places' patterns at AFTERWARDS, each weighted by the time that it stays."""
     at = [field.places.index(place) for place in common]

@@ -29,7 +29,7 @@ from .fields import (
     NEAR,
     BodyField,
     Place,
-    carried,
+    carried_states,
     near,
     resolution,
     rings_of,
@@ -329,7 +329,7 @@ class JoinedHeat:
         for o, before in enumerate(self._fields[w]):
             field = self._field(o, self._materials[w][o], tuple(places[0][o]))
             held = self._x[w, o, : len(before.rates)]
-            states.append(held if field is before else carried(before, field, level.patterns) @ held)
+            states.append(held if field is before else carried_states(before, field, level.patterns, held))
         states += [self._x[w, objects + f, : len(tip.side.rates)] for f, tip in enumerate(self._tips)]
         most = max(map(len, materials))
         kinds = [
@@ -607,7 +607,7 @@ class JoinedHeat:
         if len(idle) > MOST_PLACES:
             kept.remove(idle[0])
         after = self._field(o, self._materials[w][o], (*(before.places[number] for number in kept), place))
-        heat = carried(before, after, self._level.patterns) @ self._x[w, o, : len(before.rates)]
+        heat = carried_states(before, after, self._level.patterns, self._x[w, o, : len(before.rates)])
         current[:] = [kept.index(known) if known in kept else -1 for known in current.tolist()]
         current[place.fingertip] = len(after.places) - 1
         self._fields[w][o] = after
