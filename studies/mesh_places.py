@@ -33,7 +33,7 @@ from thermograsp.thermal.surfaces import SolidPart
 CONDUCTANCES = 1e3, 1e4, 1e5  # W/(m2 K)
 TIMES = 0.02 * np.arange(3, 300)  # s
 DIFFERENCE = 12.0  # K
-MATERIALS = "wood", "ceramic", "aluminium"
+MATERIALS = "wood", "ceramic", "stainless_steel", "aluminium"
 STACK = thermal.sensor("seed")
 AREA = STACK.width**2
 TIP = centred_tip(STACK, AREA)
@@ -41,10 +41,11 @@ TIP = centred_tip(STACK, AREA)
 Vector = tuple[float, float, float]
 
 
-def _mug() -> trimesh.Trimesh:
-    """60 mm wide, 80 mm high, its wall and foot 3 mm."""
-    profile = [(0, -0.04), (0.03, -0.04), (0.03, 0.04), (0.027, 0.04), (0.027, -0.037), (0, -0.037)]
-    return trimesh.creation.revolve(profile, sections=96)
+def _mug(radius: float = 0.03, wall: float = 0.003) -> trimesh.Trimesh:
+    """80 mm high, its foot as thick as its wall."""
+    inner, foot = radius - wall, wall - 0.04
+    profile = [(0, -0.04), (radius, -0.04), (radius, 0.04), (inner, 0.04), (inner, foot), (0, foot)]
+    return trimesh.creation.revolve(profile, sections=128)
 
 
 def _block(*size: float) -> Callable[[], trimesh.Trimesh]:
@@ -63,10 +64,10 @@ def _at(centre: Vector, normal: Vector) -> SurfacePatch:
     return SurfacePatch(centre, normal, AREA)
 
 
-def _beside(angle: float, height: float) -> SurfacePatch:
-    """On the mug's wall."""
+def _beside(angle: float, height: float, radius: float = 0.03) -> SurfacePatch:
+    """On a mug's wall."""
     x, y = math.cos(angle), math.sin(angle)
-    return _at((0.03 * x, 0.03 * y, height), (x, y, 0.0))
+    return _at((radius * x, radius * y, height), (x, y, 0.0))
 
 
 def _on(axis: int, x: float, y: float, z: float) -> SurfacePatch:
@@ -76,6 +77,9 @@ def _on(axis: int, x: float, y: float, z: float) -> SurfacePatch:
 
 BODIES: dict[str, Callable[[], trimesh.Trimesh]] = {
     "mug": _mug,
+    "pot of 1 mm": lambda: _mug(0.045, 0.001),
+    "cup of .6 mm": lambda: _mug(0.03, 0.0006),
+    "tube of .2 mm": lambda: _mug(0.02, 0.0002),
     "cube": _block(0.04, 0.04, 0.04),
     "small cube": _block(0.012, 0.012, 0.012),
     "bar": _block(0.01, 0.07, 0.024),
@@ -101,6 +105,9 @@ ONE: dict[str, tuple[str, SurfacePatch]] = {
     "mug, on the rim": ("mug", _at((0.0285, 0.0, 0.04), (0.0, 0.0, 1.0))),
     "mug, foot": ("mug", _at((0.0, 0.0, -0.04), (0.0, 0.0, -1.0))),
     "mug, foot below the wall": ("mug", _at((0.024, 0.0, -0.04), (0.0, 0.0, -1.0))),
+    "pot of 1 mm": ("pot of 1 mm", _beside(0.0, 0.0, 0.045)),
+    "cup of .6 mm": ("cup of .6 mm", _beside(0.0, 0.0)),
+    "tube of .2 mm": ("tube of .2 mm", _beside(0.0, 0.0, 0.02)),
     "cube": ("cube", _on(0, 0.02, 0.0, 0.0)),
     "cube, corner": ("cube", _on(0, 0.02, 0.0154, 0.0153)),
     "cube, half over an edge": ("cube", _on(0, 0.02, 0.02, 0.0)),
@@ -129,6 +136,9 @@ TWO: dict[str, tuple[str, SurfacePatch, SurfacePatch]] = {
     "cube, on either side of an edge": ("cube", _on(0, 0.02, 0.014, 0.0), _on(1, 0.014, 0.02, 0.0)),
     "bar, opposite": ("bar", _on(0, 0.005, 0.01, 0.0), _on(0, -0.005, 0.005, 0.0)),
     "mug, opposite": ("mug", _beside(0.0, 0.0), _beside(math.pi, 0.0)),
+    "pot, round it": ("pot of 1 mm", _beside(0.0, 0.0, 0.045), _beside(0.3, 0.002, 0.045)),
+    "cup, round it": ("cup of .6 mm", _beside(0.0, 0.0), _beside(0.4, 0.002)),
+    "tube, round it": ("tube of .2 mm", _beside(0.0, 0.0, 0.02), _beside(0.6, 0.002, 0.02)),
     "mug, above each other": ("mug", _beside(0.0, 0.0), _beside(0.0, 0.006)),
     "mug, a quarter round": ("mug", _beside(0.0, 0.0), _beside(math.pi / 2, 0.0)),
     "mug, over and below the rim": ("mug", _beside(0.0, 0.037), _beside(0.0, 0.03)),

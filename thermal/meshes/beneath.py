@@ -15,9 +15,14 @@ _SAMPLES = (1.0, 1.3, 1.7, 2.2, 3.0, 4.0)  # half widths from the middle at whic
 _BEND = 0.6  # of the half width, where the surface's height tells its curvature
 _ASIDE = np.array([1.1e-5, 0.7e-5])  # m, beside edges of triangles
 _ALONG, _LEVEL = 0.95, 0.3  # cosine to a face's normal, and half widths from it, for a patch to be on it
+_FLAT = 1e-3  # 1/m, curvature below which a face is as flat
 _EDGE = 1e-9  # of a triangle's side, that a line may lie beyond it
 _ROUND = 0.33  # curvature times half width, up to which its terms of second order serve
 _UNSMOOTH = 0.08  # half widths, by which the surface may differ from its curvature's, as with large facets
+_BEYOND, _ENDED = (
+    1.5,
+    0.5,
+)  # half widths from the middle, and to the nearest surface there if the face has ended
 _DEEP = 6e-3  # m, depth from which on no difference is felt before the body's modes take over
 _UNEVEN = 0.15  # of the depth, by which it may differ around a place
 _AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y])  # half widths
@@ -42,24 +47,37 @@ class Beneath:
 
     def on_box(self, other: PlacedPatch) -> tuple[int, np.ndarray, np.ndarray] | None:
         """The face of that box on which a patch lies, as kernels.Patches has it, with its middle and half widths (2,) m
-        there; None where it lies on no face."""
+        there; None where it lies on no face. The curved face is unrolled."""
         axes = np.stack((*self.placed.sides, self.placed.normal))
         size, half = np.array(self.size), other.half_width
-        middle = axes @ (other.centre - self.placed.centre) + [*self.ends[:, 0], self.depth]
-        along = axes @ other.normal
+        offset, along = axes @ (other.centre - self.placed.centre), axes @ other.normal
+        arcs, level, outward = self._unrolled(offset)
+        if abs(level) < _LEVEL * half and outward @ along > _ALONG:
+            offset, along = np.append(arcs, level), np.eye(3)[2]
+        middle = offset + [*self.ends[:, 0], self.depth]
         axis = int(np.argmax(np.abs(along)))
         far = along[axis] > 0
         rest = [k for k in range(3) if k != axis]
-        level = abs(middle[axis] - (size[axis] if far else 0.0)) < _LEVEL * half
+        beside = abs(middle[axis] - (size[axis] if far else 0.0)) > _LEVEL * half
         if (
             abs(along[axis]) < _ALONG
-            or not level
+            or beside
             or np.any(middle[rest] < 0)
             or np.any(middle[rest] > size[rest])
         ):
             return None
         low, high = (np.clip(middle[rest] + way * half, 0.0, size[rest]) for way in (-1, 1))
         return 2 * axis + far, (low + high) / 2, (high - low) / 2
+
+    def _unrolled(self, offset: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
+        """Of a point (3,) m from the place, along its sides and its normal: how far it is along the curved face (2,) m
+        and above it, m, and the face's normal there."""
+        bend = np.where(np.abs(self.curvature) < _FLAT, _FLAT, self.curvature)
+        angles = np.arctan2(bend * offset[:2], 1 + bend * offset[2])
+        angles = np.clip(angles, -1.0, 1.0)
+        level = offset[2] + float(np.sum((1 - np.cos(angles)) / bend))
+        outward = np.append(np.sin(angles), np.cos(angles).prod())
+        return angles / bend, level, outward / np.linalg.norm(outward)
 
 
 class _Column:
@@ -144,7 +162,10 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch) -> Beneath:
     depth = thickness(np.zeros(2))
     around = [thickness(half * offset) for offset in _AROUND]
     even = np.abs(np.minimum(around, _DEEP) - min(depth, _DEEP)).max() <= _UNEVEN * min(depth, _DEEP)
-    smooth = all(abs(bent(half * offset)) <= _UNSMOOTH * half for offset in _AROUND)
+    smooth = all(bent(half * offset) <= _UNSMOOTH * half for offset in _AROUND)
+    # just beyond, a face goes on or ends, but does not bend down
+    beyond = [bent(_BEYOND * half * way) / half for way in (*np.eye(2), *-np.eye(2))]
+    smooth &= all(far <= _UNSMOOTH * _BEYOND or far >= _ENDED for far in beyond)
     plain = even and smooth and ends.min() >= half and np.abs(curvature).max() * half <= _ROUND
     return Beneath(placed, depth, curvature, ends, bool(plain))
 

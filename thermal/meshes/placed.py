@@ -52,11 +52,12 @@ from .touched import PLATE, PLATE_MATERIAL, TouchedBody, geometry_of
 
 LEVEL = Resolution(12, 3, slowest=3e-3)
 PLACED_SHARE = 3.2e-3
-"""Error of the drop of a touch, as a share of the first difference, at most: 0.036 K of 12 K in 119 touches of blocks,
-bars, sheets, cylinders, balls, cones, rings and a mug of wood, ceramic and aluminium, and of bodies of two materials,
-at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
+"""Error of the drop of a touch, as a share of the first difference, at most: 0.036 K of 12 K in 181 touches of blocks,
+bars, sheets, cylinders, balls, cones, rings, mugs and cans of wood, ceramic, steel and aluminium, and of bodies of two
+materials, at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
 _SLOW = 60  # modes that are states
-_SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes
+_SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
+_TOLD = 3.0  # over the last mode's rate, likewise
 _FELT = 6e-3  # m between patches, across which heat goes before the modes tell
 _PITCH = 2.7  # between rates
 _KEPT = 256  # places
@@ -89,7 +90,7 @@ def placed_network(
     fast = slice(kept.stop, None)
     kernel = _faded(seen[:, fast], modes.rates[fast], taus)
     if len(body.parts) == 1:
-        over = _over(taus)[:, None, None]
+        over = _over(taus, modes.rates[-1])[:, None, None]
         slow = _faded(seen[:, kept], modes.rates[kept], taus)
         local = _local(below, one, taus) / modes.capacity
         kernel = over * kernel + (1 - over) * (local - slow)
@@ -171,9 +172,10 @@ def _impedance(seen: np.ndarray, rates: np.ndarray, others: np.ndarray | None = 
     return np.einsum("ir,sr,jr->sij", seen, 1 / (GRASP[:, None] + rates), others, optimize=True)
 
 
-def _over(taus: np.ndarray) -> np.ndarray:
-    """(T,) how far the kernel is the modes', from 0 to 1 within a factor of four."""
-    over = np.clip((np.log2(taus / _SWITCH) + 1) / 2, 0.0, 1.0)
+def _over(taus: np.ndarray, fastest: float) -> np.ndarray:
+    """(T,) how far the kernel is the modes', from 0 to 1 within a factor of four; later on a large body, of which the
+    modes tell later. fastest: 1/m2, rate of the last mode."""
+    over = np.clip((np.log2(taus / max(_SWITCH, _TOLD / fastest)) + 1) / 2, 0.0, 1.0)
     return over * over * (3 - 2 * over)
 
 
