@@ -39,7 +39,10 @@ def test_squares_change_the_drop_a_little_more_than_discs(study: ModuleType) -> 
     np.testing.assert_allclose(padded - alone, discs, atol=0.04)
 
 
-@pytest.mark.parametrize(("name", "skin"), [("stainless_steel", None), ("glass", "filled_silicone")])
+@pytest.mark.parametrize(
+    ("name", "skin"),
+    [("stainless_steel", None), ("glass", "filled_silicone"), ("aluminium", "filled_silicone")],
+)
 def test_a_press_with_a_surround_has_this_drop(study: ModuleType, name: str, skin: str | None) -> None:
     """The bound of the network and the grid's error of these elements."""
     touch = study.Touch(name, skin, conductances=(1e4, 1e4))
