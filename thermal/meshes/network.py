@@ -11,6 +11,7 @@ N: cells, M: ports, P: patches, K: states.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import block_diag, eigh
@@ -102,6 +103,37 @@ def body_network(
         outputs |= {f"film:{n}": row for n, row in enumerate(arrays["walls"][1:])}
     count = arrays["ports"].shape[1]
     return ThermalNetwork(rates, arrays["ports"], np.zeros((count, count)), outputs)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PatchFields:
+    """What flows through one patch leaves of fields on a grid that is fine there. grid: aligned with the patch, without
+    its links. rates: (K,) 1/s, the first 0. ports: (K, M) sqrt(K/J). fields: (N, K) of the states, of single
+    precision."""
+
+    grid: MeshGrid
+    rates: np.ndarray
+    ports: np.ndarray
+    fields: np.ndarray
+
+    def seen(self, body: Solid, patch: SurfacePatch, patterns: PatchPatterns) -> np.ndarray:
+        """(K, M) sqrt(K/J) of the states by another patch. Raises MeshError where it meets no surface."""
+        outside = body.outside @ self.grid.frame.T
+        placed = place_patch(outside, patch, self.grid.frame)
+        shares = patch_on_grid(self.grid, outside, placed, patterns).shares
+        cells = np.flatnonzero(shares.any(axis=1))
+        return self.fields[cells].T @ shares[cells]
+
+
+def patch_fields(
+    body: Solid, patch: SurfacePatch, patterns: PatchPatterns, gridding: MeshGridding
+) -> PatchFields:
+    """As body_network's of one patch, with its states' fields. Raises as body_network does."""
+    frame = grid_frame(checked(body), (patch,))
+    grid, placed = _gridded(body, (patch,), frame, gridding, patterns)
+    rates, ports, fields = _reduced(grid, placed)
+    cells = replace(grid, neighbours=grid.neighbours[:0], links=grid.links[:0])
+    return PatchFields(cells, rates, ports, fields.astype(np.float32))
 
 
 def _gridded(

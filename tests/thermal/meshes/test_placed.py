@@ -157,6 +157,27 @@ def test_two_fingertips_share_a_body(first: SurfacePatch, second: SurfacePatch) 
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("material", ["ceramic", "aluminium"])
+def test_a_rim_and_the_wall_beside_it_feel_each_other(material: str) -> None:
+    """Where no box stands for the body, a place's own grid tells how it is felt beside it."""
+    rim, wall = at(0.02, 0.0, 0.0175, normal=(1, 0, 0)), at(0.02, 0.0, 0.0105, normal=(1, 0, 0))
+    assert worst(of(cup(), material), rim, wall) < PLACED_SHARE * DIFFERENCE
+
+
+@pytest.mark.slow
+def test_round_a_thin_wall_a_face_is_unrolled() -> None:
+    wall = trimesh.creation.revolve(
+        [(0, -0.03), (0.03, -0.03), (0.03, 0.03), (0.0294, 0.03), (0.0294, -0.0294), (0, -0.0294)],
+        sections=128,
+    )
+    first, second = (
+        at(0.03, 0.0, 0.0, normal=(1, 0, 0)),
+        at(0.0276, 0.0117, 0.002, normal=(0.0276, 0.0117, 0.0)),
+    )
+    assert worst(of(wall, "stainless_steel"), first, second) < PLACED_SHARE * DIFFERENCE
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("pair", [("glass", "aluminium"), ("aluminium", "wood")])
 def test_two_materials_have_modes_of_their_own(pair: tuple[str, str]) -> None:
     top, body = at(0.0, 0.0, 0.013, normal=(0, 0, 1)), slab(*pair)
