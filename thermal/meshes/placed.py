@@ -53,7 +53,7 @@ from .touched import PLATE, PLATE_MATERIAL, TouchedBody, geometry_of
 
 LEVEL = Resolution(12, 3, slowest=3e-3)
 PLACED_SHARE = 3.2e-3
-"""Error of the drop of a touch, as a share of the first difference, at most: 0.036 K of 12 K in 181 touches of blocks,
+"""Error of the drop of a touch, as a share of the first difference, at most: 0.034 K of 12 K in 181 touches of blocks,
 bars, sheets, cylinders, balls, cones, rings, mugs and cans of wood, ceramic, steel and aluminium, and of bodies of two
 materials, at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
 _SLOW = 60  # modes that are states
