@@ -267,7 +267,7 @@ def by_network(name: str, aside: float, turn: float, met: Contact) -> float:
     reader, data = touch._reader, mujoco.MjData(touch._model)
     row = np.zeros(reader.touches.shape[-1])
     row[[CONDUCTANCE, AREA, LENGTH]] = met.conducts, met.area, met.area * met.long
-    row[[CLOSED, FORCE]], row[ASIDE:] = (1.0, FORCE_N), met.area * np.array(met.shares)
+    row[[CLOSED, FORCE]], row[ASIDE : ASIDE + 4] = (1.0, FORCE_N), met.area * np.array(met.shares)
 
     def read(data: mujoco.MjData, weight: int = 1) -> None:
         reader.counted += weight

@@ -153,7 +153,7 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
     }
   }
   for (int i = 0; i < columns; i++) now += x[i + 1] * x[i + 1];
-  for (int i = 0; now > stored && i < columns; i++) x[i + 1] *= sqrt(stored / now);
+  for (int i = 0; now > 1.21 * stored && i < columns; i++) x[i + 1] *= sqrt(1.21 * stored / now); /* GROWTH squared */
 }
 
 /* The network of the places that an object has now; made where it is neither in use nor aside, in place of that aside which

@@ -197,6 +197,10 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     return matrix
 
 
+GROWTH = 1.1
+"""Of what a field stores, up to which networks of other places may tell it otherwise."""
+
+
 def carried_states(before: BodyField, after: BodyField, patterns: int, states: np.ndarray) -> np.ndarray:
     """(n after,) the field of those states (n before,), on the states of a network with other places.
 
@@ -204,8 +208,8 @@ def carried_states(before: BodyField, after: BodyField, patterns: int, states: n
     squares may: from place to place a field would grow without end. Then all of it but the mean is made smaller."""
     found = carried(before, after, patterns) @ states
     stored, now = float(np.linalg.norm(states[1:])), float(np.linalg.norm(found[1:]))
-    if now > stored:
-        found[1:] *= stored / now
+    if now > GROWTH * stored:
+        found[1:] *= GROWTH * stored / now
     return found
 
 
