@@ -7,6 +7,7 @@ CONDUCTANCES over TIMES.
 
     python studies/mesh_places.py                  every case, some minutes
     python studies/mesh_places.py rim --json       those with "rim" in their name
+    python studies/mesh_places.py --times          how long modes and networks take instead
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -17,6 +18,7 @@ import argparse
 import json
 import math
 import sys
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
@@ -26,6 +28,7 @@ import trimesh
 from thermograsp import thermal
 from thermograsp.thermal import Solid, SurfacePatch
 from thermograsp.thermal.meshes import body_network
+from thermograsp.thermal.meshes.modes import body_modes
 from thermograsp.thermal.meshes.placed import centred_tip, face_patterns, placed_network
 from thermograsp.thermal.network import ThermalNetwork
 from thermograsp.thermal.surfaces import SolidPart
@@ -235,11 +238,72 @@ def rows(chosen: str) -> list[Row]:
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class Times:
+    """s of processor time: modes of a body of so many cells, once, and networks of a new place beside 0, 1 and 4 known
+    ones, medians of NEW."""
+
+    body: str
+    cells: int
+    modes: float
+    network: tuple[float, float, float]
+
+
+NEW = 12
+ROUND: dict[str, tuple[str, Callable[[float], SurfacePatch]]] = {
+    "mug": ("mug", lambda angle: _beside(angle, 0.01)),
+    "pot, over the rim": ("pot of 1 mm", lambda angle: _beside(angle, 0.037, 0.045)),
+    "cube": ("cube", lambda angle: _on(0, 0.02, 0.01 * math.cos(angle), 0.01 * math.sin(angle))),
+    "egg": (
+        "egg",
+        lambda angle: _at(
+            (0.02 * math.cos(angle), 0.02 * math.sin(angle), 0.0), (math.cos(angle), math.sin(angle), 0.0)
+        ),
+    ),
+}
+"""Body, and patches by an angle rad."""
+
+
+def timed(name: str) -> Times:
+    """Of a case of ROUND, of ceramic."""
+    kind, patch = ROUND[name]
+    body = whole(kind, "ceramic")
+    begin = time.process_time()
+    cells = len(body_modes(body, cache=False).grid.capacity)
+    modes = time.process_time() - begin
+    body_modes(body)
+    angles, medians = iter(0.37 * n for n in range(10_000)), []
+    for known in (0, 1, 4):
+        taken = []
+        for _ in range(NEW):
+            patches = [patch(next(angles)) for _ in range(known + 1)]
+            if known:
+                placed_network(body, patches[:-1], STACK)
+            begin = time.process_time()
+            placed_network(body, patches, STACK)
+            taken.append(time.process_time() - begin)
+        medians.append(float(np.median(taken)))
+    return Times(name, cells, modes, (medians[0], medians[1], medians[2]))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n", 1)[0])
     parser.add_argument("case", nargs="?", default="", help="part of a case's name")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--times", action="store_true", help="how long modes and networks take")
     chosen = parser.parse_args()
+    if chosen.times:
+        taken = [timed(name) for name in ROUND]
+        if chosen.json:
+            print(json.dumps([asdict(each) for each in taken], indent=2))
+        else:
+            for each in taken:
+                first, second, fifth = (1e3 * seconds for seconds in each.network)
+                print(
+                    f"{each.body:20}modes of {each.cells} cells {each.modes:.1f} s; first place {first:.1f} ms, "
+                    f"second {second:.1f} ms, fifth {fifth:.1f} ms"
+                )
+        return 0
     found = rows(chosen.case)
     if not found:
         parser.error(f"no case has {chosen.case!r} in its name: {', '.join(ONE | TWO | PARTS)}")
@@ -252,6 +316,8 @@ def main() -> int:
             f"{row.conductance:.0e} W/(m2 K)"
         )
     worst = max(found, key=lambda row: abs(row.error))
+    middle, ninth = np.quantile([abs(row.error) for row in found], [0.5, 0.9])
+    print(f"{len(found)} touches, half within {middle:.3f} K and nine of ten within {ninth:.3f} K")
     print(f"at most {abs(worst.error):.3f} K: {worst.case}, {worst.material}")
     return 0
 

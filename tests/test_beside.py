@@ -73,8 +73,14 @@ def test_without_a_folder_nobody_waits(tmp_path: Path) -> None:
 @pytest.fixture
 def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A module whose compile_ahead notes the process, and goes on for ever."""
-    lines = "import os, time\ndef compile_ahead():\n    open({!r}, 'w').write(str(os.getpid()))\n    time.sleep(999)\n"
-    (tmp_path / "ahead_of.py").write_text(lines.format(str(tmp_path / "started")))
+    (tmp_path / "ahead_of.py").write_text(f"""
+import os, pathlib, time
+def compile_ahead():
+    new = pathlib.Path({str(tmp_path / "new")!r})
+    new.write_text(str(os.getpid()))
+    new.rename({str(tmp_path / "started")!r})  # whole, or not there: the first process may end at once
+    time.sleep(999)
+""")
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delenv(ALONE, raising=False)
     monkeypatch.setattr(beside, "_processors", lambda: 2)

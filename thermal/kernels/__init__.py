@@ -32,7 +32,6 @@ from .contact import Resolution, Tip, at_rates, box_side, contact_weight, tip, t
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
 from .exponentials import residues
-from .exponentials import states as residue_states
 from .glued import GluedElement, glued_element
 from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES, basis_jumps, basis_terms
 from .projection import states
@@ -77,7 +76,6 @@ __all__ = [
     "element",
     "element_samples",
     "glued_element",
-    "residue_states",
     "residues",
     "states",
     "tip",

@@ -13,8 +13,9 @@ P: patches, M: patterns, R: modes, T: times, S: moments.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import combinations
 
@@ -30,12 +31,11 @@ from ..kernels import (
     Patches,
     Resolution,
     Tip,
+    at_rates,
     basis_jumps,
     basis_terms,
     before,
     box_kernel,
-    residue_states,
-    residues,
     tip,
 )
 from ..matter import SensorStack
@@ -70,8 +70,7 @@ _FIELDS = 16  # grids of such places, 8 MB each
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
     """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). impedance: (S,
-    M, M) K/W at GRASP of what is faster than the slow modes, and before them all of it; None where the local box tells.
-    """
+    M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there; None where the local box tells."""
 
     below: Beneath
     seen: np.ndarray
@@ -115,10 +114,8 @@ def placed_network(
     alone = impedance[:, ::count, ::count] + _impedance(seen[::count, kept], rates)
     weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(below))], axis=0)
     slowest = max(float(rates[-1]), LEVEL.slowest)
-    decay = np.geomspace(
-        slowest, LEVEL.fastest, max(4, int(np.ceil(np.log(LEVEL.fastest / slowest) / np.log(_PITCH))) + 1)
-    )
-    fading, ports = residue_states(residues(impedance, decay, weight), decay, LEVEL.least / weight[-1])
+    number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(_PITCH)) + 1)
+    fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
     whole = np.concatenate((rates, fading))
     still = np.eye(len(whole))[0]
     held = np.sqrt(modes.capacity * modes.grid.capacity.sum())

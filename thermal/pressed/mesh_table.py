@@ -94,7 +94,6 @@ class PressedView:
         some = np.array([rows, columns])
         points = _points(self.pad)
         _press(*self.seen, self.begin, self.places, some, *points, loads, self.spans, self.pad.face, touched)
-        touched.flags.writeable = False
         return touched
 
 
@@ -139,7 +138,7 @@ def _middles(side: float, count: int) -> np.ndarray:
 
 def _conducting(view: PressedView, law: np.void) -> np.ndarray:
     """(CURVED_TABLE,) of a view. law: a CONTACT_LAW of the faces."""
-    touched = view.touched().copy()
+    touched = view.touched()
     # where a contact vanishes it is a strip at both ends
     for end, beside in ((0, 1), (-1, -2)):
         touched[:, end, :, 2:] = touched[:, beside, :, 2:]

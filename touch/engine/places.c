@@ -10,6 +10,7 @@ and how an object's field survives a new place. */
 #define NEAR 0.250001 /* of the sensor's width: a pad that is as near to a known place is on it */
 #define GRID 0.125    /* of the sensor's width, on which places stand */
 #define LEAST 7e-4    /* singular values below that share of the largest are left out */
+#define GROWTH 1.1    /* times what a field's states are, the root of what they store: a new network has no more */
 #define TIE 1e-6      /* round-off does not decide where a pad is in the middle, between faces or points of the grid */
 #define ANOTHER 0.1   /* by which another face of the box must look more at the pad than the one in use */
 enum { IDLE = 2 };    /* places that an object remembers besides those in use */
@@ -86,8 +87,8 @@ size_t heat_carry_room(const Numbers* numbers) {
 }
 
 /* The field x on the states of a network with other places, nearest to what both see alike from then on: by the singular
-values of what is seen, found by one-sided rotations of its columns (Hestenes). What the states store, the sum of their
-squares, does not grow by it: all but the mean is made smaller where it would. */
+values of what is seen, found by one-sided rotations of its columns (Hestenes). Where the states but the mean would grow
+by more than GROWTH, they are made smaller: from place to place a field must not grow without end. */
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room) {
   int from[before->count + 1], to[before->count + 1], common = 0;
   from[0] = to[0] = 0;
@@ -153,7 +154,8 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
     }
   }
   for (int i = 0; i < columns; i++) now += x[i + 1] * x[i + 1];
-  for (int i = 0; now > 1.21 * stored && i < columns; i++) x[i + 1] *= sqrt(1.21 * stored / now); /* GROWTH squared */
+  double most = GROWTH * sqrt(stored), size = sqrt(now);
+  for (int i = 0; size > most && i < columns; i++) x[i + 1] *= most / size;
 }
 
 /* The network of the places that an object has now; made where it is neither in use nor aside, in place of that aside which

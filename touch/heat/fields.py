@@ -36,6 +36,7 @@ _PADDED_LEVELS = (
 _PADDED_MOMENTS = 12
 AFTERWARDS = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
 _LEAST = 7e-4  # singular values below that share of the largest are left out
+_GROWTH = 1.1  # times the norm of a field's states, the root of what they store: a new network has no more
 
 
 def resolution(tolerance: float, padded: bool = False) -> Resolution:
@@ -197,19 +198,16 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     return matrix
 
 
-GROWTH = 1.1
-"""Of what a field stores, up to which networks of other places may tell it otherwise."""
-
-
 def carried_states(before: BodyField, after: BodyField, patterns: int, states: np.ndarray) -> np.ndarray:
     """(n after,) the field of those states (n before,), on the states of a network with other places.
 
-    The sum of their squares is what a passive network stores, which nothing but heat from outside makes grow. Least
-    squares may: from place to place a field would grow without end. Then all of it but the mean is made smaller."""
+    The sum of their squares is what a passive network stores, which nothing but heat from outside makes grow. Networks
+    with few states tell a field a little differently, but least squares may let it grow from place to place without
+    end. Where the states but the mean would grow by more than _GROWTH, they are made smaller."""
     found = carried(before, after, patterns) @ states
     stored, now = float(np.linalg.norm(states[1:])), float(np.linalg.norm(found[1:]))
-    if now > GROWTH * stored:
-        found[1:] *= GROWTH * stored / now
+    if now > _GROWTH * stored:
+        found[1:] *= _GROWTH * stored / now
     return found
 
 
