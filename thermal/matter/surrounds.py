@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from thermograsp.errors import InvalidValueError, positive
+from thermograsp.errors import InvalidValueError, length
 
 from .layers import Layer
 from .materials import Material, material
@@ -39,9 +39,9 @@ class Surround:
                 f"surround: {made.name} conducts {made.conductivity:g} W/(m K), and what pads do is known up to "
                 f"{MOST_CONDUCTIVE:g} W/(m K): take one such as silicone"
             )
-        positive("surround: width (m)", self.width)
+        length("surround: width (m)", self.width)
         if self.depth is not None:
-            positive("surround: depth (m)", self.depth)
+            length("surround: depth (m)", self.depth)
 
     @property
     def layer(self) -> Layer:

@@ -146,6 +146,8 @@ def test_what_a_surround_cannot_do_is_refused(words: dict, says: str) -> None:
 def test_bad_surrounds_are_named() -> None:
     with pytest.raises(UnknownNameError, match="silicone"):
         _press("glass", surround="silicone_rubber")
+    with pytest.raises(InvalidValueError, match=r"millimetres: give 0\.02"):
+        Surround("silicone", width=20.0)
     for words in ({"width": -1.0}, {"width": float("nan")}, {"depth": 0.0}):
         with pytest.raises(InvalidValueError, match="surround"):
             Surround("silicone", **words)
