@@ -20,6 +20,8 @@ FRAME = 4 + 6 + 4 + 1
 """Numbers in a frame: gripper, load cells, voltages of two fingertips in the older and the newer half, arm sideways."""
 CLOSING = 20
 """Frames from the last one with open fingers on, of which the vector has how much the voltages change."""
+SAMPLES = 10
+"""Newest samples of which the vector has how much each differs from the one before: those since the last frame."""
 
 _OPEN = 0.08  # m, from which on fingers are open: an 85 mm gripper that closes is below it a frame later
 _VOLTAGES = slice(10, 14)  # of a frame
@@ -38,17 +40,20 @@ _LONG = 10.0  # s
 class Inputs:
     """heat: voltages and thermostats. load: the load cells. What is left out reads 0, so that agents with and without
     it have the same network. goals: numbers that say what is asked; 0 where the task never varies. closing: what the
-    voltages have done since the fingers began to close; agents trained by earlier versions are without."""
+    voltages have done since the fingers began to close. samples: how much each of the newest samples differs from the
+    one before, which says when a touch began. Agents trained by earlier versions are without one or both."""
 
     heat: bool = True
     load: bool = True
     goals: int = 0
     closing: bool = False
+    samples: bool = False
 
     @property
     def size(self) -> int:
         """Numbers in the vector."""
-        return FRAME * len(AGES) + 4 * CLOSING * self.closing + 2 + 1 + self.goals
+        changes = 4 * CLOSING * self.closing + 2 * SAMPLES * self.samples
+        return FRAME * len(AGES) + changes + 2 + 1 + self.goals
 
     def frame(self, observation: Mapping[str, np.ndarray]) -> np.ndarray:
         """(B, FRAME) float32 of observations (B, ...)."""
@@ -57,10 +62,16 @@ class Inputs:
         parts = (
             (observation["gripper"] - _GRIPPER[0]) / _GRIPPER[1],
             observation["force"] / _FORCE * self.load,
-            _GAIN * np.arcsinh(volts / _VOLTAGE) * self.heat,
+            _scaled(volts) * self.heat,
             observation["lateral"] / _LATERAL if "lateral" in observation else np.zeros((rows, 1)),
         )
         return np.concatenate([part.reshape(rows, -1) for part in parts], axis=1).astype(np.float32)
+
+    def differences(self, observation: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(B, 2 SAMPLES) float32 of observations (B, ...), oldest first; (B, 0) without `samples`."""
+        newest = _scaled(observation["voltage"][:, :, -SAMPLES - 1 :]) * self.heat
+        count = 2 * SAMPLES * self.samples
+        return np.diff(newest, axis=2).reshape(len(newest), -1)[:, :count].astype(np.float32)
 
 
 class Memory:
@@ -105,7 +116,13 @@ class Memory:
         goal = observation["goal"] if self.inputs.goals else np.zeros((len(at), 0))
         recent = frames[:, AGES].reshape(len(at), -1)
         closing = self._closing[at].reshape(len(at), -1)[:, : 4 * CLOSING * self.inputs.closing]
-        return np.concatenate([recent, closing, thermostat, clock, goal], axis=1).astype(np.float32)
+        samples = self.inputs.differences(observation)
+        return np.concatenate([recent, closing, samples, thermostat, clock, goal], axis=1).astype(np.float32)
+
+
+def _scaled(volts: np.ndarray) -> np.ndarray:
+    """As agents perceive them: even near 0 and logarithmic from _VOLTAGE on."""
+    return _GAIN * np.arcsinh(volts / _VOLTAGE)
 
 
 def _changes(frames: np.ndarray, first: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ class Perceiving(VecEnvWrapper):
         self, task: LearningTask, num_envs: int, heat: bool, load: bool, practice: bool = False
     ) -> None:
         env = task.make(num_envs, practice)
-        self.inputs = Inputs(heat, load, goals_of(env), closing=True)
+        self.inputs = Inputs(heat, load, goals_of(env), closing=True, samples=True)
         self.batch: Any = env.unwrapped.batch  # pyright: ignore[reportAttributeAccessIssue]
         self.raw: Any = {}
         self._memory = Memory(self.inputs, num_envs)
