@@ -14,7 +14,7 @@ import pytest
 from thermograsp.agents import learning
 from thermograsp.agents.learning import HELD_OUT, TASKS, Agent, learning_task, load_agent, score
 from thermograsp.agents.learning.agent import Acting
-from thermograsp.agents.learning.inputs import AGES, CLOSING, FRAME, REPEAT, Inputs, Memory
+from thermograsp.agents.learning.inputs import AGES, CLOSING, FRAME, REPEAT, SAMPLES, Inputs, Memory
 from thermograsp.agents.learning.scoring import wilson
 from thermograsp.agents.policies import load_policy, policy
 from thermograsp.assets import asset
@@ -215,6 +215,29 @@ def test_the_newest_frame_comes_first_and_the_first_stands_for_all_before() -> N
     assert (second[:, 0, 0] == -1.0).all()
     np.testing.assert_array_equal(second[:, 1:], frames[:, 1:])
     np.testing.assert_array_equal(first[:, -10:], observation["goal"])
+
+
+def test_newest_samples_tell_when_a_touch_began() -> None:
+    """By their differences, whatever the level, up to the newest of them."""
+    env = learning_task("identify").make(1)
+    observation, _ = env.reset(seed=0)
+    memory, without = Memory(Inputs(samples=True), 1), Memory(Inputs(), 1)
+    assert memory.inputs.size == without.inputs.size + 2 * SAMPLES
+    start = FRAME * len(AGES)
+
+    def felt(began: int) -> np.ndarray:
+        """(2, SAMPLES) where both fingertips touch `began` samples ago."""
+        observation["voltage"][:] = 1e-5
+        observation["voltage"][:, :, -began:] = 2e-3
+        vector, plain = memory.vector(observation)[0], without.vector(observation)[0]
+        np.testing.assert_array_equal(np.delete(vector, range(start, start + 2 * SAMPLES)), plain)
+        return vector[start : start + 2 * SAMPLES].reshape(2, SAMPLES)
+
+    for began in (1, 3, SAMPLES):
+        rises = felt(began)
+        assert (rises[:, -began] > 1.0).all()
+        assert np.count_nonzero(rises) == 2
+    assert not felt(SAMPLES + 1).any()
 
 
 def test_what_voltages_do_while_fingers_close_has_a_fixed_place() -> None:
