@@ -3,10 +3,12 @@
 A sensor of the paper touches a body at one place, or at two at once. The drop of its temperature follows from the
 network that environments use (thermal/meshes/placed.py), and from one whose states are fields of a grid that is fine at
 the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
-CONDUCTANCES over TIMES.
+CONDUCTANCES over TIMES. A mug with contents that are held at its first temperature behind a film of FILMS is compared
+with a grid that is finer still.
 
     python studies/mesh_places.py                  every case, some minutes
     python studies/mesh_places.py rim --json       those with "rim" in their name
+    python studies/mesh_places.py --filled         places of a mug with contents instead
     python studies/mesh_places.py --times          how long modes and networks take instead
 """
 
@@ -28,7 +30,10 @@ import trimesh
 from thermograsp import thermal
 from thermograsp.thermal import Solid, SurfacePatch
 from thermograsp.thermal.meshes import body_network
+from thermograsp.thermal.meshes.film import Film, film_of
+from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
+from thermograsp.thermal.meshes.network import patch_fields
 from thermograsp.thermal.meshes.placed import centred_tip, face_patterns, placed_network
 from thermograsp.thermal.network import ThermalNetwork
 from thermograsp.thermal.surfaces import SolidPart
@@ -157,6 +162,12 @@ PARTS: dict[str, tuple[str, tuple[str, str], SurfacePatch, SurfacePatch]] = {
 """Two places of a body of two materials, the outer or upper first."""
 
 
+FILMS = 50.0, 500.0, 3000.0  # W/(m2 K), of air, of still water, of water that boils
+FILLED = [name for name, (body, _) in ONE.items() if body == "mug"]
+"""Places of ONE, with contents."""
+_FINEST = MeshGridding(growth=0.3, largest=1e-3)
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """error: K of DIFFERENCE, with its sign, at time s and conductance W/(m2 K), the largest. drop: K there."""
@@ -210,7 +221,7 @@ def drops(network: ThermalNetwork, conductance: float) -> np.ndarray:
 
 def compared(case: str, material: str, body: Solid, patches: Sequence[SurfacePatch]) -> Row:
     """The network that environments use beside the fine grid's, for each patch with one whose axes are along it."""
-    fast, _ = placed_network(body, patches, STACK)
+    fast = placed_network(body, patches, STACK).network
     worst = Row(case, material, 0.0, 0.0, 0.0, 0.0)
     for n, patch in enumerate(patches):
         others = [other for other in patches if other is not patch]
@@ -226,6 +237,37 @@ def compared(case: str, material: str, body: Solid, patches: Sequence[SurfacePat
     return worst
 
 
+def with_contents(name: str, material: str) -> list[Row]:
+    """A place of FILLED, the largest error behind each of FILMS."""
+    kind, patch = ONE[name]
+    body = whole(kind, material)
+    one = film_of(body, 1.0)
+    assert one is not None
+    fields, found = patch_fields(body, patch, face_patterns(TIP), _FINEST), []
+    for film in FILMS:
+        inside = Film(film * one.area, one.walls)
+        fast = _held(placed_network(body, [patch], STACK, inside.conductance).network, inside.conductance)
+        held = fields.behind(inside)
+        fine = ThermalNetwork(held.rates, held.ports, np.zeros((held.ports.shape[1],) * 2))
+        worst = Row(f"{name}, {film:g} W/(m2 K) to contents", material, 0.0, 0.0, 0.0, 0.0)
+        for conductance in CONDUCTANCES:
+            expected = drops(fine, conductance)[:, 0]
+            error = drops(fast, conductance)[:, 0] - expected
+            at = int(np.abs(error).argmax())
+            if abs(error[at]) > abs(worst.error):
+                told = float(error[at]), float(expected[at]), float(TIMES[at])
+                worst = Row(worst.case, material, *told, conductance)
+        found.append(worst)
+    return found
+
+
+def _held(network: ThermalNetwork, film: float) -> ThermalNetwork:
+    """With its contents held at one temperature. film: W/K."""
+    wet = np.stack([row for name, row in network.outputs.items() if name.startswith("film:")])
+    rates, turn = np.linalg.eigh(np.diag(network.rates) + film * wet.T @ wet)
+    return ThermalNetwork(np.maximum(rates, 0.0), turn.T @ network.ports, network.direct)
+
+
 def rows(chosen: str) -> list[Row]:
     """Of the cases with this in their name."""
     found = []
@@ -236,6 +278,12 @@ def rows(chosen: str) -> list[Row]:
         if chosen in name:
             found.append(compared(name, " and ".join(materials), parted(body, materials), patches))
     return found
+
+
+def filled_rows(chosen: str) -> list[Row]:
+    """The same with contents."""
+    names = [name for name in FILLED if chosen in name]
+    return [row for name in names for material in MATERIALS for row in with_contents(name, material)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,6 +339,7 @@ def main() -> int:
     parser.add_argument("case", nargs="?", default="", help="part of a case's name")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--times", action="store_true", help="how long modes and networks take")
+    parser.add_argument("--filled", action="store_true", help="places of a mug with contents")
     chosen = parser.parse_args()
     if chosen.times:
         taken = [timed(name) for name in ROUND]
@@ -304,7 +353,7 @@ def main() -> int:
                     f"second {second:.1f} ms, fifth {fifth:.1f} ms"
                 )
         return 0
-    found = rows(chosen.case)
+    found = (filled_rows if chosen.filled else rows)(chosen.case)
     if not found:
         parser.error(f"no case has {chosen.case!r} in its name: {', '.join(ONE | TWO | PARTS)}")
     if chosen.json:
@@ -312,7 +361,7 @@ def main() -> int:
         return 0
     for row in found:
         print(
-            f"{row.case:36}{row.material:22}{row.error:+.3f} K of {row.drop:.2f} K at {row.time:.2f} s, "
+            f"{row.case:52}{row.material:22}{row.error:+.3f} K of {row.drop:.2f} K at {row.time:.2f} s, "
             f"{row.conductance:.0e} W/(m2 K)"
         )
     worst = max(found, key=lambda row: abs(row.error))

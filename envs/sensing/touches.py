@@ -22,6 +22,7 @@ from ...thermal import (
     SurfacePatch,
 )
 from ...thermal.meshes import (
+    FILLED_SHARE,
     PLACED_SHARE,
     TouchedBody,
     field_carried,
@@ -138,10 +139,11 @@ def _body(
     film: float,
     cache: bool,
 ) -> TouchedBody:
-    # contents behind a film make other modes
-    empty = film == 0.0
-    if empty and demand.tolerance >= PLACED_SHARE * abs(demand.difference):
-        return placed_body(body, patches, stack, demand.difference, fingertips=fingertips, cache=cache)
+    share = FILLED_SHARE if film > 0 else PLACED_SHARE
+    if demand.tolerance >= share * abs(demand.difference):
+        return placed_body(
+            body, patches, stack, demand.difference, fingertips=fingertips, film=film, cache=cache
+        )
     return touched_body(body, patches, stack, demand, fingertips=fingertips, film=film, cache=cache)
 
 

@@ -30,6 +30,14 @@ def test_places_at_a_mug_s_rim_keep_the_bound(study: ModuleType, monkeypatch, ca
     assert all(abs(row["error"]) < 0.036 for row in found)
 
 
+def test_contents_are_felt_through_a_mug_s_wall_and_at_its_rim(study: ModuleType, monkeypatch) -> None:
+    """Within what is stated of still water."""
+    monkeypatch.setattr(study, "FILMS", (500.0,))
+    monkeypatch.setattr(study, "MATERIALS", ("ceramic",))
+    found = [row for name in ("mug, wall", "mug, over the rim") for row in study.filled_rows(name)]
+    assert len(found) == 2 and all(abs(row.error) < 0.048 for row in found)
+
+
 def test_an_unknown_case_is_refused_with_those_there_are(study: ModuleType, monkeypatch, capsys) -> None:
     monkeypatch.setattr(sys, "argv", ["mesh_places.py", "teapot"])
     with pytest.raises(SystemExit):

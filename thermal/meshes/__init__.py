@@ -1,11 +1,12 @@
 """Bodies of any shape: solids on cut-cell grids, their networks, and where they are touched."""
 
 from .network import body_network
-from .placed import PLACED_SHARE, placed_body
+from .placed import FILLED_SHARE, PLACED_SHARE, placed_body
 from .press import press_body
 from .touched import TouchedBody, field_carried, surface_normal, touched_body
 
 __all__ = [
+    "FILLED_SHARE",
     "PLACED_SHARE",
     "TouchedBody",
     "body_network",

@@ -31,13 +31,15 @@ _AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x o
 @dataclass(frozen=True, slots=True, eq=False)
 class Beneath:
     """What lies beneath a place. depth: m. curvature: (2,) 1/m along its sides. ends: (2, 2) m along each side to where
-    the face ends either way. plain: whether it is as a box there, bent a little: covered wholly, and of one depth."""
+    the face ends either way. plain: whether it is as a box there, bent a little: covered wholly, of one depth, and all
+    of its other side wet or none. wet: whether contents wet that side."""
 
     placed: PlacedPatch
     depth: float
     curvature: np.ndarray
     ends: np.ndarray
     plain: bool
+    wet: bool
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -120,8 +122,9 @@ class _Faces:
         return self._a[inside, 2] + u[inside] * self._rise[0][inside] + v[inside] * self._rise[1][inside]
 
 
-def beneath(triangles: np.ndarray, patch: SurfacePatch) -> Beneath:
-    """triangles: (F, 3, 3) m of the body. Raises MeshError where the patch meets no surface."""
+def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None = None) -> Beneath:
+    """triangles: (F, 3, 3) m of the body. walls: (F, 3, 3) m of those that contents wet. Raises MeshError where the
+    patch meets no surface."""
     # a place's rays leave its middle by half a side at most
     sides = np.linalg.svd(patch.direction[None])[2][1:]
     close = _within((triangles - np.array(patch.centre)) @ sides.T, 2 * patch.half_width)
@@ -166,8 +169,21 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch) -> Beneath:
     # just beyond, a face goes on or ends, but does not bend down
     beyond = [bent(_BEYOND * half * way) / half for way in (*np.eye(2), *-np.eye(2))]
     smooth &= all(far <= _UNSMOOTH * _BEYOND or far >= _ENDED for far in beyond)
+    wet = [False]
+    if walls is not None and depth < _DEEP:
+        behind = _Column(walls, placed)
+        middle_and_around = zip([np.zeros(2), *half * _AROUND], [depth, *around], strict=True)
+        wet = [_wet(heights(at), behind.bottoms(_ASIDE + at), thick) for at, thick in middle_and_around]
     plain = even and smooth and ends.min() >= half and np.abs(curvature).max() * half <= _ROUND
-    return Beneath(placed, depth, curvature, ends, bool(plain))
+    return Beneath(placed, depth, curvature, ends, bool(plain) and all(wet) == any(wet), all(wet))
+
+
+def _wet(tops: np.ndarray, walls: np.ndarray, thickness: float) -> bool:
+    """Whether one of the walls' heights is where a body of that thickness below its top ends."""
+    if not len(tops) or not len(walls):
+        return False
+    under = tops[np.argmin(np.abs(tops))] - thickness
+    return float(np.abs(walls - under).min()) < ABOVE
 
 
 def _within(along: np.ndarray, reach: float) -> np.ndarray:

@@ -1,8 +1,9 @@
 """A body's slow temperature fields, once per shape: modes of a uniform grid.
 
 A body of one material has the modes of its shape, as if of 1 W/(m K) and 1 J/(m3 K): a material only scales time, by
-its diffusivity, and temperatures, by its heat capacity. Several materials have modes of their own. The slowest are
-found by Lanczos' method on the inverse (ARPACK, through SciPy).
+its diffusivity, and temperatures, by its heat capacity. Several materials have modes of their own, and so has a body
+with contents behind a film: what fades while the contents are held at one temperature. The slowest are found by
+Lanczos' method on the inverse (ARPACK, through SciPy).
 
 N: cells, R: modes.
 """
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, diags_array
@@ -19,7 +21,9 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from thermograsp.files import cached_arrays
 
 from ..matter import Material
+from ..network import ThermalNetwork
 from ..surfaces import Solid, SolidPart, checked
+from .film import Film, film_rows
 from .grid import GridAxis, MeshGrid, distinct, flat_places, mesh_grid
 from .network import conducting_parts
 
@@ -28,6 +32,7 @@ _OVER = 1.1  # of them, at most
 _MODES = 256
 _ACCURACY = 1e-3  # relative, of the rates
 _SHIFT = 0.1  # of about the slowest rate
+_EVEN = 1e-10  # of a mode's square, what is not even, at least
 _KEPT = 8  # shapes
 _UNIT = Material("unit", 1.0, 1.0, 1.0)
 
@@ -36,16 +41,62 @@ _UNIT = Material("unit", 1.0, 1.0, 1.0)
 class BodyModes:
     """grid: in the object's frame. rates: (R,), the first 0. fields: (N, R) orthonormal over the body by its heat
     capacity. diffusivity: m2/s times which the rates are 1/s. capacity: J/(m3 K), by whose root fields are divided to
-    be 1/sqrt(J/K). Both are 1 where the grid has the materials' own, and the material's where it is of the unit's."""
+    be 1/sqrt(J/K). Both are 1 where the grid has the materials' own, and the material's where it is of the unit's.
+    sink: (N,) of each cell to the contents, as links are, with which the first rate is not 0; zeros without."""
 
     grid: MeshGrid
     rates: np.ndarray
     fields: np.ndarray
     diffusivity: float
     capacity: float
+    sink: np.ndarray
+
+    def network(self, seen: np.ndarray, even: np.ndarray, film: float) -> ThermalNetwork:
+        """Of the first of them. seen: (M, K) of these by ports, and even (M,) of 1 K everywhere. film: W/K to contents,
+        which in the network are no longer held: one temperature is a state, and the modes join them by the outputs that
+        body_network's walls have."""
+        still = np.sqrt(self.capacity * self.grid.capacity.sum())
+        states = _states(self, seen.shape[1], film)
+        row = np.eye(len(states.rates))[0]
+        level = even[None] / still
+        return ThermalNetwork(
+            self.diffusivity * states.rates,
+            np.concatenate((level, states.turn.T @ (seen - level.T * states.share).T)),
+            np.zeros((len(seen), len(seen))),
+            {"heat": still * row, "mean": row / still} | states.wet,
+        )
 
 
-def body_modes(body: Solid, *, cache: bool = True) -> BodyModes:
+class _States(NamedTuple):
+    """rates: (J,), of one temperature and of what fades. turn: (K, J - 1), these from modes less the share (K,) of each
+    that is even. wet: the film's outputs."""
+
+    rates: np.ndarray
+    turn: np.ndarray
+    share: np.ndarray
+    wet: dict[str, np.ndarray]
+
+
+@lru_cache(maxsize=_KEPT)
+def _states(modes: BodyModes, count: int, film: float) -> _States:
+    if film == 0:
+        return _States(modes.rates[:count], np.eye(count)[:, 1:], np.zeros(count), {})
+    fields, sink = modes.fields[:, :count], modes.sink
+    even = np.full(len(fields), modes.grid.capacity.sum() ** -0.5)
+    share = fields.T @ (modes.grid.capacity * even)
+    # what is not even: one less where it is all that a mode is
+    sizes, vectors = np.linalg.eigh(np.eye(count) - np.outer(share, share))
+    turn = vectors[:, sizes > _EVEN] / np.sqrt(sizes[sizes > _EVEN])
+    apart = np.diag(modes.rates[:count]) - fields.T @ (sink[:, None] * fields)
+    rates, own = np.linalg.eigh(turn.T @ apart @ turn)
+    turn = turn @ own
+    felt = np.column_stack((even, (fields - np.outer(even, share)) @ turn)) / np.sqrt(modes.capacity)
+    wet = film_rows(sink, felt, film / (modes.diffusivity * modes.capacity))
+    return _States(np.append(0.0, np.maximum(rates, 0.0)), turn, share, wet)
+
+
+@lru_cache(maxsize=_KEPT)
+def body_modes(body: Solid, film: Film | None = None, *, cache: bool = True) -> BodyModes:
     """The body's modes. cache: keep them on disk, by content. Raises MeshError where it crosses itself, is in pieces or
     metres long."""
     alone = len(body.parts) == 1
@@ -58,15 +109,17 @@ def body_modes(body: Solid, *, cache: bool = True) -> BodyModes:
         )
         for vertices, faces, conductivity, capacity in conducting_parts(body)
     )
-    grid, rates, fields = _modes(parts, cache)
     material = body.parts[0].material if alone else _UNIT
-    return BodyModes(grid, rates, fields, material.diffusivity, material.volumetric_heat_capacity)
+    if film is not None:
+        film = film._replace(conductance=film.conductance / material.conductivity)
+    grid, rates, fields, sink = _modes(parts, film, cache)
+    return BodyModes(grid, rates, fields, material.diffusivity, material.volumetric_heat_capacity, sink)
 
 
 @lru_cache(maxsize=_KEPT)
 def _modes(
-    parts: tuple[tuple[bytes, bytes, float, float], ...], cache: bool
-) -> tuple[MeshGrid, np.ndarray, np.ndarray]:
+    parts: tuple[tuple[bytes, bytes, float, float], ...], film: Film | None, cache: bool
+) -> tuple[MeshGrid, np.ndarray, np.ndarray, np.ndarray]:
     arrays = [
         (np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3), *others)
         for vertices, faces, *others in parts
@@ -80,7 +133,8 @@ def _modes(
             )
         )
         grid = _uniform(checked(body))
-        rates, fields = _slowest(grid)
+        sink = np.zeros(len(grid.capacity)) if film is None else film.spread(grid)
+        rates, fields = _slowest(grid, sink)
         axes = {
             f"{name} {k}": getattr(axis, name)
             for k, axis in enumerate(grid.axes)
@@ -91,12 +145,15 @@ def _modes(
             **{name: getattr(grid, name) for name in _ARRAYS},
             "rates": rates,
             "fields": fields,
+            "sink": sink,
         }
 
-    found = cached_arrays({"modes of": arrays, "cells": _CELLS, "modes": _MODES}, build, enabled=cache)
+    wetted = None if film is None else (film.conductance, film.triangles)
+    key = {"modes of": arrays, "film": wetted, "cells": _CELLS, "modes": _MODES}
+    found = cached_arrays(key, build, enabled=cache)
     x, y, z = (GridAxis(found[f"edges {k}"], found[f"nodes {k}"]) for k in range(3))
     grid = MeshGrid(axes=(x, y, z), **{name: found[name] for name in _ARRAYS})
-    return grid, found["rates"], found["fields"]
+    return grid, found["rates"], found["fields"], found["sink"]
 
 
 _ARRAYS = "frame", "index", "capacity", "neighbours", "links", "conductivity", "volume"
@@ -124,10 +181,10 @@ def _axis(breaks: np.ndarray, length: float) -> GridAxis:
     return GridAxis(edges, (edges[1:] + edges[:-1]) / 2)
 
 
-def _slowest(grid: MeshGrid) -> tuple[np.ndarray, np.ndarray]:
+def _slowest(grid: MeshGrid, sink: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rates (R,) and fields (N, R)."""
     root = np.sqrt(grid.capacity)
-    operator, count = _operator(grid), len(root)
+    operator, count = csc_array(_operator(grid) + diags_array(sink / grid.capacity)), len(root)
     modes = min(_MODES, count - 1)
     width = max(np.ptp(edges) for edges in grid.edges)
     slow = float(np.min(grid.conductivity.min(axis=1) * grid.volume / grid.capacity)) * (np.pi / width) ** 2
@@ -146,7 +203,8 @@ def _slowest(grid: MeshGrid) -> tuple[np.ndarray, np.ndarray]:
     )
     order = np.argsort(rates)
     rates, fields = np.maximum(rates[order], 0.0), fields[:, order] / root[:, None]
-    rates[0], fields[:, 0] = 0.0, 1 / np.sqrt(grid.capacity.sum())  # all at one temperature does not fade
+    if not sink.any():
+        rates[0], fields[:, 0] = 0.0, 1 / np.sqrt(grid.capacity.sum())  # all at one temperature does not fade
     return rates, fields
 
 

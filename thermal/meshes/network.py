@@ -27,6 +27,7 @@ from ..surfaces import (
     enclosed,
     surface_patches,
 )
+from .film import Film
 from .grid import (
     MeshGrid,
     MeshGridding,
@@ -123,6 +124,16 @@ class PatchFields:
         shares = patch_on_grid(self.grid, outside, placed, patterns).shares
         cells = np.flatnonzero(shares.any(axis=1))
         return self.fields[cells].T @ shares[cells]
+
+    def behind(self, film: Film) -> PatchFields:
+        """The same while contents behind a film are held at one temperature, so that no state has rate 0."""
+        sink = film.sink(self.grid)
+        cells = np.flatnonzero(sink)
+        lost = self.fields[cells].T @ (sink[cells, None] * self.fields[cells])
+        rates, turn = eigh(np.diag(self.rates) + lost)
+        return replace(
+            self, rates=rates, ports=turn.T @ self.ports, fields=self.fields @ turn.astype(np.float32)
+        )
 
 
 def patch_fields(

@@ -6,7 +6,8 @@ of first and second order in the curvature, from the impedances of cylinder and 
 place in milliseconds. Where that box would not be the body (rims, edges, strong curvature, layers of other materials),
 a patch's own impedance is a grid's that is fine there, in tenths of a second. Its states are the body's slowest modes,
 whatever the place, and what fades sooner, at rates that are the same for all places, its residues positive
-semidefinite.
+semidefinite. Contents behind a film on the walls of a hollow make modes of their own, and a wall that they wet has a
+film at its other side.
 
 P: patches, M: patterns, R: modes, T: times, S: moments.
 """
@@ -43,6 +44,7 @@ from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
 from .beneath import Beneath, beneath
+from .film import Film, film_of, filmed
 from .grid import MeshGridding
 from .modes import BodyModes, body_modes
 from .network import PatchFields, patch_fields
@@ -56,6 +58,10 @@ PLACED_SHARE = 3.2e-3
 """Error of the drop of a touch, as a share of the first difference, at most: 0.034 K of 12 K in 181 touches of blocks,
 bars, sheets, cylinders, balls, cones, rings, mugs and cans of wood, ceramic, steel and aluminium, and of bodies of two
 materials, at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
+FILLED_SHARE = 4e-3
+"""The same with contents behind a film of 500 W/(m2 K), as still water has it: 0.041 K of 12 K in 11 places of a mug of
+plastic, ceramic, steel and aluminium. At 3,000 W/(m2 K) it is XXX, and YYY on the rim, where half of the drop is the
+film's."""
 _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
 _TOLD = 3.0  # over the last mode's rate, likewise
@@ -77,15 +83,26 @@ class Placed:
     impedance: np.ndarray | None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedNetwork:
+    """network: of a body with M ports a patch, in orthonormal patterns of the sensor's whole face. Its output "heat" is
+    the J that the body has gained, "mean" K; with contents also body_network's of walls. below: what lies beneath each
+    patch. slow: of its states, the first ones that are the body's own, whatever the patches."""
+
+    network: ThermalNetwork
+    below: list[Beneath]
+    slow: int
+
+
 def placed_network(
-    body: Solid, patches: Sequence[SurfacePatch], stack: SensorStack, *, cache: bool = True
-) -> tuple[ThermalNetwork, list[Beneath]]:
-    """The body's network with M ports a patch, in orthonormal patterns of the sensor's whole face, and what lies
-    beneath each. Output "heat" is the J that the body has gained, "mean" K. Raises MeshError where a patch meets no
-    surface, or the body is no solid in one piece."""
-    modes = body_modes(body, cache=cache)
+    body: Solid, patches: Sequence[SurfacePatch], stack: SensorStack, film: float = 0.0, *, cache: bool = True
+) -> PlacedNetwork:
+    """film: W/K between the walls of the body's hollow, if it has one, and contents. Raises MeshError where a patch
+    meets no surface, or the body is no solid in one piece."""
+    inside = film_of(body, film)
+    modes = body_modes(body, inside, cache=cache)
     one = centred_tip(stack, patches[0].area)
-    places = [_placed(body, patch, stack, cache) for patch in patches]
+    places = [_placed(body, patch, stack, inside, cache) for patch in patches]
     below = [place.below for place in places]
     seen = np.concatenate([place.seen for place in places])
     taus = modes.diffusivity * TIMES
@@ -95,7 +112,7 @@ def placed_network(
     if len(body.parts) == 1:
         over = _over(taus, modes.rates[-1])[:, None, None]
         slow = _faded(seen[:, kept], modes.rates[kept], taus)
-        local = _local(below, one, taus) / modes.capacity
+        local = _local(below, one, taus, body.parts[0].material.conductivity, inside) / modes.capacity
         kernel = over * kernel + (1 - over) * (local - slow)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
     count = LEVEL.patterns
@@ -108,7 +125,7 @@ def placed_network(
         impedance[:, at[n], at[n]] = place.impedance
     for n, m in combinations(range(len(places)), 2):
         if _close(places[n], places[m]):
-            pair = _pair(body, patches[n], patches[m], stack, cache)
+            pair = _pair(body, patches[n], patches[m], stack, inside, cache)
             impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     rates = modes.diffusivity * modes.rates[kept]
     alone = impedance[:, ::count, ::count] + _impedance(seen[::count, kept], rates)
@@ -116,30 +133,30 @@ def placed_network(
     slowest = max(float(rates[-1]), LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(_PITCH)) + 1)
     fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
-    whole = np.concatenate((rates, fading))
-    still = np.eye(len(whole))[0]
-    held = np.sqrt(modes.capacity * modes.grid.capacity.sum())
+    even = np.tile(np.eye(count)[0], len(places))  # the first pattern is level, and the others' means are 0
+    slow = modes.network(seen[:, kept], even, 0.0 if inside is None else inside.conductance)
+    none = np.zeros(len(fading))
     network = ThermalNetwork(
-        whole,
-        np.concatenate((seen[:, kept].T, ports)),
-        np.zeros((len(seen), len(seen))),
-        {"heat": held * still, "mean": still / held},
+        np.concatenate((slow.rates, fading)),
+        np.concatenate((slow.ports, ports)),
+        slow.direct,
+        {name: np.concatenate((row, none)) for name, row in slow.outputs.items()},
     )
-    return network, below
+    return PlacedNetwork(network, below, len(slow.rates))
 
 
 @lru_cache(maxsize=_KEPT)
-def _placed(body: Solid, patch: SurfacePatch, stack: SensorStack, cache: bool) -> Placed:
-    modes, one = body_modes(body, cache=cache), centred_tip(stack, patch.area)
-    below, patterns = beneath(body.outside, patch), face_patterns(one)
+def _placed(body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | None, cache: bool) -> Placed:
+    modes, one = body_modes(body, film, cache=cache), centred_tip(stack, patch.area)
+    below = beneath(body.outside, patch, None if film is None else film.triangles)
+    patterns = face_patterns(one)
     seen = _seen(modes, body.outside, below.placed, patterns) / np.sqrt(modes.capacity)
     if below.plain and len(body.parts) == 1:
         return Placed(below, seen, None)
-    fine = _fields(body, patch, stack)
-    slow = slice(0, min(_SLOW, len(modes.rates)))
-    rates = modes.diffusivity * modes.rates[slow]
-    impedance = _impedance(fine.ports[1:].T, fine.rates[1:])
-    impedance -= _impedance(seen[:, 1 : slow.stop], rates[1:])
+    fine, slow = _fields(body, patch, stack, film), _fading(modes)
+    first = slice(slow.start, None)
+    impedance = _impedance(fine.ports[first].T, fine.rates[first])
+    impedance -= _impedance(seen[:, slow], modes.diffusivity * modes.rates[slow])
     return Placed(below, seen, impedance)
 
 
@@ -152,25 +169,34 @@ def _close(one: Placed, other: Placed) -> bool:
 
 
 @lru_cache(maxsize=_KEPT)
-def _pair(body: Solid, one: SurfacePatch, other: SurfacePatch, stack: SensorStack, cache: bool) -> np.ndarray:
+def _pair(
+    body: Solid, one: SurfacePatch, other: SurfacePatch, stack: SensorStack, film: Film | None, cache: bool
+) -> np.ndarray:
     """(S, M, M) K/W at GRASP between two patches, less the slow modes': as the grid of the one has it of which no box
     tells, or the mean of both."""
-    modes, patterns = body_modes(body, cache=cache), face_patterns(centred_tip(stack, one.area))
-    first, second = (_placed(body, patch, stack, cache) for patch in (one, other))
-    told = []
+    modes, patterns = body_modes(body, film, cache=cache), face_patterns(centred_tip(stack, one.area))
+    first, second = (_placed(body, patch, stack, film, cache) for patch in (one, other))
+    told, slow = [], _fading(modes)
+    fading = slice(slow.start, None)
     for place, patch, beside, turned in ((first, one, other, False), (second, other, one, True)):
         if place.impedance is not None:
-            fine = _fields(body, patch, stack)
-            between = _impedance(fine.ports[1:].T, fine.rates[1:], fine.seen(body, beside, patterns)[1:].T)
+            fine = _fields(body, patch, stack, film)
+            seen = fine.seen(body, beside, patterns)[fading].T
+            between = _impedance(fine.ports[fading].T, fine.rates[fading], seen)
             told.append(between.transpose(0, 2, 1) if turned else between)
-    slow = slice(1, min(_SLOW, len(modes.rates)))
     rates = modes.diffusivity * modes.rates[slow]
     return np.mean(told, axis=0) - _impedance(first.seen[:, slow], rates, second.seen[:, slow])
 
 
 @lru_cache(maxsize=_FIELDS)
-def _fields(body: Solid, patch: SurfacePatch, stack: SensorStack) -> PatchFields:
-    return patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), _ALONE)
+def _fields(body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | None) -> PatchFields:
+    found = patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), _ALONE)
+    return found if film is None else found.behind(film)
+
+
+def _fading(modes: BodyModes) -> slice:
+    """The modes that are states and fade: all but the mean, where it is one."""
+    return slice(0 if modes.sink.any() else 1, min(_SLOW, len(modes.rates)))
 
 
 def _faded(seen: np.ndarray, rates: np.ndarray, taus: np.ndarray) -> np.ndarray:
@@ -198,19 +224,22 @@ def placed_body(
     difference: float,
     *,
     fingertips: int = 2,
+    film: float = 0.0,
     cache: bool = True,
 ) -> TouchedBody:
     """As touched_body's, in milliseconds a place once its modes are known. difference: K between sensor and body at
     first, of which the error is PLACED_SHARE. Raises as placed_network does."""
     patches = tuple(patches)
-    network, below = placed_network(body, patches, stack, cache=cache)
+    placed = placed_network(body, patches, stack, film, cache=cache)
     one = centred_tip(stack, patches[0].area).side
     count = one.ports.shape[1]
     sensor = ThermalNetwork(one.rates, one.ports, np.zeros((count, count)), one.outputs)
     plate = Geometry(stack, PLATE_MATERIAL, "T", patches[0].area, "square", PLATE)
-    geometry = geometry_of(plate, network, body, fingertips)
-    centres = np.array([each.placed.centre for each in below])
-    return TouchedBody(geometry, sensor, network, patches, centres, PLACED_SHARE * abs(difference), _SLOW)
+    geometry = geometry_of(plate, placed.network, body, fingertips)
+    centres = np.array([each.placed.centre for each in placed.below])
+    filled = "wet" in placed.network.outputs
+    error = (FILLED_SHARE if filled else PLACED_SHARE) * abs(difference)
+    return TouchedBody(geometry, sensor, placed.network, patches, centres, error, placed.slow)
 
 
 def centred_tip(stack: SensorStack, area: float) -> Tip:
@@ -251,9 +280,11 @@ def face_patterns(one: Tip) -> PatchPatterns:
     return PatchPatterns(edges, sums)
 
 
-def _local(below: Sequence[Beneath], one: Tip, taus: np.ndarray) -> np.ndarray:
+def _local(
+    below: Sequence[Beneath], one: Tip, taus: np.ndarray, conductivity: float, film: Film | None
+) -> np.ndarray:
     """(T, P M, P M) 1/m3, of unit material: of patches by themselves and of those on the faces of one box; zero where
-    no box stands for the body."""
+    no box stands for the body. conductivity: W/(m K)."""
     count = LEVEL.patterns
     kernel = np.zeros((len(taus), len(below) * count, len(below) * count))
     at = [slice(n * count, (n + 1) * count) for n in range(len(below))]
@@ -261,6 +292,9 @@ def _local(below: Sequence[Beneath], one: Tip, taus: np.ndarray) -> np.ndarray:
         if not each.plain:
             continue
         bent, on = _bent(each, taus), each.on_box(each.placed)
+        if each.wet and film is not None:
+            through = film.conductance / film.area / conductivity
+            bent = bent * filmed(taus, each.depth, through)[:, None, None]
         assert on is not None
         kernel[:, at[n], at[n]] = bent * _box(each, [on], one, taus)
         for m, other in enumerate(below):

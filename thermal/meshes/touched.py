@@ -33,7 +33,6 @@ from ..network import (
 )
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch, wetted_faces
-from .body_geometry import BodyGeometry
 from .network import body_network, conducting_parts
 from .patterns import learned_patterns
 from .place import place_patch
@@ -47,6 +46,25 @@ _CUTS = np.geomspace(0.1, 1e-7, 25)  # weight below which states are left out
 _LEAST_WEIGHT = 1e-7  # singular values below that share of the largest are left out
 _LEAST_PORT = 0.03  # of the largest, below which a combination of flows is hardly seen
 _TIMES = np.concatenate(([0.0], np.geomspace(1e-3, 300.0, 40)))  # s, over which a field is followed
+
+
+@dataclass(frozen=True, slots=True)
+class BodyGeometry(Geometry):
+    """Fingertips on a body of any shape. body_capacity: J/K. body_surface: m2. The plate in the other fields is the one
+    that the sensors' states and flux patterns were learned on."""
+
+    body_capacity: float = np.nan
+    body_surface: float = np.nan
+
+    @property
+    def whole_capacity(self) -> float:
+        """J/K of the whole object."""
+        return self.body_capacity
+
+    @property
+    def surface(self) -> float:
+        """m2 of the whole object's surface."""
+        return self.body_surface
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -66,7 +66,7 @@ def drops(network, conductance: float, tip: int = 0) -> np.ndarray:
 
 def worst(body: Solid, *patches: SurfacePatch) -> float:
     """K, the largest error of any fingertip's drop beside the grid that is aligned with its patch."""
-    network, _ = placed_network(body, patches, STACK)
+    network = placed_network(body, patches, STACK).network
     found = 0.0
     for n, patch in enumerate(patches):
         ordered = [*(other for other in patches if other is not patch), patch]
@@ -135,7 +135,7 @@ def test_on_a_ball_heat_begins_as_on_a_plane_of_the_touched_surface() -> None:
     ball, cube = (trimesh.creation.icosphere(5, 0.02), trimesh.creation.box((0.04,) * 3))
     patch = at(0.02, 0.0, 0.0, normal=(1, 0, 0))
     round_, flat = (
-        drops(placed_network(of(mesh, "wood"), [patch], STACK)[0], 1e5)[0] for mesh in (ball, cube)
+        drops(placed_network(of(mesh, "wood"), [patch], STACK).network, 1e5)[0] for mesh in (ball, cube)
     )
     assert round_ / flat == pytest.approx(1 + (0.0045 / 0.02) ** 2 / 3, abs=0.01)
 
@@ -198,7 +198,7 @@ def test_two_materials_have_modes_of_their_own(pair: tuple[str, str]) -> None:
 
 def test_the_mean_holds_all_heat_and_nothing_grows() -> None:
     body = of(cup(), "ceramic")
-    network, _ = placed_network(body, [at(0.02, 0.0, 0.0, normal=(1, 0, 0))], STACK)
+    network = placed_network(body, [at(0.02, 0.0, 0.0, normal=(1, 0, 0))], STACK).network
     assert network.rates[0] == 0.0 and np.all(network.rates[1:] > 0)
     capacity = thermal.material("ceramic").volumetric_heat_capacity * body.parts[0].volume
     assert network.ports[0, 0] == pytest.approx(capacity**-0.5, rel=1e-3)
@@ -225,7 +225,7 @@ def test_a_field_goes_from_network_to_network_and_back() -> None:
 
 def test_the_same_places_give_the_same_bits() -> None:
     patches = at(0.02, 0.0, 0.0, normal=(1, 0, 0)), at(0.02, 0.0, 0.0175, normal=(1, 0, 0))
-    first, again = (placed_network(of(cup(), "ceramic"), patches, STACK)[0] for _ in range(2))
+    first, again = (placed_network(of(cup(), "ceramic"), patches, STACK).network for _ in range(2))
     assert np.array_equal(first.ports, again.ports) and np.array_equal(first.rates, again.rates)
 
 
