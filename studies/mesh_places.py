@@ -30,7 +30,7 @@ import trimesh
 from thermograsp import thermal
 from thermograsp.thermal import Solid, SurfacePatch
 from thermograsp.thermal.meshes import body_network
-from thermograsp.thermal.meshes.film import Film, film_of
+from thermograsp.thermal.meshes.film import Film, film_of, held_apart
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
 from thermograsp.thermal.meshes.network import patch_fields
@@ -263,9 +263,8 @@ def with_contents(name: str, material: str) -> list[Row]:
 
 def _held(network: ThermalNetwork, film: float) -> ThermalNetwork:
     """With its contents held at one temperature. film: W/K."""
-    wet = np.stack([row for name, row in network.outputs.items() if name.startswith("film:")])
-    rates, turn = np.linalg.eigh(np.diag(network.rates) + film * wet.T @ wet)
-    return ThermalNetwork(np.maximum(rates, 0.0), turn.T @ network.ports, network.direct)
+    rates, turn = held_apart(network, film)
+    return ThermalNetwork(rates, turn.T @ network.ports, network.direct)
 
 
 def rows(chosen: str) -> list[Row]:

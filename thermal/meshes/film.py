@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from ..network import ThermalNetwork
 from ..surfaces import Solid, enclosed, wetted_faces
 from .grid import MeshGrid, snapped
 
@@ -72,6 +73,14 @@ def film_rows(sink: np.ndarray, fields: np.ndarray, film: float) -> dict[str, np
     kept = sizes > _LEAST * sizes[0]
     rows = sizes[kept, None] * vectors[kept]
     return {"wet": felt @ fields / felt.sum()} | {f"film:{n}": row for n, row in enumerate(rows)}
+
+
+def held_apart(network: ThermalNetwork, film: float) -> tuple[np.ndarray, np.ndarray]:
+    """1/s (K,) at which a network's states fade while its contents are held at one temperature, and the matrix (K, K)
+    to its own states from these. film: W/K."""
+    wet = np.stack([row for name, row in network.outputs.items() if name.startswith("film:")])
+    rates, turn = np.linalg.eigh(np.diag(network.rates) + film * wet.T @ wet)
+    return np.maximum(rates, 0.0), turn
 
 
 def filmed(taus: np.ndarray, depth: float, film: float) -> np.ndarray:

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,7 +45,7 @@ from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
 from .beneath import Beneath, beneath
-from .film import Film, film_of, filmed
+from .film import Film, film_of, filmed, held_apart
 from .grid import MeshGridding
 from .modes import BodyModes, body_modes
 from .network import PatchFields, patch_fields
@@ -106,14 +107,13 @@ def placed_network(
     below = [place.below for place in places]
     seen = np.concatenate([place.seen for place in places])
     taus = modes.diffusivity * TIMES
-    kept = slice(0, min(_SLOW, len(modes.rates)))
-    fast = slice(kept.stop, None)
-    kernel = _faded(seen[:, fast], modes.rates[fast], taus)
+    slow = _slow(modes, seen, inside)
+    kernel = _faded(seen, modes.rates, taus)
     if len(body.parts) == 1:
         over = _over(taus, modes.rates[-1])[:, None, None]
-        slow = _faded(seen[:, kept], modes.rates[kept], taus)
         local = _local(below, one, taus, body.parts[0].material.conductivity, inside) / modes.capacity
-        kernel = over * kernel + (1 - over) * (local - slow)
+        kernel = over * kernel + (1 - over) * local
+    kernel -= _faded(slow.held.T, slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
     count = LEVEL.patterns
     at = [slice(n * count, (n + 1) * count) for n in range(len(places))]
@@ -127,22 +127,40 @@ def placed_network(
         if _close(places[n], places[m]):
             pair = _pair(body, patches[n], patches[m], stack, inside, cache)
             impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
-    rates = modes.diffusivity * modes.rates[kept]
-    alone = impedance[:, ::count, ::count] + _impedance(seen[::count, kept], rates)
+    alone = impedance[:, ::count, ::count] + _impedance(slow.held.T[::count], slow.fades)
     weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(below))], axis=0)
-    slowest = max(float(rates[-1]), LEVEL.slowest)
+    slowest = max(modes.diffusivity * modes.rates[:_SLOW][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(_PITCH)) + 1)
     fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
-    even = np.tile(np.eye(count)[0], len(places))  # the first pattern is level, and the others' means are 0
-    slow = modes.network(seen[:, kept], even, 0.0 if inside is None else inside.conductance)
     none = np.zeros(len(fading))
     network = ThermalNetwork(
-        np.concatenate((slow.rates, fading)),
-        np.concatenate((slow.ports, ports)),
-        slow.direct,
-        {name: np.concatenate((row, none)) for name, row in slow.outputs.items()},
+        np.concatenate((slow.network.rates, fading)),
+        np.concatenate((slow.network.ports, ports)),
+        slow.network.direct,
+        {name: np.concatenate((row, none)) for name, row in slow.network.outputs.items()},
     )
-    return PlacedNetwork(network, below, len(slow.rates))
+    return PlacedNetwork(network, below, len(slow.fades))
+
+
+class _Slow(NamedTuple):
+    """The states that are a body's own. network: by its ports. fades: (K,) 1/s and held: (K, M), its rates and ports
+    while contents are held at one temperature; without any just those."""
+
+    network: ThermalNetwork
+    fades: np.ndarray
+    held: np.ndarray
+
+
+def _slow(modes: BodyModes, seen: np.ndarray, film: Film | None) -> _Slow:
+    """seen: (M, R) of the modes by the ports."""
+    even = np.tile(
+        np.eye(LEVEL.patterns)[0], len(seen) // LEVEL.patterns
+    )  # the mean of the first pattern alone is not 0
+    network = modes.network(seen[:, :_SLOW], even, 0.0 if film is None else film.conductance)
+    if film is None:
+        return _Slow(network, network.rates, network.ports)
+    fades, turn = held_apart(network, film.conductance)
+    return _Slow(network, fades, turn.T @ network.ports)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -153,10 +171,10 @@ def _placed(body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | N
     seen = _seen(modes, body.outside, below.placed, patterns) / np.sqrt(modes.capacity)
     if below.plain and len(body.parts) == 1:
         return Placed(below, seen, None)
-    fine, slow = _fields(body, patch, stack, film), _fading(modes)
-    first = slice(slow.start, None)
-    impedance = _impedance(fine.ports[first].T, fine.rates[first])
-    impedance -= _impedance(seen[:, slow], modes.diffusivity * modes.rates[slow])
+    fine, slow = _fields(body, patch, stack, film), _slow(modes, seen, film)
+    fading = slice(1 if film is None else 0, None)  # the body's mean is on both grids
+    impedance = _impedance(fine.ports[fading].T, fine.rates[fading])
+    impedance -= _impedance(slow.held[fading].T, slow.fades[fading])
     return Placed(below, seen, impedance)
 
 
@@ -176,27 +194,23 @@ def _pair(
     tells, or the mean of both."""
     modes, patterns = body_modes(body, film, cache=cache), face_patterns(centred_tip(stack, one.area))
     first, second = (_placed(body, patch, stack, film, cache) for patch in (one, other))
-    told, slow = [], _fading(modes)
-    fading = slice(slow.start, None)
+    told, fading = [], slice(1 if film is None else 0, None)
     for place, patch, beside, turned in ((first, one, other, False), (second, other, one, True)):
         if place.impedance is not None:
             fine = _fields(body, patch, stack, film)
             seen = fine.seen(body, beside, patterns)[fading].T
             between = _impedance(fine.ports[fading].T, fine.rates[fading], seen)
             told.append(between.transpose(0, 2, 1) if turned else between)
-    rates = modes.diffusivity * modes.rates[slow]
-    return np.mean(told, axis=0) - _impedance(first.seen[:, slow], rates, second.seen[:, slow])
+    count = len(first.seen)
+    slow = _slow(modes, np.concatenate((first.seen, second.seen)), film)
+    held = slow.held[fading].T
+    return np.mean(told, axis=0) - _impedance(held[:count], slow.fades[fading], held[count:])
 
 
 @lru_cache(maxsize=_FIELDS)
 def _fields(body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | None) -> PatchFields:
     found = patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), _ALONE)
     return found if film is None else found.behind(film)
-
-
-def _fading(modes: BodyModes) -> slice:
-    """The modes that are states and fade: all but the mean, where it is one."""
-    return slice(0 if modes.sink.any() else 1, min(_SLOW, len(modes.rates)))
 
 
 def _faded(seen: np.ndarray, rates: np.ndarray, taus: np.ndarray) -> np.ndarray:

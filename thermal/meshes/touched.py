@@ -33,6 +33,7 @@ from ..network import (
 )
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch, wetted_faces
+from .film import held_apart
 from .network import body_network, conducting_parts
 from .patterns import learned_patterns
 from .place import place_patch
@@ -332,9 +333,8 @@ def _held(body: ThermalNetwork, film: float) -> tuple[np.ndarray, ThermalNetwork
     """The network with contents that are held behind a film of W/K in all, and the matrix from its states."""
     if not film:
         return np.eye(body.order), body
-    wet = np.stack([row for name, row in body.outputs.items() if name.startswith("film:")])
-    rates, turn = np.linalg.eigh(np.diag(body.rates) + film * wet.T @ wet)
-    return turn, ThermalNetwork(np.maximum(rates, 0.0), turn.T @ body.ports, body.direct)
+    rates, turn = held_apart(body, film)
+    return turn, ThermalNetwork(rates, turn.T @ body.ports, body.direct)
 
 
 def _flows(full: TouchedBody) -> np.ndarray:
