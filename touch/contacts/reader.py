@@ -197,14 +197,6 @@ class ContactReader:
         if not read_contacts(count, weight, memory.address, self._table_address):
             raise self.failure(data.time)
 
-    def sense(self, record: np.ndarray, first: int, last: int, places: SensorPlaces) -> None:
-        """Adds what contact sensors recorded of the substeps first to last - 1, (W, substeps, sensordata). Worlds with
-        a number that is not finite are `broken` from then on, and nothing more is added to them. Raises what went wrong
-        where a mesh's table could not be made."""
-        self.counted += last - first
-        if not sense_contacts(record.ctypes.data, first, last, self.sensing(places, record.shape[1])):
-            raise self._failed.pop()
-
     def sensing(self, places: SensorPlaces, substeps: int) -> int:
         """The address of what `sense_contacts` takes for records of so many substeps, until a call of set_materials."""
         if places is not self._places:

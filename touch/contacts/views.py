@@ -24,7 +24,7 @@ from thermograsp.compiled import njit
 
 from ...thermal import Pad
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
-from ...thermal.pressed import height_map, map_heights, pressure_map
+from ...thermal.pressed import height_map, map_heights, pressure_map, square_middles
 
 VIEW = 11
 """Of a view: three axes, the first into the mesh, and m along the others where the mesh begins, all in the geom's
@@ -88,8 +88,7 @@ def _lying(vertices: np.ndarray, faces: np.ndarray, along: np.ndarray, middle: n
     """(3,): the direction, near `along`, in which a pad looks that comes to lie on the mesh at `middle` (3,) m: on
     crests, whose hull has faces aslant between them."""
     axes = _across(along)
-    places = (np.arange(_POINTS) + 0.5) * PAD.width / _POINTS - PAD.width / 2
-    places = np.stack([grid.ravel() for grid in np.meshgrid(places, places)], axis=1)
+    places = square_middles(PAD.width, _POINTS)
     heights, cover, pressure = np.zeros((3, len(places)))
     map_heights(*height_map(vertices, faces, axes), np.stack([middle, *axes]), places, heights, cover)
     if not cover.any():
