@@ -95,6 +95,7 @@ ROOMS = {
         "taxels",
     ),
     "touch": (
+        "addresses",
         "scene",
         "contacts",
         "heat",

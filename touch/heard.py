@@ -12,7 +12,8 @@ from numba import carray, types  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
-from .contacts import called, called_two, entry, floats, integers, read_contacts, sense_contacts, table, words
+from .addresses import called, called_two, entry, floats, integers, table, words
+from .contacts import read_contacts, sense_contacts
 from .heat import sample
 from .readings import close_sample
 

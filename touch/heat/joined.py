@@ -21,7 +21,8 @@ from thermograsp.errors import InvalidValueError
 from ...thermal import Material
 from ...thermal.numerics import Array
 from ...thermal.padded import RINGS
-from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts, table
+from ..addresses import table
+from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
 from .fields import (

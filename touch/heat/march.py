@@ -11,6 +11,7 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 from thermograsp.compiled import njit
 
 from ...thermal.padded import RINGS
+from ..addresses import flags, floats, words
 from ..contacts import (
     AREA,
     ASIDE,
@@ -21,9 +22,6 @@ from ..contacts import (
     LENGTH,
     NORMAL,
     PLACE,
-    flags,
-    floats,
-    words,
 )
 from .narrow import STEPS, spread
 from .step import CONTACTS, HEADER, PACE, room_of, step

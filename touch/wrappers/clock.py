@@ -29,7 +29,7 @@ from numba.core.registry import cpu_target
 
 from thermograsp.compiled import njit
 
-from ..contacts import asked, called_one, clock_of, entry, floats, words
+from ..addresses import asked, called_one, clock_of, entry, floats, words
 from ..heard import DUE, ELSEWHERE, NOTHING, hear
 from ..thermal_touch import ThermalTouch
 
