@@ -103,6 +103,7 @@ ROOMS = {
         "fixed_touch",
         "readings",
         "heard",
+        "given",
         "thermal_touch",
         "engine",
         "wrappers",

@@ -6,8 +6,10 @@ from .faces import Face, flat_faces, largest_face, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
+from .steps import LONGEST, samples_in, whole_steps
 
 __all__ = [
+    "LONGEST",
     "PREFIX",
     "BodyShape",
     "Face",
@@ -28,5 +30,7 @@ __all__ = [
     "pads",
     "refuse_overlap",
     "rotation",
+    "samples_in",
     "triangles",
+    "whole_steps",
 ]
