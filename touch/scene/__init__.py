@@ -2,7 +2,7 @@
 
 from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodies, materials_by_world
 from .elements import glued_elements
-from .faces import Face, flat_faces, largest_face, rotation, triangles
+from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
@@ -27,6 +27,7 @@ __all__ = [
     "is_round",
     "largest_face",
     "materials_by_world",
+    "mesh_of",
     "pads",
     "refuse_overlap",
     "rotation",

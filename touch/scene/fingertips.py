@@ -142,7 +142,7 @@ def pads(
     }
     geoms = {label: geoms_of(model, *where) for label, where in found.items()}
     _require_different_geoms(model, geoms, objects)
-    middles = {label: _middle(model, data, where, geoms[label]) for label, where in found.items()}
+    middles = {label: _middle(data, where, geoms[label]) for label, where in found.items()}
     placed = []
     for label, one in given.items():
         others = [middle for other, middle in middles.items() if other != label]
@@ -195,9 +195,7 @@ def _require_different_geoms(
                 )
 
 
-def _middle(
-    model: mujoco.MjModel, data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...]
-) -> np.ndarray:
+def _middle(data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...]) -> np.ndarray:
     if where[0] == "site":
         return data.site_xpos[where[1]].copy()
     return data.geom_xpos[list(geoms)].mean(axis=0)
