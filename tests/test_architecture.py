@@ -95,7 +95,7 @@ ROOMS = {
         "taxels",
     ),
     "touch": (
-        "addresses",
+        "pointers",
         "scene",
         "contacts",
         "heat",

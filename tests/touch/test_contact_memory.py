@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from thermograsp.touch import ThermalTouch
-from thermograsp.touch.addresses import memory
+from thermograsp.touch.contacts import memory
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader

@@ -4,6 +4,7 @@ from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_co
 from .columns import AREA, ASIDE, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FORCE, LENGTH, NORMAL, PLACE
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
+from .memory import clock_of
 from .reader import ContactReader
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
@@ -32,6 +33,7 @@ __all__ = [
     "TouchContacts",
     "array_contacts",
     "bends",
+    "clock_of",
     "curves",
     "pair_laws",
     "prepare",

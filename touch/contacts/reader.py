@@ -22,12 +22,12 @@ from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import CURVED_TABLE
 from ...thermal.padded import ring_sides
 from ...thermal.pressed import PressedMesh
-from ..addresses import ContactMemory, table
+from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .columns import COLUMNS
-from .felt import SPOT
+from .felt import AROUND, PAD, PLACED, SPOT
 from .laws import pair_laws, stacked
-from .pad_frames import AROUND, PAD, PLACED
+from .memory import ContactMemory
 from .round_pads import bends, curves
 from .sensors import SensorPlaces
 from .step_contacts import read_contacts

@@ -13,7 +13,10 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 from thermograsp.compiled import njit
 
 from ...thermal.contact import CURVED_TABLE
-from ..addresses import (
+from ..pointers import flags, floats, integers, laws, words
+from .columns import COLUMNS
+from .felt import PAD, PLACED, SPOT, begin, feel, lies, place_pad, press
+from .memory import (
     CONTACTS,
     DIM,
     EFC,
@@ -27,15 +30,7 @@ from ..addresses import (
     WORDS,
     XMAT,
     XPOS,
-    flags,
-    floats,
-    integers,
-    laws,
-    words,
 )
-from .columns import COLUMNS
-from .felt import SPOT, feel
-from .pad_frames import PAD, PLACED, begin, lies, place_pad, press
 from .round_pads import BEND, CURVES
 from .sensors import FORCE_AT, PLACE_AT
 from .tilt import TILT

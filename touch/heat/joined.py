@@ -21,8 +21,8 @@ from thermograsp.errors import InvalidValueError
 from ...thermal import Material
 from ...thermal.numerics import Array
 from ...thermal.padded import RINGS
-from ..addresses import table
 from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
+from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
 from .fields import (

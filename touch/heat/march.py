@@ -11,7 +11,6 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 from thermograsp.compiled import njit
 
 from ...thermal.padded import RINGS
-from ..addresses import flags, floats, words
 from ..contacts import (
     AREA,
     ASIDE,
@@ -23,6 +22,7 @@ from ..contacts import (
     NORMAL,
     PLACE,
 )
+from ..pointers import flags, floats, words
 from .narrow import STEPS, spread
 from .step import CONTACTS, HEADER, PACE, room_of, step
 
