@@ -43,13 +43,8 @@ def read_contacts(count, substeps, memory_at, entries_at):
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite or a table could not be made."""
     memory, entries = carray(words(memory_at), WORDS), carray(words(entries_at), 23)
-    tips, targets, part_count, pyramidal, sides = (
-        entries[16],
-        entries[17],
-        entries[18],
-        entries[19],
-        entries[21],
-    )
+    tips, targets, part_count = entries[16], entries[17], entries[18]
+    pyramidal, sides = entries[19], entries[21]
     role = carray(words(entries[0]), entries[15])
     pads = carray(floats(entries[1]), (tips, PAD))
     parts = carray(words(entries[2]), (part_count, 4))
@@ -69,10 +64,8 @@ def read_contacts(count, substeps, memory_at, entries_at):
     whole = carray(integers(place), (count, memory[STRIDE] // 4))
     efc = carray(floats(carray(words(memory[FORCES]), 1)[0]), 0)  # as many as MuJoCo says
     xpos, xmat = carray(floats(memory[XPOS]), (1, 3)), carray(floats(memory[XMAT]), (1, 9))
-    geom_xpos, geom_xmat = (
-        carray(floats(memory[GEOM_XPOS]), (1, 3)),
-        carray(floats(memory[GEOM_XMAT]), (1, 9)),
-    )
+    geom_xpos = carray(floats(memory[GEOM_XPOS]), (1, 3))
+    geom_xmat = carray(floats(memory[GEOM_XMAT]), (1, 9))
     pos, frame = numbers[:, memory[POS] :], numbers[:, memory[FRAME] :]
     geom, dim, address = whole[:, memory[GEOM] :], whole[:, memory[DIM]], whole[:, memory[EFC]]
     weight = float(substeps)
@@ -130,11 +123,8 @@ def sense_contacts(record_at, first, last, entries_at):
     worlds, size, pairs, poses, geoms = entries[25], entries[26], entries[27], entries[28], entries[29]
     tips, part_count, targets, sides = entries[30], entries[31], entries[32], entries[34]
     record = carray(floats(record_at), (worlds, entries[36], size))
-    pair, pose, placed = (
-        carray(words(entries[0]), (pairs, 3)),
-        carray(words(entries[1]), (poses, 3)),
-        carray(words(entries[2]), (geoms, 2)),
-    )
+    pair, pose = carray(words(entries[0]), (pairs, 3)), carray(words(entries[1]), (poses, 3))
+    placed = carray(words(entries[2]), (geoms, 2))
     turns, offsets = carray(floats(entries[3]), (geoms, 9)), carray(floats(entries[4]), (geoms, 3))
     pads, parts = carray(floats(entries[5]), (tips, PAD)), carray(words(entries[6]), (part_count, 4))
     which = carray(words(entries[8]), worlds)
