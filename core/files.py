@@ -11,6 +11,7 @@ import logging
 import os
 import secrets
 import time
+import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -100,6 +101,16 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Write `text` as UTF-8, whole or not at all; line ends as given. Raises as atomic_write does."""
     with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The table of a TOML file. Raises InvalidValueError for one that cannot be read."""
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InvalidValueError(f"cannot read {path}: {error.strerror}") from error
+    except ValueError as error:  # not UTF-8, not TOML, or a name that stands there twice
+        raise InvalidValueError(f"{path} is not valid TOML: {error}") from error
 
 
 def cache_dir() -> Path:

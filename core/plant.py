@@ -121,11 +121,17 @@ def plant_factory(url: str) -> Callable[..., Plant]:
     Other packages add theirs as an entry point of the group `thermograsp.plants`, the scheme its name. Raises
     UnknownNameError with the known schemes.
     """
+    return named_by_scheme("plant", url, _SCHEMES, ENTRY_POINTS)
+
+
+def named_by_scheme(kind: str, url: str, ours: Mapping[str, str], group: str) -> Any:
+    """What stands for a URL's scheme: one of ours, module:function, or another package's entry point of the group.
+    Raises UnknownNameError with the known schemes."""
     scheme = str(url).partition(":")[0]
-    if scheme in _SCHEMES:
-        module, _, name = _SCHEMES[scheme].partition(":")
+    if scheme in ours:
+        module, _, name = ours[scheme].partition(":")
         return getattr(importlib.import_module(module), name)
-    added = entry_points(group=ENTRY_POINTS)
+    added = entry_points(group=group)
     if scheme not in added.names:
-        raise unknown_name("plant", scheme, {*_SCHEMES, *added.names})
+        raise unknown_name(kind, scheme, {*ours, *added.names})
     return added[scheme].load()

@@ -5,7 +5,6 @@ Importing this file needs the extra `rl`. B: environments.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import gymnasium
@@ -22,8 +21,6 @@ try:
 except ImportError as error:
     raise MissingDependencyError(f"stable-baselines3 is not installed: {install('rl')}") from error
 
-Adjust = Callable[[Observation, np.ndarray], np.ndarray]
-
 
 class StableBaselinesVecEnv(VecEnv):
     """A vector environment that learners of stable-baselines3 take, all in this process.
@@ -31,8 +28,7 @@ class StableBaselinesVecEnv(VecEnv):
     env: such as gymnasium.make_vec("thermograsp/Grasp-v0", num_envs=32, vectorization_mode="vector_entry_point").
     senses: the observation is then a vector (SIZE,), for MlpPolicy; None: the dictionary, for MultiInputPolicy.
     repeat: control steps that an action lasts; rewards add up. bootstrap: a time limit is reported as such, learners
-    count on what would have come after it; False where the limit is part of the task. adjust: what becomes of actions
-    (B, ...), given the observation that they answer.
+    count on what would have come after it; False where the limit is part of the task.
 
     An environment that ends is reset in the same step; its last observation is in info["terminal_observation"]. Raises
     InvalidValueError for another kind of environment, and for a repeat below 1.
@@ -44,7 +40,6 @@ class StableBaselinesVecEnv(VecEnv):
         senses: Senses | None = None,
         repeat: int = 1,
         bootstrap: bool = True,
-        adjust: Adjust | None = None,
     ) -> None:
         inner = env.unwrapped
         if not isinstance(inner, TouchVectorEnv):
@@ -59,7 +54,6 @@ class StableBaselinesVecEnv(VecEnv):
         if repeat < 1:
             raise InvalidValueError(f"repeat must be at least 1, got {repeat}")
         self.env, self.senses, self.repeat, self.bootstrap = inner, senses, repeat, bootstrap
-        self.adjust = adjust
         space: gymnasium.Space[Any] = inner.single_observation_space
         if senses is not None:
             space = gymnasium.spaces.Box(-np.inf, np.inf, (SIZE,), np.float32)
@@ -80,8 +74,6 @@ class StableBaselinesVecEnv(VecEnv):
     def step_async(self, actions: np.ndarray) -> None:
         """The actions (B, ...) of the next `step_wait`."""
         self._actions = np.asarray(actions)
-        if self.adjust is not None:
-            self._actions = self.adjust(self._last, self._actions)
 
     def step_wait(self) -> tuple[Any, np.ndarray, np.ndarray, list[dict[str, Any]]]:
         """(observation, reward (B,), ended (B,), infos)."""

@@ -2,9 +2,9 @@
 
 import warnings
 
-from .spaces import SIZE, Senses, arm_waits
+from .spaces import SIZE, Senses
 
-__all__ = ["SIZE", "Senses", "arm_waits"]
+__all__ = ["SIZE", "Senses"]
 
 warnings.warn(
     "thermograsp.envs.senses is now thermograsp.envs.spaces: import from there",

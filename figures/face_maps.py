@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 
 import numpy as np
 from matplotlib.colors import to_hex
@@ -12,8 +11,7 @@ from matplotlib.colors import to_hex
 from thermograsp.envs import GraspEnv, ObjectSpec, action_of
 from thermograsp.envs.footprint import PAD
 from thermograsp.envs.pictures import temperature_colour
-from thermograsp.figures.look import readable
-from thermograsp.figures.pressure_maps import FORCE
+from thermograsp.figures.pressure_maps import FORCE, map_figure
 
 PARTS = (18, 18)
 RANGE = (24.0, 36.0)  # °C, of the colours, from the object's at first to the thermostat's
@@ -80,10 +78,6 @@ def _map(touch: Touch) -> str:
         for i in range(rows)
         for j in range(columns)
     )
-    label = f"Temperature over the sensor's face on the {readable(touch.name)}"
-    return (
-        f'<figure><svg viewBox="-0.5 -0.5 {columns + 1} {rows + 1}" role="img" aria-label="{escape(label)}">'
-        f'<g shape-rendering="crispEdges">{squares}</g><rect class="pad" width="{columns}" height="{rows}"/></svg>'
-        f'<figcaption class="reads"><span>{escape(readable(touch.name))}</span>'
-        f"<span>{upright.min():.1f} to {upright.max():.1f} °C</span></figcaption></figure>"
-    )
+    squares = f'<g shape-rendering="crispEdges">{squares}</g>'
+    reads = f"{upright.min():.1f} to {upright.max():.1f} °C"
+    return map_figure(touch.name, "Temperature over the sensor's face", (rows, columns), squares, "", reads)

@@ -70,12 +70,22 @@ def _map(press: Press) -> str:
     )
     side = columns * PAD.face / PAD.width
     corner = (columns - side) / 2
-    label = f"Pressure over the pad on the {readable(press.name)}"
+    return map_figure(
+        press.name,
+        "Pressure over the pad",
+        (rows, columns),
+        f'<g class="press">{squares}</g>',
+        f'<rect class="face" x="{corner:.2f}" y="{corner:.2f}" width="{side:.2f}" height="{side:.2f}"/>',
+        f"{1e-3 * highest:.0f} kPa",
+    )
+
+
+def map_figure(name: str, what: str, shape: tuple[int, int], squares: str, over: str, reads: str) -> str:
+    """A map of `shape` (rows, columns) on the object of that name. squares: the map, and over: what lies on its
+    outline, as SVG. reads: its figures."""
+    (rows, columns), name = shape, escape(readable(name))
     return (
-        f'<figure><svg viewBox="-0.5 -0.5 {columns + 1} {rows + 1}" role="img" aria-label="{escape(label)}">'
-        f'<g class="press">{squares}</g>'
-        f'<rect class="pad" width="{columns}" height="{rows}"/>'
-        f'<rect class="face" x="{corner:.2f}" y="{corner:.2f}" width="{side:.2f}" height="{side:.2f}"/></svg>'
-        f'<figcaption class="reads"><span>{escape(readable(press.name))}</span>'
-        f"<span>{1e-3 * highest:.0f} kPa</span></figcaption></figure>"
+        f'<figure><svg viewBox="-0.5 -0.5 {columns + 1} {rows + 1}" role="img" aria-label="{escape(what)} on the '
+        f'{name}">{squares}<rect class="pad" width="{columns}" height="{rows}"/>{over}</svg>'
+        f'<figcaption class="reads"><span>{name}</span><span>{reads}</span></figcaption></figure>'
     )

@@ -95,6 +95,7 @@ ROOMS = {
         "taxels",
     ),
     "touch": (
+        "pointers",
         "scene",
         "contacts",
         "heat",
@@ -102,6 +103,7 @@ ROOMS = {
         "fixed_touch",
         "readings",
         "heard",
+        "given",
         "thermal_touch",
         "engine",
         "wrappers",

@@ -119,7 +119,7 @@ BY_MJLAB = {(f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "keep_cu
 WHERE_INSTALLED = {("benchmarks/speed/fetch.py", "gymnasium_robotics")}
 """The benchmark leaves its rows out elsewhere."""
 BY_NUMBA = {
-    ("touch/contacts/pointers.py", "llvmlite"),
+    ("touch/pointers.py", "llvmlite"),
     ("touch/heat/lanes.py", "llvmlite"),
     ("touch/wrappers/clock.py", "llvmlite"),
 }

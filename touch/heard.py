@@ -12,8 +12,9 @@ from numba import carray, types  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
-from .contacts import called, called_two, entry, floats, integers, read_contacts, sense_contacts, table, words
+from .contacts import read_contacts, sense_contacts
 from .heat import sample
+from .pointers import called, called_two, entry, floats, integers, table, words
 from .readings import close_sample
 
 NOTHING, DUE, SPENT, FULL, BROKEN, ELSEWHERE = 0, 1, 2, 4, 8, 16

@@ -16,7 +16,8 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 from thermograsp.compiled import njit
 
 from ..thermal.readout import measure_rows
-from .contacts import COLUMNS, FORCE, chains, floats, table, words
+from .contacts import COLUMNS, FORCE
+from .pointers import chains, floats, table, words
 
 SAMPLES = 16
 """Of the voltage that a reading holds."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, non_negative, positive, unknown_name, whole_number
 
-from ..thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
+from ..thermal import ADS1115, Material, SignalChain
 from ..thermal import material as named_material
 from ..thermal.numerics import Array
 from ..thermal.readout import chain_numbers
@@ -26,10 +26,19 @@ from ..thermal.stack import converter
 from .contacts import ContactReader, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
+from .given import (
+    checked_record,
+    chosen_worlds,
+    named_chain,
+    require_mapping,
+    seeds_of,
+    set_temperatures,
+)
 from .heard import BROKEN, DUE, ELSEWHERE, FULL, NOTHING, SPENT, Hearing, RecordHearing, hear_record, hearer
 from .heat import FixedPlaces, HeatBalance, HeatState, JoinedHeat
 from .readings import SAMPLES, Electronics, Layout, Noise, TouchReading
 from .scene import (
+    LONGEST,
     Fingertip,
     Objects,
     PadPlace,
@@ -38,11 +47,10 @@ from .scene import (
     materials_by_world,
     pads,
     refuse_overlap,
+    samples_in,
+    whole_steps,
 )
 
-SAMPLE_TIME = 0.01  # s between samples of the converter, about: a whole part of dt and whole substeps
-_LONGEST = 3600.0  # s, of a dt and between updates
-_WHOLE = 1e-6
 _NOBODY = object()
 """In place of an MjData. None would do for update(None) too."""
 _ON_TIME = 1e-3  # of a step, by which the data's time may be off for each step since the last update
@@ -101,8 +109,8 @@ class ThermalTouch:
         for name, value, least in (("worlds", worlds, 1), ("seed", seed, 0)):
             if value is not None:
                 whole_number(name, value, least)
-        _mapping("fingertips", fingertips, '{"thumb": "thumb_pad"}')
-        _mapping("objects", objects or {}, '{"can": "aluminium"}')
+        require_mapping("fingertips", fingertips, '{"thumb": "thumb_pad"}')
+        require_mapping("objects", objects or {}, '{"can": "aluminium"}')
         self._model, self._step = model, float(model.opt.timestep)
         celsius("ambient (°C)", ambient)
         non_negative("air (W/(m2 K))", air)
@@ -137,7 +145,7 @@ class ThermalTouch:
             film=air,
             ambient=ambient,
         )
-        self._chain, sample = _chain(chain), dt / self._samples
+        self._chain, sample = named_chain(chain), dt / self._samples
         chains = [_numbers(self._chain, pad, sample) for pad in (*self._pads, *self._glued)]
         first = np.random.SeedSequence().entropy if seed is None else seed
         heat, reader = self._heat, self._reader
@@ -246,41 +254,23 @@ class ThermalTouch:
         objects by name, for this time, one or one for each of these worlds. worlds: which, by number or as (W,)
         booleans; None for all. objects: what some are made of and how warm they start from now on, in these worlds, in
         the constructor's form: one of them or a list of one for each."""
-        rows = self._rows(worlds)
+        rows = chosen_worlds(worlds, len(self._time))
         if data is not None:
             if self._many:
                 raise InvalidValueError("many worlds have no MjData: reset(worlds=...)")
             if not isinstance(data, mujoco.MjData):
                 raise InvalidValueError(f"reset takes the simulation's MjData, got {type(data).__name__}")
             self._check(data)
-        _mapping("temperatures", temperatures or {}, '{"can": 60.0}')
-        _mapping("objects", objects or {}, '{"can": "aluminium"}')
+        require_mapping("temperatures", temperatures or {}, '{"can": 60.0}')
+        require_mapping("objects", objects or {}, '{"can": "aluminium"}')
         names = self.objects
         made_of, warm = materials_by_world(objects or {}, self._shapes, len(rows), self._ambient)
         first = self._first[rows]
         for name, warmth in warm.items():
             first[:, names.index(name)] = warmth
-        for name, value in (temperatures or {}).items():
-            if name not in names:
-                raise unknown_name("object", name, names)
-            if np.shape(value) not in ((), (len(rows),)):
-                raise InvalidValueError(
-                    f"temperatures[{name!r}] must be one number or {len(rows)}, got shape {np.shape(value)}"
-                )
-            for one in np.ravel(value).tolist():
-                celsius(f"temperatures[{name!r}] (°C)", one)
-            first[:, names.index(name)] = value
+        set_temperatures(first, temperatures or {}, names)
         if seed is not None:
-            try:
-                numbers = np.array(seed if isinstance(seed, int | np.integer) else list(seed))
-            except TypeError:
-                numbers = np.array("")
-            if numbers.dtype.kind not in "iu" or numbers.ndim > 1 or numbers.size == 0 or numbers.min() < 0:
-                raise InvalidValueError(f"seed must be whole numbers from 0 on, got {seed!r}")
-            seeds = [int(numbers) + w for w in rows] if numbers.ndim == 0 else numbers.tolist()
-            if len(seeds) != len(rows):
-                raise InvalidValueError(f"seed: give one number or {len(rows)}, got {len(seeds)}")
-            for w, number in zip(rows, seeds, strict=True):
+            for w, number in zip(rows, seeds_of(seed, rows), strict=True):
                 self._electronics.noise.seed(w, number)
         # a grasp that simply goes on has been heard since before it sank in
         goes_on = data is not None and data is self._heard and data.time == self._time.item()
@@ -305,7 +295,7 @@ class ThermalTouch:
         whole face. like: an array of floating-point numbers whose kind (NumPy, PyTorch, JAX), dtype and device are
         taken. Raises InvalidValueError where nothing has been touched, and beside thermostats of finite power, heated
         sensors and glued elements."""
-        (row,) = self._rows([world])
+        (row,) = chosen_worlds([world], len(self._time))
         return self._heat.fixed_places(row, like)
 
     def fixed_touch(
@@ -326,7 +316,7 @@ class ThermalTouch:
         many worlds in which nothing has touched starts all of them, at their first temperatures; otherwise world
         `world` is what starts, as it is now. Raises UnknownNameError, and InvalidValueError beside thermostats of
         finite power, heated sensors and glued elements."""
-        (row,) = self._rows([world])
+        (row,) = chosen_worlds([world], len(self._time))
         given = {
             name: (choices,) if isinstance(choices, str | Material) else choices
             for name, choices in (materials or {}).items()
@@ -461,43 +451,9 @@ class ThermalTouch:
             )  # nothing, or what a divider sends of a sensor at rest
         self._electronics.start_anew(rows)
 
-    def _rows(self, worlds: Sequence[int] | np.ndarray | None) -> list[int]:
-        count = len(self._time)
-        if worlds is None:
-            return list(range(count))
-        given = np.asarray(worlds)
-        if given.dtype == bool and given.shape == (count,):
-            return np.flatnonzero(given).tolist()
-        if given.size and (
-            given.ndim != 1 or given.dtype.kind not in "iu" or given.min() < 0 or given.max() >= count
-        ):
-            raise InvalidValueError(f"worlds must be numbers from 0 to {count - 1} or ({count},) booleans")
-        return sorted(set(given.tolist()))
-
     def _hear(self, record: mujoco.MjData | np.ndarray) -> TouchReading:
         assert self._sensors is not None
-        if isinstance(record, mujoco.MjData):
-            raise InvalidValueError("a ThermalTouch of many worlds reads recorded sensordata, not MjData")
-        try:
-            numbers = np.asarray(record)
-        except ValueError:  # rows of different lengths
-            numbers = np.array("")
-        if numbers.dtype.kind not in "fiu":
-            raise InvalidValueError(
-                f"a record must hold sensordata, real numbers, got {type(record).__name__} of {numbers.dtype}"
-            )
-        found = np.ascontiguousarray(numbers, float)
-        if found.ndim not in (2, 3):
-            raise InvalidValueError(
-                f"a record must have the shape (worlds, substeps, sensordata), got {found.shape}"
-            )
-        worlds, size = len(self._time), self._sensors.size
-        if (found.shape[0], found.shape[-1]) != (worlds, size):
-            raise InvalidValueError(
-                f"a record must hold the sensordata of {worlds} worlds, ({worlds}, {size}) of each substep, got shape "
-                f"{found.shape}"
-            )
-        found, done = found.reshape(worlds, -1, size), 0
+        found, done = checked_record(record, len(self._time), self._sensors.size), 0
         at, count, reader = found.ctypes.data, found.shape[1], self._reader
         while done < count:
             sensing = reader.sensing(self._sensors, count)
@@ -545,9 +501,9 @@ class ThermalTouch:
                 f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, steps of {self._step:g} s: "
                 "call touch.reset(data) after the simulation was reset, or touch.set_state for a saved one"
             )
-        if passed * self._step > _LONGEST:
+        if passed * self._step > LONGEST:
             raise InvalidValueError(
-                f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, more than {_LONGEST:g} s ago: "
+                f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, more than {LONGEST:g} s ago: "
                 "call touch.reset(data), or update more often"
             )
         self._time[0] = now
@@ -650,40 +606,8 @@ class ThermalTouch:
         return self._electronics.reading(self._time, self._reader.broken)
 
 
-def whole_steps(dt: float, step: float) -> int:
-    """Steps of the model, s, in a dt."""
-    if dt > _LONGEST:
-        raise InvalidValueError(f"dt={dt:g} s is too long between readings: give at most {_LONGEST:g}")
-    count = round(dt / step)
-    if count < 1 or abs(dt / step - count) > _WHOLE * count:
-        nearest = max(count, 1) * step
-        raise InvalidValueError(
-            f"dt={dt:g} s is not a whole number of the model's steps of {step:g} s: give {nearest:g}"
-        )
-    return count
-
-
-def samples_in(substeps: int, dt: float) -> int:
-    """How many samples a reading has: as many as divide its substeps, at most one each SAMPLE_TIME."""
-    most = max(int(dt / SAMPLE_TIME * (1 + _WHOLE)), 1)
-    return max(count for count in range(1, most + 1) if substeps % count == 0)
-
-
 def _numbers(chain: SignalChain, pad: PadPlace, sample: float) -> np.ndarray:
     """Of the chain as it takes the pad's sensor: a drop in K, or the voltage of a divider as it is."""
     if pad.heated is None:
         return chain_numbers(chain, pad.stack.seebeck, sample)
     return chain_numbers(converter(pad.heated, chain), 1.0, sample)
-
-
-def _chain(chain: SignalChain | str) -> SignalChain:
-    if isinstance(chain, SignalChain):
-        return chain
-    if chain not in SIGNAL_CHAINS:
-        raise unknown_name("signal chain", chain, SIGNAL_CHAINS)
-    return SIGNAL_CHAINS[chain]
-
-
-def _mapping(name: str, value: object, example: str) -> None:
-    if not isinstance(value, Mapping):
-        raise InvalidValueError(f"{name} must be a mapping such as {example}, got {type(value).__name__}")

@@ -35,15 +35,7 @@ def ftcs(system: SemiDiscrete, spacing: float, count: int, of_limit: float = 0.9
     matrix = sparse.csr_matrix(sparse.identity(len(system.first)) - dt * (inverse @ system.stiffness))
     source = dt * (inverse @ system.load)
 
-    def march() -> np.ndarray:
-        u, drops = system.first, [system.drop @ system.first]
-        for _ in range(count):
-            for _ in range(substeps):
-                u = matrix @ u + source
-            drops.append(system.drop @ u)
-        return np.array(drops)
-
-    return march
+    return _marching(system, count, substeps, lambda u: matrix @ u + source)
 
 
 def theta(system: SemiDiscrete, spacing: float, count: int, weight: float, substeps: int = 1) -> March:
@@ -53,15 +45,7 @@ def theta(system: SemiDiscrete, spacing: float, count: int, weight: float, subst
     behind = sparse.csr_matrix(system.mass - (1 - weight) * dt * system.stiffness)
     source = dt * system.load
 
-    def march() -> np.ndarray:
-        u, drops = system.first, [system.drop @ system.first]
-        for _ in range(count):
-            for _ in range(substeps):
-                u = solver.solve(behind @ u + source)
-            drops.append(system.drop @ u)
-        return np.array(drops)
-
-    return march
+    return _marching(system, count, substeps, lambda u: solver.solve(behind @ u + source))
 
 
 def sdirk2(system: SemiDiscrete, spacing: float, count: int, substeps: int = 1) -> March:
@@ -70,14 +54,23 @@ def sdirk2(system: SemiDiscrete, spacing: float, count: int, substeps: int = 1) 
     solver = splu(sparse.csc_matrix(system.mass + _SDIRK * dt * system.stiffness))
     mass, stiffness = sparse.csr_matrix(system.mass), sparse.csr_matrix(system.stiffness)
 
+    def step(u: np.ndarray) -> np.ndarray:
+        held = mass @ u
+        middle = solver.solve(held + _SDIRK * dt * system.load)
+        rate = system.load - stiffness @ middle
+        return solver.solve(held + dt * ((1 - _SDIRK) * rate + _SDIRK * system.load))
+
+    return _marching(system, count, substeps, step)
+
+
+def _marching(
+    system: SemiDiscrete, count: int, substeps: int, step: Callable[[np.ndarray], np.ndarray]
+) -> March:
     def march() -> np.ndarray:
         u, drops = system.first, [system.drop @ system.first]
         for _ in range(count):
             for _ in range(substeps):
-                held = mass @ u
-                middle = solver.solve(held + _SDIRK * dt * system.load)
-                rate = system.load - stiffness @ middle
-                u = solver.solve(held + dt * ((1 - _SDIRK) * rate + _SDIRK * system.load))
+                u = step(u)
             drops.append(system.drop @ u)
         return np.array(drops)
 

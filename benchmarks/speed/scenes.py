@@ -71,42 +71,30 @@ def _loop(name: str) -> Pair:
 
 def _worlds(name: str) -> Pair:
     """A batch that records its contact sensors for the update, beside one of the scene without the sensors."""
-    import mujoco.batch  # from MuJoCo 4.0 on
-
     model = prepare(_hand(), _PADS, _CAN)
-    recording = mujoco.batch.Batch(model, _WORLDS, 1)
-    alone = mujoco.batch.Batch(_hand().compile(), _WORLDS, 1)
     touch = ThermalTouch(model, fingertips=_PADS, objects=_CAN, seed=0, worlds=_WORLDS)
-    positions = [each.bind("qpos") for each in (recording, alone)]
-    for each in (recording, alone):
-        each.bind("ctrl")[:] = _forces()
-
-    def bare(steps: int) -> None:
-        for _ in range(steps):
-            alone.step(nstep=_CALL)
-
     record = {"sensordata": np.zeros((_WORLDS, _CALL, model.nsensordata))}  # the same room for every call
 
-    def with_touch(steps: int) -> None:
-        for _ in range(steps):
-            recording.rollout(nstep=_CALL, record=("sensordata",), out=record)
-            touch.update(record["sensordata"])
+    def recorded(batch: Any) -> None:
+        batch.rollout(nstep=_CALL, record=("sensordata",), out=record)
+        touch.update(record["sensordata"])
 
-    bare(_SETTLE // _CALL)
-    with_touch(_SETTLE // _CALL)
-    return Pair(
-        name, f"{_CALL} substeps", bare, with_touch, lambda: np.array_equal(positions[0], positions[1])
-    )
+    return _batches(name, model, recorded)
 
 
 def _worlds_inside(name: str) -> Pair:
     """A batch with heat in its model, beside one of the scene without."""
+    heated = install(_hand(), fingertips=_PADS, objects=_CAN)
+    return _batches(name, heated, lambda batch: batch.step(nstep=_CALL))
+
+
+def _batches(name: str, model: mujoco.MjModel, call: Callable[[Any], object]) -> Pair:
+    """A batch of that model that is stepped by `call`, beside one of the plain scene."""
     import mujoco.batch  # from MuJoCo 4.0 on
 
-    models = install(_hand(), fingertips=_PADS, objects=_CAN), _hand().compile()
-    heated, alone = (mujoco.batch.Batch(model, _WORLDS, 1) for model in models)
-    positions = [each.bind("qpos") for each in (heated, alone)]
-    for each in (heated, alone):
+    feeling, alone = (mujoco.batch.Batch(each, _WORLDS, 1) for each in (model, _hand().compile()))
+    positions = [each.bind("qpos") for each in (feeling, alone)]
+    for each in (feeling, alone):
         each.bind("ctrl")[:] = _forces()
 
     def bare(steps: int) -> None:
@@ -115,7 +103,7 @@ def _worlds_inside(name: str) -> Pair:
 
     def with_touch(steps: int) -> None:
         for _ in range(steps):
-            heated.step(nstep=_CALL)
+            call(feeling)
 
     bare(_SETTLE // _CALL)
     with_touch(_SETTLE // _CALL)

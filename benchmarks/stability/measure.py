@@ -27,8 +27,6 @@ TERMS = 10  # of the truncated series
 SERIES_FOURIER = (1e-2, 1e4)
 CONTRAST = (1e-4, 1.0)
 
-Limit = Callable[[np.ndarray], np.ndarray]
-
 
 @dataclass(frozen=True, slots=True)
 class Line:

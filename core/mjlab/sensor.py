@@ -25,7 +25,7 @@ from thermograsp.errors import (
 from thermograsp.thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
 from thermograsp.thermal import material as named_material
 from thermograsp.touch import TouchContacts, grasp_touch
-from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads
+from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads, whole_steps
 
 from .heat import WorldsHeat
 
@@ -35,7 +35,6 @@ try:
 except ImportError as error:
     raise MissingDependencyError(f"thermograsp.mjlab needs mjlab: {install('mjlab')}") from error
 
-_WHOLE = 1e-6
 Worlds = torch.Tensor | slice | None
 
 
@@ -144,7 +143,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
     def initialize(self, mj_model: mujoco.MjModel, model: Any, data: Any, device: str) -> None:
         """Finds pads and objects in the compiled model and makes the state of all worlds on the device."""
         cfg = self.cfg
-        self._substeps = _whole_steps(cfg.dt, float(mj_model.opt.timestep))
+        self._substeps = whole_steps(cfg.dt, float(mj_model.opt.timestep))
         for sensor in self._sensors:
             sensor.initialize(mj_model, model, data, device)
         shapes = self._shapes(mj_model)
@@ -274,12 +273,3 @@ def _several(name: str, names: str | Material | Sequence[str | Material]) -> tup
 
 def _body_name(model: mujoco.MjModel, kind: str, number: int) -> str:
     return model.body(number if kind == "body" else model.site_bodyid[number]).name
-
-
-def _whole_steps(dt: float, step: float) -> int:
-    count = round(dt / step)
-    if count < 1 or abs(dt / step - count) > _WHOLE * count:
-        raise InvalidValueError(
-            f"dt={dt:g} s is not a whole number of the simulation's steps of {step:g} s: give {max(count, 1) * step:g}"
-        )
-    return count

@@ -6,7 +6,6 @@ faces.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
@@ -17,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from thermograsp.errors import InvalidValueError, ThermograspError, celsius, finite, positive, unknown_name
-from thermograsp.files import cached_file
+from thermograsp.files import cached_file, read_toml
 
 from ...assets import asset
 from ...thermal import material
@@ -162,13 +161,7 @@ def library_object(name: str) -> ObjectPreset:
 def load_objects(path: str | Path) -> Mapping[str, ObjectPreset]:
     """The objects of a TOML file by name, read-only; assets/objects.toml says how one is written. Raises
     InvalidValueError, which names the file and the object, for anything that does not fit."""
-    path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8")).get("objects", {})
-    except OSError as error:
-        raise InvalidValueError(f"cannot read {path}: {error.strerror}") from error
-    except ValueError as error:
-        raise InvalidValueError(f"{path} is not valid TOML: {error}") from error
+    table = read_toml(path).get("objects", {})
     try:
         return MappingProxyType({name: _preset(name, table) for name in table})
     except ThermograspError as error:

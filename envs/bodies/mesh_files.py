@@ -29,7 +29,7 @@ def read_surface(path: str) -> Triangles:
     vertices, faces = _parsed(path, _file(path))
     _check_vertices(path, vertices, faces)
     vertices, faces = _merged(vertices, faces)
-    faces = _without_doubles(path, vertices, faces)
+    faces = _without_doubles(path, faces)
     if not min(np.ptp(vertices[faces.ravel()], axis=0)) > 0:
         size = " x ".join(f"{s:g}" for s in np.ptp(vertices[faces.ravel()], axis=0))
         raise MeshError(f"{path}: encloses no volume, extents {size}; give a solid, not a sheet")
@@ -105,7 +105,7 @@ def _merged(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.nda
     return vertices[first], number.reshape(-1)[faces].reshape(-1, 3)
 
 
-def _without_doubles(path: str, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def _without_doubles(path: str, faces: np.ndarray) -> np.ndarray:
     a, b, c = faces.T
     pointed = (a == b) | (b == c) | (c == a)
     if pointed.any():

@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...thermal import ContactArea, Pad
-from ...thermal.pressed import HeightMap, face_springs, map_heights, pressure_map
+from ...thermal.pressed import HeightMap, face_springs, map_heights, pressure_map, square_middles
 from ..bodies import MeshShape, ObjectSpec
 from .surface_height import mesh_map
 
@@ -80,8 +80,7 @@ def _sampled(
     pad: Pad, frame: np.ndarray, height_map: HeightMap, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places (n, 2) m, count^2 of the pad, and the mesh's heights m and coverage there."""
-    middles = (np.arange(count) + 0.5) * pad.width / count - pad.width / 2
-    places = np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
+    places = square_middles(pad.width, count)
     height, cover = np.zeros(len(places)), np.zeros(len(places))
     map_heights(*height_map, frame, places, height, cover)
     return places, height, cover

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     )
     from .map_observation import with_maps
     from .observation import Observation, Observer, observation_space
-    from .senses import SIZE, Senses, arm_waits
+    from .senses import SIZE, Senses
     from .sort_observation import SortObserver
 
 __all__ = [
@@ -27,7 +27,6 @@ __all__ = [
     "SortObserver",
     "action_of",
     "action_space",
-    "arm_waits",
     "checked_action",
     "command_of",
     "observation_space",

@@ -19,7 +19,6 @@ SIZE = 4 + 6 + 2 * HISTORY + 2
 _GRIPPER = (np.array([0.0425, 0.0, 0.025, 20.0]), np.array([0.0425, 0.1, 0.025, 20.0]))  # m, m/s, m, N
 _FORCE = 20.0  # N
 _THERMOSTAT = (36.0, 10.0)  # °C
-_CLOSING = 0.005  # m/s of the opening, from which the fingers move
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +41,3 @@ class Senses:
             (observation["thermostat"] - _THERMOSTAT[0]) / _THERMOSTAT[1] * self.heat,
         )
         return np.concatenate([part.reshape(rows, -1) for part in parts], axis=1).astype(np.float32)
-
-
-def arm_waits(observation: Mapping[str, np.ndarray], action: np.ndarray) -> np.ndarray:
-    """Grasp actions (B, 3) without a lift where the fingers were moving when they were chosen."""
-    moving = np.abs(observation["gripper"][:, 1]) > _CLOSING
-    adjusted = np.array(action)
-    adjusted[moving, 2] = 0.0
-    return adjusted

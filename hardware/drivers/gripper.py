@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from importlib.metadata import entry_points
 from types import MappingProxyType, TracebackType
 from typing import Any, Protocol
 
 import numpy as np
 
-from thermograsp.errors import unknown_name
+from thermograsp.plant import named_by_scheme
 
 
 class Contact(Enum):
@@ -104,11 +102,4 @@ def open_gripper(url: str, **keywords: Any) -> Gripper:
     Other packages add theirs as an entry point of the group `thermograsp.grippers`, the scheme its name: a function of
     the URL and keywords. Raises UnknownNameError with the known schemes, and what the factory raises.
     """
-    scheme = str(url).partition(":")[0]
-    if scheme in _SCHEMES:
-        module, _, name = _SCHEMES[scheme].partition(":")
-        return getattr(importlib.import_module(module), name)(url, **keywords)
-    added = entry_points(group=ENTRY_POINTS)
-    if scheme not in added.names:
-        raise unknown_name("gripper", scheme, {*_SCHEMES, *added.names})
-    return added[scheme].load()(url, **keywords)
+    return named_by_scheme("gripper", url, _SCHEMES, ENTRY_POINTS)(url, **keywords)

@@ -17,7 +17,7 @@ from thermograsp.hardware.plant import serial
 from thermograsp.plant import Command
 
 from .serving import nothing_left
-from .test_lift import Arm, failing
+from .test_lift import BREAKS, Arm, failing
 from .test_serial_plant import WIDTH, Hand, fresh, in_step, on_ports
 
 RATE = 0.1  # m/s
@@ -126,14 +126,6 @@ def test_an_axis_that_does_not_come_to_its_middle_ends_the_reset() -> None:
     along._height, along._turn = 0.05, lambda rate: None  # pyright: ignore[reportAttributeAccessIssue]
     with pytest.raises(DeviceError, match="in vain for the lateral axis to come to its middle"):
         fresh(plant)
-
-
-BREAKS: dict[str, Callable[[Hand, Arm], object]] = {
-    "a sensor": lambda hand, along: hand.fingertips.broken_thermistors.add(1),
-    "the axis is told": lambda hand, along: along.at.update(move=failing(DeviceError("the arm has a fault"))),
-    "the axis is asked": lambda hand, along: along.at.update(position=failing(DeviceError("no arm"))),
-    "the axis does not know": lambda hand, along: along.at.update(position=lambda: float("nan")),
-}
 
 
 @pytest.mark.parametrize("what", BREAKS)

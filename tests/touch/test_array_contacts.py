@@ -20,6 +20,7 @@ from thermograsp.touch.contacts import (
     ContactReader,
     TouchContacts,
     array_contacts,
+    sense_contacts,
     sensor_places,
 )
 from thermograsp.touch.scene import bodies, pads
@@ -97,7 +98,8 @@ def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
         step = contacts.of_step(poses, np.array([[0], [1]]), np.ones((1, 1)))
         for world, reader in enumerate(readers):
             reader.clear()
-            reader.sense(data.sensordata[None, None], 0, 1, places)
+            record = data.sensordata[None, None]
+            assert sense_contacts(record.ctypes.data, 0, 1, reader.sensing(places, 1))
             read = reader.touches[0, :, 0]
             for values, column in ((step.force, FORCE), (step.conductance, CONDUCTANCE), (step.area, AREA)):
                 np.testing.assert_allclose(values[world, :, 0], read[:, column], rtol=1e-6)

@@ -17,8 +17,7 @@ import pytest
 from thermograsp.thermal import IDEAL, Pad
 from thermograsp.thermal.contact import cylinder_contact, sphere_contact
 from thermograsp.touch import Fingertip, ThermalTouch, install
-from thermograsp.touch.contacts.array_round import array_round_contact
-from thermograsp.touch.contacts.round_pads import round_contact
+from thermograsp.touch.contacts.round_pads import array_round_contact, round_contact
 from thermograsp.touch.scene import bodies, pads
 
 PAD = Pad()

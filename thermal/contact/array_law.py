@@ -101,8 +101,8 @@ def array_conductance(laws: ArrayLaws, pressure: Array) -> Array:
     xp = namespace_of(pressure)
     log_pressure = xp.log(pressure)
     solid = xp.exp(xp.minimum(laws.spot_scale + laws.spot_power * log_pressure, laws.spot_most))
-    plastic = _separation(xp, log_pressure + (math.log(2.0) - laws.log_hardness))
-    elastic = _separation(xp, log_pressure + (math.log(4.0) - laws.log_elastic_hardness))
+    plastic = _separation(log_pressure + (math.log(2.0) - laws.log_hardness))
+    elastic = _separation(log_pressure + (math.log(4.0) - laws.log_elastic_hardness))
     separation = (1 - laws.elastic_share) * plastic + laws.elastic_share * elastic
     gap = laws.roughness * separation + laws.jump
     widens = laws.flatness / gap
@@ -110,7 +110,7 @@ def array_conductance(laws: ArrayLaws, pressure: Array) -> Array:
     return solid + laws.gas / gap * mean
 
 
-def _separation(xp, log_share):
+def _separation(log_share):
     y = (-log_share.clip(LOG_LEAST, LOG_MOST)) ** 0.5
     z = (2 * y - (LOW + HIGH)) / (HIGH - LOW)
     total = 0.0 * z

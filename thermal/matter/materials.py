@@ -9,11 +9,9 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -24,6 +22,7 @@ from thermograsp.errors import (
     positive,
     unknown_name,
 )
+from thermograsp.files import read_toml
 
 from ...assets import asset
 from .layers import Conductor, Layer
@@ -139,13 +138,7 @@ def load_materials(path: str | os.PathLike[str]) -> Mapping[str, Material]:
     InvalidValueError, which names the file, the material and the property, for anything that does not fit; then
     nothing is loaded.
     """
-    path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InvalidValueError(f"cannot read {path}: {error.strerror}") from error
-    except ValueError as error:  # not UTF-8, not TOML, or a name that stands there twice
-        raise InvalidValueError(f"{path} is not valid TOML: {error}") from error
+    table = read_toml(path)
     try:
         return MappingProxyType(_materials(table))
     except ThermograspError as error:

@@ -9,7 +9,7 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import MeshError
 
-from ..surfaces import FACING, cell_range, crossed_above, slab
+from ..surfaces import FACING, crossed_above, cutting
 from .grid import MeshGrid, snapped
 from .patterns import PatchPatterns
 from .place import ABOVE, CORNERS, PlacedPatch, within_cube
@@ -71,48 +71,17 @@ def patch_on_grid(
     return PatchOnGrid(shares, (turn * np.maximum(levels, 0.0)) @ turn.T, total)
 
 
-@njit(cache=True, short_loops=True)
-def _pieces(corners, counts, axes, x, y, z, room):
-    """The polygons' pieces in the cells, at most `room`: cells (n,) in the order of memory, areas (n,) seen along the
-    last of the axes, middles (n, 3), and spans (n, 2, 2) from where to where along the first two."""
-    normal = axes[2]
-    in_x, in_y, in_z, spare = (
-        np.zeros((CORNERS, 3)),
-        np.zeros((CORNERS, 3)),
-        np.zeros((CORNERS, 3)),
-        np.zeros((CORNERS, 3)),
-    )
-    cells, areas = np.zeros(room, np.int64), np.zeros(room)
-    middles, spans = np.zeros((room, 3)), np.zeros((room, 2, 2))
-    found, start = 0, 0
-    for polygon in range(len(counts)):
-        count = counts[polygon]
-        shape = corners[start : start + count]
-        start += count
-        if count < 3:
-            continue
-        i0, i1 = cell_range(shape, count, 0, x, normal[0])
-        for i in range(i0, i1 + 1):
-            n = slab(shape, count, 0, x, i, i0, i1, spare, in_x)
-            if n < 3:
-                continue
-            j0, j1 = cell_range(in_x, n, 1, y, normal[1])
-            for j in range(j0, j1 + 1):
-                m = slab(in_x, n, 1, y, j, j0, j1, spare, in_y)
-                if m < 3:
-                    continue
-                k0, k1 = cell_range(in_y, m, 2, z, normal[2])
-                for k in range(k0, k1 + 1):
-                    c = slab(in_y, m, 2, z, k, k0, k1, spare, in_z)
-                    area = _projected_area(in_z, c, normal, middles[found])
-                    if area > 1e-20 and found < room - 1:
-                        cells[found] = (i * (len(y) - 1) + j) * (len(z) - 1) + k
-                        areas[found] = area
-                        _span(in_z, c, axes, spans[found])
-                        found += 1
-    if found == room - 1:
-        found = room
-    return cells[:found], areas[:found], middles[:found], spans[:found]
+@njit(cache=True, inner=True)
+def _note(polygon, count, i, j, k, kept):
+    """Writes down a piece, as long as there is room."""
+    axes, along_y, along_z, cells, areas, middles, spans, found = kept
+    n = found[0]
+    area = _projected_area(polygon, count, axes[2], middles[n])
+    if area > 1e-20 and n < len(cells) - 1:
+        cells[n] = (i * along_y + j) * along_z + k
+        areas[n] = area
+        _span(polygon, count, axes, spans[n])
+        found[0] += 1
 
 
 @njit(cache=True, inner=True)
@@ -152,3 +121,23 @@ def _projected_area(polygon, count, normal, middle):
         for c in range(3):
             middle[c] /= total
     return total
+
+
+_CUT_AND_NOTE = cutting(_note)
+
+
+@njit(cache=True, short_loops=True)
+def _pieces(corners, counts, axes, x, y, z, room):
+    """The polygons' pieces in the cells, at most `room`: cells (n,) in the order of memory, areas (n,) seen along the
+    last of the axes, middles (n, 3), and spans (n, 2, 2) from where to where along the first two."""
+    cells, areas, found = np.zeros(room, np.int64), np.zeros(room), np.zeros(1, np.int64)
+    middles, spans = np.zeros((room, 3)), np.zeros((room, 2, 2))
+    kept = axes, len(y) - 1, len(z) - 1, cells, areas, middles, spans, found
+    rooms, start = np.zeros((4, CORNERS, 3)), 0
+    for polygon in range(len(counts)):
+        count = counts[polygon]
+        if count >= 3:
+            _CUT_AND_NOTE(corners[start : start + count], count, axes[2], x, y, z, rooms, kept)
+        start += count
+    n = found[0] if found[0] < room - 1 else room
+    return cells[:n], areas[:n], middles[:n], spans[:n]

@@ -17,19 +17,19 @@ GRADING = 0.58
 PARTS = 4
 
 
-def graded_edges(half_width: float, intervals: int, parts: int = PARTS) -> np.ndarray:
-    """Boundaries (intervals * parts + 1,) m of the strips from the middle to the edge, each interval GRADING of the one
+def graded_edges(half_width: float, intervals: int) -> np.ndarray:
+    """Boundaries (intervals * PARTS + 1,) m of the strips from the middle to the edge, each interval GRADING of the one
     before and cut into equal parts."""
     nodes = np.concatenate(([0.0], np.cumsum(GRADING ** np.arange(intervals))))
-    fine = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), nodes)
+    fine = np.interp(np.arange(intervals * PARTS + 1) / PARTS, np.arange(intervals + 1), nodes)
     return half_width * fine / nodes[-1]
 
 
-def _shapes(edges: np.ndarray, measure: np.ndarray, parts: int = PARTS) -> np.ndarray:
+def _shapes(edges: np.ndarray, measure: np.ndarray) -> np.ndarray:
     """(strips, intervals + 1): orthonormal basis of the functions linear between the nodes, in unit-norm strips.
 
     measure: (strips,) m or m2 of each."""
-    nodes, middles = edges[::parts], (edges[1:] + edges[:-1]) / 2
+    nodes, middles = edges[::PARTS], (edges[1:] + edges[:-1]) / 2
     hats = np.stack([np.interp(middles, nodes, hat) for hat in np.eye(len(nodes))], axis=1)
     return np.linalg.qr(np.sqrt(measure)[:, None] * hats)[0]
 

@@ -2,7 +2,7 @@
 
 from .foundation import face_springs, pressure_map
 from .height_map import HeightMap, height_map, map_heights
-from .mesh_table import PressedMesh, PressedView, pressed_view
+from .mesh_table import PressedMesh, PressedView, pressed_view, square_middles
 
 __all__ = [
     "HeightMap",
@@ -13,4 +13,5 @@ __all__ = [
     "map_heights",
     "pressed_view",
     "pressure_map",
+    "square_middles",
 ]

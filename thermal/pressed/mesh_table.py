@@ -121,8 +121,8 @@ def _places(face: float, span: float) -> np.ndarray:
 def _points(pad: Pad) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Of the pad's springs: places (n, 2) m, areas (n,) m2 and stiffness (n,) over that of those around the face. The
     first are on the face, so many, and closer together; the others' areas are what of them is beside it."""
-    fine = _middles(pad.face, math.ceil(_FINER * _POINTS * pad.face / pad.width))
-    coarse, pitch = _middles(pad.width, _POINTS), pad.width / _POINTS
+    fine = square_middles(pad.face, math.ceil(_FINER * _POINTS * pad.face / pad.width))
+    coarse, pitch = square_middles(pad.width, _POINTS), pad.width / _POINTS
     on_face = np.clip((pad.face / 2 - np.abs(coarse)) / pitch + 0.5, 0.0, 1.0).prod(axis=1)
     around = on_face < 1
     areas = np.full(len(fine), pad.face**2 / len(fine)), (1 - on_face[around]) * pitch**2
@@ -130,8 +130,8 @@ def _points(pad: Pad) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     return np.concatenate((fine, coarse[around])), np.concatenate(areas), np.concatenate(stiffness), len(fine)
 
 
-def _middles(side: float, count: int) -> np.ndarray:
-    """(count^2, 2) m, of so many squares each way."""
+def square_middles(side: float, count: int) -> np.ndarray:
+    """(count^2, 2) m from a square's middle: those of so many squares each way in it."""
     middles = (np.arange(count) + 0.5) * side / count - side / 2
     return np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
 

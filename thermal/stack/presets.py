@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from thermograsp.errors import InvalidValueError, unknown_name
+from thermograsp.files import read_toml
 
 from ...assets import asset
 from ..matter import SensorStack, load_sensors, sensor
@@ -63,7 +62,7 @@ def any_sensor(name: str | os.PathLike[str] | SensorStack | HeatedStack) -> Sens
 def load_heated_stacks(path: str | os.PathLike[str]) -> Mapping[str, HeatedStack]:
     """The sensors of a TOML file that have a `touch` table, by name. Raises InvalidValueError, naming the file."""
     sensors = load_sensors(path)
-    entries = tomllib.loads(Path(path).read_text(encoding="utf-8"))["sensors"]
+    entries = read_toml(path)["sensors"]
     found = {}
     for name, entry in entries.items():
         if "touch" in entry:

@@ -1,7 +1,7 @@
 """Closed surfaces of triangles: what rays meet, what they enclose, cut and hold, and the solids that they bound."""
 
 from .check import open_edges, wrongly_enclosed
-from .cut import Edges, cell_range, clip, cut_mesh, enclosed, in_planes, slab
+from .cut import Edges, clip, cut_mesh, cutting, enclosed, in_planes
 from .hollow import wetted_faces
 from .nesting import BENEATH, NEARLY_ALL, hosts, net_volumes, shares_within
 from .rays import FACING, crossed_above, crossings
@@ -15,19 +15,18 @@ __all__ = [
     "Solid",
     "SolidPart",
     "SurfacePatch",
-    "cell_range",
     "checked",
     "clip",
     "crossed_above",
     "crossings",
     "cut_mesh",
+    "cutting",
     "enclosed",
     "hosts",
     "in_planes",
     "net_volumes",
     "open_edges",
     "shares_within",
-    "slab",
     "solid",
     "surface_patches",
     "wetted_faces",

@@ -95,7 +95,7 @@ def clip(polygon, count, axis, bound, above, out):
 
 
 @njit(cache=True, inner=True)
-def cell_range(polygon, count, axis, edges, outward):
+def _cell_range(polygon, count, axis, edges, outward):
     """First and last cell along an axis that a polygon passes through; one in a plane of the grid is the body's."""
     low = high = polygon[0, axis]
     for i in range(1, count):
@@ -128,8 +128,33 @@ def _place(edges, value, beyond):
     return low
 
 
+def cutting(visit):
+    """A compiled function that cuts a polygon (count corners) by the grid and calls visit(piece, count, i, j, k, kept)
+    for each cell that it passes through. outward: (3,), which side of a polygon in a plane of the grid is not the
+    body's. rooms: (4, M, 3), of the most corners M that a piece has."""
+
+    @njit(inner=True, forceinline=True)
+    def cut(polygon, count, outward, x, y, z, rooms, kept):
+        in_x, in_y, piece, spare = rooms[0], rooms[1], rooms[2], rooms[3]
+        i0, i1 = _cell_range(polygon, count, 0, x, outward[0])
+        for i in range(i0, i1 + 1):
+            n = _slab(polygon, count, 0, x, i, i0, i1, spare, in_x)
+            if n < 3:
+                continue
+            j0, j1 = _cell_range(in_x, n, 1, y, outward[1])
+            for j in range(j0, j1 + 1):
+                m = _slab(in_x, n, 1, y, j, j0, j1, spare, in_y)
+                if m < 3:
+                    continue
+                k0, k1 = _cell_range(in_y, m, 2, z, outward[2])
+                for k in range(k0, k1 + 1):
+                    visit(piece, _slab(in_y, m, 2, z, k, k0, k1, spare, piece), i, j, k, kept)
+
+    return cut
+
+
 @njit(cache=True)
-def slab(polygon, count, axis, edges, cell, first, final, room, out):
+def _slab(polygon, count, axis, edges, cell, first, final, room, out):
     """The part of a polygon in one cell's slab, between the first and the final that it passes through."""
     if first == final:
         for i in range(count):
@@ -144,67 +169,11 @@ def slab(polygon, count, axis, edges, cell, first, final, room, out):
     return clip(room, kept, axis, edges[cell + 1], False, out)
 
 
-@njit(cache=True, short_loops=True)
-def _accumulate(triangles, x, y, z, walls, moments):
-    in_x, in_y, in_z = (
-        np.zeros((_MOST_CORNERS, 3)),
-        np.zeros((_MOST_CORNERS, 3)),
-        np.zeros((_MOST_CORNERS, 3)),
-    )
-    room = np.zeros((_MOST_CORNERS, 3))
-    normal = np.zeros(3)
-    for f in range(len(triangles)):
-        corners = triangles[f]
-        for c in range(3):
-            d, e = (c + 1) % 3, (c + 2) % 3
-            normal[c] = (corners[1, d] - corners[0, d]) * (corners[2, e] - corners[0, e]) - (
-                corners[1, e] - corners[0, e]
-            ) * (corners[2, d] - corners[0, d])
-        i0, i1 = cell_range(corners, 3, 0, x, normal[0])
-        for i in range(i0, i1 + 1):
-            n = slab(corners, 3, 0, x, i, i0, i1, room, in_x)
-            if n < 3:
-                continue
-            j0, j1 = cell_range(in_x, n, 1, y, normal[1])
-            for j in range(j0, j1 + 1):
-                m = slab(in_x, n, 1, y, j, j0, j1, room, in_y)
-                if m < 3:
-                    continue
-                k0, k1 = cell_range(in_y, m, 2, z, normal[2])
-                for k in range(k0, k1 + 1):
-                    count = slab(in_y, m, 2, z, k, k0, k1, room, in_z)
-                    _add(in_z, count, walls[i, j, k], moments, i, j, k)
-
-
-@njit(cache=True, short_loops=True)
-def _flat_areas(triangles, plane, first, second, found):
-    """Adds the areas of triangles across the third axis to the faces (I, J) of their planes, body below or above."""
-    in_x, in_y, room = (
-        np.zeros((_MOST_CORNERS, 3)),
-        np.zeros((_MOST_CORNERS, 3)),
-        np.zeros((_MOST_CORNERS, 3)),
-    )
-    for f in range(len(triangles)):
-        i0, i1 = cell_range(triangles[f], 3, 0, first, 0.0)
-        for i in range(i0, i1 + 1):
-            n = slab(triangles[f], 3, 0, first, i, i0, i1, room, in_x)
-            if n < 3:
-                continue
-            j0, j1 = cell_range(in_x, n, 1, second, 0.0)
-            for j in range(j0, j1 + 1):
-                m = slab(in_x, n, 1, second, j, j0, j1, room, in_y)
-                area = 0.0
-                for t in range(1, m - 1):
-                    area += 0.5 * (
-                        (in_y[t, 0] - in_y[0, 0]) * (in_y[t + 1, 1] - in_y[0, 1])
-                        - (in_y[t, 1] - in_y[0, 1]) * (in_y[t + 1, 0] - in_y[0, 0])
-                    )
-                found[0 if area > 0 else 1, i, j, plane[f]] += abs(area)
-
-
 @njit(cache=True, inner=True)
-def _add(polygon, count, wall, moments, i, j, k):
+def _add(polygon, count, i, j, k, kept):
     """Area vector of a polygon and the moment of its first component along the first axis."""
+    walls, moments = kept
+    wall = walls[i, j, k]
     for t in range(1, count - 1):
         for c in range(3):
             d, e = (c + 1) % 3, (c + 2) % 3
@@ -215,3 +184,39 @@ def _add(polygon, count, wall, moments, i, j, k):
             wall[c] += part
             if c == 0:
                 moments[i, j, k] += part * (polygon[0, 0] + polygon[t, 0] + polygon[t + 1, 0]) / 3
+
+
+@njit(cache=True, inner=True)
+def _add_flat(polygon, count, i, j, k, kept):
+    found, plane = kept
+    area = 0.0
+    for t in range(1, count - 1):
+        area += 0.5 * (
+            (polygon[t, 0] - polygon[0, 0]) * (polygon[t + 1, 1] - polygon[0, 1])
+            - (polygon[t, 1] - polygon[0, 1]) * (polygon[t + 1, 0] - polygon[0, 0])
+        )
+    found[0 if area > 0 else 1, i, j, plane] += abs(area)
+
+
+_CUT_AND_ADD, _CUT_AND_ADD_FLAT = cutting(_add), cutting(_add_flat)
+
+
+@njit(cache=True, short_loops=True)
+def _accumulate(triangles, x, y, z, walls, moments):
+    rooms, normal = np.zeros((4, _MOST_CORNERS, 3)), np.zeros(3)
+    for f in range(len(triangles)):
+        corners = triangles[f]
+        for c in range(3):
+            d, e = (c + 1) % 3, (c + 2) % 3
+            normal[c] = (corners[1, d] - corners[0, d]) * (corners[2, e] - corners[0, e]) - (
+                corners[1, e] - corners[0, e]
+            ) * (corners[2, d] - corners[0, d])
+        _CUT_AND_ADD(corners, 3, normal, x, y, z, rooms, (walls, moments))
+
+
+@njit(cache=True, short_loops=True)
+def _flat_areas(triangles, plane, first, second, found):
+    """Adds the areas of triangles across the third axis to the faces (I, J) of their planes, body below or above."""
+    rooms, outward, everywhere = np.zeros((4, _MOST_CORNERS, 3)), np.zeros(3), np.array([-np.inf, np.inf])
+    for f in range(len(triangles)):
+        _CUT_AND_ADD_FLAT(triangles[f], 3, outward, first, second, everywhere, rooms, (found, plane[f]))

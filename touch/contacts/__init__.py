@@ -5,22 +5,10 @@ from .columns import AREA, ASIDE, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FO
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
 from .memory import clock_of
-from .pointers import (
-    asked,
-    called,
-    called_one,
-    called_two,
-    chains,
-    entry,
-    flags,
-    floats,
-    integers,
-    table,
-    words,
-)
-from .reader import ContactReader, read_contacts, sense_contacts
+from .reader import ContactReader
 from .round_pads import bends, curves
 from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
+from .step_contacts import read_contacts, sense_contacts
 
 __all__ = [
     "AREA",
@@ -44,24 +32,13 @@ __all__ = [
     "SensorPlaces",
     "TouchContacts",
     "array_contacts",
-    "asked",
     "bends",
-    "called",
-    "called_one",
-    "called_two",
-    "chains",
     "clock_of",
     "curves",
-    "entry",
-    "flags",
-    "floats",
-    "integers",
     "pair_laws",
     "prepare",
     "read_contacts",
     "sense_contacts",
     "sensor_places",
     "stacked",
-    "table",
-    "words",
 ]

@@ -1,6 +1,6 @@
 """Contacts as conductances in the arrays of a simulation of many worlds: NumPy, PyTorch, JAX.
 
-What reader.py's `sense` does with recorded contact sensors, as a pure function without a branch on data. It knows
+What `sense_contacts` does with recorded contact sensors, as a pure function without a branch on data. It knows
 contacts of fingertips with objects; those of fingertips with one another it leaves aside.
 
 B: worlds, F: fingertips, O: objects, G: geoms of the objects, H: substeps, L: contacts of a pair, V: materials.
@@ -31,10 +31,9 @@ from ...thermal.contact import (
 )
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
-from .array_round import array_round_contact
+from .felt import DEPTH, RIM
 from .laws import pair_laws
-from .reader import DEPTH, RIM
-from .round_pads import bends, curves
+from .round_pads import array_round_contact, bends, curves
 from .tilt import TILT, array_tilted
 from .views import array_viewed
 

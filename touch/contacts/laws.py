@@ -25,9 +25,9 @@ from ...thermal import (
 )
 from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, skinned
 from ...thermal.pressed import PressedMesh
-from ..scene import BodyShape, PadPlace, is_round
+from ..scene import BodyShape, PadPlace, is_round, mesh_of
 from .tilt import TILT, tilt_row
-from .views import mesh_of, stacked_views
+from .views import stacked_views
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
 _WIDE = 10.0  # m, a face that no pad reaches the end of

@@ -16,7 +16,7 @@ from functools import cache
 import mujoco
 import numpy as np
 
-CONTACTS, FORCES, XPOS, XMAT, GEOM_XPOS, GEOM_XMAT, STRIDE, POS, FRAME, GEOM, DIM, EFC, LENGTH = range(13)
+CONTACTS, FORCES, XPOS, XMAT, GEOM_XPOS, GEOM_XMAT, STRIDE, POS, FRAME, GEOM, DIM, EFC, WORDS = range(13)
 """Of a table: addresses of the places where the addresses of mjContact and of efc_force stand, addresses of poses;
 mjContact's size in bytes, and where its fields are, in numbers of their own size."""
 _WORD = 8
@@ -30,11 +30,11 @@ _POSES = (
 
 
 class ContactMemory:
-    """Of one MjData. table: (LENGTH,) integers, as the constants say; it holds while the MjData lives."""
+    """Of one MjData. table: (WORDS,) integers, as the constants say; it holds while the MjData lives."""
 
     def __init__(self, data: mujoco.MjData) -> None:
         self._data, self._said = data, np.zeros(2, np.int64)
-        self.table = np.zeros(LENGTH, np.int64)
+        self.table = np.zeros(WORDS, np.int64)
         for column, array in zip(
             (XPOS, XMAT, GEOM_XPOS, GEOM_XMAT),
             (data.xpos, data.xmat, data.geom_xpos, data.geom_xmat),

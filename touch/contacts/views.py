@@ -24,7 +24,8 @@ from thermograsp.compiled import njit
 
 from ...thermal import Pad
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
-from ...thermal.pressed import height_map, map_heights, pressure_map
+from ...thermal.pressed import height_map, map_heights, pressure_map, square_middles
+from ..scene import mesh_of
 
 VIEW = 11
 """Of a view: three axes, the first into the mesh, and m along the others where the mesh begins, all in the geom's
@@ -36,15 +37,6 @@ _DIGITS = 3  # of a direction
 PAD, _POINTS, _PRESSED = Pad(), 40, 10.0
 """What comes to lie on a mesh: a pad, seen at so many points along its side, and N."""
 _SLANT = 0.2  # most of a hull's face between crests
-
-
-def mesh_of(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray]:
-    """(vertices (n, 3) m, triangles (m, 3)) of a mesh geom, in its frame."""
-    mesh = int(model.geom_dataid[geom])
-    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
-    vertices = model.mesh_vert[first : first + count].astype(float)
-    first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-    return vertices, model.mesh_face[first : first + count].astype(np.int64)
 
 
 def mesh_views(model: mujoco.MjModel, geom: int) -> np.ndarray:
@@ -88,8 +80,7 @@ def _lying(vertices: np.ndarray, faces: np.ndarray, along: np.ndarray, middle: n
     """(3,): the direction, near `along`, in which a pad looks that comes to lie on the mesh at `middle` (3,) m: on
     crests, whose hull has faces aslant between them."""
     axes = _across(along)
-    places = (np.arange(_POINTS) + 0.5) * PAD.width / _POINTS - PAD.width / 2
-    places = np.stack([grid.ravel() for grid in np.meshgrid(places, places)], axis=1)
+    places = square_middles(PAD.width, _POINTS)
     heights, cover, pressure = np.zeros((3, len(places)))
     map_heights(*height_map(vertices, faces, axes), np.stack([middle, *axes]), places, heights, cover)
     if not cover.any():

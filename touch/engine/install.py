@@ -12,8 +12,7 @@ import mujoco
 from thermograsp.errors import InvalidValueError, MissingDependencyError, celsius, non_negative, positive
 
 from ...thermal import Material
-from ..scene import Fingertip, ThermalBody, bodies, glued_elements, pads
-from ..thermal_touch import samples_in, whole_steps
+from ..scene import Fingertip, ThermalBody, bodies, glued_elements, pads, samples_in, whole_steps
 from .library import load_plugin
 from .numbers import packed
 

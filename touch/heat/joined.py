@@ -21,7 +21,8 @@ from thermograsp.errors import InvalidValueError
 from ...thermal import Material
 from ...thermal.numerics import Array
 from ...thermal.padded import RINGS
-from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts, table
+from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
+from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
 from .fields import (
@@ -40,7 +41,8 @@ from .fields import (
 from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
-from .narrow import Beside, Side, narrow_sides, narrow_table, narrow_tables
+from .narrow import narrow_tables
+from .narrow_pairs import NarrowPairs
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
@@ -141,10 +143,8 @@ class JoinedHeat:
         self._x = np.zeros((worlds, fields, max(self._rows.shape[1], 1)))
         self._started = np.zeros((worlds, objects))
         self._narrow = np.zeros((worlds, lanes, fields, self._level.rates))
-        # narrow contacts: the numbers of the tables of the two sides of each
-        self._table_of: dict[tuple[Side, float], int] = {}
-        self._tables = narrow_table((None, 0.0), 0.0, self._level)[None]
-        self._kinds = np.zeros((worlds, lanes, fields, 2), np.int64)
+        rings = [one for _, padded in around for one in padded.impedance.T.tolist()]
+        self._pairs = NarrowPairs(pads, rings, self._widths, self._level, worlds, fields)
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face. It stays where it is."""
         self.warmth = np.zeros((worlds, objects))
@@ -173,7 +173,7 @@ class JoinedHeat:
                 warm = celsius[self._on[e]] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
             self._renumber(w)
-            self._know(w)
+            self._pairs.know(w, self._materials[w])
         rows = list(worlds)
         for back in self._backs:
             back.reset(rows)
@@ -233,8 +233,8 @@ class JoinedHeat:
                 *(self._sought_faces, self._sought_middles, self._new_faces, self._new_middles),
                 *(self._closed, self._stale, self._warm, self._plan),
                 *(pool.starts, pool.integers, pool.ports, pool.grams, pool.paces),
-                *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._tables),
-                *(self._kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
+                *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._pairs.tables),
+                *(self._pairs.kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
                 *(self.warmth, self._seconds, self._roots, self._room, self._placed),
                 *(self._around_of, self._owners),
             )
@@ -242,7 +242,7 @@ class JoinedHeat:
             sizes = (
                 *(worlds, tips, objects, self._level.patterns, self._plan.shape[1]),
                 *(len(pool.starts), len(pool.integers), len(pool.ports), len(pool.grams)),
-                *(len(self._fade), self._x.shape[2], self._rows.shape[1], len(self._tables)),
+                *(len(self._fade), self._x.shape[2], self._rows.shape[1], len(self._pairs.tables)),
                 *(
                     self._level.rates,
                     len(pool.paces),
@@ -518,36 +518,12 @@ class JoinedHeat:
         self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
         in_use = {field for fields in self._fields for field in fields}
         self._known = {key: field for key, field in self._known.items() if field in in_use or not key[2]}
-        self._table_of.clear()
+        self._pairs.forget()
         for w in range(len(self._fields)):
             self._renumber(w)
-            self._know(w)
+            self._pairs.know(w, self._materials[w])
         self._plan[:] = -1
         self._stale[:] = True
-
-    def _know(self, w: int) -> None:
-        """Which tables of narrow contacts a world's pairs have."""
-        self._table = None
-        for f, pad in enumerate(self._pads):
-            for t, target in enumerate((*self._materials[w], *range(len(self._pads)))):
-                other = target if isinstance(target, Material) else self._pads[target]
-                for s, side in enumerate(narrow_sides(pad, other)):
-                    self._kinds[w, f, t, s] = self._narrow_number((side, pad.stack.width))
-        each = [one for _, padded in self._around for one in padded.impedance.T.tolist()]
-        for lane, impedance in enumerate(each, len(self._pads)):
-            width = float(self._widths[lane])
-            self._kinds[w, lane, :, 0] = self._narrow_number(((Beside(tuple(impedance)), 0.0), width))
-            # the object has a patch of what the ring covers
-            self._kinds[w, lane, :, 1] = self._narrow_number(((None, 0.0), width))
-
-    def _narrow_number(self, key: tuple[Side, float]) -> int:
-        """Of a table of narrow contacts."""
-        if key not in self._table_of:
-            number = self._table_of[key] = len(self._table_of)
-            if number == len(self._tables):
-                self._tables = np.concatenate((self._tables, np.zeros_like(self._tables)))
-            self._tables[number] = narrow_table(*key, self._level)
-        return self._table_of[key]
 
     def _renumber(self, w: int) -> None:
         """Which networks a world's fields have."""

@@ -21,10 +21,8 @@ from ..contacts import (
     LENGTH,
     NORMAL,
     PLACE,
-    flags,
-    floats,
-    words,
 )
+from ..pointers import flags, floats, words
 from .narrow import STEPS, spread
 from .step import CONTACTS, HEADER, PACE, room_of, step
 

@@ -2,12 +2,14 @@
 
 from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodies, materials_by_world
 from .elements import glued_elements
-from .faces import Face, flat_faces, largest_face, rotation, triangles
+from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
+from .steps import LONGEST, samples_in, whole_steps
 
 __all__ = [
+    "LONGEST",
     "PREFIX",
     "BodyShape",
     "Face",
@@ -25,8 +27,11 @@ __all__ = [
     "is_round",
     "largest_face",
     "materials_by_world",
+    "mesh_of",
     "pads",
     "refuse_overlap",
     "rotation",
+    "samples_in",
     "triangles",
+    "whole_steps",
 ]

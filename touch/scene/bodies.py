@@ -117,6 +117,17 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
     return tuple(found)
 
 
+def require_box(model: mujoco.MjModel, shape: BodyShape, wanted: str, instead: str) -> None:
+    """Raises InvalidValueError for an object that is not one box. wanted: who needs one; instead: what to do."""
+    kinds = [mujoco.mjtGeom(int(model.geom_type[geom])) for geom in shape.geoms]
+    if kinds != [mujoco.mjtGeom.mjGEOM_BOX]:
+        what = ", ".join(
+            f"{geom_label(model, geom)} ({kind.name.removeprefix('mjGEOM_').lower()})"
+            for geom, kind in zip(shape.geoms, kinds, strict=True)
+        )
+        raise InvalidValueError(f"{wanted}, and {shape.name!r} is {what}: {instead}")
+
+
 def _first(name: str, described: BodyMaterial | Sequence[BodyMaterial]) -> BodyMaterial:
     if isinstance(described, str | Material | ThermalBody) or not isinstance(described, list | tuple):
         return described  # pyright: ignore[reportReturnType]

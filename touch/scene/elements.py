@@ -13,9 +13,8 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from ...thermal import sensor as sensor_preset
-from .bodies import BodyShape
+from .bodies import BodyShape, require_box
 from .fingertips import PadPlace, frame
-from .names import geom_label
 
 OFF_FACE = 1e-3  # m from a face's plane, up to which an element is on it
 _ALONG = 0.999  # least cosine between an element's normal and its face's
@@ -31,7 +30,12 @@ def glued_elements(
         placed_here: list[PadPlace] = []
         for element in shape.elements:
             label = f"{shape.name}:{len(placed_here)}"
-            _require_box(model, shape, label)
+            require_box(
+                model,
+                shape,
+                f"element {label}: elements can be glued on an object that is one box",
+                "name a box geom as the object",
+            )
             stack = sensor_preset(element.sensor)
             outward = np.asarray(element.normal, float) / np.linalg.norm(element.normal)
             position = _on_face(shape, label, np.asarray(element.position, float), outward, stack.width)
@@ -44,19 +48,6 @@ def glued_elements(
             placed_here.append(placed)
         found += placed_here
     return tuple(found)
-
-
-def _require_box(model: mujoco.MjModel, shape: BodyShape, label: str) -> None:
-    kinds = [mujoco.mjtGeom(int(model.geom_type[geom])) for geom in shape.geoms]
-    if kinds != [mujoco.mjtGeom.mjGEOM_BOX]:
-        what = ", ".join(
-            f"{geom_label(model, geom)} ({kind.name.removeprefix('mjGEOM_').lower()})"
-            for geom, kind in zip(shape.geoms, kinds, strict=True)
-        )
-        raise InvalidValueError(
-            f"element {label}: elements can be glued on an object that is one box, and {shape.name!r} is {what}: name "
-            "a box geom as the object"
-        )
 
 
 def _on_face(

@@ -51,15 +51,21 @@ class Face:
         return float(((self.corners - self.centre) @ direction).max())
 
 
+def mesh_of(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray]:
+    """(vertices (n, 3) m, triangles (m, 3)) of a mesh geom, in its frame."""
+    mesh = int(model.geom_dataid[geom])
+    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+    vertices = model.mesh_vert[first : first + count].astype(float)
+    first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+    return vertices, model.mesh_face[first : first + count].astype(np.int64)
+
+
 def triangles(model: mujoco.MjModel, geom: int) -> np.ndarray:
     """(n, 3, 3) m: a geom's triangles in its body's frame, none for what is round everywhere."""
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        mesh = model.geom_dataid[geom]
-        first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
-        vertices = model.mesh_vert[first : first + count].astype(float)
-        first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-        found = vertices[model.mesh_face[first : first + count]]
+        vertices, faces = mesh_of(model, geom)
+        found = vertices[faces]
     elif kind == mujoco.mjtGeom.mjGEOM_BOX:
         sides = _BOX * size
         found = np.concatenate([sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]])

@@ -19,7 +19,7 @@ from ...thermal.contact import touching
 from ...thermal.matter import skin as named_skin
 from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
-from .bodies import BodyShape
+from .bodies import BodyShape, require_box
 from .faces import flat_faces, largest_face, rotation, triangles
 from .names import find, geom_label, geoms_of, names
 
@@ -142,7 +142,7 @@ def pads(
     }
     geoms = {label: geoms_of(model, *where) for label, where in found.items()}
     _require_different_geoms(model, geoms, objects)
-    middles = {label: _middle(model, data, where, geoms[label]) for label, where in found.items()}
+    middles = {label: _middle(data, where, geoms[label]) for label, where in found.items()}
     placed = []
     for label, one in given.items():
         others = [middle for other, middle in middles.items() if other != label]
@@ -162,16 +162,12 @@ def _require_boxes(model: mujoco.MjModel, label: str, objects: Sequence[BodyShap
                 f"fingertip {label!r}: a pad (surround) touches objects alone, and elements are glued on "
                 f"{shape.name!r}: leave surround out"
             )
-        kinds = [mujoco.mjtGeom(int(model.geom_type[geom])) for geom in shape.geoms]
-        if kinds != [mujoco.mjtGeom.mjGEOM_BOX]:
-            what = ", ".join(
-                f"{geom_label(model, geom)} ({kind.name.removeprefix('mjGEOM_').lower()})"
-                for geom, kind in zip(shape.geoms, kinds, strict=True)
-            )
-            raise InvalidValueError(
-                f"fingertip {label!r}: a pad (surround) touches objects that are one box each, and {shape.name!r} is "
-                f"{what}: leave surround out, or name a box geom as the object"
-            )
+        require_box(
+            model,
+            shape,
+            f"fingertip {label!r}: a pad (surround) touches objects that are one box each",
+            "leave surround out, or name a box geom as the object",
+        )
 
 
 def _require_different_geoms(
@@ -199,9 +195,7 @@ def _require_different_geoms(
                 )
 
 
-def _middle(
-    model: mujoco.MjModel, data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...]
-) -> np.ndarray:
+def _middle(data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...]) -> np.ndarray:
     if where[0] == "site":
         return data.site_xpos[where[1]].copy()
     return data.geom_xpos[list(geoms)].mean(axis=0)

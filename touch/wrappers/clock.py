@@ -29,8 +29,9 @@ from numba.core.registry import cpu_target
 
 from thermograsp.compiled import njit
 
-from ..contacts import asked, called_one, clock_of, entry, floats, words
+from ..contacts import clock_of
 from ..heard import DUE, ELSEWHERE, NOTHING, hear
+from ..pointers import asked, called_one, entry, floats, words
 from ..thermal_touch import ThermalTouch
 
 _BEFORE, _THREAD, _NOW, _SEEN, _HEARING, _DUE, _ASK, _WHO, _HEAR, _LENGTH = range(10)

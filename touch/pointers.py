@@ -12,8 +12,8 @@ from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from ...thermal import CONTACT_LAW
-from ...thermal.readout import CHAIN_NUMBERS
+from ..thermal import CONTACT_LAW
+from ..thermal.readout import CHAIN_NUMBERS
 
 _LAW, _CHAIN = from_dtype(CONTACT_LAW), from_dtype(CHAIN_NUMBERS)
 

@@ -1,0 +1,265 @@
+"""Where pads are in the world, whether what presses is on them, and what they feel of it: conductance, the contact's
+area and where it lies, by what they meet.
+
+F: fingertips, N: what a pad may meet.
+"""
+
+from __future__ import annotations
+
+import math
+
+from thermograsp.compiled import njit
+
+from ...thermal.contact import (
+    CYLINDER,
+    beside_face,
+    conductance,
+    contact,
+    curved_contact,
+    curved_shares,
+    flat_patch,
+)
+from ...thermal.padded import RINGS
+from ..pointers import asked
+from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
+from .round_pads import round_contact
+from .sensors import FORCE_AT, PLACE_AT
+from .tilt import tilted
+from .views import viewed
+
+DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it, beside half of what both have sunk in
+RIM = 0.0005  # m beyond the pad's sides
+LOOKING = 0.6  # least cosine between the pad's normal and the contact's
+
+AXES, HALF, WIDTH, AROUND, PAD = 3, 12, 14, 15, 15 + RINGS
+"""Where a pad's axes, half sides m, its sensor's width m and half the outer sides m of its rings, 0 where it has no
+heat, stand behind its position m in the frame of its body; and how many numbers these are."""
+KNOWN, PLACED = 12, 13
+"""Of a pad in the world: its middle m, normal, y and z, and behind them whether these are of this substep; and how many
+numbers these are."""
+SPOT = 11 + RINGS
+"""Numbers of a contact under way: a place, two axes of the pad, by how much it lies at ends, and areas of rings."""
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def begin(pushed, frames):
+    """Forces, moments and frames of a substep start anew."""
+    for f in range(len(frames)):
+        frames[f, KNOWN] = 0.0
+        for g in range(pushed.shape[1]):
+            pushed[f, g, 0] = 0.0
+            pushed[f, g, 1] = 0.0
+            pushed[f, g, 2] = 0.0
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
+def place_pad(pads, parts, xpos, xmat, frames, f):
+    """Fills frames[f] with where pad f is in the world, unless it is known in this substep."""
+    if frames[f, KNOWN] > 0.0:
+        return
+    frames[f, KNOWN] = 1.0
+    body = parts[len(parts) - len(pads) + f, 2]
+    for k in range(3):
+        x, y, z = xmat[body, 3 * k], xmat[body, 3 * k + 1], xmat[body, 3 * k + 2]
+        frames[f, k] = xpos[body, k] + (x * pads[f, 0] + y * pads[f, 1] + z * pads[f, 2])
+        for i in range(3):
+            at = AXES + i
+            frames[f, 3 + 3 * i + k] = x * pads[f, at] + y * pads[f, at + 3] + z * pads[f, at + 6]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def press(data, at, pads, frames, f, part, part_count, pushed, beside):
+    """A net force on a pad or beside it; of another fingertip only where it is on that one's pad too."""
+    tips = len(pads)
+    on, y, z, force = _bears(data, at, pads[f], frames[f], 1.0)
+    if part >= part_count - tips:
+        other = part - (part_count - tips)
+        on_other, _, _, back = _bears(data, at, pads[other], frames[other], -1.0)
+        if not on_other and back > 0:
+            beside[other] += back
+        on = on and on_other
+    if force > 0:
+        if on:
+            pushed[f, part, 0] += force
+            pushed[f, part, 1] += force * y
+            pushed[f, part, 2] += force * z
+        else:
+            beside[f] += force
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _bears(data, at, pad, frame, sign):
+    """Whether a net force is on a pad, where (m, along its y and z), and its part along the normal, N."""
+    place, vector = data[at + PLACE_AT : at + PLACE_AT + 3], data[at + FORCE_AT : at + FORCE_AT + 3]
+    x, y, z, force = _from_pad(frame, place, vector, sign)
+    return force > 0 and _within(pad, x, y, z, 0.0), y, z, force
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def lies(pad, frame, place, vector, sign, sunk):
+    """Whether a contact is on a pad and looks at it, and where (m, along its y and z). sunk: m below both faces."""
+    x, y, z, cosine = _from_pad(frame, place, vector, sign)
+    return cosine >= LOOKING and _within(pad, x, y, z, sunk), y, z
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _from_pad(frame, place, vector, sign):
+    """Where a place is from a pad's middle, m along its normal, y and z, and the vector's part along the normal."""
+    x, y, z, along = 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        away = place[k] - frame[k]
+        along += sign * frame[3 + k] * vector[k]
+        x += away * frame[3 + k]
+        y += away * frame[6 + k]
+        z += away * frame[9 + k]
+    return x, y, z, along
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _within(pad, x, y, z, sunk):
+    return abs(x) <= DEPTH + sunk and abs(y) <= pad[HALF] + RIM and abs(z) <= pad[HALF + 1] + RIM
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
+def feel(
+    xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
+    weight, spot, views, make,
+):  # fmt: skip
+    """Adds what presses on the pads to the touches. Returns whether every table that it needs could be made."""
+    tips, part_count = len(pads), len(parts)
+    place, sides, shares, rings = spot[:3], spot[3:7], spot[7:11], spot[11:]
+    for f in range(tips):
+        if frames[f, KNOWN] == 0.0:
+            continue  # nothing has met it
+        middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:12]
+        last = -1  # target that was touched; an object's geoms follow one another
+        for g in range(part_count):
+            force = pushed[f, g, 0]
+            if force <= 0:
+                continue
+            target, geom, body = parts[g, 0], parts[g, 1], parts[g, 2]
+            axis = 0
+            if geom >= 0:
+                most = 0.0
+                x, y, z = (
+                    middle[0] - geom_xpos[geom, 0],
+                    middle[1] - geom_xpos[geom, 1],
+                    middle[2] - geom_xpos[geom, 2],
+                )
+                for i in range(3):
+                    one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
+                    place[i] = one * x + two * y + three * z
+                    looking = abs(one * normal[0] + two * normal[1] + three * normal[2])
+                    if looking > most:
+                        most, axis = looking, i
+            else:
+                # another fingertip: how far the pads' middles are apart along this one's sides
+                other = g - (part_count - tips)
+                place[0], place[1], place[2] = 0.0, 0.0, 0.0
+                for k in range(3):
+                    away = middle[k] - xpos[body, k]
+                    for j in range(3):
+                        away -= xmat[body, 3 * k + j] * pads[other, j]
+                    place[1] += away * side_y[k]
+                    place[2] += away * side_z[k]
+            law = laws[f, g, axis]
+            bulging = bend[f, 0] + bend[f, 1] > 0
+            if geom < 0:
+                bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
+            conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
+            number, first, second, whole, lying = -1, 0.0, 0.0, 1.0, force
+            for k in range(4):
+                shares[k] = 0.0
+            if not bulging and parts[g, 3] > 0:
+                for i in range(3):
+                    one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
+                    sides[i] = one * normal[0] + two * normal[1] + three * normal[2]
+                view, first, second = viewed(views[g], parts[g, 3], sides, place, law.half_face)
+                number = curved[f, g, view]
+                if tables[number, 1] == 0.0 and asked(make, number) == 0:
+                    return False
+            elif not bulging and curved[f, g, axis] >= 0:
+                # A round body presses where MuJoCo says, which need not be on the sensor's face.
+                number, first, second = curved[f, g, axis], pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                if law.shape == CYLINDER:
+                    # MuJoCo may name any point of the line of contact: only what is across it is heard.
+                    along_y, along_z = 0.0, 0.0
+                    for k in range(3):
+                        along_y += side_y[k] * geom_xmat[geom, 3 * k + 2]
+                        along_z += side_z[k] * geom_xmat[geom, 3 * k + 2]
+                    length = math.sqrt(along_y * along_y + along_z * along_z)
+                    across = first * along_z - second * along_y
+                    slope, away = 0.0, 0.0
+                    for k in range(3):
+                        slope += geom_xmat[geom, 3 * k + 2] * normal[k]
+                        away += (middle[k] - geom_xpos[geom, k]) * normal[k]
+                    first, second = 0.0, 0.0
+                    if length > 0:
+                        # along the pad
+                        first, second, slope = (
+                            across / length,
+                            (place[2] - slope * away) / length,
+                            slope / length,
+                        )
+                    whole, lying = tilted(tilts[f, g, axis], force, slope, second)
+            elif bulging:
+                _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
+                area, share, kept, longer = round_contact(
+                    bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                )
+                long = math.sqrt(area * kept * longer)
+            else:
+                area, share = contact(law, force, place)
+                if area > 0:
+                    long = flat_patch(law, area, place, shares)
+            if number >= 0 and whole > 0:
+                conducts, area, long = curved_contact(tables[number], lying / whole, first, second)
+                curved_shares(tables[number], lying / whole, first, second, shares)
+                conducts, area, long = whole * conducts, whole * area, whole * long
+            if share > 0 and area > 0:
+                conducts, area = conductance(law, share / area) * area * kept, area * kept
+            touch = touches[f, target]
+            if conducts > 0:
+                touch[CONDUCTANCE] += weight * conducts
+                touch[AREA] += weight * area
+                touch[LENGTH] += weight * area * long
+                for k in range(4):
+                    touch[ASIDE + k] += weight * area * shares[k]
+                if target != last:
+                    touch[CLOSED] += weight
+                    last = target
+            if pads[f, AROUND] > 0 and geom >= 0:
+                # of objects that are one flat box each, which the scene sees to
+                through = beside_face(law, pads[f, AROUND:], force, place, rings)
+                for ring in range(RINGS):
+                    if rings[ring] > 0:
+                        at = BESIDE + 3 * ring
+                        touch[at] += weight * through * rings[ring]
+                        touch[at + 1] += weight * rings[ring]
+                        touch[at + 2] += weight
+            touch[FORCE] += weight * force
+            x, y, z = middle[0] - xpos[body, 0], middle[1] - xpos[body, 1], middle[2] - xpos[body, 2]
+            for i in range(3):
+                one, two, three = xmat[body, i], xmat[body, 3 + i], xmat[body, 6 + i]
+                touch[PLACE + i] = one * x + two * y + three * z
+                touch[NORMAL + i] = one * normal[0] + two * normal[1] + three * normal[2]
+    return True
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _sides(geom_xmat, frames, f, geom, other, axis, sides):
+    """Fills sides (4,) with where the two axes of what a pad meets that lie across point, along the pad's y and z: of a
+    geom, or of the other fingertip's pad."""
+    n = 0
+    for i in range(3):
+        if geom >= 0 and i == axis:
+            continue
+        if geom < 0 and i == 0:
+            continue
+        y, z = 0.0, 0.0
+        for k in range(3):
+            points = geom_xmat[geom, 3 * k + i] if geom >= 0 else frames[other, 3 + 3 * i + k]
+            y += points * frames[f, 6 + k]
+            z += points * frames[f, 9 + k]
+        sides[2 * n], sides[2 * n + 1] = y, z
+        n += 1
