@@ -51,7 +51,7 @@ def compile_ahead() -> None:
     """What it does."""
     _contacts()
     tables = HeatTables(
-        0.01, np.zeros((1, 5), np.int64), np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 1), np.complex128)
+        0.01, np.zeros((1, 6), np.int64), np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 1), np.complex128)
     )
     _advance(advance_row, tables, _made_by(workspace, types.int64, types.int64))
     _readings()

@@ -44,14 +44,35 @@ class RingedSamples:
         and rings against one another, from those of the face (P, M), the even one first: a conductance per area is the
         same number for all of them."""
         kept, count, rings = face_basis.shape[1], len(face_basis), len(self.areas)
-        shares = np.array([self.face, *self.areas]) / self.front
-        regions = np.linalg.qr(np.column_stack((np.sqrt(shares), np.eye(rings + 1)[:, 1:])))[0]
-        regions *= np.sign(regions[0, 0]) * np.sqrt(shares)[:, None]
+        regions = np.sqrt(self._shares)[:, None] * _orthonormal(self._shares)
         basis = np.zeros((count + rings, kept + rings))
         basis[:count, : rings + 1] = np.outer(face_basis[:, 0], regions[0])
         basis[count:, : rings + 1] = regions[1:]
-        basis[:count, rings + 1 :] = face_basis[:, 1:] * np.sqrt(shares[0])
+        basis[:count, rings + 1 :] = face_basis[:, 1:] * np.sqrt(self._shares[0])
         return basis
+
+    def apart(self, ports: int) -> np.ndarray:
+        """(ports, ports), what makes of orthonormal's combinations such that are orthonormal over the face alone and
+        over the rings alone (RING_PORTS), so that each of the two has a conductance of its own."""
+        shares, rings = self._shares, len(self.areas)
+        around = shares[1:].sum()
+        regions = np.eye(rings + 1) / np.sqrt(shares[0])
+        if around > 0:
+            regions[1:, 1:] = _orthonormal(shares[1:] / around) / np.sqrt(around)
+        turn, of_regions = np.eye(ports) / np.sqrt(shares[0]), slice(rings + 1)
+        turn[of_regions, of_regions] = _orthonormal(shares).T @ regions
+        return turn
+
+    @property
+    def _shares(self) -> np.ndarray:
+        """(1 + R,) of the front, the face's and the rings'."""
+        return np.array([self.face, *self.areas]) / self.front
+
+
+def _orthonormal(shares: np.ndarray) -> np.ndarray:
+    """Orthonormal columns, the first of them the roots of these shares of a whole."""
+    columns = np.linalg.qr(np.column_stack((np.sqrt(shares), np.eye(len(shares))[:, 1:])))[0]
+    return np.sign(columns[0, 0]) * columns
 
 
 def _means(rings: int) -> np.ndarray:

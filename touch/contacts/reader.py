@@ -105,9 +105,10 @@ class ContactReader:
         self._views, viewed = stacked_views(model, [geom for _, geom in geoms], count)
         self._parts = np.column_stack((np.array(parts, np.int64), viewed))
         self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
-        # of each combination of the objects' materials that there is, and which of them each world has
+        # of each combination of the objects' materials that there is, and which of them each world has; laws of faces
+        # by axis, and behind them those of the pads around them
         self._known: dict[tuple[Material, ...], int] = {}
-        self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
+        self._laws = np.zeros((0, 0, 0, 6), CONTACT_LAW)
         self._curved = np.zeros((0, 0, 0, 3), np.int64)
         self._tilts = np.zeros((0, 0, 0, 3, TILT))
         self._every: list[np.ndarray] = []
@@ -134,7 +135,8 @@ class ContactReader:
                 numbers = [*map(self._number, found.tables), *map(self._number_of, found.meshes)]
                 numbers = np.array([*numbers, -1])  # the last of flat targets
                 before = self._laws, self._curved, self._tilts
-                after = found.laws[None], numbers[found.curved][None], found.tilts[None]
+                both = np.concatenate((found.laws, found.beside), axis=-1)
+                after = both[None], numbers[found.curved][None], found.tilts[None]
                 if len(self._known) > 1:
                     after = tuple(map(np.concatenate, zip(before, after, strict=True)))
                 self._laws, self._curved, self._tilts = after
@@ -300,7 +302,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     pushed = carray(floats(entries[5]), (tips, part_count, 3))  # room for forces and moments
     touches = carray(floats(entries[6]), (tips, targets, COLUMNS))
     beside = carray(floats(entries[7]), tips)
-    law = carray(laws(entries[8]), (tips, part_count, 3))
+    law = carray(laws(entries[8]), (tips, part_count, 6))
     curved = carray(words(entries[9]), (tips, part_count, sides))
     tables = carray(floats(entries[10]), (entries[20], CURVED_TABLE))
     frames, spot = carray(floats(entries[11]), (tips, _FRAME)), carray(floats(entries[12]), _SPOT)
@@ -381,7 +383,7 @@ def sense_contacts(record_at, first, last, entries_at):
     pads, parts = carray(floats(entries[5]), (tips, _PAD)), carray(words(entries[6]), (part_count, 4))
     which = carray(words(entries[8]), worlds)
     kinds = which.max() + 1
-    law = carray(laws(entries[7]), (kinds, tips, part_count, 3))
+    law = carray(laws(entries[7]), (kinds, tips, part_count, 6))
     curved = carray(words(entries[19]), (kinds, tips, part_count, sides))
     tables = carray(floats(entries[20]), (entries[33], CURVED_TABLE))
     views = carray(floats(entries[24]), (part_count, sides, VIEW))
@@ -663,7 +665,7 @@ def _feel(
                     last = target
             if pads[f, _AROUND] > 0 and geom >= 0:
                 # of objects that are one flat box each, which the scene sees to
-                through = beside_face(law, pads[f, _AROUND:], force, place, rings)
+                through = beside_face(laws[f, g, 3 + axis], pads[f, _AROUND:], force, place, rings)
                 for ring in range(RINGS):
                     if rings[ring] > 0:
                         at = BESIDE + 3 * ring
