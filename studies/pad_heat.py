@@ -45,10 +45,10 @@ _FACE = Pad().face / np.sqrt(np.pi)  # m, radius of a disc as large
 @dataclass(frozen=True, slots=True)
 class Touch:
     """A flat touch in the middle of an object that is as wide and as thick as `size`, m. skin: a name, or None. force:
-    N on a pad of that width, m. conductances: W/(m2 K) of the sensor's contact and of the pad's around it, None for
-    the package's law. cooled: K by which the silicone is colder at its front at first, and less in proportion deeper.
-    sides, front: whether the silicone exchanges heat with the sensor, and with the object. depth: m of an object that is
-    not square, in three dimensions alone; None for its width."""
+    N on a pad of that width, m. conductances: W/(m2 K) of the sensor's contact and of the pad's around it, None for the
+    package's law. cooled: K by which the silicone is colder at its front at first, and less in proportion deeper.
+    sides, front: whether the silicone exchanges heat with the sensor, and with the object. depth: m of an object that
+    is not square, in three dimensions alone; None for its width."""
 
     material: str
     skin: str | None = None

@@ -135,8 +135,8 @@ PRESSED = [
     ("glass", None, (0.012, 0.010)),
     ("aluminium", None, (0.016, 0.010)),
 ]
-"""Materials, skins, and widths and thicknesses m of objects: of some pad and face conduct least alike, and over some the
-pad stands."""
+"""Materials, skins, and widths and thicknesses m of objects: of some pad and face conduct least alike, and over some
+the pad stands."""
 
 
 def compared(

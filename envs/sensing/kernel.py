@@ -271,9 +271,9 @@ def _share(conductances, f, s, substeps, conducts):
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _mean_contacts(law, normal, step, f, place, conductances):
-    """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps. Writes conductance W/(m2 K) and area m2, whose product is
-    the mean of all, and whose area is the mean over the substeps that touch. place: see footprint. Returns whether any
-    does."""
+    """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps. Writes conductance
+    W/(m2 K) and area m2, whose product is the mean of all, and whose area is the mean over the substeps that touch.
+    place: see footprint. Returns whether any does."""
     samples, substeps = len(conductances), len(normal)
     total, area, force, pressing, touching = 0.0, 0.0, 0.0, 0, 0
     for k in range(samples):

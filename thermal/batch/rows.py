@@ -27,9 +27,10 @@ class HeatTables(NamedTuple):
     long to receive each as to use it.
 
     sizes (T, 6): states, object_states and sensor_states, modes, mean, the index of the object's mean temperature (T
-    mode), and how many of each contact's ports, behind its first, are of the pad around the face. rows (T, R, K), each a property: rates 1/s, object_heat J, air_loss W and reservoir J (T, K); drop,
-    element_heat, sensor_surface and object_surface (T, F, K); scale_real and scale_imag (T, Q, K); ports (T, M, K).
-    gram (T, Q, M, M). The leading axis may be missing, for one network."""
+    mode), and how many of each contact's ports, behind its first, are of the pad around the face. rows (T, R, K), each
+    a property: rates 1/s, object_heat J, air_loss W and reservoir J (T, K); drop, element_heat, sensor_surface and
+    object_surface (T, F, K); scale_real and scale_imag (T, Q, K); ports (T, M, K). gram (T, Q, M, M). The leading axis
+    may be missing, for one network."""
 
     dt: float
     sizes: np.ndarray
@@ -198,8 +199,8 @@ def advance_heat(
     """State (B, K) after `samples` steps and what was read at each.
 
     network: (B,) which of the tables' networks. state: (B, K). conductance: (B, F) W/K of each contact, constant over
-    the call, >= 0; pads around sensors' faces are apart. difference: (B, F) K, what sensor less object was when both were uniform. active: (B,) bool; other
-    rows are left as they are and cost nothing. The input is not changed.
+    the call, >= 0; pads around sensors' faces are apart. difference: (B, F) K, what sensor less object was when both
+    were uniform. active: (B,) bool; other rows are left as they are and cost nothing. The input is not changed.
     """
     rows, fingertips = conductance.shape
     per_tip, per_row = (rows, samples, fingertips), (rows, samples)
@@ -266,9 +267,9 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def advance_row(tables, i, x, conductance, beside, difference, around, room, reading, b, k):
     """One sample of advance_heat of one row for compiled callers: network i, state x (K,) in place, conductance and
-    difference (F,), into sample k of row b of the reading. beside: (F,) W/K of the pads around the faces. around: K, the surroundings above the object's first
-    temperature; air_loss stays what would be lost to surroundings at that temperature. room: a workspace of the
-    tables' size."""
+    difference (F,), into sample k of row b of the reading. beside: (F,) W/K of the pads around the faces. around: K,
+    the surroundings above the object's first temperature; air_loss stays what would be lost to surroundings at that
+    temperature. room: a workspace of the tables' size."""
     fingertips = reading.drop.shape[2]
     n, object_states, sensor_states, p = (
         tables.sizes[i, 0],

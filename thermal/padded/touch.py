@@ -43,8 +43,9 @@ def padded_sides(
     detail: Detail,
 ) -> tuple[tuple[Tip, ...], ThermalNetwork]:
     """The fingertips, all alike, and the box between them, as touch_sides makes them, but with the pad's RING_PORTS; a
-    tip's output "element" has the pad's heat in it, and its area is of the face alone. size: m. film: W/(m2 K), not on what the fingertips cover. fronts: what of each pad touches, the
-    element's whole face in its middle. stack: with its skin. surround: with its depth."""
+    tip's output "element" has the pad's heat in it, and its area is of the face alone. size: m. film: W/(m2 K), not on
+    what the fingertips cover. fronts: what of each pad touches, the element's whole face in its middle. stack: with its
+    skin. surround: with its depth."""
     sides = nested_sides(stack.width, float(np.sqrt(fronts.areas[0])))
     seen = ringed_samples(stack, surround, sides)
     box = _seen(material, size, film, fronts, stack.width)

@@ -35,9 +35,10 @@ _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 
 class PairLaws(NamedTuple):
-    """laws: (F, N, 3) CONTACT_LAW records, and beside: those of the pads around the sensors, zeros without. curved: (F, N, A) numbers of the tables of what is curved, by axis, and of
-    meshes, by view; -1 for what is flat. tables: K, (CURVED_TABLE,) each. meshes: of the numbers behind them. tilts:
-    (F, N, 3, TILT) of rods, 0 of others. views: (N, A, VIEW) of meshes, and viewed: (N,) how many."""
+    """laws: (F, N, 3) CONTACT_LAW records, and beside: those of the pads around the sensors, zeros without. curved: (F,
+    N, A) numbers of the tables of what is curved, by axis, and of meshes, by view; -1 for what is flat. tables: K,
+    (CURVED_TABLE,) each. meshes: of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N, A,
+    VIEW) of meshes, and viewed: (N,) how many."""
 
     laws: np.ndarray
     beside: np.ndarray
