@@ -105,13 +105,12 @@ def ringed_samples(stack: SensorStack, surround: Surround, rings: tuple[float, .
     ):
         row[:, :count] = np.outer(slow @ (of_states * known.ports) + rest, GRAM[0])
     layers, areas = _beside(stack, surround), np.diff((width**2, *(side**2 for side in rings)))
-    turned = (MOMENTS * (1 + 1j * _TINY))[:, None]
-    through = stack_impedance(layers, "isothermal", turned, np.zeros(1))[:, 0]
+    value, rate = _column(layers)
     _, flows = stack_profile(layers, "isothermal", MOMENTS[:, None], np.zeros(1))
     for ring, area in enumerate(areas.tolist(), count):
         if area > 0:
-            impedance[:, ring, ring] = np.real(through) / area
-            slope[:, ring, ring] = np.imag(through) / (MOMENTS * _TINY) / area
+            impedance[:, ring, ring] = value / area
+            slope[:, ring, ring] = rate / area
             heat[:, ring] = (flows[0] - flows[-1])[:, 0] / MOMENTS
     impedance += stand_for.T @ change.impedance @ stand_for
     slope += stand_for.T @ change.slope @ stand_for
@@ -121,6 +120,28 @@ def ringed_samples(stack: SensorStack, surround: Surround, rings: tuple[float, .
     for each in (found.impedance, found.slope, found.drop, found.heat):
         each.setflags(write=False)
     return found
+
+
+def covered_samples(
+    stack: SensorStack, surround: Surround, rings: tuple[float, ...], areas: np.ndarray
+) -> RingedSamples:
+    """The same of rings of which only (R,) m2 touch: what the pad alone is to a ring is as much more as the part is
+    smaller."""
+    whole = ringed_samples(stack, surround, rings)
+    value, rate = _column(_beside(stack, surround))
+    impedance, slope, count = whole.impedance.copy(), whole.slope.copy(), len(GRAM)
+    for ring, (area, of) in enumerate(zip(areas.tolist(), whole.areas.tolist(), strict=True), count):
+        if 0 < area < of * (1 - 1e-9):
+            impedance[:, ring, ring] += (1 / area - 1 / of) * value
+            slope[:, ring, ring] += (1 / area - 1 / of) * rate
+    return replace(whole, impedance=impedance, slope=slope, areas=areas)
+
+
+def _column(layers: tuple[Layer, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """(S,) m2 K/W of the pad cut apart from the element under an even flow, and its derivative by the moment."""
+    turned = (MOMENTS * (1 + 1j * _TINY))[:, None]
+    through = stack_impedance(layers, "isothermal", turned, np.zeros(1))[:, 0]
+    return np.real(through), np.imag(through) / (MOMENTS * _TINY)
 
 
 def _beside(stack: SensorStack, surround: Surround) -> tuple[Layer, ...]:

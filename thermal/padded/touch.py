@@ -9,6 +9,7 @@ F: fingertips, P: patterns of the element's face (kernels), R: rings, Q = P + R,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,8 +30,8 @@ from ..kernels import (
 )
 from ..matter import Material, SensorStack, Surround
 from ..numerics import ThermalNetwork, output_row
-from .fingertip import RingedSamples, ringed_samples
-from .rings import RING_PORTS, RINGS, WIDTHS, nested_sides, to_rings
+from .fingertip import RingedSamples, covered_samples
+from .rings import RING_PORTS, RINGS, nested_sides, to_rings
 
 
 def padded_sides(
@@ -46,9 +47,12 @@ def padded_sides(
     tip's output "element" has the pad's heat in it, and its area is of the face alone. size: m. film: W/(m2 K), not on
     what the fingertips cover. fronts: what of each pad touches, the element's whole face in its middle. stack: with its
     skin. surround: with its depth."""
-    sides = nested_sides(stack.width, float(np.sqrt(fronts.areas[0])))
-    seen = ringed_samples(stack, surround, sides)
-    box = _seen(material, size, film, fronts, stack.width)
+    # what touches is no square where the object ends under the pad
+    sides = nested_sides(stack.width, float(2 * fronts.half[0].max()))
+    nested = [np.minimum(side / 2, fronts.half) for side in (stack.width, *sides)]
+    areas = np.diff([4 * float(half[0].prod()) for half in nested])
+    seen = covered_samples(stack, surround, sides, areas)
+    box = _seen(material, size, film, fronts, nested)
     count, tips = len(GRAM), len(fronts.face)
     faces = np.concatenate([np.arange(count) + f * (count + RINGS) for f in range(tips)])
     across = [seen.impedance[:, :count, :count]] * tips
@@ -83,16 +87,19 @@ def _tip(seen: RingedSamples, basis: np.ndarray, detail: Detail) -> Tip:
 
 
 def _seen(
-    material: Material, size: tuple[float, float, float], film: float, fronts: Patches, width: float
+    material: Material,
+    size: tuple[float, float, float],
+    film: float,
+    fronts: Patches,
+    halves: Sequence[np.ndarray],
 ) -> BoxSamples:
-    """The box's samples between Q flows of each fingertip: the patterns of its element's face, of that width, and even
-    ones into rings of its front."""
+    """The box's samples between Q flows of each fingertip: the patterns of its element's face, and even ones into rings
+    of its front. halves: (F, 2) m of the face, then of what touches of the squares around it."""
     count, tips, each = len(GRAM), len(fronts.face), 1 + RINGS
-    parts = np.concatenate(([0.0], WIDTHS))[:, None]
     nested = Patches(
         np.repeat(fronts.face, each),
         np.repeat(fronts.centre, each, axis=0),
-        np.concatenate([width / 2 + parts * (half - width / 2) for half in fronts.half]),
+        np.stack(halves, axis=1).reshape(tips * each, 2),
     )
     box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, nested)
     early = before(material.conductivity / material.volumetric_heat_capacity)

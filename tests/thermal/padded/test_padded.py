@@ -174,6 +174,56 @@ def test_the_pad_conducts_by_its_own_contact(
     assert (abs(alike).max() > 0.06) == (name in ("sandstone", "potato"))
 
 
+@pytest.mark.parametrize(
+    ("name", "skin", "size", "conducts", "elements", "within"),
+    [
+        ("glass", None, (0.010, 0.04, 0.01), (13195.4, 10520.3), (2.922, 3.551, 3.962, 3.873, 3.382), 0.05),
+        ("glass", None, (0.012, 0.04, 0.01), (13085.6, 9823.98), (2.928, 3.581, 4.043, 4.04, 3.592), 0.05),
+        (
+            "aluminium",
+            None,
+            (0.012, 0.04, 0.01),
+            (13158.7, 10754.5),
+            (8.421, 9.579, 9.881, 9.699, 9.323),
+            0.05,
+        ),
+        (
+            "aluminium",
+            None,
+            (0.010, 0.04, 0.002),
+            (13689.8, 11645.3),
+            (7.386, 8.088, 8.108, 7.185, 5.877),
+            0.075,
+        ),
+        (
+            *("stainless_steel", "filled_silicone", (0.010, 0.04, 0.01), (196004.7, 17835.0)),
+            *((5.596, 6.999, 7.779, 7.989, 7.817), 0.05),
+        ),
+    ],
+)
+def test_a_bar_that_the_pad_stands_over(
+    name: str,
+    skin: str | None,
+    size: tuple[float, float, float],
+    conducts: tuple[float, float],
+    elements: tuple[float, ...],
+    within: float,
+) -> None:
+    """Beside three-dimensional finite elements, drops(Touch(material, skin, size=..., depth=...))."""
+    face, pad = conducts
+    pressed = _press(
+        name,
+        skin=skin,
+        object_size=size,
+        conductance=face,
+        surround="silicone",
+        surround_conductance=pad,
+        tolerance=0.045,
+    )
+    found = pressed.temperature_drop[np.round(np.array(TIMES) / 0.05).astype(int)]
+    np.testing.assert_allclose(found, elements, atol=within)
+
+
 def test_a_pad_that_does_not_touch_warms_its_sensor_alone() -> None:
     """Of glass: studies/pad_heat.py has it as the silicone that touches the sensor alone."""
     apart = _press("glass", surround="silicone", surround_conductance=0.0)
