@@ -29,8 +29,8 @@ from skfem import Basis, BilinearForm, ElementQuad2, FacetBasis, LinearForm, Mes
 from skfem.element import DiscreteField
 from skfem.helpers import dot
 
-from thermograsp.thermal import Pad, SensorStack, Surface, contact_conductance, flat_contact, joint, materials
-from thermograsp.thermal.contact import face_joint, skinned
+from thermograsp.thermal import Pad, SensorStack, Surface, contact_conductance, flat_contact, materials
+from thermograsp.thermal.contact import face_joint, pad_joint, skinned
 from thermograsp.thermal.matter import USUAL_SKIN, material, sensor
 from thermograsp.thermal.matter import skin as named_skin
 
@@ -45,9 +45,10 @@ _FACE = Pad().face / np.sqrt(np.pi)  # m, radius of a disc as large
 @dataclass(frozen=True, slots=True)
 class Touch:
     """A flat touch in the middle of an object that is as wide and as thick as `size`, m. skin: a name, or None. force:
-    N on a pad of that width, m. conductances: W/(m2 K) of the sensor's contact and of the pad's around it, None for
-    the package's law. cooled: K by which the silicone is colder at its front at first, and less in proportion deeper.
-    sides, front: whether the silicone exchanges heat with the sensor, and with the object."""
+    N on a pad of that width, m. conductances: W/(m2 K) of the sensor's contact and of the pad's around it, None for the
+    package's law. cooled: K by which the silicone is colder at its front at first, and less in proportion deeper.
+    sides, front: whether the silicone exchanges heat with the sensor, and with the object. depth: m of an object that
+    is not square, in three dimensions alone; None for its width."""
 
     material: str
     skin: str | None = None
@@ -58,6 +59,7 @@ class Touch:
     cooled: float = 0.0
     sides: bool = True
     front: bool = True
+    depth: float | None = None
 
     @property
     def alone(self) -> Touch:
@@ -69,8 +71,10 @@ class Touch:
         if self.conductances is not None:
             return self.conductances
         skin, other = named_skin(self.skin), Surface.of(material(self.material))
-        flat = flat_contact(skinned(Pad(width=self.width), skin), self.force)
-        around = joint(Surface.of(material("silicone")), other) if skin is None else face_joint(skin, other)
+        flat = flat_contact(
+            skinned(Pad(width=self.width), skin), self.force, (self.size[0], self.depth or self.size[0])
+        )
+        around = pad_joint(skin, material("silicone"), other)
         pressure = (self.force - flat.face_force) / (flat.pad - flat.face)
         return (
             float(contact_conductance(face_joint(skin, other), flat.face_pressure)),

@@ -5,7 +5,7 @@ quarter of them, as they are symmetric. Triquadratic elements, a conductance bet
 
     python studies/pad_square.py [MATERIAL ...]   the change of the temperature drop, K of 12, beside that of the discs
     python studies/pad_square.py --thickness .001 [MATERIAL ...]   on an object of 1 mm
-    python studies/pad_square.py --press   how far `press(surround="silicone")` is off the elements, which conduct alike
+    python studies/pad_square.py --press   how far `press(surround="silicone")` is off the elements
 
 Needs scikit-fem, and half a minute for each material, bare and with a skin.
 """
@@ -25,7 +25,7 @@ from skfem.element import DiscreteField
 from skfem.helpers import dot
 
 from thermograsp.thermal import Pad, press
-from thermograsp.thermal.matter import material, sensor
+from thermograsp.thermal.matter import USUAL_SKIN, material, sensor
 from thermograsp.thermal.matter import skin as named_skin
 
 _HALF = Pad().face / 2  # m
@@ -62,16 +62,17 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     near = np.sin(np.pi / 2 * np.linspace(0, 1, cells(6)[0] + 1)) * _HALF
     # half a second after the touch the silicone has heat from the sensor within 0.3 mm of it
     ring = _HALF + np.geomspace(1.5e-4, touch.width / 2 - _HALF, cells(6)[0])
-    end = touch.size[0] / 2
+    ends = np.array([touch.size[0], touch.depth or touch.size[0]]) / 2
+    end = ends.max()
     beyond = pieces((touch.width / 2, end), cells(4))[1:] if end > touch.width / 2 else np.zeros(0)
-    marked = [end] if _HALF < end < touch.width / 2 else []
+    marked = [each for each in ends.tolist() if _HALF < each < touch.width / 2]
     lines = np.unique(np.round(np.concatenate([near, ring, beyond, marked]), 9))
     below = pieces(heights.tolist(), cells(3, 4, 4, 2)[: len(stack.layers)])
     above = heights[-1] + np.concatenate([[0.0], np.geomspace(4e-5, touch.size[1], cells(9)[0])])
     inside = lines[lines <= wide * (1 + 1e-9)]
     lower = Basis(MeshHex.init_tensor(inside, inside, below), ElementHex2(), intorder=4)
-    over = lines[lines <= end * (1 + 1e-9)]
-    upper = Basis(MeshHex.init_tensor(over, over, above), ElementHex2(), intorder=4)
+    over = [lines[lines <= each * (1 + 1e-9)] for each in ends]
+    upper = Basis(MeshHex.init_tensor(*over, above), ElementHex2(), intorder=4)
     stiffness, mass, body = [], [], material(touch.material)
     for basis in (lower, upper):
         x: Any = np.asarray(basis.global_coordinates())
@@ -85,7 +86,11 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
             basis.mesh,
             ElementHex2(),
             facets=basis.mesh.facets_satisfying(
-                lambda p: (abs(p[2] - heights[-1]) < 1e-9) & (np.maximum(p[0], p[1]) < min(wide, end))
+                lambda p: (
+                    (abs(p[2] - heights[-1]) < 1e-9)
+                    & (p[0] < min(wide, ends[0]))
+                    & (p[1] < min(wide, ends[1]))
+                )
             ),
             intorder=4,
         )
@@ -124,20 +129,30 @@ PRESSED = [
     for thickness in (0.010, 0.001)
     for skin in SKINS_WORN
     for name in ("wood", "glass", "stainless_steel", "aluminium")
-] + [("glass", None, (0.012, 0.010)), ("aluminium", None, (0.016, 0.010))]
-"""Materials, skins, and widths and thicknesses m of objects, some of which the pad stands over."""
+] + [
+    ("sandstone", None, (0.040, 0.010)),
+    ("potato", USUAL_SKIN, (0.040, 0.010)),
+    ("glass", None, (0.012, 0.010)),
+    ("aluminium", None, (0.016, 0.010)),
+]
+"""Materials, skins, and widths and thicknesses m of objects: of some pad and face conduct least alike, and over some
+the pad stands."""
 
 
-def compared(name: str, skin: str | None, size: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Drops (5,) K of the elements, and by how much those of `press` are above, where face and pad both conduct
-    1e4 W/(m2 K)."""
-    elements = drops(Touch(name, skin, size=size, conductances=(1e4, 1e4)))
+def compared(
+    name: str, skin: str | None, size: tuple[float, float], alike: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Drops (5,) K of the elements, and by how much those of `press` are above. alike: W/(m2 K) of face and pad, None
+    for what either conducts under 10 N."""
+    touch = Touch(name, skin, size=size, conductances=None if alike is None else (alike, alike))
+    elements = drops(touch)
     pressed = press(
         name,
         skin=skin,
         object_size=(size[0], size[0], size[1]),
-        conductance=1e4,
+        conductance=touch.through()[0],
         surround="silicone",
+        surround_conductance=alike,
         dt=0.05,
     )
     found = pressed.temperature_drop[np.round(np.array(TIMES) / 0.05).astype(int)]
@@ -151,6 +166,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("materials", nargs="*", default=MATERIALS, help="materials of the object")
     parser.add_argument("--thickness", type=float, default=0.010, help="of the object, m (default .010)")
     parser.add_argument("--press", action="store_true", help="compare press with the elements instead")
+    parser.add_argument(
+        "--alike", type=float, help="W/(m2 K) of face and pad there (default: what each conducts)"
+    )
     options = parser.parse_args(arguments)
     if not 0 < options.thickness < np.inf:
         parser.error(f"--thickness must be above 0 m, got {options.thickness:g}")
@@ -158,7 +176,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("elements, K, and press less these, at " + ", ".join(f"{t:g}" for t in TIMES) + " s")
         worst = 0.0
         for name, skin, size in PRESSED:
-            elements, off = compared(name, skin, size)
+            elements, off = compared(name, skin, size, options.alike)
             worst = max(worst, float(abs(off).max()))
             rows = " ".join(f"{e:.3f}" for e in elements), " ".join(f"{e:+.3f}" for e in off)
             what = f"{1e3 * size[0]:g} x {1e3 * size[1]:g} mm"

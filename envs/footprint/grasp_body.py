@@ -25,18 +25,22 @@ from ...thermal import (
     Surround,
     cylinder_contact,
     flat_contact,
+    material,
     sphere_contact,
 )
 from ...thermal.contact import (
+    CONTACT_LAW,
     TABLE_FORCES,
     bare_footprint,
     bared,
+    beside_face,
     cylinder_footprint,
     element_joint,
     even_patch,
     face_joint,
     flat_footprint,
     footprint,
+    pad_law,
     skinned,
     sphere_footprint,
     table_footprint,
@@ -249,6 +253,24 @@ class GraspBody:
         from .slipped_mesh import closed_mesh
 
         return closed_mesh(self.pad, self.spec, self._mesh_table)
+
+    @cached_property
+    def pad_law(self) -> np.void:
+        """By which the pad around the sensor conducts, beside_face's to evaluate; zeros without one."""
+        if self.surround is None:
+            return np.zeros(1, CONTACT_LAW)[0]
+        made = material(self.surround.material)
+        return pad_law(PAD, self.skin, made, self._surface, self._face, self._across)
+
+    @cached_property
+    def pad_conductance(self) -> float | None:
+        """W/(m2 K) of the pad's contact at NOMINAL_FORCE to a factor of two, so that networks for nearly equal surfaces
+        are the same; None without a pad."""
+        if self.surround is None:
+            return None
+        half, place = np.array([self.surround.width / 2]), np.array([0.0, 0.0, self._up])
+        conducts = beside_face(self.pad_law, half, NOMINAL_FORCE, place, np.zeros(1))
+        return 2.0 ** round(math.log2(conducts)) if conducts > 0 else 0.0
 
     def slipped_law(self, step: tuple[int, ...]) -> np.void:
         """`law` of a mesh that has slipped and turned by a step of slipped_mesh.py."""

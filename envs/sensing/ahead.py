@@ -26,7 +26,14 @@ from ...thermal.batch import (
     set_body,
     set_gram,
 )
-from ...thermal.contact import FOOTPRINT_LAW, footprint, gas_conduction, solid_conduction
+from ...thermal.contact import (
+    CONTACT_LAW,
+    FOOTPRINT_LAW,
+    beside_face,
+    footprint,
+    gas_conduction,
+    solid_conduction,
+)
 from ...thermal.kernels import Patches, TouchedBox, tip, touched_box
 from ...thermal.network import workspace
 from ...thermal.numerics import port_residues
@@ -51,9 +58,9 @@ def compile_ahead() -> None:
     """What it does."""
     _contacts()
     tables = HeatTables(
-        0.01, np.zeros((1, 5), np.int64), np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 1), np.complex128)
+        0.01, np.zeros((1, 6), np.int64), np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 1), np.complex128)
     )
-    _advance(advance_row, tables, _made_by(workspace, types.int64, types.int64))
+    _advance(advance_row, tables, 2, _made_by(workspace, types.int64, types.int64))
     _readings()
 
 
@@ -62,7 +69,7 @@ def compile_boxes_ahead() -> None:
     the kernels come from it."""
     port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
     _contacts()
-    _advance(advance_fixed, no_fixed_tables(0.01), _made_by(fixed_room, types.int64))
+    _advance(advance_fixed, no_fixed_tables(0.01), 1, _made_by(fixed_room, types.int64))
     _readings()
     strayed(
         np.zeros(1, BOX_ROW), np.zeros((1, 1, 2)), np.zeros((1, 2, 3)), 1, _SIDE, np.zeros((1, 2), np.int64)
@@ -86,6 +93,8 @@ def _contacts() -> None:
     _made_by(gas_conduction, law, types.float64, _VECTOR)
     _made_by(footprint, law, types.float64, _VECTOR)
     _made_by(solid_conduction, law, types.float64, types.float64)
+    pad = types.NestedArray(types.float64, (1,))
+    _made_by(beside_face, numba.from_dtype(CONTACT_LAW), pad, types.float64, _VECTOR, _VECTOR)
 
 
 def _readings() -> None:
@@ -98,14 +107,14 @@ def _readings() -> None:
     measure_rows.compile((chains, matrix, matrix, cube, cube, cube, cube))
 
 
-def _advance(step: Any, tables: Any, room: types.Type) -> None:
-    """A step of a row with such tables."""
+def _advance(step: Any, tables: Any, contacts: int, room: types.Type) -> None:
+    """A step of a row with such tables, and so many arrays of what contacts conduct."""
     _made_by(
         step,
         numba.typeof(tables),
         types.int64,
         _VECTOR,
-        _VECTOR,
+        *[_VECTOR] * contacts,
         types.NestedArray(types.float64, (2,)),
         types.float64,
         room,

@@ -314,12 +314,15 @@ class GraspHeat:
         self._rows["boxed"][row] = row in self._boxed
         above /= LEAST_DIFFERENCE
         difference = LEAST_DIFFERENCE * 1.25 ** max(np.ceil(np.log(max(above, 1e-9)) / np.log(1.25)), 0.0)
-        self._demands[row] = Demand(self._tolerance, difference, CONDUCTANCES, HORIZON)
+        demand = self._tolerance, difference, CONDUCTANCES, HORIZON
+        self._demands[row] = Demand(*demand, beside=body.pad_conductance)
         self._waiting.add(row)
         record = self._rows[row]
         record["glued"] = body.mode == "O"
         record["reach"] = body.stack.width / 2
         record["element_capacity"] = body.stack.heat_capacity
+        record["pad"] = 0.0 if body.surround is None else body.surround.width / 2
+        record["pad_law"] = body.pad_law
         record["ambient"] = 0.0 if body.ambient is None or self._air == 0 else body.ambient - body.temperature
 
     def _build(self, row: int) -> None:
@@ -344,8 +347,6 @@ class GraspHeat:
             capacity = geometry.whole_capacity
         free = free_area(geometry)
         record = self._rows[row]
-        # a network's contact is all of the pad's front, which conducts as well as the face
-        record["front"] = 1.0 if body.surround is None else geometry.area / body.face_area
         record["lasting"] = touches is not None
         record["capacity"] = capacity
         record["air"] = self._air * free

@@ -24,7 +24,7 @@ from ...thermal.batch import (
     forget_fixed,
     forget_row,
 )
-from ...thermal.contact import FLAT, footprint, gas_conduction, solid_conduction
+from ...thermal.contact import FLAT, beside_face, footprint, gas_conduction, solid_conduction
 from ...thermal.network import NODE, workspace
 from ...thermal.numerics import FAST
 from ..bodies import reservoir_step, reservoir_temperature
@@ -48,13 +48,15 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
     tables = HeatTables(*numbers)
     samples, tips = drop.shape[1], fingertips_of(tables)
     room, reading = workspace(tables.rows.shape[2], tables.gram.shape[3]), _reading(samples, tips)
-    conducts = np.empty((samples, 2))
+    conducts, beside, ring = np.empty((samples, 2)), np.zeros((samples, 2)), np.empty(1)
     duration = tables.dt * samples
     for b in range(len(rows)):
         row, step, x = rows[b], info[b], state[b]
         if row.boxed:
             continue
         _meet(laws[b], row, step, normal[b], place[b], drop[b], conducts, first)
+        if row.pad[0] > 0.0:
+            _meet_pads(row, normal[b], place[b], ring, beside)
         if first == 0 and reservoirs[b].conductance > 0.0:
             step.reservoir_temperature = reservoir_temperature(reservoirs[b], row.enthalpy)
         around = row.ambient
@@ -73,9 +75,19 @@ def advance_grasps(laws, reservoirs, rows, state, normal, place, drop, info, fir
             for k in range(first, last):
                 if row.lasting == 0 and _renewed(step, conducts, k):
                     forget_row(tables, row.network, x)
-                for f in range(2):
-                    conducts[k, f] *= row.front
-                advance_row(tables, row.network, x, conducts[k], row.difference, around, room, reading, 0, k)
+                advance_row(
+                    tables,
+                    row.network,
+                    x,
+                    conducts[k],
+                    beside[k],
+                    row.difference,
+                    around,
+                    room,
+                    reading,
+                    0,
+                    k,
+                )
                 _add(step, reading, drop[b], k, samples, tips)
         if last < samples:
             continue
@@ -231,11 +243,37 @@ def _along_pad(law, place, f, at):
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _meet_pads(row, normal, place, ring, conductances):
+    """Fills conductances (N, F) W/K of the pads around the sensors, the mean over each sample's own substeps. ring:
+    room for one."""
+    for f in range(2):
+        for k in range(len(conductances)):
+            conductances[k, f] = 0.0
+        for s in range(len(normal)):
+            if normal[s, f] > 0:
+                conducts = beside_face(row.pad_law, row.pad, normal[s, f], place[f], ring)
+                _share(conductances, f, s, len(normal), conducts * ring[0])
+        for k in range(len(conductances)):
+            conductances[k, f] /= len(normal)
+
+
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _share(conductances, f, s, substeps, conducts):
+    """Adds what a fingertip conducts in one of the substeps, W/K, to the sums of the samples (N, F) that it is part of;
+    where the samples' ends fall within a substep, it counts for both by its parts."""
+    samples = len(conductances)
+    for k in range(s * samples // substeps, samples):  # in parts of 1/(S N) of the step
+        part = min((s + 1) * samples, (k + 1) * substeps) - max(s * samples, k * substeps)
+        if part <= 0:
+            break
+        conductances[k, f] += conducts * part
+
+
+@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _mean_contacts(law, normal, step, f, place, conductances):
-    """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps; where the samples' ends
-    fall within a substep, it counts for both by its parts. Writes conductance W/(m2 K) and area m2, whose product is
-    the mean of all, and whose area is the mean over the substeps that touch. place: see footprint. Returns whether any
-    does."""
+    """Fills conductances (N, F) W/K of the fingertip, the mean over each sample's own substeps. Writes conductance
+    W/(m2 K) and area m2, whose product is the mean of all, and whose area is the mean over the substeps that touch.
+    place: see footprint. Returns whether any does."""
     samples, substeps = len(conductances), len(normal)
     total, area, force, pressing, touching = 0.0, 0.0, 0.0, 0, 0
     for k in range(samples):
@@ -253,11 +291,7 @@ def _mean_contacts(law, normal, step, f, place, conductances):
                 total += conducts
                 area += face
                 touching += 1
-                for k in range(s * samples // substeps, samples):  # in parts of 1/(S N) of the step
-                    part = min((s + 1) * samples, (k + 1) * substeps) - max(s * samples, k * substeps)
-                    if part <= 0:
-                        break
-                    conductances[k, f] += conducts * part
+                _share(conductances, f, s, substeps, conducts)
     for k in range(samples):
         conductances[k, f] /= substeps
     if touching and area == 0.0:  # gas alone, all over the face

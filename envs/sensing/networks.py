@@ -59,7 +59,7 @@ class HeatNetworks:
 
     def of_plate(self, geometry: Geometry, demand: Demand, film: float) -> int:
         """Number of the plate's that keeps the demand, losing heat through a film of W/(m2 K)."""
-        key = (geometry, demand.difference, film)
+        key = (geometry, demand.difference, demand.beside, film)
         if key not in self._numbers and geometry.surround is not None:
             choice = box_choice(geometry, demand, film)
             assert choice is not None  # or it raises

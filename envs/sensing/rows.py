@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...thermal.contact import CONTACT_LAW
+
 # difference: K, sensor less object when both were uniform. sensor_temperature: °C, of the thermostats at first.
 # offset: K, of theirs since. stored: J, that the elements
 # gained. anchor: m, where on the object, in its frame, each patch is, if it is known. reach: m, how far from there a
@@ -15,8 +17,8 @@ import numpy as np
 # temperature. enthalpy: J of its reservoir. network: the index of the environment's network. begun: something
 # has touched, or the object is not as warm as what is around it. glued: the elements sit on the object (O mode).
 # lasting: a new patch finds the object's field, not its mean. fed: the reservoir is a node of the network.
-# boxed: the row is a box of FixedTables, which has no number. front: times a contact with the sensor's face, what the
-# network's contact conducts: 1, or more with the pad around the sensor.
+# boxed: the row is a box of FixedTables, which has no number. pad: m, half the sides of the pads around the sensors, 0
+# without, and pad_law the law of their contact.
 HEAT_ROW = np.dtype(
     [
         ("difference", "f8", (2,)),
@@ -31,7 +33,8 @@ HEAT_ROW = np.dtype(
         ("air", "f8"),
         ("ambient", "f8"),
         ("enthalpy", "f8"),
-        ("front", "f8"),
+        ("pad", "f8", (1,)),
+        ("pad_law", CONTACT_LAW),
         ("network", "i8"),
         ("touching", "u1", (2,)),
         ("known", "u1", (2,)),

@@ -47,7 +47,15 @@ def test_a_press_with_a_surround_has_this_drop(study: ModuleType, name: str, ski
     """The bound of the network and the grid's error of these elements."""
     touch = study.Touch(name, skin, conductances=(1e4, 1e4))
     padded = study.drops(touch, refine=0.8)
-    pressed = press(name, skin=skin, surround="silicone", conductance=1e4, dt=0.05, tolerance=0.045)
+    pressed = press(
+        name,
+        skin=skin,
+        surround="silicone",
+        conductance=1e4,
+        surround_conductance=1e4,
+        dt=0.05,
+        tolerance=0.045,
+    )
     found = pressed.temperature_drop[np.round(np.array(study.TIMES) / 0.05).astype(int)]
     np.testing.assert_allclose(found, padded, atol=0.06)
     alone = press(name, skin=skin, conductance=1e4, dt=0.05).temperature_drop[-1]

@@ -23,7 +23,7 @@ from thermograsp.thermal import (
     material,
     press,
 )
-from thermograsp.thermal.contact import beside_face, contact_conductance, face_joint, skinned
+from thermograsp.thermal.contact import beside_face, contact_conductance, face_joint, joint, skinned
 from thermograsp.thermal.padded import RINGS, ring_sides
 from thermograsp.touch import Fingertip, SensorElement, ThermalBody, ThermalTouch, install, prepare
 from thermograsp.touch.contacts import (
@@ -144,6 +144,7 @@ def test_drops_are_those_of_a_press_with_a_surround(
         object_size=size,
         conductance=1e4,
         surround="silicone",
+        surround_conductance=1e4,
         tolerance=0.045,
         air=0.0,
         seconds=10.0,
@@ -237,13 +238,15 @@ def test_a_ring_conducts_as_the_pads_own_pressure_says() -> None:
     shapes = bodies(model, {"box": "steel"}, 24.0)
     for skin in (None, SKINS["filled_silicone"]):
         found = pads(model, {"tip": Fingertip("flat", skin=skin, surround="silicone")}, shapes)
-        law, areas = pair_laws(model, found, shapes).laws[0, 0, 2], np.zeros(RINGS)
+        law, areas = pair_laws(model, found, shapes).beside[0, 0, 2], np.zeros(RINGS)
+        own = Surface.of(material("silicone") if skin is None else skin.made_of)
+        surfaces = joint(own, Surface.of(material("steel")), full_contact=True)
         halves = np.array(ring_sides(FACE, Surround())) / 2
         for x in (0.0, 0.014):
             conducts = beside_face(law, halves, 10.0, np.array([x, 0.0, 0.0]), areas)
             known = flat_contact(skinned(Pad(), skin), 10.0, BLOCK[:2], (x, 0.0))
             pressure = (10.0 - known.face_force) / (known.pad - known.face)
-            expected = contact_conductance(face_joint(skin, Surface.of(material("steel"))), pressure)
+            expected = contact_conductance(surfaces, pressure)
             assert conducts == pytest.approx(float(expected), rel=1e-6)
             assert areas.sum() == pytest.approx(float(known.pad - known.face), rel=1e-9)
 
@@ -271,7 +274,7 @@ def simulated(
     return touch, np.array(found)
 
 
-@pytest.mark.parametrize("name", ["glass", "aluminium", "wood"])
+@pytest.mark.parametrize("name", ["glass", "aluminium", "wood", "sandstone"])
 def test_a_pressed_box_is_as_warm_as_a_press_with_a_surround_says(name: str) -> None:
     touch, found = simulated(name)
     conducts = contact_conductance(face_joint(None, Surface.of(material(name))), 10.0 / 4e-4)

@@ -2,9 +2,9 @@
 
 Each material's network keeps the fingertip's field on a basis of its own, so a fingertip that goes from one object to
 the next changes coordinates. What both understand is what it would show from then on, left alone: its temperature drop
-and the temperature of its face. The carried field is the one whose drop and face temperature follow the old one's most
-closely at TIMES, with the stored heat exactly the same. Matching their values at one moment alone is not enough: fields
-that agree in all three there may differ by kelvins a second later.
+and the temperature of its face, and of the pad around it. The carried field is the one whose drop and temperatures
+follow the old one's most closely at TIMES, with the stored heat exactly the same. Matching their values at one moment
+alone is not enough: fields that agree in all of them there may differ by kelvins a second later.
 
 s: states of one fingertip.
 """
@@ -19,6 +19,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError
 
 from ..network import ContactSystem
+from ..padded import RING_PORTS
 
 LEAST_STATES = 6  # of a fingertip, with which any field that an object leaves in it is kept within 5 mK
 TIMES = np.concatenate(([0.0], np.geomspace(0.005, 5.0, 13)))  # s
@@ -28,18 +29,19 @@ _LEAST_WEIGHT = 1e-6  # singular values below that share of the largest are left
 @dataclass(frozen=True, slots=True)
 class TipRows:
     """What the states (s,) of one fingertip tell. rates: 1/s. heat: J in its element. drop and face: K, the temperature
-    drop and the temperature of its face."""
+    drop and the temperature of its face. beside: (R, s) K of the pad's front around it, R = 0 without one."""
 
     rates: np.ndarray
     heat: np.ndarray
     drop: np.ndarray
     face: np.ndarray
+    beside: np.ndarray
 
     @property
     def future(self) -> np.ndarray:
-        """(2 TIMES, s) K: drop and face temperature at TIMES from now."""
+        """((2 + R) TIMES, s) K: the drop and temperatures of the front at TIMES from now."""
         decay = np.exp(-TIMES[:, None] * self.rates)
-        return np.vstack((self.drop * decay, self.face * decay))
+        return np.vstack((self.drop * decay, self.face * decay, *(row * decay for row in self.beside)))
 
 
 def carry_matrix(source: TipRows, target: TipRows) -> np.ndarray:
@@ -86,9 +88,13 @@ def tip_rows(system: ContactSystem) -> TipRows:
         raise InvalidValueError("in O mode the elements stay on their objects: there is nothing to carry")
     first = system.orders.even + (system.orders.odd or 0)
     tip_states = slice(first, first + states)
+    rings = np.zeros((0, states))
+    if system.geometry.surround is not None:
+        rings = -system.ports[tip_states, : system.modes][:, RING_PORTS.start : RING_PORTS.start + 1].T
     return TipRows(
         system.rates[tip_states],
         system.element_heat[0, tip_states],
         system.drop[0, tip_states],
         system.sensor_surface[0, tip_states],
+        rings,
     )

@@ -153,6 +153,7 @@ def fixed_tip_rows(tables: FixedTables, number: int) -> TipRows:
         np.concatenate((poles[POLE_HEAT], still[1], heat.ravel())),
         np.concatenate((poles[_DROP], still[0], drop.ravel())),
         np.concatenate((poles[_PORT], heat[0], ports.ravel())),
+        np.zeros((0, len(poles[0]) + (1 + patterns) * len(rates))),
     )
 
 

@@ -16,6 +16,7 @@ from thermograsp.errors import InvalidValueError
 
 from ..network import POLES, ContactSystem, StepArrays, advance, propagator, with_air, workspace
 from ..numerics import FAST
+from ..padded import RING_PORTS
 
 # Rows of HeatTables; the fingertips' begin at TIPPED.
 RATES, OBJECT_HEAT, AIR_LOSS, RESERVOIR, TIPPED = range(5)
@@ -25,10 +26,11 @@ class HeatTables(NamedTuple):
     """Networks of the same fingertips, padded to one size, for steps of dt s: few arrays, since compiled code takes as
     long to receive each as to use it.
 
-    sizes (T, 5): states, object_states and sensor_states, modes, and mean, the index of the object's mean temperature
-    (T mode). rows (T, R, K), each a property: rates 1/s, object_heat J, air_loss W and reservoir J (T, K); drop,
-    element_heat, sensor_surface and object_surface (T, F, K); scale_real and scale_imag (T, Q, K); ports (T, M, K).
-    gram (T, Q, M, M). The leading axis may be missing, for one network."""
+    sizes (T, 6): states, object_states and sensor_states, modes, mean, the index of the object's mean temperature (T
+    mode), and how many of each contact's ports, behind its first, are of the pad around the face. rows (T, R, K), each
+    a property: rates 1/s, object_heat J, air_loss W and reservoir J (T, K); drop, element_heat, sensor_surface and
+    object_surface (T, F, K); scale_real and scale_imag (T, Q, K); ports (T, M, K). gram (T, Q, M, M). The leading axis
+    may be missing, for one network."""
 
     dt: float
     sizes: np.ndarray
@@ -149,10 +151,11 @@ def heat_tables(systems: Sequence[ContactSystem], air: Sequence[float], dt: floa
     if len({system.geometry.fingertips for system in systems}) != 1:
         raise InvalidValueError("systems of one batch must have the same number of fingertips")
     count, fingertips, pairs = len(systems), systems[0].geometry.fingertips, len(POLES)
-    sizes = np.empty((count, 5), np.int64)
+    sizes = np.empty((count, 6), np.int64)
     for entry, s in zip(sizes, systems, strict=True):
         states, sensor_states = len(s.rates), s.orders.sensor
-        entry[:] = states, states - fingertips * sensor_states, sensor_states, s.modes, s.mean
+        beside = 0 if s.geometry.surround is None else len(range(s.modes)[RING_PORTS])
+        entry[:] = states, states - fingertips * sensor_states, sensor_states, s.modes, s.mean, beside
     k, m = int(sizes[:, 0].max()), int(sizes[:, 3].max()) * fingertips
     rows = np.zeros((count, TIPPED + 4 * fingertips + 2 * pairs + m, k))
     tables = HeatTables(dt, sizes, rows, np.zeros((count, pairs, m, m), complex))
@@ -181,7 +184,7 @@ def no_heat_tables(fingertips: int, dt: float) -> HeatTables:
     """The tables of no network."""
     pairs = len(POLES)
     rows = np.zeros((0, TIPPED + 4 * fingertips + 2 * pairs, 0))
-    return HeatTables(dt, np.zeros((0, 5), np.int64), rows, np.zeros((0, pairs, 0, 0), complex))
+    return HeatTables(dt, np.zeros((0, 6), np.int64), rows, np.zeros((0, pairs, 0, 0), complex))
 
 
 def advance_heat(
@@ -196,8 +199,8 @@ def advance_heat(
     """State (B, K) after `samples` steps and what was read at each.
 
     network: (B,) which of the tables' networks. state: (B, K). conductance: (B, F) W/K of each contact, constant over
-    the call, >= 0. difference: (B, F) K, what sensor less object was when both were uniform. active: (B,) bool; other
-    rows are left as they are and cost nothing. The input is not changed.
+    the call, >= 0; pads around sensors' faces are apart. difference: (B, F) K, what sensor less object was when both
+    were uniform. active: (B,) bool; other rows are left as they are and cost nothing. The input is not changed.
     """
     rows, fingertips = conductance.shape
     per_tip, per_row = (rows, samples, fingertips), (rows, samples)
@@ -242,20 +245,31 @@ def shift_thermostats(
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _advance_rows(tables, network, state, conductance, difference, active, reading):
     room = workspace(tables.rows.shape[2], tables.gram.shape[3])
+    apart = np.zeros(conductance.shape[1])
     for b in range(len(active)):
         if active[b]:
             for k in range(reading.drop.shape[1]):
                 advance_row(
-                    tables, network[b], state[b], conductance[b], difference[b], 0.0, room, reading, b, k
+                    tables,
+                    network[b],
+                    state[b],
+                    conductance[b],
+                    apart,
+                    difference[b],
+                    0.0,
+                    room,
+                    reading,
+                    b,
+                    k,
                 )
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def advance_row(tables, i, x, conductance, difference, around, room, reading, b, k):
+def advance_row(tables, i, x, conductance, beside, difference, around, room, reading, b, k):
     """One sample of advance_heat of one row for compiled callers: network i, state x (K,) in place, conductance and
-    difference (F,), into sample k of row b of the reading. around: K, the surroundings above the object's first
-    temperature; air_loss stays what would be lost to surroundings at that temperature. room: a workspace of the
-    tables' size."""
+    difference (F,), into sample k of row b of the reading. beside: (F,) W/K of the pads around the faces. around: K,
+    the surroundings above the object's first temperature; air_loss stays what would be lost to surroundings at that
+    temperature. room: a workspace of the tables' size."""
     fingertips = reading.drop.shape[2]
     n, object_states, sensor_states, p = (
         tables.sizes[i, 0],
@@ -287,6 +301,9 @@ def advance_row(tables, i, x, conductance, difference, around, room, reading, b,
             drive[j] = 0.0
             weight[j] = conductance[f]
         drive[f * p] = difference[f]
+        for j in range(f * p + 1, f * p + 1 + tables.sizes[i, 5]):
+            weight[j] = beside[f]
+            drive[f * p + 1] = difference[f]
     reading.air_loss[b, k] = advance(system, x, weight, drive, flow, room)
     for f in range(fingertips):
         reading.drop[b, k, f] = _dot(rows[drop + f], x, n)
@@ -294,6 +311,8 @@ def advance_row(tables, i, x, conductance, difference, around, room, reading, b,
         reading.sensor_rise[b, k, f] = _dot(rows[sensor + f], x, n)
         reading.object_rise[b, k, f] = _dot(rows[face + f], x, n)
         reading.flow[b, k, f] = flow[f * p]
+        if tables.sizes[i, 5] > 0:
+            reading.flow[b, k, f] += flow[f * p + 1]
     reading.object_heat[b, k] = _dot(rows[OBJECT_HEAT], x, n)
 
 

@@ -17,7 +17,7 @@ from .curved_table import (
     even_places,
     table_values,
 )
-from .fingertip import element_joint, face_joint, skinned, touching
+from .fingertip import element_joint, face_joint, pad_joint, skinned, touching
 from .footprint import (
     LOG_LEAST,
     LOG_MOST,
@@ -44,6 +44,7 @@ from .law import (
     cylinder_law,
     flat_footprint,
     flat_law,
+    pad_law,
     round_footprint,
     sphere_footprint,
     sphere_law,
@@ -123,6 +124,8 @@ __all__ = [
     "footprint",
     "gas_conduction",
     "joint",
+    "pad_joint",
+    "pad_law",
     "patch_ends",
     "patch_offset",
     "element_joint",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..matter import Skin
+from ..matter import Material, Skin
 from .area import Pad
 from .rough_faces import LAPPED_ALUMINA, THERMOSTAT_FACE, Joint, Surface, joint
 
@@ -27,6 +27,13 @@ def touching(skin: Skin | None) -> Surface:
 def face_joint(skin: Skin | None, other: Surface) -> Joint:
     """The faces of a fingertip and of what it touches. Under a skin spots conduct no more than at full contact."""
     return joint(touching(skin), other, full_contact=skin is not None)
+
+
+def pad_joint(skin: Skin | None, pad: Material, other: Surface) -> Joint:
+    """The faces of the pad of that material around a sensor, or of the skin over both, and of what it touches. Both are
+    soft: spots conduct no more than at full contact. Raises InvalidValueError for a pad without a surface."""
+    front = Surface.of(pad if skin is None else skin.made_of)
+    return joint(front, other, full_contact=True)
 
 
 def element_joint(other: Surface = THERMOSTAT_FACE) -> Joint:

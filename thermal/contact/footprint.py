@@ -231,8 +231,9 @@ def conductance(law, pressure):
 @njit(cache=True, error_model="numpy")
 def beside_face(law, halves, force, place, areas):
     """W/(m2 K) where a flat object touches a pad beside the sensor's face, at a normal force N > 0 on the pad, whose
-    own pressure is less there than on the face under a skin; the surfaces are the face's. Fills areas (R,) m2 of what
-    it touches of rings around the face, of which halves (R,) m are half the outer sides. place: as contact's."""
+    own pressure is less there than on the face under a skin. law: pad_law's, of the pad's own surface. Fills areas (R,)
+    m2 of what it touches of rings around the face, of which halves (R,) m are half the outer sides. place: as
+    contact's."""
     on_pad, within = _overlap(law, place)
     bearing, touched = on_pad + (law.ratio - 1.0) * within, False
     for ring in range(len(halves)):

@@ -12,9 +12,9 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, positive
 
-from ..matter import Skin
+from ..matter import Material, Skin
 from .area import ContactArea, Pad, flat_contact
-from .fingertip import face_joint, skinned
+from .fingertip import face_joint, pad_joint, skinned
 from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductance, joint, solid_conductance
 
 FLAT, CYLINDER, SPHERE, TABLE = range(4)
@@ -86,6 +86,21 @@ def flat_law(
     if across is not None:
         law["size"], law["across"] = size, across
     return law
+
+
+def pad_law(
+    pad: Pad,
+    skin: Skin | None,
+    around: Material,
+    other: Surface,
+    size: tuple[float, float],
+    across: tuple[int, int],
+) -> np.void:
+    """The law by which what surrounds the sensor conducts to a flat object, `beside_face`'s to evaluate: its own
+    surfaces, and its own pressure. pad: the springs; skin: over all of it, None for a bare one; around: the material
+    around the sensor. other: the object's surface. size, across: as flat_law's. Raises InvalidValueError for materials
+    without a surface."""
+    return flat_law(skinned(pad, skin), pad_joint(skin, around, other), size, across)
 
 
 def cylinder_law(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:

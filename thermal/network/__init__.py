@@ -5,7 +5,7 @@ from . import coupling
 from .air import free_area, with_air
 from .boxes import LEVELS, box_choice, box_system, lumped_air_error
 from .cached import network_for, network_of
-from .choice import FIRST, Choice, Demand, candidates, responses
+from .choice import FIRST, Choice, Demand, candidates, even_ports, responses
 from .coupling import POLES, WEIGHTS, propagator, step
 from .kernel import StepArrays, advance, step_arrays, workspace
 from .modes import patch_modes
@@ -34,6 +34,7 @@ __all__ = [
     "box_system",
     "candidates",
     "coupling",
+    "even_ports",
     "excited_states",
     "free_area",
     "lumped_air_error",

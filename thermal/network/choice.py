@@ -13,6 +13,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
+from ..padded import RING_PORTS
 from ..plates import Geometry
 from .states import (
     Orders,
@@ -36,13 +37,15 @@ _CUTS = np.geomspace(0.3, 1e-8, 40)  # weight below which states are left out
 class Demand:
     """What a network is to be good for. tolerance: K of temperature drop from FIRST s on. difference: K between sensor
     and object at the touch. conductances: W/(m2 K) that occur. horizon: s of contact. opposite: W/(m2 K) of the second
-    fingertip while the first touches, None where it is the first's."""
+    fingertip while the first touches, None where it is the first's. beside: W/(m2 K) of the pads around the faces that
+    touch, None where it is the faces'."""
 
     tolerance: float
     difference: float
     conductances: tuple[float, ...] = (1e2, 1e3, 1e4, 1e5)
     horizon: float = 20.0
     opposite: float | None = None
+    beside: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +121,25 @@ def drops(
     return np.array([_response(rates, ports, row, geometry, demand, *case) for case in cases])
 
 
+def port_weights(geometry: Geometry, modes: int, face: float, beside: float | None) -> np.ndarray:
+    """(modes,) W/K of the ports of one contact. face, beside: W/(m2 K), see Demand; a fingertip whose face is apart is
+    apart with its pad."""
+    if geometry.surround is None:
+        return np.full(modes, face * geometry.area)
+    weights = np.full(modes, face * geometry.stack.face_area)
+    around = max(geometry.area - geometry.stack.face_area, 0.0)
+    weights[RING_PORTS] = (face if beside is None or face == 0 else beside) * around
+    return weights
+
+
+def even_ports(geometry: Geometry, modes: int) -> np.ndarray:
+    """(modes,) 1 at the ports of one contact that a difference of temperature drives, whose flows are all heat."""
+    even = np.eye(modes)[0]
+    if geometry.surround is not None:
+        even[: RING_PORTS.start + 1] = 1.0
+    return even
+
+
 def _cases(fingertips: int, demand: Demand) -> list[tuple[float, float]]:
     """(conductance of the first fingertip, of the second)."""
     alone = [(conductance, 0.0) for conductance in demand.conductances]
@@ -148,8 +170,9 @@ def _response(
     weights = np.zeros(ports.shape[1])
     drive = np.zeros_like(weights)
     for tip, conductance in enumerate((first, second)[: geometry.fingertips]):
-        weights[tip * modes : (tip + 1) * modes] = conductance * geometry.area
-        drive[tip * modes] = demand.difference
+        of_tip = slice(tip * modes, (tip + 1) * modes)
+        weights[of_tip] = port_weights(geometry, modes, conductance, demand.beside)
+        drive[of_tip] = demand.difference * even_ports(geometry, modes)
     scaled = ports * np.sqrt(weights)
     decay, vectors = np.linalg.eigh(np.diag(rates) + scaled @ scaled.T)
     source = vectors.T @ (ports @ (weights * drive))

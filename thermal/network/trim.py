@@ -17,7 +17,7 @@ import numpy as np
 
 from ..numerics import ThermalNetwork
 from ..plates import Geometry
-from .choice import Demand, drops
+from .choice import Demand, drops, even_ports, port_weights
 from .states import MOMENTS, StateBasis, excited_states
 from .system import ContactSystem
 
@@ -25,6 +25,8 @@ _CUTS = np.geomspace(0.3, 1e-8, 33)  # of a state's weight beside the largest
 _SENSOR = 4.0  # times as little is cut off fingertips, whose states are the drop
 
 _UNTOUCHED = 1e4  # W/(m2 K), for whose flows states are kept where nothing conducts
+
+_LEAST = 1e-9  # of the face's conductance, that of a pad which does not touch
 
 Join = Callable[[ThermalNetwork, ThermalNetwork, int], ContactSystem]
 """The system of a fingertip's network and the object's, of so many patterns a contact."""
@@ -103,10 +105,10 @@ def _on_first(
     box = ThermalNetwork(box.rates, box.ports[:, columns], box.direct[np.ix_(columns, columns)], box.outputs)
     across, through = sensor.impedance(MOMENTS), box.impedance(MOMENTS)
     all_tips, one_tip = [], []
-    even = np.zeros(fingertips * count)
-    even[::count] = 1.0
+    even = np.tile(even_ports(geometry, count), fingertips)
     for h in [each for each in demand.conductances if each > 0] or [_UNTOUCHED]:
-        tip_side = across + np.eye(count) / (h * geometry.area)
+        weights = port_weights(geometry, count, h, demand.beside)
+        tip_side = across + np.diag(1 / np.maximum(weights, _LEAST * weights[0]))
         one = through[:, :count, :count] + tip_side
         flow = np.zeros((len(MOMENTS), fingertips * count))
         flow[:, :count] = np.linalg.solve(one, even[:count, None])[..., 0]

@@ -44,14 +44,35 @@ class RingedSamples:
         and rings against one another, from those of the face (P, M), the even one first: a conductance per area is the
         same number for all of them."""
         kept, count, rings = face_basis.shape[1], len(face_basis), len(self.areas)
-        shares = np.array([self.face, *self.areas]) / self.front
-        regions = np.linalg.qr(np.column_stack((np.sqrt(shares), np.eye(rings + 1)[:, 1:])))[0]
-        regions *= np.sign(regions[0, 0]) * np.sqrt(shares)[:, None]
+        regions = np.sqrt(self._shares)[:, None] * _orthonormal(self._shares)
         basis = np.zeros((count + rings, kept + rings))
         basis[:count, : rings + 1] = np.outer(face_basis[:, 0], regions[0])
         basis[count:, : rings + 1] = regions[1:]
-        basis[:count, rings + 1 :] = face_basis[:, 1:] * np.sqrt(shares[0])
+        basis[:count, rings + 1 :] = face_basis[:, 1:] * np.sqrt(self._shares[0])
         return basis
+
+    def apart(self, ports: int) -> np.ndarray:
+        """(ports, ports), what makes of orthonormal's combinations such that are orthonormal over the face alone and
+        over the rings alone (RING_PORTS), so that each of the two has a conductance of its own."""
+        shares, rings = self._shares, len(self.areas)
+        around = shares[1:].sum()
+        regions = np.eye(rings + 1) / np.sqrt(shares[0])
+        if around > 0:
+            regions[1:, 1:] = _orthonormal(shares[1:] / around) / np.sqrt(around)
+        turn, of_regions = np.eye(ports) / np.sqrt(shares[0]), slice(rings + 1)
+        turn[of_regions, of_regions] = _orthonormal(shares).T @ regions
+        return turn
+
+    @property
+    def _shares(self) -> np.ndarray:
+        """(1 + R,) of the front, the face's and the rings'."""
+        return np.array([self.face, *self.areas]) / self.front
+
+
+def _orthonormal(shares: np.ndarray) -> np.ndarray:
+    """Orthonormal columns, the first of them the roots of these shares of a whole."""
+    columns = np.linalg.qr(np.column_stack((np.sqrt(shares), np.eye(len(shares))[:, 1:])))[0]
+    return np.sign(columns[0, 0]) * columns
 
 
 def _means(rings: int) -> np.ndarray:
@@ -84,13 +105,12 @@ def ringed_samples(stack: SensorStack, surround: Surround, rings: tuple[float, .
     ):
         row[:, :count] = np.outer(slow @ (of_states * known.ports) + rest, GRAM[0])
     layers, areas = _beside(stack, surround), np.diff((width**2, *(side**2 for side in rings)))
-    turned = (MOMENTS * (1 + 1j * _TINY))[:, None]
-    through = stack_impedance(layers, "isothermal", turned, np.zeros(1))[:, 0]
+    value, rate = _column(layers)
     _, flows = stack_profile(layers, "isothermal", MOMENTS[:, None], np.zeros(1))
     for ring, area in enumerate(areas.tolist(), count):
         if area > 0:
-            impedance[:, ring, ring] = np.real(through) / area
-            slope[:, ring, ring] = np.imag(through) / (MOMENTS * _TINY) / area
+            impedance[:, ring, ring] = value / area
+            slope[:, ring, ring] = rate / area
             heat[:, ring] = (flows[0] - flows[-1])[:, 0] / MOMENTS
     impedance += stand_for.T @ change.impedance @ stand_for
     slope += stand_for.T @ change.slope @ stand_for
@@ -100,6 +120,28 @@ def ringed_samples(stack: SensorStack, surround: Surround, rings: tuple[float, .
     for each in (found.impedance, found.slope, found.drop, found.heat):
         each.setflags(write=False)
     return found
+
+
+def covered_samples(
+    stack: SensorStack, surround: Surround, rings: tuple[float, ...], areas: np.ndarray
+) -> RingedSamples:
+    """The same of rings of which only (R,) m2 touch: what the pad alone is to a ring is as much more as the part is
+    smaller."""
+    whole = ringed_samples(stack, surround, rings)
+    value, rate = _column(_beside(stack, surround))
+    impedance, slope, count = whole.impedance.copy(), whole.slope.copy(), len(GRAM)
+    for ring, (area, of) in enumerate(zip(areas.tolist(), whole.areas.tolist(), strict=True), count):
+        if 0 < area < of * (1 - 1e-9):
+            impedance[:, ring, ring] += (1 / area - 1 / of) * value
+            slope[:, ring, ring] += (1 / area - 1 / of) * rate
+    return replace(whole, impedance=impedance, slope=slope, areas=areas)
+
+
+def _column(layers: tuple[Layer, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """(S,) m2 K/W of the pad cut apart from the element under an even flow, and its derivative by the moment."""
+    turned = (MOMENTS * (1 + 1j * _TINY))[:, None]
+    through = stack_impedance(layers, "isothermal", turned, np.zeros(1))[:, 0]
+    return np.real(through), np.imag(through) / (MOMENTS * _TINY)
 
 
 def _beside(stack: SensorStack, surround: Surround) -> tuple[Layer, ...]:

@@ -14,6 +14,9 @@ from ..matter import Surround
 RINGS = 3
 WIDTHS = np.cumsum([1.0, 2.0, 4.0]) / 7.0
 """(RINGS,) of the way from the face's edge to the pad's, where each ring ends."""
+RING_PORTS = slice(1, 1 + RINGS)
+"""Of the ports of a padded contact, flows into the pad around the face, the first of them even. Before them is an even
+flow into the face, and behind them what is crowded toward its edges."""
 _SEEN = 1e-6  # of a ring and what is in it, below which nothing of the ring touches
 
 

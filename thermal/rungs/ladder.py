@@ -246,7 +246,8 @@ def _demand(problem: PressProblem, t: np.ndarray, tolerance: float) -> Demand:
             conductances += expected(given, t)
     opposite = None if callable(problem.opposite) else problem.opposite
     horizon = float(max(t[-1], 2 * FIRST))
-    return Demand(tolerance, problem.temperature_difference, conductances, horizon, opposite)
+    difference, beside = problem.temperature_difference, problem.beside
+    return Demand(tolerance, difference, conductances, horizon, opposite, beside)
 
 
 def expected(conductance: Conductance, t: np.ndarray) -> tuple[float, ...]:

@@ -14,11 +14,13 @@ from ..network import (
     ContactSystem,
     StepArrays,
     advance,
+    even_ports,
     propagator,
     step_arrays,
     with_air,
     workspace,
 )
+from ..padded import RING_PORTS
 from ..plates import Geometry
 from ..readout import ThermostatState, settled_thermostat, thermostat_at, thermostat_step
 from ..stack import CoreState, heated_core
@@ -68,17 +70,26 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
         sensor_states=system.orders.sensor,
     )
     middles = (np.arange(steps * (len(t) - 1)) + 0.5) * dt
-    weights = np.zeros((len(middles), fingertips))
+    # of the faces, then of the pads around them
+    weights, modes = np.zeros((len(middles), 2 * fingertips)), system.modes
     for tip, conductance in enumerate(pressed):
-        weights[:, tip] = _values(conductance, middles) * problem.area
+        weights[:, [tip, fingertips + tip]] = _of_contact(problem, _values(conductance, middles))
+    columns, even = np.repeat(np.arange(fingertips), modes), even_ports(system.geometry, modes)
+    if problem.surround is not None:
+        for tip in range(fingertips):
+            columns[tip * modes :][:modes][RING_PORTS] += fingertips
     states = np.zeros((len(t), len(system.rates)))
     offset, reading = np.zeros(len(t)), None
     if ideal:
-        _march(arrays, weights, problem.temperature_difference, steps, states)
+        drive = np.tile(problem.temperature_difference * even, fingertips)
+        _march(arrays, weights, columns, drive, steps, states)
     else:
-        offset, reading = _march_with_backs(problem, system, arrays, weights, steps, states)
-    now = _values(problem.conductance, t) * problem.area
-    flows = now * (problem.temperature_difference + offset - states @ system.ports[:, 0])
+        faces = np.ascontiguousarray(weights[:, :fingertips])
+        offset, reading = _march_with_backs(problem, system, arrays, faces, steps, states)
+    now = _of_contact(problem, _values(problem.conductance, t))
+    flows = now[:, 0] * (problem.temperature_difference + offset - states @ system.ports[:, 0])
+    if problem.surround is not None and modes > RING_PORTS.start:
+        flows += now[:, 1] * (problem.temperature_difference - states @ system.ports[:, RING_PORTS.start])
     element = states @ system.element_heat[0]
     if problem.mode == "T":  # the states hold temperatures above the thermostat's
         element = element + system.geometry.element_capacity * offset
@@ -90,6 +101,15 @@ def solve(problem: PressProblem, t: np.ndarray, system: ContactSystem) -> PressC
         stored_heat=np.stack((element, states @ system.object_heat), axis=1),
         reading=reading if problem.heated else None,
     )
+
+
+def _of_contact(problem: PressProblem, conductance: np.ndarray) -> np.ndarray:
+    """(n, 2) W/K of a fingertip's face and of the pad around it, from the face's (n,) W/(m2 K)."""
+    if problem.surround is None:
+        return np.stack((conductance * problem.area, np.zeros(len(conductance))), axis=1)
+    face = problem.stack.face_area
+    beside = conductance if problem.beside is None else problem.beside * (conductance > 0)
+    return np.stack((conductance * face, beside * max(problem.area - face, 0.0)), axis=1)
 
 
 def _march_with_backs(
@@ -159,18 +179,17 @@ def _back(problem: PressProblem, fingertips: int, dt: float) -> tuple[_Back, _Fo
 
 
 @njit(cache=True, error_model="numpy")
-def _march(arrays, conductance, difference, steps, states):
-    """States (n, K) at the samples; conductance (W/K) of every step and fingertip, `steps` of them between samples."""
-    ports, modes = arrays.ports.shape[0], arrays.modes
-    weight, drive, flow = np.zeros(ports), np.zeros(ports), np.zeros(ports)
-    for f in range(arrays.contacts):
-        drive[f * modes] = difference
+def _march(arrays, conductance, columns, drive, steps, states):
+    """States (n, K) at the samples; conductance (W/K) of every step and contact, `steps` of them between samples.
+    columns (M,): the contact of each port. drive (M,): K."""
+    ports = arrays.ports.shape[0]
+    weight, flow = np.zeros(ports), np.zeros(ports)
     room = workspace(arrays.rates.shape[0], ports)
     state = states[0].copy()
     for i in range(1, states.shape[0]):
         for k in range(steps):
-            for f in range(arrays.contacts):
-                weight[f * modes : (f + 1) * modes] = conductance[(i - 1) * steps + k, f]
+            for p in range(ports):
+                weight[p] = conductance[(i - 1) * steps + k, columns[p]]
             advance(arrays, state, weight, drive, flow, room)
         states[i] = state
 

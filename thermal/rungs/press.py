@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, numbers, positive
+from thermograsp.errors import InvalidValueError, non_negative, numbers, positive
 
+from ..contact import Pad, Surface, beside_face, pad_law
 from ..matter import Material, Mode, SensorStack, Shape, Skin, Surround
 from ..matter import material as named_material
 from ..matter import skin as named_skin
@@ -20,6 +22,7 @@ from .problem import Conductance, PressCurves, PressProblem
 
 _MOST_SAMPLES = 10_000_000
 _USUAL, _FACE = 1e4, 81e-6  # W/(m2 K), m2
+_FORCE = 10.0  # N on the pad around an element
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +69,7 @@ def press(
     opposite: Conductance | None = None,
     thermostat: Thermostat | None = None,
     surround: str | Material | Surround | None = None,
+    surround_conductance: float | None = None,
     cache: bool = True,
 ) -> Press:
     """Presses the sensor on the middle of a face of an object, both uniform at first.
@@ -83,9 +87,10 @@ def press(
     first one's. thermostat: one of finite power, at sensor_temperature at first, None for an ideal one. surround: what
     holds the element and touches the object around its face: the name of a material or a Material for a square pad of
     20 mm, or a Surround; None for a sensor by itself. All of the pad that the object's face reaches then touches, as
-    warm as the thermostat at first, and the same conductance is taken for it; heat_flow, the surfaces' temperatures and
-    stored_heat are those of the whole front and of element and pad together. It is in mode "T", on an ideal thermostat.
-    cache: keep networks on disk.
+    warm as the thermostat at first; heat_flow and stored_heat are those of the whole front and of element and pad
+    together, the surfaces' temperatures the face's. It is in mode "T", on an ideal thermostat. surround_conductance:
+    W/(m2 K) of the pad's own contact, of either fingertip while its face's conducts; None for that of the pad's
+    surface, or of the skin's, under 10 N on the pad. cache: keep networks on disk.
 
     A heated sensor (one with a `touch` table) has been at sensor_temperature for long, in air of object_temperature,
     and its heater's law goes on from there; a controller's setpoint is that temperature. Its element in front of the
@@ -96,13 +101,20 @@ def press(
     named_skin(skin, mode)  # checks it
     pressed = pressed_sensor(sensor, conductance, force, skin)
     size = numbers("object_size (m)", object_size, 3)
-    around = named_surround(surround, mode)
+    around, beside = named_surround(surround, mode), None
+    if around is None and surround_conductance is not None:
+        raise InvalidValueError(
+            "surround_conductance is of the contact of a surround: give one, or leave it out"
+        )
     if around is not None:
         if area is not None:
             raise InvalidValueError("with a surround all of it touches: leave area out")
         worn = named_skin(skin)
         around = around.around(_bare(pressed.stack, worn is not None))
         area = min(around.width, size[0]) * min(around.width, size[1])
+        if surround_conductance is None:
+            surround_conductance = _of_pad(around, worn, pressed.stack, named_material(material), size)
+        beside = non_negative("surround_conductance (W/(m2 K))", surround_conductance)
     problem = PressProblem(
         stack=pressed.stack,
         material=named_material(material),
@@ -119,6 +131,7 @@ def press(
         heated=pressed.heated,
         force=pressed.force,
         surround=around,
+        beside=beside,
     )
     positive("tolerance (K)", tolerance)
     t = sample_times(seconds, dt)
@@ -129,6 +142,18 @@ def press(
 def _bare(stack: SensorStack, skinned: bool) -> SensorStack:
     """The element under its skin."""
     return replace(stack, layers=stack.layers[:-1]) if skinned else stack
+
+
+def _of_pad(
+    around: Surround, skin: Skin | None, stack: SensorStack, body: Material, size: Sequence[float]
+) -> float:
+    """W/(m2 K) of the contact of what surrounds an element."""
+    pad, made = Pad(width=around.width, face=stack.width), named_material(around.material)
+    try:
+        law = pad_law(pad, skin, made, Surface.of(body), (size[0], size[1]), (0, 1))
+    except InvalidValueError as error:
+        raise InvalidValueError(f"{error} (surround_conductance)") from error
+    return float(beside_face(law, np.array([around.width / 2]), _FORCE, np.zeros(3), np.zeros(1)))
 
 
 def sample_times(seconds: float, dt: float) -> np.ndarray:

@@ -30,7 +30,8 @@ class PressProblem:
     same kind on the opposite face, None for none; the curves are the first one's. thermostat: one of finite power
     that is settled at sensor_temperature at first, None for an ideal one. heated: a sensor with a heater of its own in
     place of a thermostat, whose element `stack` then is. force: N on it, a number or a function of time in s. surround:
-    around the element, with its depth; area is then of all of its front that touches.
+    around the element, with its depth; area is then of all of its front that touches. beside: W/(m2 K) of the
+    surround's contact while the face's conducts, None for as much as the face's.
     """
 
     stack: SensorStack
@@ -48,6 +49,7 @@ class PressProblem:
     heated: HeatedStack | None = None
     force: Conductance = np.inf
     surround: Surround | None = None
+    beside: float | None = None
 
     def __post_init__(self) -> None:
         if self.mode not in ("T", "O"):

@@ -230,7 +230,7 @@ def feel(
                     last = target
             if pads[f, AROUND] > 0 and geom >= 0:
                 # of objects that are one flat box each, which the scene sees to
-                through = beside_face(law, pads[f, AROUND:], force, place, rings)
+                through = beside_face(laws[f, g, 3 + axis], pads[f, AROUND:], force, place, rings)
                 for ring in range(RINGS):
                     if rings[ring] > 0:
                         at = BESIDE + 3 * ring

@@ -21,9 +21,10 @@ from ...thermal import (
     cylinder_law,
     flat_law,
     joint,
+    material,
     sphere_law,
 )
-from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, skinned
+from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, pad_joint, skinned
 from ...thermal.pressed import PressedMesh
 from ..scene import BodyShape, PadPlace, is_round, mesh_of
 from .tilt import TILT, tilt_row
@@ -34,11 +35,13 @@ _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 
 class PairLaws(NamedTuple):
-    """laws: (F, N, 3) CONTACT_LAW records. curved: (F, N, A) numbers of the tables of what is curved, by axis, and of
-    meshes, by view; -1 for what is flat. tables: K, (CURVED_TABLE,) each. meshes: of the numbers behind them. tilts:
-    (F, N, 3, TILT) of rods, 0 of others. views: (N, A, VIEW) of meshes, and viewed: (N,) how many."""
+    """laws: (F, N, 3) CONTACT_LAW records, and beside: those of the pads around the sensors, zeros without. curved: (F,
+    N, A) numbers of the tables of what is curved, by axis, and of meshes, by view; -1 for what is flat. tables: K,
+    (CURVED_TABLE,) each. meshes: of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N, A,
+    VIEW) of meshes, and viewed: (N,) how many."""
 
     laws: np.ndarray
+    beside: np.ndarray
     curved: np.ndarray
     tables: tuple[np.ndarray, ...]
     meshes: tuple[PressedMesh, ...]
@@ -57,6 +60,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     along; and on each other pad, whose sides are taken as parallel to its own."""
     geoms = [(shape, geom) for shape in shapes for geom in shape.geoms]
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
+    beside = np.zeros_like(laws)
     views, viewed = stacked_views(model, [geom for _, geom in geoms], len(pads))
     curved, tilts = np.full((*laws.shape[:2], views.shape[1]), -1, np.int64), np.zeros((*laws.shape, TILT))
     tables: list[np.ndarray] = []
@@ -67,7 +71,10 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         # a round geom under a rod has no edge on which the rod could come to lie
         flat = not all(is_round(model, geom) for geom in pad.geoms)
         for g, (shape, geom) in enumerate(geoms):
-            faces = face_joint(pad.skin, Surface.of(shape.material))
+            other, around = Surface.of(shape.material), None
+            faces = face_joint(pad.skin, other)
+            if pad.surround is not None:
+                around = pad_joint(pad.skin, material(pad.surround.material), other)
             if viewed[g] and not sum(pad.curvature) > 0:
                 for k, pressed in enumerate(
                     _pressed(model, geom, views[g, : viewed[g]], pad, silicone, shape)
@@ -75,6 +82,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                     meshes.setdefault(pressed, []).append((f, g, k))
             for axis in range(3):
                 laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
+                if around is not None:
+                    beside[f, g, axis] = _law(model, geom, axis, sheet, around)
                 size = _curved(model, geom, axis)
                 if size is None or sum(pad.curvature) > 0:
                     continue
@@ -92,7 +101,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     for number, pairs in enumerate(meshes.values(), len(tables)):
         for pair in pairs:
             curved[pair] = number
-    return PairLaws(laws, curved, tuple(tables), tuple(meshes), tilts, views, viewed)
+    return PairLaws(laws, beside, curved, tuple(tables), tuple(meshes), tilts, views, viewed)
 
 
 def _pressed(

@@ -65,9 +65,10 @@ class ContactReader:
         self._views, viewed = stacked_views(model, [geom for _, geom in geoms], count)
         self._parts = np.column_stack((np.array(parts, np.int64), viewed))
         self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
-        # of each combination of the objects' materials that there is, and which of them each world has
+        # of each combination of the objects' materials that there is, and which of them each world has; laws of faces
+        # by axis, and behind them those of the pads around them
         self._known: dict[tuple[Material, ...], int] = {}
-        self._laws = np.zeros((0, 0, 0, 3), CONTACT_LAW)
+        self._laws = np.zeros((0, 0, 0, 6), CONTACT_LAW)
         self._curved = np.zeros((0, 0, 0, 3), np.int64)
         self._tilts = np.zeros((0, 0, 0, 3, TILT))
         self._every: list[np.ndarray] = []
@@ -94,7 +95,8 @@ class ContactReader:
                 numbers = [*map(self._number, found.tables), *map(self._number_of, found.meshes)]
                 numbers = np.array([*numbers, -1])  # the last of flat targets
                 before = self._laws, self._curved, self._tilts
-                after = found.laws[None], numbers[found.curved][None], found.tilts[None]
+                both = np.concatenate((found.laws, found.beside), axis=-1)
+                after = both[None], numbers[found.curved][None], found.tilts[None]
                 if len(self._known) > 1:
                     after = tuple(map(np.concatenate, zip(before, after, strict=True)))
                 self._laws, self._curved, self._tilts = after

@@ -53,7 +53,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     pushed = carray(floats(entries[5]), (tips, part_count, 3))  # room for forces and moments
     touches = carray(floats(entries[6]), (tips, targets, COLUMNS))
     beside = carray(floats(entries[7]), tips)
-    law = carray(laws(entries[8]), (tips, part_count, 3))
+    law = carray(laws(entries[8]), (tips, part_count, 6))
     curved = carray(words(entries[9]), (tips, part_count, sides))
     tables = carray(floats(entries[10]), (entries[20], CURVED_TABLE))
     frames, spot = carray(floats(entries[11]), (tips, PLACED)), carray(floats(entries[12]), SPOT)
@@ -129,7 +129,7 @@ def sense_contacts(record_at, first, last, entries_at):
     pads, parts = carray(floats(entries[5]), (tips, PAD)), carray(words(entries[6]), (part_count, 4))
     which = carray(words(entries[8]), worlds)
     kinds = which.max() + 1
-    law = carray(laws(entries[7]), (kinds, tips, part_count, 3))
+    law = carray(laws(entries[7]), (kinds, tips, part_count, 6))
     curved = carray(words(entries[19]), (kinds, tips, part_count, sides))
     tables = carray(floats(entries[20]), (entries[33], CURVED_TABLE))
     views = carray(floats(entries[24]), (part_count, sides, VIEW))

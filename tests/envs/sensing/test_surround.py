@@ -17,7 +17,21 @@ import thermograsp.envs  # noqa: F401  (registers the environments)
 from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size
 from thermograsp.envs.sensing import GraspHeat
 from thermograsp.errors import InvalidValueError, UnknownNameError
-from thermograsp.thermal import Material, Surround, Thermostat, material, press, sensor
+from thermograsp.thermal import (
+    Material,
+    Pad,
+    Surface,
+    Surround,
+    Thermostat,
+    contact_conductance,
+    flat_contact,
+    joint,
+    material,
+    press,
+    sensor,
+)
+from thermograsp.thermal.contact import beside_face, skinned
+from thermograsp.thermal.matter import skin as named_skin
 from thermograsp.thermal.padded import ring_sides
 from thermograsp.touch import Fingertip
 from thermograsp.touch.contacts import AREA, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, LENGTH, NORMAL, PLACE
@@ -53,7 +67,7 @@ def held(heat: GraspHeat, steps: int, row: int = 0, force: float = FORCE) -> tup
 def test_a_held_box_is_as_cold_as_a_press_with_a_surround_says(
     name: str, thickness: float, skin: str | None
 ) -> None:
-    """One fingertip, on a pad that conducts as well as the sensor's face."""
+    """One fingertip, and a pad whose contact is its own."""
     spec = ObjectSpec(size=(thickness, 0.04, 0.04))
     heat, body = heat_of(), body_of(name, spec, fingertips=1, skin=skin)
     heat.reset([0], [body])
@@ -95,6 +109,31 @@ def test_two_fingertips_feel_each_other_through_a_plate() -> None:
     np.testing.assert_allclose(drop[4:, 0], pressed.temperature_drop[5:], atol=0.04)
 
 
+@pytest.mark.parametrize("force", [1.0, 30.0])
+@pytest.mark.parametrize(("name", "skin"), [("sandstone", None), ("potato", "filled_silicone")])
+def test_face_and_pad_conduct_by_a_pressure_each_has(name: str, skin: str | None, force: float) -> None:
+    """Of rough and of soft objects, on which they conduct least alike."""
+    heat, body = heat_of(), body_of(name, fingertips=1, skin=skin)
+    heat.reset([0], [body])
+    drop, step = held(heat, STEPS, force=force)
+    worn, other = named_skin(skin), Surface.of(material(name))
+    own = Surface.of(material("silicone") if worn is None else worn.made_of)
+    flat = flat_contact(skinned(Pad(), worn), force)
+    pressure = (force - flat.face_force) / (flat.pad - flat.face)
+    pressed = press(
+        name,
+        skin=skin,
+        object_size=body.plate,
+        conductance=float(step.info["conductance"][0, 0]),
+        surround="silicone",
+        surround_conductance=float(contact_conductance(joint(own, other, full_contact=True), pressure)),
+        tolerance=0.045,
+        seconds=STEPS * 0.02,
+        dt=0.01,
+    )
+    np.testing.assert_allclose(drop[4:, 0], pressed.temperature_drop[5:], atol=0.04)
+
+
 @pytest.mark.parametrize("air", [0.0, 20.0])
 def test_what_flows_is_in_the_object(air: float) -> None:
     """Through touches of any force, apart in between."""
@@ -121,7 +160,7 @@ def test_one_row_is_as_alone() -> None:
         np.testing.assert_array_equal(held(alone, 50)[0], together[:, row].reshape(100, 2))
 
 
-def met(object_number: int, conducts: float) -> np.ndarray:
+def met(object_number: int, conducts: float, beside: float) -> np.ndarray:
     """What a reader of ThermalTouch tells of a pad that lies wholly on the lower face of one of two boxes."""
     touches, within = np.zeros((1, 1, 3, COLUMNS)), 0.009**2
     row = touches[0, 0, object_number]
@@ -129,14 +168,15 @@ def met(object_number: int, conducts: float) -> np.ndarray:
     row[CONDUCTANCE], row[AREA], row[LENGTH] = conducts * within, within, within * 0.009
     for ring, side in enumerate(ring_sides(0.009, Surround())):
         area, within = side**2 - within, side**2
-        row[BESIDE + 3 * ring : BESIDE + 3 * ring + 3] = conducts * area, area, 1.0
+        row[BESIDE + 3 * ring : BESIDE + 3 * ring + 3] = beside * area, area, 1.0
     return touches
 
 
 def test_a_fingertip_takes_its_warmth_from_one_object_to_the_next() -> None:
     """From aluminium to glass, beside the fields of ThermalTouch, whose fingertip keeps its own."""
     heat = heat_of(2)
-    heat.reset([0, 1], [body_of(name, fingertips=1) for name in ("aluminium", "glass")])
+    held_bodies = [body_of(name, fingertips=1) for name in ("aluminium", "glass")]
+    heat.reset([0, 1], held_bodies)
     first, step = held(heat, 100)
     stored = heat._rows["stored"][0].copy()
     heat.carry(0, 1, 0)
@@ -152,10 +192,12 @@ def test_a_fingertip_takes_its_warmth_from_one_object_to_the_next() -> None:
     fingertips = pads(model, {"tip": Fingertip("flat", surround="silicone")}, shapes)
     fields = JoinedHeat(fingertips, (), shapes, worlds=1, dt=0.01, tolerance=0.02, film=0.0, ambient=24.0)
     conducts = float(step.info["conductance"][0, 0]), float(other.info["conductance"][1, 0])
+    half, room = np.array([Surround().width / 2]), np.zeros(1)
+    beside = [beside_face(body.pad_law, half, FORCE, np.zeros(3), room) for body in held_bodies]
     expected = []
     for number, count in ((0, 200), (1, 500)):
         for _ in range(count):
-            fields.advance(met(number, conducts[number]), 1)
+            fields.advance(met(number, conducts[number], beside[number]), 1)
             expected.append(fields.drop[0, 0])
     np.testing.assert_allclose(np.concatenate((first, second))[4:, 0], expected[4:], atol=0.06)
 
@@ -178,7 +220,9 @@ def test_environments_take_it(name: str) -> None:
 
 
 def test_without_a_pad_it_is_as_before_and_with_one_that_does_nothing_nearly_so() -> None:
-    nothing = Material("nothing", conductivity=1e-3, density=1.0, specific_heat=1e3)
+    nothing = Material(
+        "nothing", conductivity=1e-3, density=1.0, specific_heat=1e3, youngs_modulus=5e6, roughness=2e-6
+    )
     drops = []
     for surround in (None, nothing):
         heat = heat_of()

@@ -25,7 +25,7 @@ from thermograsp.thermal.batch import HeatTables, advance_heat
 rng = np.random.default_rng(0)
 digest = hashlib.sha256()
 for states, modes in ((19, 1), (33, 2), (40, 3), (63, 3)):
-    sizes = np.array([[states, states - 14, 7, modes, 0]])
+    sizes = np.array([[states, states - 14, 7, modes, 0, 0]])
     rows = rng.normal(0, 0.1, (1, 4 + 4 * 2 + 2 * 3 + 2 * modes, states))
     gram = rng.normal(0, 0.1, (1, 3, 2 * modes, 2 * modes)) + 0j
     tables = HeatTables(0.01, sizes, rows, gram)

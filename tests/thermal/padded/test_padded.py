@@ -43,7 +43,7 @@ def _press(name: str, **words) -> thermal.Press:
 
 @pytest.mark.parametrize("name", ["wood", "glass", "aluminium"])
 def test_a_pad_that_hardly_conducts_changes_hardly_anything(name: str) -> None:
-    alone, padded = _press(name), _press(name, surround=NOTHING)
+    alone, padded = _press(name), _press(name, surround=NOTHING, surround_conductance=1e4)
     late = alone.t >= 0.05
     assert np.abs(padded.temperature_drop - alone.temperature_drop)[late].max() < 0.05
 
@@ -55,7 +55,7 @@ def test_a_pad_of_the_elements_own_material_makes_a_wider_element(name: str) -> 
     small = SensorStack("small", (layer,), 0.009, 0, 1e-3)
     wide = SensorStack("wide", (layer,), 0.020, 0, 1e-3)
     rubber = Material("rubber", conductivity=0.3, density=1300.0, specific_heat=1200.0)
-    padded = _press(name, sensor=small, surround=rubber)
+    padded = _press(name, sensor=small, surround=rubber, surround_conductance=1e4)
     whole = _press(name, sensor=wide, area=4e-4, tolerance=0.02)
     late = padded.t >= 0.05
     scale = whole.heat_flow[late].max()
@@ -136,11 +136,110 @@ def test_a_wider_pad_and_a_narrower_object_are_served() -> None:
         ({"surround": Surround(depth=0.01)}, "deeper|more than"),
         ({"surround": 3.0}, "material"),
         ({"surround": "aluminium"}, "conducts 237"),
+        ({"surround": NOTHING}, "nothing has no roughness.*surround_conductance"),
+        ({"surround_conductance": -1.0}, "surround_conductance"),
+        ({"surround": None, "surround_conductance": 1e4}, "surround_conductance"),
     ],
 )
 def test_what_a_surround_cannot_do_is_refused(words: dict, says: str) -> None:
     with pytest.raises(InvalidValueError, match=says):
         _press("glass", **{"surround": "silicone"} | words)
+
+
+TIMES = (0.5, 1.0, 2.0, 5.0, 10.0)  # s
+ELEMENTS = (
+    ("sandstone", None, 304.251, 940.061, (0.5877, 1.0343, 1.6588, 2.4561, 2.7041)),
+    ("wood", None, 1509.383, 2760.895, (0.8314, 1.1212, 1.3766, 1.459, 1.2713)),
+    ("glass", None, 12793.206, 8403.702, (2.9204, 3.5759, 4.0461, 4.0864, 3.7145)),
+    ("potato", "filled_silicone", 7278.093, 1062.441, (2.0746, 2.8155, 3.4373, 3.7156, 3.4588)),
+    ("stainless_steel", "filled_silicone", 176839.4, 16640.24, (5.6352, 7.1165, 8.0105, 8.3979, 8.4153)),
+    ("cotton", "filled_silicone", 3136.275, 1629.785, (0.1632, 0.218, 0.2714, 0.3017, 0.2747)),
+)
+"""Material, skin, W/(m2 K) of the face and of the pad under 10 N, and drops K of a difference of 12 K at TIMES, by
+studies/pad_square.py: drops(Touch(material, skin)), whose through() tells the conductances by rough_faces.py."""
+
+
+@pytest.mark.parametrize(("name", "skin", "face", "pad", "elements"), ELEMENTS)
+def test_the_pad_conducts_by_its_own_contact(
+    name: str, skin: str | None, face: float, pad: float, elements: tuple[float, ...]
+) -> None:
+    """Which press knows; and the drop is that of three-dimensional finite elements with both."""
+    words = {"skin": skin, "conductance": face, "object_size": (0.04, 0.04, 0.01), "surround": "silicone"}
+    pressed = _press(name, **words)
+    given = _press(name, surround_conductance=pad, **words)
+    np.testing.assert_allclose(pressed.temperature_drop, given.temperature_drop, atol=1e-4)
+    found = pressed.temperature_drop[np.round(np.array(TIMES) / 0.05).astype(int)]
+    np.testing.assert_allclose(found, elements, atol=pressed.rung.error)
+    alike = _press(name, surround_conductance=face, **words).temperature_drop - pressed.temperature_drop
+    assert (abs(alike).max() > 0.06) == (name in ("sandstone", "potato"))
+
+
+@pytest.mark.parametrize(
+    ("name", "skin", "size", "conducts", "elements", "within"),
+    [
+        ("glass", None, (0.010, 0.04, 0.01), (13195.4, 10520.3), (2.922, 3.551, 3.962, 3.873, 3.382), 0.05),
+        ("glass", None, (0.012, 0.04, 0.01), (13085.6, 9823.98), (2.928, 3.581, 4.043, 4.04, 3.592), 0.05),
+        (
+            "aluminium",
+            None,
+            (0.012, 0.04, 0.01),
+            (13158.7, 10754.5),
+            (8.421, 9.579, 9.881, 9.699, 9.323),
+            0.05,
+        ),
+        (
+            "aluminium",
+            None,
+            (0.010, 0.04, 0.002),
+            (13689.8, 11645.3),
+            (7.386, 8.088, 8.108, 7.185, 5.877),
+            0.075,
+        ),
+        (
+            *("stainless_steel", "filled_silicone", (0.010, 0.04, 0.01), (196004.7, 17835.0)),
+            *((5.596, 6.999, 7.779, 7.989, 7.817), 0.05),
+        ),
+    ],
+)
+def test_a_bar_that_the_pad_stands_over(
+    name: str,
+    skin: str | None,
+    size: tuple[float, float, float],
+    conducts: tuple[float, float],
+    elements: tuple[float, ...],
+    within: float,
+) -> None:
+    """Beside three-dimensional finite elements, drops(Touch(material, skin, size=..., depth=...))."""
+    face, pad = conducts
+    pressed = _press(
+        name,
+        skin=skin,
+        object_size=size,
+        conductance=face,
+        surround="silicone",
+        surround_conductance=pad,
+        tolerance=0.045,
+    )
+    found = pressed.temperature_drop[np.round(np.array(TIMES) / 0.05).astype(int)]
+    np.testing.assert_allclose(found, elements, atol=within)
+
+
+def test_a_pad_that_does_not_touch_warms_its_sensor_alone() -> None:
+    """Of glass: studies/pad_heat.py has it as the silicone that touches the sensor alone."""
+    apart = _press("glass", surround="silicone", surround_conductance=0.0)
+    alone = _press("glass")
+    change = (apart.temperature_drop - alone.temperature_drop)[[20, 40, 100, 200]]
+    np.testing.assert_allclose(change, (-0.20, -0.30, -0.34, -0.30), atol=0.08)
+
+
+def test_a_pad_leaves_with_its_face() -> None:
+    """A conductance that varies: while the face is apart, so is its pad."""
+    pressed = _press("glass", surround="silicone", conductance=lambda t: 1e4 if t < 5.0 else 0.0)
+    steady = _press("glass", surround="silicone")
+    t, gained = pressed.t, pressed.stored_heat[:, 1]
+    np.testing.assert_allclose(pressed.temperature_drop[t < 5], steady.temperature_drop[t < 5], atol=0.02)
+    assert (pressed.heat_flow[t > 5] == 0).all()
+    np.testing.assert_allclose(gained[t > 5.01], gained[-1], rtol=1e-9)
 
 
 def test_bad_surrounds_are_named() -> None:
