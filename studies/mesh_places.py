@@ -3,12 +3,12 @@
 A sensor of the paper touches a body at one place, or at two at once. The drop of its temperature follows from the
 network that environments use (thermal/meshes/placed.py), and from one whose states are fields of a grid that is fine at
 the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
-CONDUCTANCES over TIMES. A mug with contents that are held at its first temperature behind a film of FILMS is compared
+CONDUCTANCES over TIMES. Mugs with contents that are held at its first temperature behind a film of FILMS are compared
 with a grid that is finer still.
 
     python studies/mesh_places.py                  every case, some minutes
     python studies/mesh_places.py rim --json       those with "rim" in their name
-    python studies/mesh_places.py --filled         places of a mug with contents instead
+    python studies/mesh_places.py --filled         places of mugs with contents instead
     python studies/mesh_places.py --times          how long modes and networks take instead
 """
 
@@ -163,7 +163,9 @@ PARTS: dict[str, tuple[str, tuple[str, str], SurfacePatch, SurfacePatch]] = {
 
 
 FILMS = 50.0, 500.0, 3000.0  # W/(m2 K), of air, of still water, of water that boils
-FILLED = [name for name, (body, _) in ONE.items() if body == "mug"]
+FILLED = [
+    name for name, (body, _) in ONE.items() if body in ("mug", "pot of 1 mm", "cup of .6 mm", "tube of .2 mm")
+]
 """Places of ONE, with contents."""
 _FINEST = MeshGridding(growth=0.3, largest=1e-3)
 
@@ -338,7 +340,7 @@ def main() -> int:
     parser.add_argument("case", nargs="?", default="", help="part of a case's name")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--times", action="store_true", help="how long modes and networks take")
-    parser.add_argument("--filled", action="store_true", help="places of a mug with contents")
+    parser.add_argument("--filled", action="store_true", help="places of mugs with contents")
     chosen = parser.parse_args()
     if chosen.times:
         taken = [timed(name) for name in ROUND]

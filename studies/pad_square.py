@@ -72,7 +72,7 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     inside = lines[lines <= wide * (1 + 1e-9)]
     lower = Basis(MeshHex.init_tensor(inside, inside, below), ElementHex2(), intorder=4)
     over = [lines[lines <= each * (1 + 1e-9)] for each in ends]
-    upper = Basis(MeshHex.init_tensor(*over, above), ElementHex2(), intorder=4)
+    upper = Basis(MeshHex.init_tensor(over[0], over[1], above), ElementHex2(), intorder=4)
     stiffness, mass, body = [], [], material(touch.material)
     for basis in (lower, upper):
         x: Any = np.asarray(basis.global_coordinates())

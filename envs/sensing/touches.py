@@ -22,13 +22,14 @@ from ...thermal import (
     SurfacePatch,
 )
 from ...thermal.meshes import (
-    FILLED_SHARE,
+    PLACED_FILM,
     PLACED_SHARE,
     TouchedBody,
     field_carried,
     placed_body,
     surface_normal,
     touched_body,
+    wetted_area,
 )
 from ..footprint import GraspBody
 
@@ -139,8 +140,8 @@ def _body(
     film: float,
     cache: bool,
 ) -> TouchedBody:
-    share = FILLED_SHARE if film > 0 else PLACED_SHARE
-    if demand.tolerance >= share * abs(demand.difference):
+    still = film == 0 or film <= PLACED_FILM * (wetted_area(body) or math.inf)
+    if still and demand.tolerance >= PLACED_SHARE * abs(demand.difference):
         return placed_body(
             body, patches, stack, demand.difference, fingertips=fingertips, film=film, cache=cache
         )

@@ -1,12 +1,13 @@
 """Bodies of any shape: solids on cut-cell grids, their networks, and where they are touched."""
 
+from .film import wetted_area
 from .network import body_network
-from .placed import FILLED_SHARE, PLACED_SHARE, placed_body
+from .placed import PLACED_FILM, PLACED_SHARE, placed_body
 from .press import press_body
 from .touched import TouchedBody, field_carried, surface_normal, touched_body
 
 __all__ = [
-    "FILLED_SHARE",
+    "PLACED_FILM",
     "PLACED_SHARE",
     "TouchedBody",
     "body_network",
@@ -15,4 +16,5 @@ __all__ = [
     "press_body",
     "surface_normal",
     "touched_body",
+    "wetted_area",
 ]

@@ -104,3 +104,9 @@ def film_of(body: Solid, conductance: float) -> Film | None:
     """That of W/K in all between a body and its contents; None where there is no hollow, or nothing flows."""
     walls = wetted_faces(body) if conductance > 0 else np.zeros((0, 3, 3))
     return Film(conductance, np.ascontiguousarray(walls, float).tobytes()) if len(walls) else None
+
+
+def wetted_area(body: Solid) -> float:
+    """m2 of the walls of its hollow; 0 where there is none."""
+    film = film_of(body, 1.0)
+    return 0.0 if film is None else film.area
