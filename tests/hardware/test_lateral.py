@@ -192,6 +192,7 @@ def test_sorting_without_a_lateral_axis_is_refused_before_a_port_is_opened(
 def test_two_real_objects_are_sorted_on_ports(tmp_path: Path) -> None:
     """The right one is lifted and held; then the same deed is wrong, since the other one was asked for."""
     pytest.importorskip("serial")
+    simulated = gymnasium.make("thermograsp/Sort-v0")  # here, since a process that compiles holds a file
     with nothing_left(), on_ports(tmp_path, Hand()):
         env = gymnasium.make(
             "thermograsp/Sort-v0",
@@ -201,7 +202,6 @@ def test_two_real_objects_are_sorted_on_ports(tmp_path: Path) -> None:
             hold_seconds=0.2,
             disable_env_checker=True,
         )
-        simulated = gymnasium.make("thermograsp/Sort-v0")
         assert env.observation_space == simulated.observation_space
         assert env.action_space == simulated.action_space
         for right in (1, 0):
@@ -219,4 +219,4 @@ def test_two_real_objects_are_sorted_on_ports(tmp_path: Path) -> None:
                 ended = terminated or truncated
             assert info["success"] == (right == 1) and info.get("wrong", False) == (right == 0)
         env.close()
-        simulated.close()
+    simulated.close()
