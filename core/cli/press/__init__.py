@@ -74,6 +74,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="limit of the thermostat's heating power, W (default: an ideal thermostat)",
     )
     add_surround(parser)
+    add(
+        "--surround-conductance",
+        type=float,
+        help="contact conductance of the surround, W/(m2 K) (default: as pressed with 10 N)",
+    )
     add_mesh_arguments(parser)
     add("--no-cache", action="store_true", help="do not keep thermal networks on disk")
     add("--csv", metavar="FILE", help="write the curves as a table")

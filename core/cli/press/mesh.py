@@ -27,6 +27,7 @@ PLATES = {
     "rung": "auto",
     "opposite": None,
     "surround": None,
+    "surround_conductance": None,
     "object_size": (0.04, 0.04, 0.01),
 }
 """Defaults of the keywords that only `press` has."""
