@@ -5,8 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermograsp.bench.stopping.measure import declared, fitted, fixed, last_decisions
-from thermograsp.bench.stopping.touches import RATE, Touched
+from thermograsp.agents.learning import HELD_OUT
+from thermograsp.bench.stopping.measure import answers, declared, fitted, fixed, last_decisions
+from thermograsp.bench.stopping.record import EXAMPLES
+from thermograsp.bench.stopping.touches import RATE, Touched, setup_known
+from thermograsp.bench.stopping.touches import touched as played
 
 TIMES = np.array([0.0, 0.1, 0.2, 0.3])
 TOUCH = np.array([0.05, 0.05])
@@ -96,3 +99,15 @@ def test_the_shipped_agent_knows_its_materials_in_the_quick_run(written: tuple[P
     assert (
         0 < by_agent["contact_s"] < 1 and by_agent["right"] >= by_agent["fixed_right"] - 0.1
     )  # two of twenty
+
+
+def test_the_shipped_agent_knows_as_much_as_the_fitted_posterior_at_every_time() -> None:
+    """Within 3 points, from a tenth of a second on; and it stops no later than it has to."""
+    windows = 0.1, 0.2, 0.3, 0.5
+    new, old = (played(200, first, 1.1, lambda doing, by: None) for first in (HELD_OUT, EXAMPLES))
+    agent = np.take_along_axis(answers(new), last_decisions(new, windows), axis=1)
+    posterior = fitted(new, old, windows, setup_known().noise)
+    right = [(each == new.truth[:, None]).mean(axis=0) for each in (agent, posterior)]
+    assert (right[0] > right[1] - 0.03).all() and right[0][0] > 0.93
+    mean, share = declared(new)
+    assert mean < 0.25 and share > 0.98
