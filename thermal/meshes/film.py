@@ -40,8 +40,8 @@ class Film(NamedTuple):
 
     def spread(self, grid: MeshGrid) -> np.ndarray:
         """(N,) W/K of each cell's share, by the area of its wall. On a uniform grid, whose cells are about as large as
-        walls are thick, their links resist as much already as the way from there to the wall does (at most 0.04 K of 12
-        K in touches of a mug; with that way 0.06 K)."""
+        walls are thick, their links resist as much already as the way from there to the wall does (see PLACED_FILM for
+        what this was measured to leave)."""
         areas = np.linalg.norm(self._walls(grid), axis=1)
         return self.conductance * areas / areas.sum()
 
