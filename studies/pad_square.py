@@ -65,8 +65,9 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     ends = np.array([touch.size[0], touch.depth or touch.size[0]]) / 2
     end = ends.max()
     beyond = pieces((touch.width / 2, end), cells(4))[1:] if end > touch.width / 2 else np.zeros(0)
-    marked = [each for each in ends.tolist() if _HALF < each < touch.width / 2]
-    lines = np.unique(np.round(np.concatenate([near, ring, beyond, marked]), 9))
+    touched = np.minimum(np.minimum(ends, wide), np.array(touch.spot or (np.inf, np.inf)) / 2)
+    marked = [each for each in (*ends.tolist(), *touched.tolist()) if each < touch.width / 2]
+    lines = _marked(np.concatenate([near, ring, beyond]), marked)
     below = pieces(heights.tolist(), cells(3, 4, 4, 2)[: len(stack.layers)])
     above = heights[-1] + np.concatenate([[0.0], np.geomspace(4e-5, touch.size[1], cells(9)[0])])
     inside = lines[lines <= wide * (1 + 1e-9)]
@@ -88,8 +89,8 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
             facets=basis.mesh.facets_satisfying(
                 lambda p: (
                     (abs(p[2] - heights[-1]) < 1e-9)
-                    & (p[0] < min(wide, ends[0]))
-                    & (p[1] < min(wide, ends[1]))
+                    & (p[0] < touched[0])
+                    & (p[1] < touched[1])
                 )
             ),
             intorder=4,
@@ -105,6 +106,15 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     drop = np.zeros(len(u))
     drop[: lower.N] = _mean(lower, heights[1]) - _mean(lower, heights[2])
     return marched(*joined, plate, u, drop, (0.025, 0.025, 0.05, 0.1, 0.1))
+
+
+def _marked(lines: np.ndarray, marked: Sequence[float]) -> np.ndarray:
+    """Mesh lines with the marked ones among them, in place of any that is too near to one."""
+    for each in marked:
+        apart = np.abs(lines - each) > 0.2 * each
+        kept = np.isin(np.round(lines, 9), np.round((0.0, _HALF, *marked, lines.max()), 9))
+        lines = np.append(lines[apart | kept], each)
+    return np.unique(np.round(lines, 9))
 
 
 def _ordered(basis: Basis, facets: FacetBasis) -> np.ndarray:

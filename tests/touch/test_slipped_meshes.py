@@ -20,7 +20,7 @@ from thermograsp.thermal import IDEAL, Pad, cylinder_contact, sphere_contact
 from thermograsp.thermal.contact import curved_contact, skinned
 from thermograsp.thermal.matter import skin as named_skin
 from thermograsp.thermal.pressed import PressedMesh, height_map, map_heights
-from thermograsp.thermal.pressed.mesh_table import _points, _sunk
+from thermograsp.thermal.pressed.springs import _sunk, springs
 from thermograsp.touch import Fingertip, ThermalTouch, install, prepare
 from thermograsp.touch.contacts import AREA, BESIDE, CLOSED, FORCE, pair_laws
 from thermograsp.touch.contacts.laws import PairLaws
@@ -189,7 +189,7 @@ def test_arrays_see_the_same_views() -> None:
 def test_what_springs_bear_is_the_force() -> None:
     """Over the footprint, to 1e-6, wherever the mesh is and however light the force."""
     sheet, rng = skinned(PAD, named_skin("filled_silicone")), np.random.default_rng(1)
-    points, areas, stiffness, on_face = _points(sheet)
+    points, areas, stiffness, on_face = springs(sheet)
     assert areas.sum() == pytest.approx(PAD.width**2) and areas[:on_face].sum() == pytest.approx(PAD.face**2)
     for name in ("box", "thread", "ball"):
         vertices, faces = MESHES[name][0]

@@ -47,8 +47,7 @@ def curved_table(
     skin: over it, None for a bare face, which is rigid. Raises InvalidValueError for sizes that are none."""
     surface, face = Surface.of(body), touching(skin)
     law = round_footprint(pad, skin, surface, radius, length)
-    aside = _aside(pad)
-    along = aside if length is None else _along(pad, length)
+    aside, along = curved_places(pad, length)
     table = np.empty(CURVED_TABLE)
     table[:PLACES], table[PLACES : 2 * PLACES] = aside, along
     values, shares = table_values(table)
@@ -69,6 +68,12 @@ def table_values(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Views of a table: (FORCES, PLACES, PLACES, 3) W/K, m2 and m, and (FORCES, PLACES, PLACES, 4) shares."""
     grid = FORCES, PLACES, PLACES
     return table[2 * PLACES : _SHARES].reshape(*grid, 3), table[_SHARES:].reshape(*grid, 4)
+
+
+def curved_places(pad: Pad, length: float | None) -> tuple[np.ndarray, np.ndarray]:
+    """(PLACES,) m each: of the tables of a ball, or of a cylinder of that length m, across it and along it."""
+    aside = _aside(pad)
+    return aside, aside if length is None else _along(pad, length)
 
 
 def _aside(pad: Pad) -> np.ndarray:

@@ -1,13 +1,17 @@
 """Bodies of any shape on a pad's springs."""
 
+from .around import RoundRing
 from .foundation import face_springs, pressure_map
 from .height_map import HeightMap, height_map, map_heights
-from .mesh_table import PressedMesh, PressedView, pressed_view, square_middles
+from .mesh_table import PressedMesh, PressedView, pressed_view
+from .springs import Ring, square_middles
 
 __all__ = [
     "HeightMap",
     "PressedMesh",
     "PressedView",
+    "Ring",
+    "RoundRing",
     "face_springs",
     "height_map",
     "map_heights",

@@ -24,11 +24,10 @@ from ..contact import (
     FORCE_STEP,
     FORCES,
     PLACES,
+    Joint,
     Pad,
-    Surface,
     conductance,
     even_places,
-    face_joint,
     flat_law,
     patch_ends,
     patch_offset,
@@ -37,21 +36,18 @@ from ..contact import (
 )
 from ..matter import Material, Skin
 from .height_map import HeightMap, height_map, map_heights
+from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
 
-_POINTS = 40  # along the pad's side, of the foundation
-_FINER = 4  # times as many on the face
-_STEPS = 50
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
-_TOLERANCE = 1e-12  # of the force
 _WHOLE = 0.98  # of the face: what is longer covers it, to its points
-_FADED = 0.1  # of what a force five times as large touches, at least
 
 
 @dataclass(frozen=True, slots=True)
 class PressedMesh:
     """A fingertip on a mesh from one side. pad: its silicone; skin: over it, None for none. body: the mesh's material.
     vertices (n, 3) m and triangles (m, 3) of int64, as bytes; axes: (3, 3), as bytes, of which the first is the
-    direction from outside inwards."""
+    direction from outside inwards. ring: of the pad, whose contact it is then, without a place in it; None for the
+    sensor's face."""
 
     pad: Pad
     skin: Skin | None
@@ -59,13 +55,16 @@ class PressedMesh:
     vertices: bytes
     faces: bytes
     axes: bytes
+    ring: Ring | None = None
 
     def table(self) -> np.ndarray:
         """(CURVED_TABLE,)."""
         sheet = skinned(self.pad, self.skin)
-        faces = face_joint(self.skin, Surface.of(self.body))
         view = pressed_view(sheet, self.vertices, self.faces, self.axes)
-        return _conducting(view, flat_law(sheet, faces, (sheet.width, sheet.width)))
+        touched = view.touched(ring=self.ring)
+        if self.ring is None:
+            _end(touched)
+        return conducting(sheet, touching_joint(self.skin, self.body, self.ring), view.places, touched)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,19 +80,30 @@ class PressedView:
     spans: np.ndarray
 
     def touched(
-        self, rows: tuple[int, int] = (0, PLACES), columns: tuple[int, int] = (0, PLACES)
+        self,
+        rows: tuple[int, int] = (0, PLACES),
+        columns: tuple[int, int] = (0, PLACES),
+        ring: Ring | None = None,
     ) -> np.ndarray:
         """(FORCES, rows, columns, 7) at the places from one up to another: m2 of the face in contact, its share of the
         force, m, the length along the second axis of a rectangle of that area that is as long to broad as the contact,
         and the shares by which it lies at an end of the face along both axes, and of the mesh
         (thermal/contact/patch_place.py). Only areas and shares of the force mean anything at the first and last place,
-        where nothing is touched."""
+        where nothing is touched. ring: what lies around the face in its place, whose areas and shares of the force
+        alone are told, also where the face touches nothing."""
         touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], 7))
-        loads = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-        loads *= self.pad.thickness / self.pad.foundation_modulus
-        some = np.array([rows, columns])
-        points = _points(self.pad)
-        _press(*self.seen, self.begin, self.places, some, *points, loads, self.spans, self.pad.face, touched)
+        some, pad, at = np.array([rows, columns]), self.pad, (self.begin, self.places)
+        _press(
+            *self.seen,
+            *at,
+            some,
+            *springs(pad, ring),
+            loads(pad),
+            self.spans,
+            pad.face,
+            ring is None,
+            touched,
+        )
         return touched
 
 
@@ -118,114 +128,57 @@ def _places(face: float, span: float) -> np.ndarray:
     return even_places(0.0, span, (face, span - face, *crown))
 
 
-def _points(pad: Pad) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Of the pad's springs: places (n, 2) m, areas (n,) m2 and stiffness (n,) over that of those around the face. The
-    first are on the face, so many, and closer together; the others' areas are what of them is beside it."""
-    fine = square_middles(pad.face, math.ceil(_FINER * _POINTS * pad.face / pad.width))
-    coarse, pitch = square_middles(pad.width, _POINTS), pad.width / _POINTS
-    on_face = np.clip((pad.face / 2 - np.abs(coarse)) / pitch + 0.5, 0.0, 1.0).prod(axis=1)
-    around = on_face < 1
-    areas = np.full(len(fine), pad.face**2 / len(fine)), (1 - on_face[around]) * pitch**2
-    stiffness = np.full(len(fine), pad.face_ratio), np.ones(len(areas[1]))
-    return np.concatenate((fine, coarse[around])), np.concatenate(areas), np.concatenate(stiffness), len(fine)
-
-
-def square_middles(side: float, count: int) -> np.ndarray:
-    """(count^2, 2) m from a square's middle: those of so many squares each way in it."""
-    middles = (np.arange(count) + 0.5) * side / count - side / 2
-    return np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
-
-
-def _conducting(view: PressedView, law: np.void) -> np.ndarray:
-    """(CURVED_TABLE,) of a view. law: a CONTACT_LAW of the faces."""
-    touched = view.touched()
-    # where a contact vanishes it is a strip at both ends
+def _end(touched: np.ndarray) -> None:
+    """Where a contact vanishes it is a strip at both ends."""
     for end, beside in ((0, 1), (-1, -2)):
         touched[:, end, :, 2:] = touched[:, beside, :, 2:]
         touched[:, end, :, 3], touched[:, end, :, 5] = 1.0, 1.0
     for end, beside in ((0, 1), (-1, -2)):
         touched[:, :, end, 3:] = touched[:, :, beside, 3:]
         touched[:, :, end, 2], touched[:, :, end, 4], touched[:, :, end, 6] = 0.0, 1.0, 1.0
+
+
+def conducting(pad: Pad, faces: Joint, places: np.ndarray, touched: np.ndarray) -> np.ndarray:
+    """(CURVED_TABLE,) of what is touched (FORCES, PLACES, PLACES, 7), as PressedView tells it, at places (2, PLACES) m.
+    pad: with its skin's springs."""
     table = np.empty(CURVED_TABLE)
-    table[: 2 * PLACES] = view.places.ravel()
+    table[: 2 * PLACES] = places.ravel()
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    _conduct(law, forces, touched, *table_values(table))
+    _conduct(flat_law(pad, faces, (pad.width, pad.width)), forces, touched, *table_values(table))
     table.flags.writeable = False
     return table
 
 
 @njit(cache=True, error_model="numpy")
 def _press(
-    axes, corner, height, pitch, begin, places, some, points, areas, stiffness, on_face, loads, spans, face, touched
+    axes, corner, height, pitch, begin, places, some, points, areas, stiffness, counted, loads, spans, face, on_face,
+    touched,
 ):  # fmt: skip
-    """Fills touched, some of the places: (2, 2) from which to before which. on_face: how many points. loads: m3, forces
-    over the stiffness of springs around the face. spans: (2,) m of places, the mesh's outline and the face's side."""
+    """Fills touched, some of the places: (2, 2) from which to before which. counted: how many points are looked at, and
+    on_face: whether they are the face's. loads: m3, forces over the stiffness of springs around the face. spans: (2,) m
+    of places, the mesh's outline and the face's side."""
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
-    slopes, touching = np.zeros(on_face), np.zeros(on_face)
-    last = places.shape[1] - 1  # nothing is touched at the ends
-    for a in range(max(some[0, 0], 1), min(some[0, 1], last)):
-        for b in range(max(some[1, 0], 1), min(some[1, 1], last)):
+    slopes, touching = np.zeros(counted), np.zeros(counted)
+    begun = 1 if on_face else 0  # a face touches nothing at the ends
+    last = places.shape[1] - begun
+    for a in range(max(some[0, 0], begun), min(some[0, 1], last)):
+        for b in range(max(some[1, 0], begun), min(some[1, 1], last)):
             at = touched[:, a - some[0, 0], b - some[1, 0]]
             for k in range(3):
                 frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
             map_heights(axes, corner, height, pitch, frame, points, heights, cover)
             cover *= areas
-            # a light force's depth is little beside the heights
-            least = np.inf
-            for i in range(len(points)):
-                if cover[i] > 0.0:
-                    least = min(least, heights[i])
-            heights -= least
-            if cover[:on_face].max() == 0.0:
+            lowered(heights, cover)
+            if cover[:counted].max() == 0.0:
                 continue
-            _slope(heights, cover, slopes)
+            rises(heights, cover, slopes)
             for n in range(0, len(loads), 2):
-                depth = _sunk(heights, cover, stiffness, loads[n])
-                held = 0.0
-                for i in range(on_face):
-                    sunk = depth - heights[i]
-                    touching[i] = cover[i] * _part(sunk, slopes[i])
-                    held += cover[i] * stiffness[i] * max(sunk, 0.0)
-                at[n, 0], at[n, 1] = touching.sum(), held / loads[n]
-                _lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, at[n])
-            # between forces a power of them is taken, which must not begin at nothing
-            for n in range(len(loads) - 4, -1, -2):
-                for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
-                    if at[n, k] < faded * at[n + 2, k]:
-                        at[n, k] = faded * at[n + 2, k]
-                        at[n, 3:] = at[n + 2, 3:]
-            for n in range(1, len(loads), 2):
-                above = min(n + 1, len(loads) - 2)
-                at[n, 0] = math.sqrt(at[n - 1, 0] * at[above, 0])
-                for k in range(1, 7):
-                    at[n, k] = (at[n - 1, k] + at[above, k]) / 2
-
-
-@njit(cache=True, error_model="numpy")
-def _slope(heights, cover, slopes):
-    """Writes by how many m the surface rises over the square of each of the face's points, the gentler of the two ways
-    along both axes: a point at the edge of a crest is on it."""
-    side = round(math.sqrt(len(slopes)))
-    for i in range(len(slopes)):
-        slopes[i] = 0.0
-        for step, at in ((1, i % side), (side, i // side)):
-            least = np.inf
-            if at > 0 and cover[i - step] > 0.0:
-                least = abs(heights[i] - heights[i - step])
-            if at < side - 1 and cover[i + step] > 0.0:
-                least = min(least, abs(heights[i + step] - heights[i]))
-            if least < np.inf:
-                slopes[i] += least
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _part(sunk, slope):
-    """Of a point's square, what touches where its middle has sunk in by so many m."""
-    if slope == 0.0:
-        return 1.0 if sunk > 0.0 else 0.0
-    return min(max(0.5 + sunk / slope, 0.0), 1.0)
+                at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
+                if on_face:
+                    _lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, at[n])
+            between_forces(at)
 
 
 @njit(cache=True, error_model="numpy")
@@ -250,30 +203,6 @@ def _lie(points, touching, square, aside, along, spans, face, touched):
         length = face if length > _WHOLE * face else length
         touched[3 + axis] = patch_offset(off, length, face)
         touched[5 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)
-
-
-@njit(cache=True, error_model="numpy")
-def _sunk(heights, cover, stiffness, load):
-    """m at which springs take the load, m3; -inf where there are none."""
-    depth, whole = load, 0.0
-    for i in range(len(heights)):
-        depth += cover[i] * stiffness[i] * heights[i]
-        whole += cover[i] * stiffness[i]
-    if whole == 0.0:
-        return -np.inf
-    depth /= whole  # if all pushed: at least as deep as it will be
-    for _ in range(_STEPS):
-        held, rate = 0.0, 0.0
-        for i in range(len(heights)):
-            if heights[i] < depth:
-                spring = cover[i] * stiffness[i]
-                held += spring * (depth - heights[i])
-                rate += spring
-        wrong = held - load
-        if rate == 0.0 or abs(wrong) <= _TOLERANCE * load:
-            break
-        depth -= wrong / rate
-    return depth
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,7 +1,20 @@
 """Contacts of a simulation as conductances: read from MjData or from recorded contact sensors."""
 
 from .array_contacts import ArrayContacts, StepContacts, TouchContacts, array_contacts
-from .columns import AREA, ASIDE, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, ENDS, FORCE, LENGTH, NORMAL, PLACE
+from .columns import (
+    AREA,
+    ASIDE,
+    BESIDE,
+    CLOSED,
+    COLUMNS,
+    CONDUCTANCE,
+    CURVED,
+    ENDS,
+    FORCE,
+    LENGTH,
+    NORMAL,
+    PLACE,
+)
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
 from .memory import clock_of
@@ -19,6 +32,7 @@ __all__ = [
     "COLUMNS",
     "ArrayContacts",
     "CONDUCTANCE",
+    "CURVED",
     "ENDS",
     "FORCE",
     "FORCE_AT",

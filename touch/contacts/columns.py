@@ -3,11 +3,12 @@ at the last substep that touched the pad's middle m (3) and the way it looks (3)
 again: the substeps that touched, the area m2 in contact, and it times: its length m along the second of two axes; and
 along each axis the shares by which it lies aside on the sensor's face (2) and at an end of the object
 (2, thermal/contact/patch_place.py). 0 stand for the whole face. Last, of a pad around the sensor that exchanges heat,
-of each of its RINGS: conductance W/K, area m2 of what touches, and in how many substeps."""
+of each of its RINGS: conductance W/K, area m2 of what touches, and in how many substeps; and in how many of these a
+curved object touched, narrower than what of the object is under the pad."""
 
 from ...thermal.padded import RINGS
 
-CONDUCTANCE, FORCE, PLACE, NORMAL, CLOSED, AREA, LENGTH, ASIDE, ENDS, BESIDE, COLUMNS = (
+CONDUCTANCE, FORCE, PLACE, NORMAL, CLOSED, AREA, LENGTH, ASIDE, ENDS, BESIDE, CURVED, COLUMNS = (
     0,
     1,
     2,
@@ -19,4 +20,5 @@ CONDUCTANCE, FORCE, PLACE, NORMAL, CLOSED, AREA, LENGTH, ASIDE, ENDS, BESIDE, CO
     13,
     15,
     15 + 3 * RINGS,
+    16 + 3 * RINGS,
 )

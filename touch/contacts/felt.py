@@ -21,7 +21,7 @@ from ...thermal.contact import (
 )
 from ...thermal.padded import RINGS
 from ..pointers import asked
-from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
+from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
 from .round_pads import round_contact
 from .sensors import FORCE_AT, PLACE_AT
 from .tilt import tilted
@@ -132,7 +132,11 @@ def feel(
         if frames[f, KNOWN] == 0.0:
             continue  # nothing has met it
         middle, normal, side_y, side_z = frames[f, :3], frames[f, 3:6], frames[f, 6:9], frames[f, 9:12]
-        last = -1  # target that was touched; an object's geoms follow one another
+        last, last_around, noted = (
+            -1,
+            -1,
+            0,
+        )  # targets that were touched; an object's geoms follow one another
         for g in range(part_count):
             force = pushed[f, g, 0]
             if force <= 0:
@@ -167,20 +171,22 @@ def feel(
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
             conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
-            number, first, second, whole, lying = -1, 0.0, 0.0, 1.0, force
+            number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
             for k in range(4):
                 shares[k] = 0.0
             if not bulging and parts[g, 3] > 0:
                 for i in range(3):
                     one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
                     sides[i] = one * normal[0] + two * normal[1] + three * normal[2]
-                view, first, second = viewed(views[g], parts[g, 3], sides, place, law.half_face)
-                number = curved[f, g, view]
-                if tables[number, 1] == 0.0 and asked(make, number) == 0:
-                    return False
-            elif not bulging and curved[f, g, axis] >= 0:
+                side, first, second = viewed(views[g], parts[g, 3], sides, place, law.half_face)
+                number = curved[f, g, side, 0]
+            elif not bulging and curved[f, g, axis, 0] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
-                number, first, second = curved[f, g, axis], pushed[f, g, 1] / force, pushed[f, g, 2] / force
+                number, first, second = (
+                    curved[f, g, axis, 0],
+                    pushed[f, g, 1] / force,
+                    pushed[f, g, 2] / force,
+                )
                 if law.shape == CYLINDER:
                     # MuJoCo may name any point of the line of contact: only what is across it is heard.
                     along_y, along_z = 0.0, 0.0
@@ -212,6 +218,10 @@ def feel(
                 area, share = contact(law, force, place)
                 if area > 0:
                     long = flat_patch(law, area, place, shares)
+            for ring in range(1 + RINGS if pads[f, AROUND] > 0 else 1):
+                known = curved[f, g, side, ring] if number >= 0 else -1
+                if known >= 0 and tables[known, 1] == 0.0 and asked(make, known) == 0:
+                    return False
             if number >= 0 and whole > 0:
                 conducts, area, long = curved_contact(tables[number], lying / whole, first, second)
                 curved_shares(tables[number], lying / whole, first, second, shares)
@@ -229,14 +239,27 @@ def feel(
                     touch[CLOSED] += weight
                     last = target
             if pads[f, AROUND] > 0 and geom >= 0:
-                # of objects that are one flat box each, which the scene sees to
-                through = beside_face(laws[f, g, 3 + axis], pads[f, AROUND:], force, place, rings)
+                if target != last_around:
+                    last_around, noted = target, 0
+                through = 0.0
+                if number < 0:
+                    through = beside_face(laws[f, g, 3 + axis], pads[f, AROUND:], force, place, rings)
+                if number >= 0 and noted & 1 << RINGS == 0:
+                    touch[CURVED] += weight
+                    noted |= 1 << RINGS
                 for ring in range(RINGS):
-                    if rings[ring] > 0:
+                    conducts, area = through * rings[ring], rings[ring]
+                    if number >= 0 and whole > 0:
+                        table = tables[curved[f, g, side, 1 + ring]]
+                        conducts, area, _ = curved_contact(table, lying / whole, first, second)
+                        conducts, area = whole * conducts, whole * area
+                    if conducts > 0:
                         at = BESIDE + 3 * ring
-                        touch[at] += weight * through * rings[ring]
-                        touch[at + 1] += weight * rings[ring]
-                        touch[at + 2] += weight
+                        touch[at] += weight * conducts
+                        touch[at + 1] += weight * area
+                        if noted & 1 << ring == 0:
+                            touch[at + 2] += weight
+                            noted |= 1 << ring
             touch[FORCE] += weight * force
             x, y, z = middle[0] - xpos[body, 0], middle[1] - xpos[body, 1], middle[2] - xpos[body, 2]
             for i in range(3):

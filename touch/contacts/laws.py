@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import mujoco
@@ -25,7 +27,8 @@ from ...thermal import (
     sphere_law,
 )
 from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, pad_joint, skinned
-from ...thermal.pressed import PressedMesh
+from ...thermal.padded import RINGS, ring_sides
+from ...thermal.pressed import PressedMesh, Ring, RoundRing
 from ..scene import BodyShape, PadPlace, is_round, mesh_of
 from .tilt import TILT, tilt_row
 from .views import stacked_views
@@ -34,25 +37,31 @@ SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k s
 _WIDE = 10.0  # m, a face that no pad reaches the end of
 
 
+Pressed = PressedMesh | RoundRing
+"""What makes the table of a contact that takes a while to tell."""
+
+
 class PairLaws(NamedTuple):
     """laws: (F, N, 3) CONTACT_LAW records, and beside: those of the pads around the sensors, zeros without. curved: (F,
-    N, A) numbers of the tables of what is curved, by axis, and of meshes, by view; -1 for what is flat. tables: K,
-    (CURVED_TABLE,) each. meshes: of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N, A,
-    VIEW) of meshes, and viewed: (N,) how many."""
+    N, A) numbers of the tables of what is curved, by axis, and of meshes, by view; -1 for what is flat. around: (F, N,
+    A, RINGS) those of the rings of the pads around the sensors, -1 without. tables: K, (CURVED_TABLE,) each. pressed:
+    of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N, A, VIEW) of meshes, and viewed:
+    (N,) how many."""
 
     laws: np.ndarray
     beside: np.ndarray
     curved: np.ndarray
+    around: np.ndarray
     tables: tuple[np.ndarray, ...]
-    meshes: tuple[PressedMesh, ...]
+    pressed: tuple[Pressed, ...]
     tilts: np.ndarray
     views: np.ndarray
     viewed: np.ndarray
 
     @property
     def all_tables(self) -> np.ndarray:
-        """(K + meshes, CURVED_TABLE), one of zeros where there are none."""
-        return stacked([*self.tables, *(mesh.table() for mesh in self.meshes)])
+        """(K + pressed, CURVED_TABLE), one of zeros where there are none."""
+        return stacked([*self.tables, *(each.table() for each in self.pressed)])
 
 
 def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> PairLaws:
@@ -62,14 +71,14 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
     beside = np.zeros_like(laws)
     views, viewed = stacked_views(model, [geom for _, geom in geoms], len(pads))
-    curved, tilts = np.full((*laws.shape[:2], views.shape[1]), -1, np.int64), np.zeros((*laws.shape, TILT))
+    numbers = np.full((*laws.shape[:2], views.shape[1], 1 + RINGS), -1, np.int64)
     tables: list[np.ndarray] = []
-    meshes: dict[PressedMesh, list[tuple[int, int, int]]] = {}
+    tilts, made = np.zeros((*laws.shape, TILT)), dict[Pressed, list[tuple[int, int, int, int]]]()
     for f, pad in enumerate(pads):
         silicone = pad.silicone
         sheet = skinned(silicone, pad.skin)
         # a round geom under a rod has no edge on which the rod could come to lie
-        flat = not all(is_round(model, geom) for geom in pad.geoms)
+        flat, rings = not all(is_round(model, geom) for geom in pad.geoms), _rings(pad)
         for g, (shape, geom) in enumerate(geoms):
             other, around = Surface.of(shape.material), None
             faces = face_joint(pad.skin, other)
@@ -79,7 +88,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 for k, pressed in enumerate(
                     _pressed(model, geom, views[g, : viewed[g]], pad, silicone, shape)
                 ):
-                    meshes.setdefault(pressed, []).append((f, g, k))
+                    for n, ring in enumerate((None, *rings)):
+                        made.setdefault(replace(pressed, ring=ring), []).append((f, g, k, n))
             for axis in range(3):
                 laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
                 if around is not None:
@@ -91,17 +101,30 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 if size[1] is not None and flat:
                     tilts[f, g, axis] = tilt_row(pad, silicone, shape, size[0], size[1])
                 known = [n for n, each in enumerate(tables) if each is table]
-                curved[f, g, axis] = known[0] if known else len(tables)
+                numbers[f, g, axis, 0] = known[0] if known else len(tables)
                 if not known:
                     tables.append(table)
+                for n, ring in enumerate(rings, 1):
+                    of_ring = RoundRing(silicone, pad.skin, shape.material, *size, ring)
+                    made.setdefault(of_ring, []).append((f, g, axis, n))
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = other.silicone.face
             laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
-    for number, pairs in enumerate(meshes.values(), len(tables)):
+    for number, pairs in enumerate(made.values(), len(tables)):
         for pair in pairs:
-            curved[pair] = number
-    return PairLaws(laws, beside, curved, tuple(tables), tuple(meshes), tilts, views, viewed)
+            numbers[pair] = number
+    return PairLaws(
+        laws, beside, numbers[..., 0], numbers[..., 1:], tuple(tables), tuple(made), tilts, views, viewed
+    )
+
+
+def _rings(pad: PadPlace) -> tuple[Ring, ...]:
+    """Of a pad that exchanges heat around its sensor."""
+    if pad.surround is None:
+        return ()
+    made, sides = material(pad.surround.material), ring_sides(pad.stack.width, pad.surround)
+    return tuple(Ring(made, *each) for each in pairwise((pad.stack.width, *sides)))
 
 
 def _pressed(

@@ -20,13 +20,12 @@ from thermograsp.errors import SimulationError
 
 from ...thermal import CONTACT_LAW, Material
 from ...thermal.contact import CURVED_TABLE
-from ...thermal.padded import ring_sides
-from ...thermal.pressed import PressedMesh
+from ...thermal.padded import RINGS, ring_sides
 from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .columns import COLUMNS
 from .felt import AROUND, PAD, PLACED, SPOT
-from .laws import pair_laws, stacked
+from .laws import Pressed, pair_laws, stacked
 from .memory import ContactMemory
 from .round_pads import bends, curves
 from .sensors import SensorPlaces
@@ -69,10 +68,10 @@ class ContactReader:
         # by axis, and behind them those of the pads around them
         self._known: dict[tuple[Material, ...], int] = {}
         self._laws = np.zeros((0, 0, 0, 6), CONTACT_LAW)
-        self._curved = np.zeros((0, 0, 0, 3), np.int64)
+        self._curved = np.zeros((0, 0, 0, 3, 1 + RINGS), np.int64)
         self._tilts = np.zeros((0, 0, 0, 3, TILT))
         self._every: list[np.ndarray] = []
-        self._meshes: dict[PressedMesh, int] = {}  # the numbers of their tables, made when first touched
+        self._pressed: dict[Pressed, int] = {}  # the numbers of their tables, made when first touched
         self._failed: list[BaseException] = []  # while a table was made, until it is raised
         self._which = np.zeros(worlds, np.int64)
         self._pushed = np.zeros((count, len(parts), 3))
@@ -92,17 +91,18 @@ class ContactReader:
                 self._known[combination] = len(self._known)
                 shapes = [replace(s, material=m) for s, m in zip(self._shapes, combination, strict=True)]
                 found = pair_laws(self._model, self._of_pads, shapes)
-                numbers = [*map(self._number, found.tables), *map(self._number_of, found.meshes)]
+                numbers = [*map(self._number, found.tables), *map(self._number_of, found.pressed)]
                 numbers = np.array([*numbers, -1])  # the last of flat targets
                 before = self._laws, self._curved, self._tilts
                 both = np.concatenate((found.laws, found.beside), axis=-1)
-                after = both[None], numbers[found.curved][None], found.tilts[None]
+                curved = np.concatenate((found.curved[..., None], found.around), axis=-1)
+                after = both[None], numbers[curved][None], found.tilts[None]
                 if len(self._known) > 1:
                     after = tuple(map(np.concatenate, zip(before, after, strict=True)))
                 self._laws, self._curved, self._tilts = after
             self._which[w] = self._known[combination]
         self._tables = stacked(self._every)
-        self._make = _making(self._meshes, self._tables, self._failed)
+        self._make = _making(self._pressed, self._tables, self._failed)
         self._point()
 
     def _number(self, table: np.ndarray) -> int:
@@ -113,12 +113,12 @@ class ContactReader:
         self._every.append(table)
         return len(self._every) - 1
 
-    def _number_of(self, mesh: PressedMesh) -> int:
-        """Of a mesh's table, which is 0 until a pad touches it."""
-        if mesh not in self._meshes:
-            self._meshes[mesh] = len(self._every)
+    def _number_of(self, pressed: Pressed) -> int:
+        """Of the table of a mesh or a ring, which is 0 until a pad touches it."""
+        if pressed not in self._pressed:
+            self._pressed[pressed] = len(self._every)
             self._every.append(np.zeros(CURVED_TABLE))
-        return self._meshes[mesh]
+        return self._pressed[pressed]
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_make"}
@@ -126,7 +126,7 @@ class ContactReader:
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
         self.__dict__.update(state)
-        self._make = _making(self._meshes, self._tables, self._failed)
+        self._make = _making(self._pressed, self._tables, self._failed)
         self._point()
 
     def _point(self) -> None:
@@ -148,7 +148,7 @@ class ContactReader:
 
     def read(self, data: mujoco.MjData, weight: int = 1) -> None:
         """Adds the contacts of the step that was just taken, for so many substeps. Raises SimulationError for forces
-        that are not finite, and what went wrong where a mesh's table could not be made."""
+        that are not finite, and what went wrong where a table could not be made."""
         self.counted += weight
         count = data.ncon
         if count == 0:
@@ -217,10 +217,10 @@ class ContactReader:
 _MAKE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
 
 
-def _making(meshes: Mapping[PressedMesh, int], tables: np.ndarray, failed: list[BaseException]) -> Any:
+def _making(pressed: Mapping[Pressed, int], tables: np.ndarray, failed: list[BaseException]) -> Any:
     """What compiled code calls to have the table of that number made: 1, or 0 and why in `failed`, since nothing can be
     raised through compiled code."""
-    of = {number: mesh for mesh, number in meshes.items()}
+    of = {number: each for each, number in pressed.items()}
 
     def make(number: int) -> int:
         try:

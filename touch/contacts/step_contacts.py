@@ -13,6 +13,7 @@ from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 from thermograsp.compiled import njit
 
 from ...thermal.contact import CURVED_TABLE
+from ...thermal.padded import RINGS
 from ..pointers import flags, floats, integers, laws, words
 from .columns import COLUMNS
 from .felt import PAD, PLACED, SPOT, begin, feel, lies, place_pad, press
@@ -54,7 +55,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     touches = carray(floats(entries[6]), (tips, targets, COLUMNS))
     beside = carray(floats(entries[7]), tips)
     law = carray(laws(entries[8]), (tips, part_count, 6))
-    curved = carray(words(entries[9]), (tips, part_count, sides))
+    curved = carray(words(entries[9]), (tips, part_count, sides, 1 + RINGS))
     tables = carray(floats(entries[10]), (entries[20], CURVED_TABLE))
     frames, spot = carray(floats(entries[11]), (tips, PLACED)), carray(floats(entries[12]), SPOT)
     tilts = carray(floats(entries[13]), (tips, part_count, 3, TILT))
@@ -130,7 +131,7 @@ def sense_contacts(record_at, first, last, entries_at):
     which = carray(words(entries[8]), worlds)
     kinds = which.max() + 1
     law = carray(laws(entries[7]), (kinds, tips, part_count, 6))
-    curved = carray(words(entries[19]), (kinds, tips, part_count, sides))
+    curved = carray(words(entries[19]), (kinds, tips, part_count, sides, 1 + RINGS))
     tables = carray(floats(entries[20]), (entries[33], CURVED_TABLE))
     views = carray(floats(entries[24]), (part_count, sides, VIEW))
     tilts = carray(floats(entries[23]), (kinds, tips, part_count, 3, TILT))

@@ -41,8 +41,9 @@ from .fields import (
 from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
-from .narrow import narrow_tables
+from .narrow import STEPS, narrow_tables
 from .narrow_pairs import NarrowPairs
+from .ring_shares import ring_shares
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
@@ -109,6 +110,8 @@ class JoinedHeat:
         around = [(f, field.padded) for f, field in enumerate(self._tip_fields) if field.padded is not None]
         self._around = tuple(around)
         self._rings = tuple(map(rings_of, pads))
+        shares = [ring_shares(pads[f].stack.width, self._rings[f] or ()) for f, _ in around]
+        self._shares = np.concatenate((np.zeros((0, STEPS, 2)), *shares))
         self._owners = np.array([*range(len(pads)), *(f for f, _ in around)])
         self._around_of = np.full(len(pads), -1)
         self._around_of[self._owners[len(pads) :]] = np.arange(len(pads), len(self._owners))
@@ -156,7 +159,8 @@ class JoinedHeat:
         kept = np.exp(-dt * self._level.decay)
         self._decay = np.array([self._level.decay, kept, (1 - kept) / self._level.decay])
         ports = contacts * fields * self._level.patterns
-        self._roots, self._placed = np.zeros((ports, self._level.rates)), np.zeros(4)
+        self._roots, self._leans = np.zeros((2, ports, self._level.rates))
+        self._placed = np.zeros(4)
         self._touches, self._touches_at = np.zeros(0), 0
         self._table: np.ndarray | None = None
         self._forget()
@@ -236,7 +240,7 @@ class JoinedHeat:
                 *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._pairs.tables),
                 *(self._pairs.kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
                 *(self.warmth, self._seconds, self._roots, self._room, self._placed),
-                *(self._around_of, self._owners),
+                *(self._around_of, self._owners, self._shares, self._leans),
             )
             worlds, tips, objects = self._current.shape
             sizes = (

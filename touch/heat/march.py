@@ -18,16 +18,17 @@ from ..contacts import (
     CLOSED,
     COLUMNS,
     CONDUCTANCE,
+    CURVED,
     LENGTH,
     NORMAL,
     PLACE,
 )
 from ..pointers import flags, floats, words
-from .narrow import STEPS, spread
+from .narrow import STEPS, lean, spread
 from .step import CONTACTS, HEADER, PACE, room_of, step
 
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
-TABLE = 57
+TABLE = 59
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
 _TIE = 1e-6
@@ -112,7 +113,7 @@ def sample(entries_at, touches_at, substeps, settled):
     were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
     many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
     entries = carray(words(entries_at), TABLE)
-    worlds, tips, objects, contacts, lanes = entries[38], entries[39], entries[40], entries[55], entries[56]
+    worlds, tips, objects, contacts, lanes = entries[40], entries[41], entries[42], entries[57], entries[58]
     targets = tips + objects
     touches, widths = (
         carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
@@ -136,28 +137,28 @@ def sample(entries_at, touches_at, substeps, settled):
         )
         if moved or stale:
             return moved + stale
-    states, rates = entries[48], entries[51]
+    states, rates = entries[50], entries[53]
     decays = carray(floats(entries[22]), (3, rates))
     _march(
         carray(floats(entries[32]), 1)[0],
         substeps,
-        entries[41],
+        entries[43],
         touches,
         carray(floats(entries[11]), (worlds, tips)),
-        carray(words(entries[12]), (worlds, entries[42])),
-        carray(words(entries[13]), entries[43]),
-        carray(words(entries[14]), entries[44]),
-        carray(floats(entries[15]), entries[45]),
-        carray(floats(entries[16]), entries[46]),
-        carray(floats(entries[17]), entries[52] * PACE),
-        carray(floats(entries[18]), (entries[47], states)),
+        carray(words(entries[12]), (worlds, entries[44])),
+        carray(words(entries[13]), entries[45]),
+        carray(words(entries[14]), entries[46]),
+        carray(floats(entries[15]), entries[47]),
+        carray(floats(entries[16]), entries[48]),
+        carray(floats(entries[17]), entries[54] * PACE),
+        carray(floats(entries[18]), (entries[49], states)),
         carray(floats(entries[19]), (worlds, objects)),
-        carray(floats(entries[20]), (tips, entries[49])),
+        carray(floats(entries[20]), (tips, entries[51])),
         carray(words(entries[21]), (worlds, targets)),
         decays[0],
         decays[1],
         decays[2],
-        carray(floats(entries[23]), (entries[50], 2, 2, STEPS, STEPS, rates)),
+        carray(floats(entries[23]), (entries[52], 2, 2, STEPS, STEPS, rates)),
         carray(words(entries[24]), (worlds, lanes, targets, 2)),
         widths,
         carray(words(entries[37]), contacts),
@@ -169,10 +170,12 @@ def sample(entries_at, touches_at, substeps, settled):
         carray(floats(entries[29]), (worlds, tips)),
         carray(flags(entries[30]), targets),
         carray(floats(entries[31]), (worlds, objects)),
-        carray(floats(entries[33]), (contacts * targets * entries[41], rates)),
-        carray(floats(entries[34]), entries[53]),
+        carray(floats(entries[33]), (contacts * targets * entries[43], rates)),
+        carray(floats(entries[34]), entries[55]),
         carray(floats(entries[35]), 4),
-        entries[54],
+        carray(floats(entries[38]), (lanes - tips, STEPS, 2)),
+        carray(floats(entries[39]), (contacts * targets * entries[43], rates)),
+        entries[56],
     )
     return 0
 
@@ -181,7 +184,7 @@ def sample(entries_at, touches_at, substeps, settled):
 def _march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, ports, grams, paces, fade, held, rows, nets,
     decay, kept, grown, tables, kinds, widths, owners, x, states, narrow, given, air, drop, busy, warmth, roots,
-    numbers, placed, most,
+    numbers, placed, shares, leans, most,
 ):  # fmt: skip
     """One step of dt s of every world.
 
@@ -195,7 +198,8 @@ def _march(
     step, and s of a flow, tables (N, 2, 2, J, J, R), kinds (W, F, T, 2) which of these the sides of each contact have,
     widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Behind the fingertips stand
     the rings of pads around sensors, each as a square of its area that is touched from one side to the other; owners
-    (F + pads,) tells of contacts whose they are. Within a step these follow
+    (F + pads,) tells of contacts whose they are. Under a curved object they see what the face's narrow contact does
+    there, by shares (F RINGS, J, 2) of ring_shares.py; leans (F T, R) is room. Within a step these states follow
     the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses in a
     resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
@@ -247,14 +251,42 @@ def _march(
                         for j in range(4):
                             placed[j] = 0.0
                     own, other = tables[kinds[w, lane, t, 0]], tables[kinds[w, lane, t, 1]]
-                    if spread(own, other, widths[lane], area, length, placed[:2], placed[2:], root):
+                    spreads = spread(own, other, widths[lane], area, length, placed[:2], placed[2:], root)
+                    if not spreads:
+                        for k in range(rates):
+                            root[k] = 0.0
+                    if f >= tips:
+                        for k in range(rates):
+                            leans[port, k] = 0.0
+                        if touch[CURVED] > 0 and touch[CONDUCTANCE] > 0:
+                            for j in range(4):
+                                placed[j] = touch[ASIDE + j] / touch[AREA]
+                            for k in range(rates):
+                                root[k] *= root[k]
+                            spreads |= lean(
+                                tables[kinds[w, owner, t, 0]],
+                                tables[kinds[w, owner, t, 1]],
+                                widths[owner],
+                                touch[AREA] / touch[CLOSED],
+                                touch[LENGTH] / touch[AREA],
+                                placed[:2],
+                                placed[2:],
+                                shares[lane - tips],
+                                min(touch[CURVED] / touch[column + 2], 1.0),
+                                leans[port],
+                                root,
+                            )
+                            for k in range(rates):
+                                root[k] = np.sqrt(root[k])
+                                mean, sees = grown[k] / dt, leans[port, k]
+                                behind += sees * mean * narrow[w, owner, t, k]
+                                # twice: the face's flow in the step counts from the next one on
+                                resistance += 2 * sees * sees * (1 - mean) / decay[k]
+                    if spreads:
                         for k in range(rates):
                             mean = grown[k] / dt  # of a state that fades, over the step
                             behind += root[k] * mean * narrow[w, lane, t, k]
                             resistance += root[k] * root[k] * (1 - mean) / decay[k]
-                    else:
-                        for k in range(rates):
-                            root[k] = 0.0
                     resistances[port], differences[port] = resistance, differs - behind
                     lane, column = lane + 1, column + 3
             air[w] += dt * step(
@@ -285,6 +317,15 @@ def _march(
                             narrow[w, lane + p, t, k] = (
                                 kept[k] * narrow[w, lane + p, t, k] + grown[k] * roots[port, k] * flow[port]
                             )
+            for i in range(contacts):
+                f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
+                if f < tips or not touches[w, owners[f], t, CURVED] > 0:
+                    continue
+                for p in range(RINGS):
+                    port = i * patterns + p
+                    if touches[w, owners[f], t, BESIDE + 3 * p] > 0:
+                        for k in range(rates):
+                            narrow[w, owners[f], t, k] += grown[k] * leans[port, k] * flow[port]
         for b in range(fields):
             if busy[b]:
                 continue

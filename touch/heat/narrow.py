@@ -166,26 +166,67 @@ def spread(own, other, width, area, length, aside, ends, root):
     or its area is not told."""
     if not area > 0.0:
         return False
+    i, u, j, v = seen(width, area, length)
+    if i < 0:
+        return False
+    for k in range(len(root)):
+        root[k] = 0.0
+    add_squares(own, i, u, j, v, aside, root)
+    add_squares(other, i, u, j, v, ends, root)
+    for k in range(len(root)):
+        root[k] = np.sqrt(root[k])
+    return True
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def seen(width, area, length):
+    """Where a contact stands in narrow_tables: of both widths the number of the one before and the share of the way to
+    the next; numbers of -1 for one that is as wide as the face."""
     first = min(area / length, width)
     second = min(area / first, width)
     if not min(first, second) < width * NARROW:
-        return False
+        return -1, 0.0, -1, 0.0
     i, u = _between(width / first)
     j, v = _between(width / second)
+    return i, u, j, v
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def add_squares(table, i, u, j, v, shares, squares):
+    """Adds the b_k^2 of a table to squares (K,), of a contact as `seen` tells it. shares: (2,) by which it lies at an
+    end."""
+    for place in range(4):
+        a, b = place & 1, place >> 1
+        weight = _of(shares[0], a) * _of(shares[1], b)
+        if weight > 0.0:  # most contacts are in the middle, where one is
+            for k in range(len(squares)):
+                near = (1 - v) * table[a, b, i, j, k] + v * table[a, b, i, j + 1, k]
+                far = (1 - v) * table[a, b, i + 1, j, k] + v * table[a, b, i + 1, j + 1, k]
+                squares[k] += weight * ((1 - u) * near + u * far)
+
+
+@njit(cache=True, error_model="numpy")
+def lean(own, other, width, area, length, aside, ends, shares, curved, root, rest):
+    """What a narrow contact of the face (see spread) does to the object under a ring of the pad around it: fills root
+    (K,) with what of the face's states the ring sees, and adds to squares, rest (K,), what its own flow does beyond
+    that. shares: (STEPS, 2) of ring_shares. curved: the share of the time in which the object is curved. Returns
+    whether there is any."""
+    if not area > 0.0:
+        return False
+    i, u, j, v = seen(width, area, length)
+    if i < 0:
+        return False
+    both, object_alone = np.zeros(len(root)), np.zeros(len(root))
+    add_squares(own, i, u, j, v, aside, both)
+    add_squares(other, i, u, j, v, ends, object_alone)
+    # the strip's breadth is what tells
+    n, w = (i, u) if area < length * length else (j, v)
+    alone = curved * ((1 - w) * shares[n, 0] + w * shares[n + 1, 0])
+    across = curved * ((1 - w) * shares[n, 1] + w * shares[n + 1, 1])
     for k in range(len(root)):
-        root[k] = 0.0
-    for side in range(2):
-        table, shares = (own, aside) if side == 0 else (other, ends)
-        for place in range(4):
-            a, b = place & 1, place >> 1
-            weight = _of(shares[0], a) * _of(shares[1], b)
-            if weight > 0.0:  # most contacts are in the middle, where one is
-                for k in range(len(root)):
-                    near = (1 - v) * table[a, b, i, j, k] + v * table[a, b, i, j + 1, k]
-                    far = (1 - v) * table[a, b, i + 1, j, k] + v * table[a, b, i + 1, j + 1, k]
-                    root[k] += weight * ((1 - u) * near + u * far)
-    for k in range(len(root)):
-        root[k] = np.sqrt(root[k])
+        of_both = both[k] + object_alone[k]
+        root[k] = across * object_alone[k] / np.sqrt(of_both) if of_both > 0.0 else 0.0
+        rest[k] += max(alone * object_alone[k] - root[k] * root[k], 0.0)
     return True
 
 

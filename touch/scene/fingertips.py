@@ -19,7 +19,7 @@ from ...thermal.contact import touching
 from ...thermal.matter import skin as named_skin
 from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
-from .bodies import BodyShape, require_box
+from .bodies import BodyShape
 from .faces import flat_faces, largest_face, rotation, triangles
 from .names import find, geom_label, geoms_of, names
 
@@ -40,7 +40,7 @@ class Fingertip:
     contact's conductance is its own, and bodies press its springs; bare, balls and cylinders touch a rigid face.
     surround: the pad around the sensor, which gives heat to the sensor's sides and to objects: its material by name or
     a Material, as wide as a square of the pad's area, or a Surround that is no wider; None for a sensor by itself. A
-    fingertip with one touches objects of one box each, on an ideal thermostat.
+    fingertip with one is flat and sits on an ideal thermostat.
 
     The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
     objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it, and as
@@ -150,11 +150,11 @@ def pads(
         towards += [data.xpos[o.body] + data.xmat[o.body].reshape(3, 3) @ o.centre for o in objects]
         placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middles[label]))
         if placed[-1].surround is not None:
-            _require_boxes(model, label, objects)
+            _require_no_elements(label, objects)
     return tuple(placed)
 
 
-def _require_boxes(model: mujoco.MjModel, label: str, objects: Sequence[BodyShape]) -> None:
+def _require_no_elements(label: str, objects: Sequence[BodyShape]) -> None:
     """Raises InvalidValueError for an object that a fingertip in its pad cannot touch."""
     for shape in objects:
         if shape.elements:
@@ -162,12 +162,6 @@ def _require_boxes(model: mujoco.MjModel, label: str, objects: Sequence[BodyShap
                 f"fingertip {label!r}: a pad (surround) touches objects alone, and elements are glued on "
                 f"{shape.name!r}: leave surround out"
             )
-        require_box(
-            model,
-            shape,
-            f"fingertip {label!r}: a pad (surround) touches objects that are one box each",
-            "leave surround out, or name a box geom as the object",
-        )
 
 
 def _require_different_geoms(

@@ -1,0 +1,169 @@
+"""A pad's springs under a surface: how far a force pushes them in, and how much of the face, or of a ring around it,
+then touches.
+
+n: springs, the first C of which are looked at; the others help to bear the force.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..contact import FIRST_FORCE, FORCE_STEP, FORCES, Joint, Pad, Surface, face_joint, pad_joint
+from ..matter import Material, Skin
+
+_POINTS = 40  # along the pad's side
+_FINER = 4  # times as many on the face
+_STEPS = 50
+_TOLERANCE = 1e-12  # of the force
+_FADED = 0.1  # of what a force five times as large touches, at least
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """Of a pad's front around the sensor's face: what lies between squares of the sides `inner` and `outer`, m. made:
+    the pad's material."""
+
+    made: Material
+    inner: float
+    outer: float
+
+
+class Springs(NamedTuple):
+    """places (n, 2) m, areas (n,) m2 and stiffness (n,) over that of those around the face. counted: C."""
+
+    places: np.ndarray
+    areas: np.ndarray
+    stiffness: np.ndarray
+    counted: int
+
+
+def springs(pad: Pad, ring: Ring | None = None) -> Springs:
+    """Of a pad with its skin's springs. Those on the face are closer together, and looked at unless a ring is given."""
+    coarse, pitch = square_middles(pad.width, _POINTS), pad.width / _POINTS
+    fine = square_middles(pad.face, math.ceil(_FINER * _POINTS * pad.face / pad.width))
+    on_face = np.full(len(fine), pad.face**2 / len(fine)), np.full(len(fine), pad.face_ratio)
+    rest = 1 - _within(coarse, pitch, pad.face)
+    parts = [(fine, *on_face)]
+    if ring is not None:
+        seen = _within(coarse, pitch, ring.outer) - _within(coarse, pitch, ring.inner)
+        rest -= seen
+        parts.insert(0, (coarse, seen * pitch**2, np.ones(len(coarse))))
+    some = rest > 0
+    parts.append((coarse[some], rest[some] * pitch**2, np.ones(int(some.sum()))))
+    places, areas, stiffness = map(np.concatenate, zip(*parts, strict=True))
+    return Springs(places, areas, stiffness, len(parts[0][0]))
+
+
+def square_middles(side: float, count: int) -> np.ndarray:
+    """(count^2, 2) m from a square's middle: those of so many squares each way in it."""
+    middles = (np.arange(count) + 0.5) * side / count - side / 2
+    return np.stack([grid.ravel() for grid in np.meshgrid(middles, middles)], axis=1)
+
+
+def _within(middles: np.ndarray, pitch: float, side: float) -> np.ndarray:
+    """(n,) parts of the squares of that pitch m at those middles that lie in a square of that side m."""
+    return np.clip((side / 2 - np.abs(middles)) / pitch + 0.5, 0.0, 1.0).prod(axis=1)
+
+
+def loads(pad: Pad) -> np.ndarray:
+    """(FORCES,) m3, the forces of a table over the stiffness of the springs around the face."""
+    return np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)) * (pad.thickness / pad.foundation_modulus)
+
+
+def touching_joint(skin: Skin | None, body: Material, ring: Ring | None) -> Joint:
+    """The faces that meet on the sensor's face, or on a ring around it."""
+    other = Surface.of(body)
+    return face_joint(skin, other) if ring is None else pad_joint(skin, ring.made, other)
+
+
+@njit(cache=True, error_model="numpy")
+def lowered(heights, cover):
+    """Counts heights from the lowest that is covered: a light force's depth is little beside them."""
+    least = np.inf
+    for i in range(len(heights)):
+        if cover[i] > 0.0:
+            least = min(least, heights[i])
+    heights -= least
+
+
+@njit(cache=True, error_model="numpy")
+def rises(heights, cover, slopes):
+    """Writes by how many m the surface rises over the square of each of the C points, the gentler of the two ways along
+    both axes: a point at the edge of a crest is on it."""
+    side = round(math.sqrt(len(slopes)))
+    for i in range(len(slopes)):
+        slopes[i] = 0.0
+        for step, at in ((1, i % side), (side, i // side)):
+            least = np.inf
+            if at > 0 and cover[i - step] > 0.0:
+                least = abs(heights[i] - heights[i - step])
+            if at < side - 1 and cover[i + step] > 0.0:
+                least = min(least, abs(heights[i + step] - heights[i]))
+            if least < np.inf:
+                slopes[i] += least
+
+
+@njit(cache=True, error_model="numpy")
+def borne(heights, cover, stiffness, slopes, load, touching):
+    """(m2 of the C points that touches, its share of the load m3). Fills touching (C,) m2. cover: m2 of the points that
+    lie under the surface. slopes: of rises."""
+    depth, held = _sunk(heights, cover, stiffness, load), 0.0
+    for i in range(len(touching)):
+        sunk = depth - heights[i]
+        touching[i] = cover[i] * _part(sunk, slopes[i])
+        held += cover[i] * stiffness[i] * max(sunk, 0.0)
+    return touching.sum(), held / load
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _part(sunk, slope):
+    """Of a point's square, what touches where its middle has sunk in by so many m."""
+    if slope == 0.0:
+        return 1.0 if sunk > 0.0 else 0.0
+    return min(max(0.5 + sunk / slope, 0.0), 1.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _sunk(heights, cover, stiffness, load):
+    """m at which springs take the load, m3; -inf where there are none."""
+    depth, whole = load, 0.0
+    for i in range(len(heights)):
+        depth += cover[i] * stiffness[i] * heights[i]
+        whole += cover[i] * stiffness[i]
+    if whole == 0.0:
+        return -np.inf
+    depth /= whole  # if all pushed: at least as deep as it will be
+    for _ in range(_STEPS):
+        held, rate = 0.0, 0.0
+        for i in range(len(heights)):
+            if heights[i] < depth:
+                spring = cover[i] * stiffness[i]
+                held += spring * (depth - heights[i])
+                rate += spring
+        wrong = held - load
+        if rate == 0.0 or abs(wrong) <= _TOLERANCE * load:
+            break
+        depth -= wrong / rate
+    return depth
+
+
+@njit(cache=True, error_model="numpy")
+def between_forces(at):
+    """Fills what a place's rows (FORCES, n) tell of every second force from those before and behind; areas and shares
+    of the force come first. Between forces a power of them is taken, which must not begin at nothing."""
+    for n in range(len(at) - 4, -1, -2):
+        for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
+            if at[n, k] < faded * at[n + 2, k]:
+                at[n, k] = faded * at[n + 2, k]
+                at[n, 3:] = at[n + 2, 3:]
+    for n in range(1, len(at), 2):
+        above = min(n + 1, len(at) - 2)
+        at[n, 0] = math.sqrt(at[n - 1, 0] * at[above, 0])
+        for k in range(1, at.shape[1]):
+            at[n, k] = (at[n - 1, k] + at[above, k]) / 2
