@@ -20,7 +20,7 @@ from thermograsp.thermal import IDEAL, Pad, cylinder_contact, sphere_contact
 from thermograsp.thermal.contact import curved_contact, skinned
 from thermograsp.thermal.matter import skin as named_skin
 from thermograsp.thermal.pressed import PressedMesh, height_map, map_heights
-from thermograsp.thermal.pressed.springs import _sunk, springs
+from thermograsp.thermal.pressed.springs import depth_under, springs
 from thermograsp.touch import Fingertip, ThermalTouch, install, prepare
 from thermograsp.touch.contacts import AREA, BESIDE, CLOSED, FORCE, pair_laws
 from thermograsp.touch.contacts.laws import PairLaws
@@ -201,7 +201,7 @@ def test_what_springs_bear_is_the_force() -> None:
             map_heights(*seen, np.stack([middle, *axes]), points, heights, cover)
             heights -= heights[cover > 0].min()
             load = force * sheet.thickness / sheet.foundation_modulus
-            depth = _sunk(heights, cover * areas, stiffness, load)
+            depth = depth_under(heights, cover * areas, stiffness, load)
             held = (cover * areas * stiffness * np.maximum(depth - heights, 0.0)).sum()
             assert held == pytest.approx(load, rel=1e-6)
 

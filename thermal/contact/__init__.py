@@ -46,6 +46,7 @@ from .law import (
     flat_footprint,
     flat_law,
     pad_law,
+    rigid_face,
     round_footprint,
     sphere_footprint,
     sphere_law,
@@ -66,7 +67,7 @@ from .rough_faces import (
     stack_joints,
     typical_slope,
 )
-from .spread import even_patch
+from .spread import beneath, even_patch
 
 __all__ = [
     "AIR",
@@ -102,6 +103,7 @@ __all__ = [
     "array_laws",
     "bare_footprint",
     "bared",
+    "beneath",
     "beside_ball",
     "beside_face",
     "beside_strip",
@@ -137,6 +139,7 @@ __all__ = [
     "skinned",
     "solid_conduction",
     "sphere_contact",
+    "rigid_face",
     "round_footprint",
     "sphere_footprint",
     "sphere_law",

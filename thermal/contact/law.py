@@ -183,6 +183,16 @@ def bare_footprint(
     return law
 
 
+def rigid_face(pad: Pad, body: Surface, face: Surface = LAPPED_ALUMINA, gas: Gas | None = AIR) -> np.void:
+    """The law of a rigid face that wears no skin, on a body of any shape whose area of contact and force are told from
+    elsewhere: what solid_conduction takes, with the gap of faces that touch without force. gas: None for vacuum."""
+    pad, pair = bared(pad, face), joint(face, body, gas, full_contact=True)
+    constriction = (1 / face.conductivity + 1 / body.conductivity) / 4
+    return _followed(
+        flat_law(pad, pair, (pad.width, pad.width)), mean_gap=_mean_gap(pair), constriction=constriction
+    )
+
+
 def bared(pad: Pad, face: Surface = LAPPED_ALUMINA) -> Pad:
     """The pad with springs on the sensor's face as stiff as a column of it, as deep as the pad: a rigid face."""
     return replace(pad, face_stiffness=face.youngs_modulus / pad.thickness)

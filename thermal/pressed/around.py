@@ -64,5 +64,5 @@ def _press_round(radius, length, ball, places, points, areas, stiffness, counted
             lowered(heights, cover)
             rises(heights, cover, slopes)
             for n in range(0, len(loads), 2):
-                at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
+                _, at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
             between_forces(at)

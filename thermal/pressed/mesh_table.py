@@ -10,7 +10,6 @@ below 0."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -29,17 +28,16 @@ from ..contact import (
     conductance,
     even_places,
     flat_law,
-    patch_ends,
-    patch_offset,
     skinned,
     table_values,
 )
 from ..matter import Material, Skin
+from .bare import pressed_bare
 from .height_map import HeightMap, height_map, map_heights
+from .lying import end, lie
 from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
 
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
-_WHOLE = 0.98  # of the face: what is longer covers it, to its points
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +59,15 @@ class PressedMesh:
         """(CURVED_TABLE,)."""
         sheet = skinned(self.pad, self.skin)
         view = pressed_view(sheet, self.vertices, self.faces, self.axes)
-        touched = view.touched(ring=self.ring)
+        if self.skin is None:
+            where = view.seen, view.begin, view.places, view.spans
+            touched = pressed_bare(self.pad, self.body, *where, self.ring)
+        else:
+            touched = view.touched(ring=self.ring)
         if self.ring is None:
-            _end(touched)
+            end(touched)
+            if self.skin is None:
+                return filled(view.places, touched[..., :3], touched[..., 3:])
         return conducting(sheet, touching_joint(self.skin, self.body, self.ring), view.places, touched)
 
 
@@ -128,23 +132,21 @@ def _places(face: float, span: float) -> np.ndarray:
     return even_places(0.0, span, (face, span - face, *crown))
 
 
-def _end(touched: np.ndarray) -> None:
-    """Where a contact vanishes it is a strip at both ends."""
-    for end, beside in ((0, 1), (-1, -2)):
-        touched[:, end, :, 2:] = touched[:, beside, :, 2:]
-        touched[:, end, :, 3], touched[:, end, :, 5] = 1.0, 1.0
-    for end, beside in ((0, 1), (-1, -2)):
-        touched[:, :, end, 3:] = touched[:, :, beside, 3:]
-        touched[:, :, end, 2], touched[:, :, end, 4], touched[:, :, end, 6] = 0.0, 1.0, 1.0
-
-
 def conducting(pad: Pad, faces: Joint, places: np.ndarray, touched: np.ndarray) -> np.ndarray:
     """(CURVED_TABLE,) of what is touched (FORCES, PLACES, PLACES, 7), as PressedView tells it, at places (2, PLACES) m.
     pad: with its skin's springs."""
+    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
+    values = np.empty((*touched.shape[:3], 3))
+    _conduct(flat_law(pad, faces, (pad.width, pad.width)), forces, touched, values)
+    return filled(places, values, touched[..., 3:])
+
+
+def filled(places: np.ndarray, values: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """(CURVED_TABLE,) of these places (2, PLACES) m, and by force and place W/K, m2 and m, and shares."""
     table = np.empty(CURVED_TABLE)
     table[: 2 * PLACES] = places.ravel()
-    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    _conduct(flat_law(pad, faces, (pad.width, pad.width)), forces, touched, *table_values(table))
+    of_values, of_shares = table_values(table)
+    of_values[:], of_shares[:] = values, shares
     table.flags.writeable = False
     return table
 
@@ -175,38 +177,14 @@ def _press(
                 continue
             rises(heights, cover, slopes)
             for n in range(0, len(loads), 2):
-                at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
+                _, at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
                 if on_face:
-                    _lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, at[n])
+                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, at[n])
             between_forces(at)
 
 
 @njit(cache=True, error_model="numpy")
-def _lie(points, touching, square, aside, along, spans, face, touched):
-    """Writes a contact's length m and its shares to touched[2:], by the moments of what of each point touches, m2; a
-    point counts as a square of that area m2. aside, along: m, the pad's place."""
-    s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(len(touching)):
-        w, y, z = touching[i], points[i, 0], points[i, 1]
-        s, sy, sz = s + w, sy + w * y, sz + w * z
-        syy, syz, szz = syy + w * y * y, syz + w * y * z, szz + w * z * z
-    if s == 0.0:
-        return
-    yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
-    middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
-    longer = math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
-    touched[2] = longer if zz >= yy else s / longer
-    for axis in range(2):
-        length = touched[2] if axis == 1 else s / touched[2]
-        pad, off = (along, sz / s) if axis == 1 else (aside, sy / s)
-        pad -= spans[axis] / 2
-        length = face if length > _WHOLE * face else length
-        touched[3 + axis] = patch_offset(off, length, face)
-        touched[5 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)
-
-
-@njit(cache=True, error_model="numpy")
-def _conduct(law, forces, touched, values, shares):
+def _conduct(law, forces, touched, values):
     for n in range(touched.shape[0]):
         for a in range(touched.shape[1]):
             for b in range(touched.shape[2]):
@@ -214,5 +192,3 @@ def _conduct(law, forces, touched, values, shares):
                 load = touched[n, a, b, 1] * forces[n]
                 values[n, a, b, 0] = conductance(law, load / area) * area if load > 0.0 else 0.0
                 values[n, a, b, 1], values[n, a, b, 2] = area, touched[n, a, b, 2]
-                for k in range(4):
-                    shares[n, a, b, k] = touched[n, a, b, 3 + k]

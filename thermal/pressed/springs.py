@@ -46,7 +46,7 @@ class Springs(NamedTuple):
 def springs(pad: Pad, ring: Ring | None = None) -> Springs:
     """Of a pad with its skin's springs. Those on the face are closer together, and looked at unless a ring is given."""
     coarse, pitch = square_middles(pad.width, _POINTS), pad.width / _POINTS
-    fine = square_middles(pad.face, math.ceil(_FINER * _POINTS * pad.face / pad.width))
+    fine = square_middles(pad.face, _fine(pad))
     on_face = np.full(len(fine), pad.face**2 / len(fine)), np.full(len(fine), pad.face_ratio)
     rest = 1 - _within(coarse, pitch, pad.face)
     parts = [(fine, *on_face)]
@@ -58,6 +58,17 @@ def springs(pad: Pad, ring: Ring | None = None) -> Springs:
     parts.append((coarse[some], rest[some] * pitch**2, np.ones(int(some.sum()))))
     places, areas, stiffness = map(np.concatenate, zip(*parts, strict=True))
     return Springs(places, areas, stiffness, len(parts[0][0]))
+
+
+def on_face(pad: Pad, ring: Ring | None = None) -> tuple[int, int]:
+    """From which of `springs` up to which are on the face."""
+    first = 0 if ring is None else _POINTS**2
+    return first, first + _fine(pad) ** 2
+
+
+def _fine(pad: Pad) -> int:
+    """Springs along the face's side."""
+    return math.ceil(_FINER * _POINTS * pad.face / pad.width)
 
 
 def square_middles(side: float, count: int) -> np.ndarray:
@@ -111,18 +122,18 @@ def rises(heights, cover, slopes):
 
 @njit(cache=True, error_model="numpy")
 def borne(heights, cover, stiffness, slopes, load, touching):
-    """(m2 of the C points that touches, its share of the load m3). Fills touching (C,) m2. cover: m2 of the points that
-    lie under the surface. slopes: of rises."""
-    depth, held = _sunk(heights, cover, stiffness, load), 0.0
+    """(m by which the springs sink in, m2 of the C points that touches, its share of the load m3). Fills touching (C,)
+    m2. cover: m2 of the points that lie under the surface. slopes: of rises."""
+    depth, held = depth_under(heights, cover, stiffness, load), 0.0
     for i in range(len(touching)):
         sunk = depth - heights[i]
-        touching[i] = cover[i] * _part(sunk, slopes[i])
+        touching[i] = cover[i] * part_touched(sunk, slopes[i])
         held += cover[i] * stiffness[i] * max(sunk, 0.0)
-    return touching.sum(), held / load
+    return depth, touching.sum(), held / load
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _part(sunk, slope):
+def part_touched(sunk, slope):
     """Of a point's square, what touches where its middle has sunk in by so many m."""
     if slope == 0.0:
         return 1.0 if sunk > 0.0 else 0.0
@@ -130,7 +141,7 @@ def _part(sunk, slope):
 
 
 @njit(cache=True, error_model="numpy")
-def _sunk(heights, cover, stiffness, load):
+def depth_under(heights, cover, stiffness, load):
     """m at which springs take the load, m3; -inf where there are none."""
     depth, whole = load, 0.0
     for i in range(len(heights)):

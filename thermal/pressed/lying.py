@@ -1,0 +1,47 @@
+"""Where a mesh's contact lies on the sensor's face, and how long it is."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..contact import patch_ends, patch_offset
+
+_WHOLE = 0.98  # of the face: what is longer covers it, to its points
+
+
+def end(touched: np.ndarray) -> None:
+    """Where a contact vanishes it is a strip at both ends."""
+    for end, beside in ((0, 1), (-1, -2)):
+        touched[:, end, :, 2:] = touched[:, beside, :, 2:]
+        touched[:, end, :, 3], touched[:, end, :, 5] = 1.0, 1.0
+    for end, beside in ((0, 1), (-1, -2)):
+        touched[:, :, end, 3:] = touched[:, :, beside, 3:]
+        touched[:, :, end, 2], touched[:, :, end, 4], touched[:, :, end, 6] = 0.0, 1.0, 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def lie(points, touching, square, aside, along, spans, face, touched):
+    """Writes a contact's length m and its shares to touched[2:], by the moments of what of each point touches, m2; a
+    point counts as a square of that area m2. aside, along: m, the pad's place."""
+    s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(len(touching)):
+        w, y, z = touching[i], points[i, 0], points[i, 1]
+        s, sy, sz = s + w, sy + w * y, sz + w * z
+        syy, syz, szz = syy + w * y * y, syz + w * y * z, szz + w * z * z
+    if s == 0.0:
+        return
+    yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
+    middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
+    longer = math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
+    touched[2] = longer if zz >= yy else s / longer
+    for axis in range(2):
+        length = touched[2] if axis == 1 else s / touched[2]
+        pad, off = (along, sz / s) if axis == 1 else (aside, sy / s)
+        pad -= spans[axis] / 2
+        length = face if length > _WHOLE * face else length
+        touched[3 + axis] = patch_offset(off, length, face)
+        touched[5 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)
