@@ -48,8 +48,8 @@ class Touch:
     N on a pad of that width, m. conductances: W/(m2 K) of the sensor's contact and of the pad's around it, None for the
     package's law. cooled: K by which the silicone is colder at its front at first, and less in proportion deeper.
     sides, front: whether the silicone exchanges heat with the sensor, and with the object. depth: m of an object that
-    is not square, and spot: m, the sides of a rectangle in the middle that alone touches, both in three dimensions alone;
-    None for its width, and for all that lies over the pad."""
+    is not square, and spot: m, the sides of a rectangle in the middle that alone touches, both in three dimensions
+    alone; None for its width, and for all that lies over the pad."""
 
     material: str
     skin: str | None = None

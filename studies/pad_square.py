@@ -87,11 +87,7 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
             basis.mesh,
             ElementHex2(),
             facets=basis.mesh.facets_satisfying(
-                lambda p: (
-                    (abs(p[2] - heights[-1]) < 1e-9)
-                    & (p[0] < touched[0])
-                    & (p[1] < touched[1])
-                )
+                lambda p: (abs(p[2] - heights[-1]) < 1e-9) & (p[0] < touched[0]) & (p[1] < touched[1])
             ),
             intorder=4,
         )

@@ -105,7 +105,9 @@ def _view(
     axes = np.stack([side * normal, side * aside, np.cross(normal, aside)])
     vertices, faces = shape.surface
     corners = np.ascontiguousarray(vertices, float)
-    view = pressed_view(pad, corners.tobytes(), faces.astype(np.int64).tobytes(), axes.tobytes())
+    view = pressed_view(
+        pad, corners.tobytes(), faces.astype(np.int64).tobytes(), axes.tobytes(), rounded=False
+    )
     return view, axes[1:], (corners @ axes[1:].T).min(axis=0) - pad.face / 2
 
 

@@ -16,7 +16,7 @@ import trimesh
 
 from thermograsp.thermal import SKINS, Pad, Surround, material
 from thermograsp.thermal.contact import FORCES, curved_contact
-from thermograsp.thermal.padded import RINGS, ring_sides
+from thermograsp.thermal.padded import RINGS, ring_shares, ring_sides
 from thermograsp.thermal.pressed import PressedMesh, Ring, RoundRing
 from thermograsp.thermal.pressed.mesh_table import pressed_view
 from thermograsp.touch import Fingertip, ThermalTouch, prepare
@@ -32,7 +32,7 @@ from thermograsp.touch.contacts import (
     PLACE,
 )
 from thermograsp.touch.heat import JoinedHeat
-from thermograsp.touch.heat.ring_shares import ring_shares
+from thermograsp.touch.heat.narrow import STEPS
 from thermograsp.touch.scene import bodies, pads
 
 FACE, DT = 0.009, 0.01
@@ -121,11 +121,9 @@ def test_shares_under_a_ring_are_means_over_a_half_space() -> None:
     more = mean(strip, places(broad, 0.0, width)) - mean(face, places(width, 0.0, width))
     own = mean(places(broad, width, outer), places(broad, width, outer)) - mean(square_ring(), square_ring())
     across = mean(strip, places(broad, width, outer)) - mean(face, square_ring())
-    np.testing.assert_allclose(ring_shares(*_sides())[0, 2], (own / more, across / more), rtol=0.05)
-
-
-def _sides() -> tuple[float, tuple[float, ...]]:
-    return FACE, SIDES[1:]
+    np.testing.assert_allclose(
+        ring_shares(FACE, SIDES[1:], STEPS)[0, 2], (own / more, across / more), rtol=0.05
+    )
 
 
 def drops(name: str, touches: np.ndarray, surround: str | None = "silicone") -> np.ndarray:

@@ -16,8 +16,8 @@ import pytest
 import trimesh
 
 from thermograsp.errors import MissingDependencyError
-from thermograsp.thermal import IDEAL, Pad, cylinder_contact, sphere_contact
-from thermograsp.thermal.contact import curved_contact, skinned
+from thermograsp.thermal import IDEAL, Pad, cylinder_contact, material, sphere_contact
+from thermograsp.thermal.contact import curved_contact, curved_table, skinned
 from thermograsp.thermal.matter import skin as named_skin
 from thermograsp.thermal.pressed import PressedMesh, height_map, map_heights
 from thermograsp.thermal.pressed.springs import depth_under, springs
@@ -110,16 +110,41 @@ def found(name: str, skin: str | None, force: float, aside: float = 0.0) -> tupl
 
 @pytest.mark.parametrize("aside", [0.0, 0.002, 0.004, 0.006])
 def test_rods_and_balls_are_those_of_the_closed_forms(aside: float) -> None:
-    """To what tables tell of a narrow crown: their places are 2 mm apart on the rod and 3 on the ball."""
-    skin = skinned(PAD, named_skin("filled_silicone"))
+    """Under a skin. To what tables tell of a narrow crown: their places are 2 mm apart on the rod and 3 on the ball."""
+    sheet = skinned(PAD, named_skin("filled_silicone"))
     for force in (3.0, 10.0):
-        for sheet, worn in ((PAD, None), (skin, "filled_silicone")):
-            whole = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
-            rod = float(cylinder_contact(sheet, force, 0.01, 0.04, offset=(0.0, aside)).face)
-            assert found("rod", worn, force, aside)[1] == pytest.approx(rod, abs=0.15 * whole)
-        whole = float(sphere_contact(PAD, force, 0.02).face)
-        ball = float(sphere_contact(PAD, force, 0.02, offset=(aside, 0.0)).face)
-        assert found("ball", None, force, aside)[1] == pytest.approx(ball, abs=0.25 * whole)
+        whole = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
+        rod = float(cylinder_contact(sheet, force, 0.01, 0.04, offset=(0.0, aside)).face)
+        assert found("rod", "filled_silicone", force, aside)[1] == pytest.approx(rod, abs=0.15 * whole)
+        whole = float(sphere_contact(sheet, force, 0.02).face)
+        ball = float(sphere_contact(sheet, force, 0.02, offset=(aside, 0.0)).face)
+        assert found("ball", "filled_silicone", force, aside)[1] == pytest.approx(ball, abs=0.25 * whole)
+
+
+@pytest.mark.parametrize("name", ["aluminium", "steel", "glass", "wood"])
+@pytest.mark.parametrize("length", [None, 0.06])
+@pytest.mark.parametrize("radius", [0.005, 0.02])
+def test_a_bare_face_meets_a_mesh_as_it_does_the_round_body(
+    name: str, length: float | None, radius: float
+) -> None:
+    """Rigid, with Hertz's contact and the gas around it, however coarse the mesh: in the middle and near an edge."""
+    made_of, axes = material(name), np.array([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    known = curved_table(PAD, None, made_of, radius, length)
+    for fine in (1, 2):
+        solid = (
+            trimesh.creation.icosphere(2 + fine, radius)
+            if length is None
+            else trimesh.creation.cylinder(radius, length, sections=32 * fine)
+        )
+        vertices, faces = np.ascontiguousarray(solid.vertices, float), np.asarray(solid.faces, np.int64)
+        table = PressedMesh(PAD, None, made_of, vertices.tobytes(), faces.tobytes(), axes.tobytes()).table()
+        middle = np.ptp(vertices, axis=0)[1:] / 2 + PAD.face / 2
+        for force in (1.0, 10.0, 30.0):
+            for aside in (0.0, 0.65 * PAD.face / 2):
+                conducts, patch, _ = curved_contact(known, force, aside, 0.0)
+                meshed, like, _ = curved_contact(table, force, middle[0] + aside, middle[1])
+                assert meshed == pytest.approx(conducts, rel=0.25)
+                assert like == pytest.approx(patch, rel=0.4)
 
 
 @pytest.mark.parametrize("skin", [None, "filled_silicone"])
@@ -132,13 +157,12 @@ def test_a_rod_is_a_strip_and_a_ball_a_square_to_the_heat(skin: str | None) -> N
     assert area < 0.5 * PAD.face**2 and long == pytest.approx(math.sqrt(area), rel=0.05)
 
 
-@pytest.mark.parametrize("skin", [None, "filled_silicone"])
-def test_a_narrow_contact_is_not_counted_in_whole_points(skin: str | None) -> None:
+def test_a_narrow_contact_is_not_counted_in_whole_points() -> None:
     """In the middle, where a table has a place, at forces between which a strip is ever broader."""
-    sheet = PAD if skin is None else skinned(PAD, named_skin(skin))
+    sheet = skinned(PAD, named_skin("filled_silicone"))
     for force in np.geomspace(1.0, 30.0, 8):
         strip = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
-        assert found("rod", skin, force)[1] == pytest.approx(strip, rel=0.03)
+        assert found("rod", "filled_silicone", force)[1] == pytest.approx(strip, rel=0.03)
 
 
 @pytest.mark.parametrize("aside", np.linspace(0.0, 0.024, 9).tolist())
@@ -161,7 +185,7 @@ def test_a_thread_touches_less_than_a_rod_and_more_force_touches_more(skin: str 
 def test_nothing_jumps_over_the_face_s_edge_and_beyond_it_nothing_is_left(name: str) -> None:
     through = np.array([found(name, None, 10.0, aside)[0] for aside in np.linspace(0.0, 0.026, 521)])
     assert abs(np.diff(through)).max() < 0.06 * through.max()  # in .05 mm
-    assert through[-1] < 1e-4 * through.max()
+    assert through[-1] < 1e-2 * through.max()  # gas across some millimetres
 
 
 def test_a_nut_lies_on_each_of_its_faces() -> None:

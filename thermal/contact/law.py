@@ -179,18 +179,25 @@ def bare_footprint(
     else:
         law = sphere_footprint(pad, pair, positive("radius (m)", radius))
         law["constriction"] = (1 / face.conductivity + 1 / body.conductivity) / 4
-    law["modulus"] = 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in (face, body))
+    law["modulus"] = _contact_modulus(face, body)
     return law
+
+
+def _contact_modulus(face: Surface, body: Surface) -> float:
+    """Pa, Hertz's."""
+    return 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in (face, body))
 
 
 def rigid_face(pad: Pad, body: Surface, face: Surface = LAPPED_ALUMINA, gas: Gas | None = AIR) -> np.void:
     """The law of a rigid face that wears no skin, on a body of any shape whose area of contact and force are told from
     elsewhere: what solid_conduction takes, with the gap of faces that touch without force. gas: None for vacuum."""
     pad, pair = bared(pad, face), joint(face, body, gas, full_contact=True)
-    constriction = (1 / face.conductivity + 1 / body.conductivity) / 4
-    return _followed(
-        flat_law(pad, pair, (pad.width, pad.width)), mean_gap=_mean_gap(pair), constriction=constriction
-    )
+    numbers = {
+        "mean_gap": _mean_gap(pair),
+        "modulus": _contact_modulus(face, body),
+        "constriction": (1 / face.conductivity + 1 / body.conductivity) / 4,
+    }
+    return _followed(flat_law(pad, pair, (pad.width, pad.width)), **numbers)
 
 
 def bared(pad: Pad, face: Surface = LAPPED_ALUMINA) -> Pad:

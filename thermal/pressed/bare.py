@@ -25,14 +25,22 @@ from ..contact import (
     Surface,
     bared,
     beneath,
+    conductance,
+    constricted,
     rigid_face,
-    solid_conduction,
     touching,
 )
 from ..matter import Material
 from .height_map import HeightMap, map_heights
 from .lying import lie
 from .springs import Ring, between_forces, borne, loads, lowered, on_face, rises, springs
+
+_AROUND = 1e-3  # m, within which a crown's curvature is told
+_LINE, _COMPACT = 0.1, 0.25
+"""Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
+as a disc."""
+_FEWEST = 60  # points
+_UNLIKE = 0.1  # of the squares of the heights' differences, that a paraboloid leaves at most
 
 
 def pressed_bare(
@@ -48,11 +56,8 @@ def pressed_bare(
     what conducts, its length m and its shares, as PressedView.touched tells them; of a ring around it: m2 that touch,
     and their share of the force. seen, begin, places, spans: as PressedView has them."""
     touched = np.zeros((FORCES, PLACES, PLACES, 7))
-    law = rigid_face(pad, Surface.of(body))
-    spots, resistance = law.copy(), beneath(body, touching(None))
-    spots["constriction"] = 0.0
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    laws = law, spots, resistance, ring is None
+    laws = rigid_face(pad, Surface.of(body)), beneath(body, touching(None)), ring is None
     some = springs(bared(pad), ring), on_face(pad, ring), loads(pad), forces
     _press(*seen, begin, places, spans, pad.face, *some[0], *some[1:], *laws, touched)
     return touched
@@ -61,11 +66,11 @@ def pressed_bare(
 @njit(cache=True, error_model="numpy")
 def _press(
     axes, corner, height, pitch, begin, places, spans, face, points, areas, stiffness, counted, span, loads, forces,
-    law, spots, resistance, of_face, touched,
+    law, resistance, of_face, touched,
 ):  # fmt: skip
-    """Fills touched. span: from which of the points up to which are on the face; of_face: whether they are looked
-    at, or those of a ring. loads: m3, forces N over the stiffness of springs around the face. law, spots: of rigid_face
-    with its constriction and without. resistance: m2 K/W of both bodies."""
+    """Fills touched. span: from which of the points up to which are on the face; of_face: whether they are looked at,
+    or those of a ring. loads: m3, forces N over the stiffness of springs around the face. law: of rigid_face.
+    resistance: m2 K/W of both bodies."""
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
@@ -90,21 +95,12 @@ def _press(
                 share += _flat(heights, cover, depth, span) * (soft - share)
                 if of_face:
                     row = at[n]
-                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, row)
-                    _conduct(
-                        heights,
-                        cover,
-                        depth,
-                        area,
-                        share * forces[n],
-                        face,
-                        law,
-                        spots,
-                        resistance,
-                        touching,
-                        row,
+                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, 0.0, row)
+                    where = points, heights, cover
+                    least = _conduct(
+                        *where, depth, area, share * forces[n], face, law, resistance, touching, row
                     )
-                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, row)
+                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, least, row)
                 else:
                     at[n, 0], at[n, 1] = area, share
             between_forces(at)
@@ -122,13 +118,22 @@ def _flat(heights, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(heights, cover, depth, area, load, face, law, spots, resistance, touching, row):
+def _conduct(points, heights, cover, depth, area, load, face, law, resistance, touching, row):
     """Writes W/K and m2 of the patch that stands for what conducts to row[:2]; makes of touching (C,), m2, what of the
-    patch lies at each point. row[2]: m, the contact's length. load: N on the face."""
-    solid = solid_conduction(spots, area, load)
+    patch lies at each point. row[2]: m, the contact's length. load: N on the face. Returns m that the patch's longer
+    side has at least, of a line."""
+    long = max(row[2], area / row[2]) if area > 0.0 else 0.0
+    hertz, round = _hertz(points, heights, cover, touching, load, long, law)
+    if round == 0.0 and area > 0.0:
+        round = min(area / row[2] ** 2, row[2] ** 2 / area)
+    if hertz < area:
+        for i in range(len(touching)):
+            touching[i] *= hertz / area
+        area = hertz
+    solid = 0.0
     if area > 0.0:
-        slim = min(area / row[2] ** 2, row[2] ** 2 / area)  # a line does not constrict as a disc does
-        solid += slim * (solid_conduction(law, area, load) - solid)
+        solid = conductance(law, load / area) * area
+        solid = constricted(law, area, solid, law.constriction * _compact(round))
     gas, less = 0.0, 0.0
     for i in range(len(touching)):
         gap, beside = law.mean_gap + max(heights[i] - depth, 0.0), max(cover[i] - touching[i], 0.0)
@@ -145,3 +150,50 @@ def _conduct(heights, cover, depth, area, load, face, law, spots, resistance, to
     row[0], row[1] = total, patch
     for i in range(len(touching)):
         touching[i] *= patch / total if total > 0.0 else 0.0
+    return min(long, face) * (1.0 - _compact(round))
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _compact(round):
+    return min(max((round - _LINE) / (_COMPACT - _LINE), 0.0), 1.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _hertz(points, heights, cover, touching, load, long, law):
+    """(m2 of Hertz's contact on a crown that is as curved as the mesh around the middle of what touches, how round it
+    is: its breadth over its length); inf and 0 where it is no crown: flat, or a shape that no paraboloid is. long: m,
+    of the contact, where the crown is a line."""
+    total, y, z = 0.0, 0.0, 0.0
+    for i in range(len(touching)):
+        total += touching[i]
+        y += touching[i] * points[i, 0]
+        z += touching[i] * points[i, 1]
+    if total == 0.0:
+        return np.inf, 0.0
+    matrix, right, square, count = np.zeros((4, 4)), np.zeros(4), 0.0, 0
+    row = np.ones(4)
+    for i in range(len(touching)):
+        u, v = (points[i, 0] - y / total) / _AROUND, (points[i, 1] - z / total) / _AROUND
+        if cover[i] > 0.0 and u * u + v * v < 1.0:
+            row[1], row[2], row[3] = u * u, v * v, u * v
+            for j in range(4):
+                right[j] += row[j] * heights[i]
+                for k in range(4):
+                    matrix[j, k] += row[j] * row[k]
+            square += heights[i] ** 2
+            count += 1
+    if count < _FEWEST:
+        return np.inf, 0.0
+    found = np.linalg.solve(matrix, right)
+    spread = square - right[0] ** 2 / count
+    left = square - (found * right).sum()
+    mean, half = (found[1] + found[2]) / 2, np.hypot((found[1] - found[2]) / 2, found[3] / 2)
+    most, least = mean + half, mean - half
+    if not (most > 0.0 and left < _UNLIKE * spread):
+        return np.inf, 0.0
+    round = (max(least, 0.0) / most) ** (2 / 3)  # nearly, of Hertz's ellipse
+    if round <= _LINE:
+        radius = _AROUND**2 / (2 * most)
+        return 4 * np.sqrt(load * long * radius / (np.pi * law.modulus)), round
+    radius = _AROUND**2 / (2 * np.sqrt(most * least))
+    return np.pi * (0.75 * load * radius / law.modulus) ** (2 / 3), round

@@ -15,6 +15,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 _PITCH = 0.25e-3  # m
+_FACING = 0.3  # cosine, of a corner that looks the way that the surface is seen from
 _MOST_NODES = 2000  # each way: half a metre at that pitch, and 32 MB
 
 
@@ -29,8 +30,11 @@ class HeightMap(NamedTuple):
     pitch: float
 
 
-def height_map(vertices: np.ndarray, faces: np.ndarray, axes: np.ndarray) -> HeightMap:
-    """Triangles (m, 3) of vertices (n, 3) m seen along axes[0]."""
+def height_map(
+    vertices: np.ndarray, faces: np.ndarray, axes: np.ndarray, normals: np.ndarray | None = None
+) -> HeightMap:
+    """Triangles (m, 3) of vertices (n, 3) m seen along axes[0]. normals: (m, 3, 3) unit vectors at their corners, by
+    which they are curved (corner_normals); None for flat ones."""
     seen = np.ascontiguousarray(np.stack([(vertices * axis).sum(axis=1) for axis in axes], axis=1))
     low, high = seen.min(axis=0)[1:], seen.max(axis=0)[1:]
     pitch = max(_PITCH, float((high - low).max()) / _MOST_NODES)
@@ -38,12 +42,26 @@ def height_map(vertices: np.ndarray, faces: np.ndarray, axes: np.ndarray) -> Hei
     # nodes symmetric about the middle, so that symmetric objects are seen so
     corner = (low + high) / 2 - pitch * (size - 1) / 2
     height = np.full(tuple(size), np.inf)
-    _rasterise(seen, np.asarray(faces, np.int64), corner, pitch, height)
+    triangles = np.asarray(faces, np.int64)
+    bulges = np.zeros((len(triangles), 3)) if normals is None else _bulges(seen, triangles, normals @ axes.T)
+    _rasterise(seen, triangles, bulges, corner, pitch, height)
     return HeightMap(axes, corner, height, pitch)
 
 
+def _bulges(seen: np.ndarray, faces: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(m, 3) m by which a surface that follows the corners' slopes leaves the middles of the triangles' edges (from the
+    first corner, the second, the third), times 4: of a quadratic, half the change of its slope along the edge. 0 where
+    a corner hardly looks this way. seen, normals: along the map's axes."""
+    facing = -normals[..., 0]
+    slopes = normals[..., 1:] / np.maximum(facing, _FACING)[..., None]
+    along = np.roll(seen[faces][..., 1:], -1, axis=1) - seen[faces][..., 1:]
+    change = slopes - np.roll(slopes, -1, axis=1)
+    bulges = 0.5 * (change * along).sum(axis=2)
+    return np.where((facing > _FACING).all(axis=1)[:, None], bulges, 0.0)
+
+
 @njit(cache=True, short_loops=True, error_model="numpy")
-def _rasterise(vertices, faces, corner, pitch, height):
+def _rasterise(vertices, faces, bulges, corner, pitch, height):
     """Keeps in height the least first coordinate of triangles over each node of their other two."""
     for f in range(len(faces)):
         p, q, r = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
@@ -61,7 +79,10 @@ def _rasterise(vertices, faces, corner, pitch, height):
                 b = ((r[2] - p[2]) * (u - p[1]) - (r[1] - p[1]) * (v - p[2])) / area
                 c = ((q[1] - p[1]) * (v - p[2]) - (q[2] - p[2]) * (u - p[1])) / area
                 if b >= -1e-9 and c >= -1e-9 and b + c <= 1 + 1e-9:
-                    height[i, j] = min(height[i, j], p[0] + b * (q[0] - p[0]) + c * (r[0] - p[0]))
+                    at = p[0] + b * (q[0] - p[0]) + c * (r[0] - p[0])
+                    a = 1 - b - c
+                    at += a * b * bulges[f, 0] + b * c * bulges[f, 1] + c * a * bulges[f, 2]
+                    height[i, j] = min(height[i, j], at)
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")

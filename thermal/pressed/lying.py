@@ -24,9 +24,9 @@ def end(touched: np.ndarray) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def lie(points, touching, square, aside, along, spans, face, touched):
+def lie(points, touching, square, aside, along, spans, face, least, touched):
     """Writes a contact's length m and its shares to touched[2:], by the moments of what of each point touches, m2; a
-    point counts as a square of that area m2. aside, along: m, the pad's place."""
+    point counts as a square of that area m2. aside, along: m, the pad's place. least: m, of the longer side."""
     s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(touching)):
         w, y, z = touching[i], points[i, 0], points[i, 1]
@@ -37,6 +37,7 @@ def lie(points, touching, square, aside, along, spans, face, touched):
     yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
     middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
     longer = math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
+    longer = max(longer, least)
     touched[2] = longer if zz >= yy else s / longer
     for axis in range(2):
         length = touched[2] if axis == 1 else s / touched[2]

@@ -35,6 +35,7 @@ from ..matter import Material, Skin
 from .bare import pressed_bare
 from .height_map import HeightMap, height_map, map_heights
 from .lying import end, lie
+from .rounded import corner_normals
 from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
 
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
@@ -112,12 +113,16 @@ class PressedView:
 
 
 @lru_cache(maxsize=256)
-def pressed_view(pad: Pad, vertices: bytes, faces: bytes, axes: bytes) -> PressedView:
-    """The view of a PressedMesh, with a pad that has its skin's springs."""
+def pressed_view(
+    pad: Pad, vertices: bytes, faces: bytes, axes: bytes, *, rounded: bool = True
+) -> PressedView:
+    """The view of a PressedMesh, with a pad that has its skin's springs. rounded: where triangles that meet look nearly
+    alike the surface is smooth, and not made of flat ones."""
     corners = np.frombuffer(vertices).reshape(-1, 3)
-    seen = height_map(
-        corners, np.frombuffer(faces, np.int64).reshape(-1, 3), np.frombuffer(axes).reshape(3, 3)
-    )
+    triangles, normals = np.frombuffer(faces, np.int64).reshape(-1, 3), None
+    if rounded:
+        normals = corner_normals(vertices, faces)
+    seen = height_map(corners, triangles, np.frombuffer(axes).reshape(3, 3), normals)
     across = corners @ seen.axes[1:].T
     low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
     places = np.stack([_places(pad.face, float(span)) for span in high - low])
@@ -179,7 +184,7 @@ def _press(
             for n in range(0, len(loads), 2):
                 _, at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
                 if on_face:
-                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, at[n])
+                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, 0.0, at[n])
             between_forces(at)
 
 

@@ -20,7 +20,7 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import Material
 from ...thermal.numerics import Array
-from ...thermal.padded import RINGS
+from ...thermal.padded import RINGS, ring_shares
 from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
 from ..pointers import table
 from ..scene import BodyShape, PadPlace
@@ -43,7 +43,6 @@ from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
 from .narrow import STEPS, narrow_tables
 from .narrow_pairs import NarrowPairs
-from .ring_shares import ring_shares
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
@@ -110,7 +109,7 @@ class JoinedHeat:
         around = [(f, field.padded) for f, field in enumerate(self._tip_fields) if field.padded is not None]
         self._around = tuple(around)
         self._rings = tuple(map(rings_of, pads))
-        shares = [ring_shares(pads[f].stack.width, self._rings[f] or ()) for f, _ in around]
+        shares = [ring_shares(pads[f].stack.width, self._rings[f] or (), STEPS) for f, _ in around]
         self._shares = np.concatenate((np.zeros((0, STEPS, 2)), *shares))
         self._owners = np.array([*range(len(pads)), *(f for f, _ in around)])
         self._around_of = np.full(len(pads), -1)

@@ -199,7 +199,7 @@ def _march(
     widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Behind the fingertips stand
     the rings of pads around sensors, each as a square of its area that is touched from one side to the other; owners
     (F + pads,) tells of contacts whose they are. Under a curved object they see what the face's narrow contact does
-    there, by shares (F RINGS, J, 2) of ring_shares.py; leans (F T, R) is room. Within a step these states follow
+    there, by shares (F RINGS, J, 2) of ring_shares; leans (F T, R) is room. Within a step these states follow
     the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses in a
     resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]

@@ -1,7 +1,6 @@
-"""What a narrow contact does to the object under the pad around the sensor's face, beside what narrow.py tells of the
-face.
+"""What a narrow contact does to the object under the pad around the sensor's face, beside what it does under the face.
 
-The networks of fields.py know even flows into the whole face and into whole rings of the pad around it. A rod touches a
+Networks know even flows into the whole face and into whole rings of the pad around it (places.py). A rod touches a
 strip of both. Where such a strip is under the face the object is warmer than under an even flow, and so it is under
 each ring, by the ring's own flow and by the face's. Both are told as shares of what the face's own flow does there: the
 ratios of the rises of mean temperature on a half-space once heat has spread, on which an even flow of q W/m2 warms what
@@ -15,22 +14,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from .narrow import STEPS
-
 _POINTS = 10  # of Gauss and Legendre along each side
 Rectangle = tuple[float, float]
 """m, the sides of one in the middle."""
 
 
 @lru_cache(maxsize=64)
-def ring_shares(width: float, sides: tuple[float, ...]) -> np.ndarray:
-    """(R, STEPS, 2) of each ring around a face of that width m, up to these outer sides m, and of strips as broad as
-    the widths of a narrow_table: by the ring's own flow, and by the face's under the ring, or the ring's under the
-    face."""
-    shares = np.empty((len(sides), STEPS, 2))
+def ring_shares(width: float, sides: tuple[float, ...], steps: int) -> np.ndarray:
+    """(R, steps, 2) of each ring around a face of that width m, up to these outer sides m, and of strips as broad as
+    that and each the last one's over the root of 2: by the ring's own flow, and by the face's under the ring, or the
+    ring's under the face."""
+    shares = np.empty((len(sides), steps, 2))
     whole = (width, width)
     for r, (inner, outer) in enumerate(pairwise((width, *sides))):
-        for i in range(1, STEPS):
+        for i in range(1, steps):
             broad = width * 2.0 ** (-i / 2)
             face = _mean(broad, width) - _mean(*whole)
             strip, square = ((broad, inner), (broad, outer)), ((inner, inner), (outer, outer))
