@@ -39,6 +39,7 @@ _AROUND = 1e-3  # m, within which a crown's curvature is told
 _LINE, _COMPACT = 0.1, 0.25
 """Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
 as a disc."""
+_CURVED = 1e-3  # of the face: what touches less is no flat face
 _FEWEST = 60  # points
 _UNLIKE = 0.1  # of the squares of the heights' differences, that a paraboloid leaves at most
 
@@ -74,7 +75,12 @@ def _press(
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
-    slopes, touching, even = np.zeros(counted), np.zeros(counted), np.ones(len(points))
+    slopes, touching, other, even = (
+        np.zeros(counted),
+        np.zeros(counted),
+        np.zeros(counted),
+        np.ones(len(points)),
+    )
     begun = 1 if of_face else 0  # a face touches nothing at the ends
     for a in range(begun, places.shape[1] - begun):
         for b in range(begun, places.shape[1] - begun):
@@ -90,9 +96,11 @@ def _press(
                 heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes)
             for n in range(0, len(loads), 2):
-                _, _, soft = borne(heights, cover, even, slopes, loads[n], touching)
                 depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], touching)
-                share += _flat(heights, cover, depth, span) * (soft - share)
+                flat = _flat(heights, cover, depth, span)
+                if flat > _CURVED:
+                    _, _, soft = borne(heights, cover, even, slopes, loads[n], other)
+                    share += flat * (soft - share)
                 if of_face:
                     row = at[n]
                     lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, 0.0, row)

@@ -57,7 +57,7 @@ def _bulges(seen: np.ndarray, faces: np.ndarray, normals: np.ndarray) -> np.ndar
     along = np.roll(seen[faces][..., 1:], -1, axis=1) - seen[faces][..., 1:]
     change = slopes - np.roll(slopes, -1, axis=1)
     bulges = 0.5 * (change * along).sum(axis=2)
-    return np.where((facing > _FACING).all(axis=1)[:, None], bulges, 0.0)
+    return np.where(np.all(facing > _FACING, axis=1)[:, None], bulges, 0.0)
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")
