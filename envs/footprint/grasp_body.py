@@ -42,6 +42,7 @@ from ...thermal.contact import (
     footprint,
     pad_law,
     skinned,
+    solid_conduction,
     sphere_footprint,
     table_footprint,
 )
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from .slipped_mesh import ClosedMesh
 
 PAD = Pad()
+_FLAT = 0.9  # of what conducts as on a soft pad
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 
 
@@ -89,6 +91,11 @@ class GraspBody:
     def _on_bare_face(self) -> bool:
         """Whether a ball or a cylinder meets the sensor's own face, which does not yield."""
         return self.skin is None and self.mode == "T" and self.spec.shape in ("cylinder", "sphere")
+
+    @property
+    def _bare_mesh(self) -> bool:
+        """Whether a mesh does."""
+        return self.skin is None and self.mode == "T" and self.contact_shape == "mesh"
 
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:
@@ -156,6 +163,8 @@ class GraspBody:
         area = float(nominal.face)
         if self._on_bare_face:
             area = even_patch(self.law, self.touched, NOMINAL_FORCE)
+        if self._bare_mesh:
+            area, _ = footprint(self.law, NOMINAL_FORCE, np.zeros(3))
         if self.contact_shape == "mesh" and not area > 0:  # it may slip to where the sensor is
             area = float(nominal.pad)
         if not area > 0:
@@ -243,7 +252,20 @@ class GraspBody:
             followed = self.mode == "T" and self.spec.shape == "box"
             return flat_footprint(self.pad, self.joint, self._face, self._across if followed else None)
         assert self._mesh_table is not None
-        return table_footprint(self.pad, self.joint, self._mesh_table)
+        return self._table_law(self._mesh_table, (0, 0, 0, 0, 0))
+
+    def _table_law(self, contact: ContactArea, step: tuple[int, ...]) -> np.void:
+        """Of a mesh's contact at TABLE_FORCES after a step of slipped_mesh.py."""
+        soft = table_footprint(self.pad, self.joint, contact)
+        if not self._bare_mesh or self.closed_mesh is None:
+            return soft
+        conducts, area = self.closed_mesh.bare_at(step, self.touched)
+        rigid = table_footprint(self.pad, self.joint, replace(contact, face=area), conducts)
+        of_soft, of_rigid = (
+            solid_conduction(law, *footprint(law, NOMINAL_FORCE, np.zeros(3))) for law in (soft, rigid)
+        )
+        # a flat face meets the rigid one flush with the pad, whose areas and forces tell more exactly what conducts
+        return rigid if of_rigid < _FLAT * of_soft else soft
 
     @cached_property
     def closed_mesh(self) -> ClosedMesh | None:
@@ -275,7 +297,7 @@ class GraspBody:
     def slipped_law(self, step: tuple[int, ...]) -> np.void:
         """`law` of a mesh that has slipped and turned by a step of slipped_mesh.py."""
         assert self.closed_mesh is not None
-        return table_footprint(self.pad, self.joint, self.closed_mesh.contact_at(step))
+        return self._table_law(self.closed_mesh.contact_at(step), step)
 
     @cached_property
     def heat_capacity(self) -> float:

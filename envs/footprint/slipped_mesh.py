@@ -15,7 +15,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...thermal import ContactArea, Pad
+from ...thermal import ContactArea, Material, Pad
 from ...thermal.contact import FIRST_FORCE, FORCE_STEP, FORCES, TABLE_FORCES
 from ...thermal.pressed import PressedView, pressed_view
 from ..bodies import MeshShape, ObjectSpec
@@ -24,6 +24,7 @@ GRID = 5e-4
 """m, between places."""
 _TURN = math.radians(15)
 """Between directions."""
+_LEAST = 1e-12  # W/K or m2: less is none
 _LOADS = np.log(TABLE_FORCES), FIRST_FORCE + FORCE_STEP * np.arange(FORCES)
 
 
@@ -50,22 +51,33 @@ class ClosedMesh:
         face = np.minimum(face, self.pad.face**2)
         return ContactArea(self.contact.pad, face, np.minimum(load, 1.0) * TABLE_FORCES)
 
+    def bare_at(self, step: tuple[int, ...], body: Material) -> tuple[np.ndarray, np.ndarray]:
+        """(W/K, m2 of the patch that stands for what conducts), at TABLE_FORCES, (9,) each, of a rigid face that wears
+        no skin on a mesh of that material; the mean of both sides that touch. step: as contact_at's."""
+        mean = self._of_views(step, body)
+        through, area = (np.exp(np.interp(*_LOADS, np.log(np.maximum(column, _LEAST)))) for column in mean.T)
+        return np.where(through > 2 * _LEAST, through, 0.0), np.where(area > 2 * _LEAST, area, 0.0)
+
     @property
     def _share(self) -> np.ndarray:
         return self.contact.face_force / TABLE_FORCES
 
     def _area_and_share(self, step: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
         """m2 on the face and its share of the force, (9,) each, of pads without a tilt; the mean of both."""
+        mean = self._of_views(step, None)
+        area, share = (np.interp(*_LOADS, column) for column in mean.T)
+        return area, share
+
+    def _of_views(self, step: tuple[int, ...], bare: Material | None) -> np.ndarray:
+        """(FORCES, 2), what `_between` tells, the mean of both sides that touch."""
         azimuth, elevation = self.azimuth + step[3] * _TURN, step[4] * _TURN
         place = np.array(self.place) + GRID * np.array(step[:3])
         found = []
         for side in (1, -1):
-            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side)
-            found.append(_between(view, across @ place - begin))
+            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side, bare is not None)
+            found.append(_between(view, across @ place - begin, bare))
         both = [each for each in found if each.any()]
-        mean = np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
-        area, share = (np.interp(*_LOADS, column) for column in mean.T)
-        return area, share
+        return np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
 
 
 def closed_mesh(pad: Pad, spec: ObjectSpec, contact: ContactArea) -> ClosedMesh:
@@ -96,30 +108,31 @@ def mesh_steps(places: np.ndarray, azimuth: np.ndarray, closed: np.ndarray) -> n
 
 @lru_cache(maxsize=256)
 def _view(
-    pad: Pad, shape: MeshShape, azimuth: float, elevation: float, side: int
+    pad: Pad, shape: MeshShape, azimuth: float, elevation: float, side: int, rounded: bool
 ) -> tuple[PressedView, np.ndarray, np.ndarray]:
     """What a pad meets whose normal is that direction, or against it; the other two axes (2, 3), and m along these
-    where the view begins."""
+    where the view begins. rounded: as pressed_view's."""
     cos, sin, level = math.cos(azimuth), math.sin(azimuth), math.cos(elevation)
     normal, aside = np.array([level * cos, level * sin, math.sin(elevation)]), np.array([-sin, cos, 0.0])
     axes = np.stack([side * normal, side * aside, np.cross(normal, aside)])
     vertices, faces = shape.surface
     corners = np.ascontiguousarray(vertices, float)
     view = pressed_view(
-        pad, corners.tobytes(), faces.astype(np.int64).tobytes(), axes.tobytes(), rounded=False
+        pad, corners.tobytes(), faces.astype(np.int64).tobytes(), axes.tobytes(), rounded=rounded
     )
     return view, axes[1:], (corners @ axes[1:].T).min(axis=0) - pad.face / 2
 
 
-def _between(view: PressedView, at: np.ndarray) -> np.ndarray:
-    """(forces, 2): area and share of the force at a place (2,) m among the view's; beyond them none."""
+def _between(view: PressedView, at: np.ndarray, bare: Material | None) -> np.ndarray:
+    """(forces, 2): area and share of the force at a place (2,) m among the view's; beyond them none. bare: W/K and m2
+    in their place, of a rigid face on that material."""
     places = view.places
     if not all(places[axis, 0] < at[axis] < places[axis, -1] for axis in range(2)):
         return np.zeros((FORCES, 2))
     i, j = (
         int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, 0, places.shape[1] - 2)) for axis in range(2)
     )
-    values = _around(view, i, j)
+    values = _around(view, i, j, bare)
     for axis, k in enumerate((i, j)):
         share = (at[axis] - places[axis, k]) / (places[axis, k + 1] - places[axis, k])
         values = (1 - share) * values[:, 0] + share * values[:, 1]
@@ -127,6 +140,7 @@ def _between(view: PressedView, at: np.ndarray) -> np.ndarray:
 
 
 @lru_cache(maxsize=1024)
-def _around(view: PressedView, i: int, j: int) -> np.ndarray:
-    """(forces, 2, 2, 2): area and share of the force at the places round one of the view's cells."""
-    return view.touched((i, i + 2), (j, j + 2))[..., :2]
+def _around(view: PressedView, i: int, j: int, bare: Material | None) -> np.ndarray:
+    """(forces, 2, 2, 2): what `_between` tells at the places round one of the view's cells."""
+    cell = (i, i + 2), (j, j + 2)
+    return (view.touched(*cell) if bare is None else view.touched_bare(bare, None, *cell))[..., :2]

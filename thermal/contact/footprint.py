@@ -168,18 +168,27 @@ def _common(half, other, offset):
 
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _from_table(law, force):
-    """Between two forces the area is a power of the force, and below the first as between the first two."""
-    last = len(law.areas) - 2
-    at = (math.log(force) - _FIRST) / _STEP
-    k = min(max(int(math.floor(at)), 0), last)
-    part = min(at - k, 1.0)
-    low, high = law.areas[k], law.areas[k + 1]
-    if low > 0.0:
-        area = low * (high / low) ** part
-    else:
-        area = high * max(part, 0.0)
+    k, part = _between_forces(law.areas, force)
     share = law.shares[k] + max(part, 0.0) * (law.shares[k + 1] - law.shares[k])
-    return area, share * force
+    return _at_force(law.areas, force), share * force
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _between_forces(values, force):
+    """(number of the force of a table before, share of the way to the next)."""
+    at = (math.log(force) - _FIRST) / _STEP
+    k = min(max(int(math.floor(at)), 0), len(values) - 2)
+    return k, min(at - k, 1.0)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _at_force(values, force):
+    """Between two forces what a table tells is a power of the force, and below the first as between the first two."""
+    k, part = _between_forces(values, force)
+    low, high = values[k], values[k + 1]
+    if low > 0.0:
+        return low * (high / low) ** part
+    return high * max(part, 0.0)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -254,6 +263,8 @@ def solid_conduction(law, area, load):
     2.5 % of this, as the spots conduct nearly in proportion to pressure and the gas nearly without it."""
     if area <= 0.0:
         return 0.0
+    if law.conducts[len(law.conducts) - 1] > 0.0:
+        return _at_force(law.conducts, load)
     return constricted(law, area, conductance(law, load / area) * area, law.constriction)
 
 

@@ -66,9 +66,10 @@ FOOTPRINT_LAW = np.dtype(
         # on a bare face: Hertz's modulus Pa, 0 on springs; m K/W, a disc's constriction times its radius
         ("modulus", "f8"),
         ("constriction", "f8"),
-        # at TABLE_FORCES: m2 of the face in contact, its share of the force
+        # at TABLE_FORCES: m2 of the face in contact, its share of the force; W/K where these do not tell, or 0
         ("areas", "f8", TABLE_FORCES.shape),
         ("shares", "f8", TABLE_FORCES.shape),
+        ("conducts", "f8", TABLE_FORCES.shape),
         # last: numba takes a record that begins as another does for one of that kind
         *CONTACT_LAW.descr,
     ]
@@ -218,12 +219,18 @@ def round_footprint(
     return cylinder_footprint(sheet, faces, radius, length)
 
 
-def table_footprint(pad: Pad, joint: Joint, contact: ContactArea) -> np.void:
-    """The law of a body whose contact at TABLE_FORCES is known, (9,) each. Raises InvalidValueError for others."""
+def table_footprint(
+    pad: Pad, joint: Joint, contact: ContactArea, conducts: np.ndarray | None = None
+) -> np.void:
+    """The law of a body whose contact at TABLE_FORCES is known, (9,) each. conducts: (9,) W/K, None for what the areas
+    and their forces conduct. Raises InvalidValueError for others."""
     if contact.face.shape != TABLE_FORCES.shape:
         raise InvalidValueError(f"a table needs {len(TABLE_FORCES)} forces, got {contact.face.shape}")
     law = _followed(flat_law(pad, joint, (pad.width, pad.width)), areas=contact.face)
     law["shape"], law["shares"] = TABLE, contact.face_force / TABLE_FORCES
+    if conducts is not None:
+        # told by the force on the pad
+        law["conducts"], law["shares"] = conducts, 1.0
     return law
 
 

@@ -33,7 +33,7 @@ from ..contact import (
 from ..matter import Material
 from .height_map import HeightMap, map_heights
 from .lying import lie
-from .springs import Ring, between_forces, borne, loads, lowered, on_face, rises, springs
+from .springs import Ring, begun, between_forces, borne, loads, lowered, on_face, rises, springs
 
 _AROUND = 1e-3  # m, within which a crown's curvature is told
 _LINE, _COMPACT = 0.1, 0.25
@@ -52,26 +52,31 @@ def pressed_bare(
     places: np.ndarray,
     spans: np.ndarray,
     ring: Ring | None,
+    rows: tuple[int, int] = (0, PLACES),
+    columns: tuple[int, int] = (0, PLACES),
 ) -> np.ndarray:
-    """(FORCES, PLACES, PLACES, 7) of a pad without a skin. Of the sensor's face: W/K, m2 of the patch that stands for
-    what conducts, its length m and its shares, as PressedView.touched tells them; of a ring around it: m2 that touch,
-    and their share of the force. seen, begin, places, spans: as PressedView has them."""
-    touched = np.zeros((FORCES, PLACES, PLACES, 7))
+    """(FORCES, rows, columns, 7) of a pad without a skin, at the places from one up to another. Of the sensor's face:
+    W/K, m2 of the patch that stands for what conducts, its length m and its shares, as PressedView.touched tells them;
+    of a ring around it: m2 that touch, and their share of the force. seen, begin, places, spans: as PressedView has
+    them."""
+    touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], 7))
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
     laws = rigid_face(pad, Surface.of(body)), beneath(body, touching(None)), ring is None
     some = springs(bared(pad), ring), on_face(pad, ring), loads(pad), forces
-    _press(*seen, begin, places, spans, pad.face, *some[0], *some[1:], *laws, touched)
+    _press(
+        *seen, begin, places, np.array([rows, columns]), spans, pad.face, *some[0], *some[1:], *laws, touched
+    )
     return touched
 
 
 @njit(cache=True, error_model="numpy")
 def _press(
-    axes, corner, height, pitch, begin, places, spans, face, points, areas, stiffness, counted, span, loads, forces,
-    law, resistance, of_face, touched,
+    axes, corner, height, pitch, begin, places, some, spans, face, points, areas, stiffness, counted, span, loads,
+    forces, law, resistance, of_face, touched,
 ):  # fmt: skip
-    """Fills touched. span: from which of the points up to which are on the face; of_face: whether they are looked at,
-    or those of a ring. loads: m3, forces N over the stiffness of springs around the face. law: of rigid_face.
-    resistance: m2 K/W of both bodies."""
+    """Fills touched, some of the places: (2, 2) from which to before which. span: from which of the points up to which
+    are on the face; of_face: whether they are looked at, or those of a ring. loads: m3, forces N over the stiffness of
+    springs around the face. law: of rigid_face. resistance: m2 K/W of both bodies."""
     frame = np.zeros((4, 3))
     frame[1:] = axes
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
@@ -81,10 +86,11 @@ def _press(
         np.zeros(counted),
         np.ones(len(points)),
     )
-    begun = 1 if of_face else 0  # a face touches nothing at the ends
-    for a in range(begun, places.shape[1] - begun):
-        for b in range(begun, places.shape[1] - begun):
-            at = touched[:, a, b]
+    first = 1 if of_face else 0  # a face touches nothing at the ends
+    last = places.shape[1] - first
+    for a in range(max(some[0, 0], first), min(some[0, 1], last)):
+        for b in range(max(some[1, 0], first), min(some[1, 1], last)):
+            at = touched[:, a - some[0, 0], b - some[1, 0]]
             for k in range(3):
                 frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
             map_heights(axes, corner, height, pitch, frame, points, heights, cover)
@@ -95,7 +101,7 @@ def _press(
             for i in range(len(points)):
                 heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes)
-            for n in range(0, len(loads), 2):
+            for n in range(0, len(loads), 1 if of_face else 2):
                 depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], touching)
                 flat = _flat(heights, cover, depth, span)
                 if flat > _CURVED:
@@ -111,7 +117,11 @@ def _press(
                     lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, least, row)
                 else:
                     at[n, 0], at[n, 1] = area, share
-            between_forces(at)
+            if of_face:
+                begun(at)
+                begun(at[1:])
+            else:
+                between_forces(at)
 
 
 @njit(cache=True, error_model="numpy")

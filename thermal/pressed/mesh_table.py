@@ -61,8 +61,7 @@ class PressedMesh:
         sheet = skinned(self.pad, self.skin)
         view = pressed_view(sheet, self.vertices, self.faces, self.axes)
         if self.skin is None:
-            where = view.seen, view.begin, view.places, view.spans
-            touched = pressed_bare(self.pad, self.body, *where, self.ring)
+            touched = view.touched_bare(self.body, self.ring)
         else:
             touched = view.touched(ring=self.ring)
         if self.ring is None:
@@ -110,6 +109,18 @@ class PressedView:
             touched,
         )
         return touched
+
+    def touched_bare(
+        self,
+        body: Material,
+        ring: Ring | None = None,
+        rows: tuple[int, int] = (0, PLACES),
+        columns: tuple[int, int] = (0, PLACES),
+    ) -> np.ndarray:
+        """The same of a pad without a skin, whose face is rigid, on a mesh of that material: in place of the face's
+        area and share of the force W/K and m2 of the patch that stands for what conducts."""
+        where = self.seen, self.begin, self.places, self.spans
+        return pressed_bare(self.pad, body, *where, ring, rows, columns)
 
 
 @lru_cache(maxsize=256)

@@ -167,14 +167,21 @@ def depth_under(heights, cover, stiffness, load):
 @njit(cache=True, error_model="numpy")
 def between_forces(at):
     """Fills what a place's rows (FORCES, n) tell of every second force from those before and behind; areas and shares
-    of the force come first. Between forces a power of them is taken, which must not begin at nothing."""
-    for n in range(len(at) - 4, -1, -2):
-        for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
-            if at[n, k] < faded * at[n + 2, k]:
-                at[n, k] = faded * at[n + 2, k]
-                at[n, 3:] = at[n + 2, 3:]
+    of the force come first."""
+    begun(at)
     for n in range(1, len(at), 2):
         above = min(n + 1, len(at) - 2)
         at[n, 0] = math.sqrt(at[n - 1, 0] * at[above, 0])
         for k in range(1, at.shape[1]):
             at[n, k] = (at[n - 1, k] + at[above, k]) / 2
+
+
+@njit(cache=True, error_model="numpy")
+def begun(at):
+    """Makes rows (FORCES, n) of every second force begin with something: between forces a power of them is taken, which
+    must not begin at nothing."""
+    for n in range(len(at) - 4, -1, -2):
+        for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
+            if at[n, k] < faded * at[n + 2, k]:
+                at[n, k] = faded * at[n + 2, k]
+                at[n, 3:] = at[n + 2, 3:]

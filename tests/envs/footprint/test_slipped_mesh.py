@@ -10,7 +10,7 @@ from thermograsp.envs import ObjectSpec
 from thermograsp.envs.footprint import GraspBody
 from thermograsp.envs.footprint.slipped_mesh import GRID, mesh_steps
 from thermograsp.envs.sensing.heat import GraspHeat
-from thermograsp.thermal import cylinder_contact, flat_contact, material, sensor
+from thermograsp.thermal import SKINS, cylinder_contact, flat_contact, material, sensor
 from thermograsp.thermal.contact import TABLE_FORCES, footprint
 
 FORCES = TABLE_FORCES[3:]
@@ -22,7 +22,8 @@ def body_of(mesh: trimesh.Trimesh, folder: Path, **placed: object) -> GraspBody:
     file = folder / f"{len(mesh.faces)}.ply"
     mesh.export(file)
     spec = ObjectSpec(shape="mesh", mesh=str(file), **placed)  # pyright: ignore[reportArgumentType]
-    return GraspBody(spec, material("steel"), 24.0, "T", sensor("seed"))
+    skin = SKINS["filled_silicone"]
+    return GraspBody(spec, material("steel"), 24.0, "T", skin.over(sensor("seed")), skin=skin)
 
 
 def found(body: GraspBody, places: np.ndarray) -> np.ndarray:
@@ -57,7 +58,7 @@ def test_a_rod_that_slips_out_is_touched_up_to_its_end(tmp_path: Path, down: flo
     expected = cylinder_contact(body.pad, FORCES, 0.01, 0.04, offset=(down, 0.0)).face
     whole = cylinder_contact(body.pad, FORCES, 0.01, 0.04).face
     np.testing.assert_allclose(
-        found(body, CLOSED + [0.0, 0.0, down]), expected, rtol=0, atol=0.13 * whole.max()
+        found(body, CLOSED + [0.0, 0.0, down]), expected, rtol=0, atol=0.16 * whole.max()
     )
 
 

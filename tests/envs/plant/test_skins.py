@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 
 from thermograsp.envs import STAKES, GraspBatch, GraspTask, ObjectSpec, SimulationConfig
 from thermograsp.envs.bodies import library_object
@@ -144,3 +146,22 @@ def test_refuses_what_cannot_be_worn() -> None:
     for wrong, error in refused:
         with pytest.raises(error):
             GraspBatch(1, task=ENDLESS, **wrong)
+
+
+@pytest.mark.parametrize("name", ["aluminium", "glass"])
+@pytest.mark.parametrize("shape", ["sphere", "cylinder"])
+def test_a_bare_face_is_rigid_on_a_mesh_too(name: str, shape: str, tmp_path: Path) -> None:
+    """A ball's or a can's mesh is felt as the shape is; as soft a face as the pad would feel three times as much."""
+    solid = (
+        trimesh.creation.icosphere(4, 0.02)
+        if shape == "sphere"
+        else trimesh.creation.cylinder(0.02, 0.04, sections=48)
+    )
+    solid.export(tmp_path / "shape.stl")
+    meshed = ObjectSpec(shape="mesh", mesh=str(tmp_path / "shape.stl"), size=(0.04, 0.04, 0.04))
+    drops = []
+    for spec in (ObjectSpec(shape=shape), meshed):  # pyright: ignore
+        batch, _ = held(objects=spec, material=name, signal="ideal", skin=None)
+        assert batch.reading is not None
+        drops.append(batch.reading.voltage[0, 0].mean())
+    assert drops[1] == pytest.approx(drops[0], rel=0.15)
