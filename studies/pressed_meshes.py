@@ -174,8 +174,8 @@ def tabled(name: str, aside: float, turn: float) -> Contact:
     turned = rotation.reshape(3, 3).T
     place = turned @ (_place(name, aside, turn) - model.geom_pos[geom])
     view, u, v = viewed(reader._views[0], reader._parts[0, 3], turned @ [0.0, 0.0, -1.0], place, PAD.face / 2)
-    number = int(reader._curved[0, 0, 0, view])
-    table = next(mesh for mesh, known in reader._meshes.items() if known == number).table()
+    number = int(reader._curved[0, 0, 0, view, 0])
+    table = next(mesh for mesh, known in reader._pressed.items() if known == number).table()
     shares = np.zeros(4)
     curved_shares(table, FORCE_N, u, v, shares)
     conducts, area, long = (float(each) for each in curved_contact(table, FORCE_N, u, v))
