@@ -37,7 +37,7 @@ class Fingertip:
     that are glued on objects (O mode). temperature: °C of its thermostat, or of a heated sensor before anything is
     touched. thermostat: one of finite power, whose setpoint is that temperature; None for one that stays there. skin:
     over the sensor's face, a name of thermal.SKINS or a Skin, None for bare alumina. Heat passes it, the
-    contact's conductance is its own, and bodies press its springs; bare, balls and cylinders touch a rigid face.
+    contact's conductance is its own, and bodies press its springs; bare, what is curved touches a rigid face.
     surround: the pad around the sensor, which gives heat to the sensor's sides and to objects: its material by name or
     a Material, as wide as a square of the pad's area, or a Surround that is no wider; None for a sensor by itself. A
     fingertip with one is flat and sits on an ideal thermostat.
