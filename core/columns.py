@@ -28,15 +28,19 @@ def csv_text(columns: Mapping[str, np.ndarray]) -> str:
 
 def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     """Columns name -> (N,) of such a file; an empty or wordy cell is NaN. Raises InvalidValueError where the file
-    cannot be read, has no rows, or a row of another length than the header."""
+    cannot be read, has no rows, names that commas do not separate, or a row of another length than the header."""
     try:
-        with open(path, encoding="utf-8", newline="") as file:
+        # spreadsheets begin UTF-8 with a byte order mark
+        with open(path, encoding="utf-8-sig", newline="") as file:
             header, *rows = [row for row in csv.reader(file) if row] or [[]]
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error  # of the system, without its number
         raise InvalidValueError(f"cannot read {path}: {reason}") from error
     if not rows:
         raise InvalidValueError(f"{path} has no rows: it must hold a header of names and one row per sample")
+    if len(header) == 1 and (other := next((mark for mark in ";\t" if mark in header[0]), None)):
+        mark = "tabs" if other == "\t" else "semicolons"
+        raise InvalidValueError(f"{path} has {mark} between its columns: write commas, and points in numbers")
     for number, row in enumerate(rows, start=2):
         if len(row) != len(header):
             raise InvalidValueError(f"{path}, row {number}: {len(row)} cells under {len(header)} names")
