@@ -53,6 +53,7 @@ from .scene import (
 
 _NOBODY = object()
 """In place of an MjData. None would do for update(None) too."""
+_TOLD = 200  # characters of what a message tells
 _ON_TIME = 1e-3  # of a step, by which the data's time may be off for each step since the last update
 
 
@@ -124,7 +125,7 @@ class ThermalTouch:
         self._many, count = worlds is not None, int(worlds or 1)
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
-        self._ambient = ambient
+        self._ambient, self._chain = ambient, named_chain(chain)
         self._identity = {
             "fingertips": self.fingertips,
             "objects": self.objects,
@@ -132,6 +133,12 @@ class ThermalTouch:
             "worlds": worlds,
             "dt": dt,
             "tolerance": tolerance,
+            "sensors": tuple(pad.heated or pad.stack for pad in (*self._pads, *self._glued)),
+            "thermostats": tuple((pad.temperature, pad.thermostat) for pad in self._pads),
+            "surrounds": tuple(pad.surround for pad in self._pads),
+            "ambient": ambient,
+            "air": air,
+            "chain": self._chain,
         }
         self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
         self._reader = ContactReader(model, self._pads, self._shapes, count)
@@ -145,7 +152,7 @@ class ThermalTouch:
             film=air,
             ambient=ambient,
         )
-        self._chain, sample = named_chain(chain), dt / self._samples
+        sample = dt / self._samples
         chains = [_numbers(self._chain, pad, sample) for pad in (*self._pads, *self._glued)]
         first = np.random.SeedSequence().entropy if seed is None else seed
         heat, reader = self._heat, self._reader
@@ -410,9 +417,10 @@ class ThermalTouch:
             raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
         for name, expected in self._identity.items():
             if state.of[name] != expected:
+                told = f"{state.of[name]!r} in place of {expected!r}"
+                differ = f"are {told}" if len(told) < _TOLD else "differ"  # a sensor's layers would fill a page
                 raise InvalidValueError(
-                    f"the state is of another ThermalTouch, whose {name} are {state.of[name]!r} in place of "
-                    f"{expected!r}: make this one alike"
+                    f"the state is of another ThermalTouch, whose {name} {differ}: make this one alike"
                 )
         self._near = _NOBODY
         self._time[:], self._started, self._reading = state.time, state.started, state.reading
