@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -17,7 +18,7 @@ from thermograsp.errors import InvalidValueError, celsius, unknown_name
 from ...thermal import Material, SensorStack
 from ...thermal import material as named_material
 from .faces import rotation, triangles
-from .names import find, geom_label, geoms_of
+from .names import collides, find, geom_label, geoms_of
 
 PREFIX = "thermograsp:"
 """Of the names of an MJCF's custom texts that tell an object's material and temperature."""
@@ -109,6 +110,13 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
     found = [_body(model, name, one, ambient) for name, one in wanted.items()]
     owner: dict[int, str] = {}
     for shape in found:
+        if not any(collides(model, geom) for geom in shape.geoms):  # it may be one that is hidden for now
+            warnings.warn(
+                f"object {shape.name!r}: {geom_label(model, shape.geoms[0])} is only seen and never touched (its "
+                "contype and conaffinity are 0): name the geom that collides, or its body",
+                RuntimeWarning,
+                stacklevel=3,
+            )
         for geom in shape.geoms:
             if owner.setdefault(geom, shape.name) != shape.name:
                 raise InvalidValueError(

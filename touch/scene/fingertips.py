@@ -21,7 +21,7 @@ from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
 from .faces import flat_faces, largest_face, rotation, triangles
-from .names import find, geom_label, geoms_of, names
+from .names import collides, find, geom_label, geoms_of, names
 
 SMALLEST = 4e-6  # m2, of a face that can be a pad
 _METAL = 1.74e-3  # m, of the seed's thermostat plate
@@ -147,7 +147,8 @@ def pads(
     for label, one in given.items():
         others = [middle for other, middle in middles.items() if other != label]
         towards = [np.mean(others, axis=0)] if others else []
-        towards += [data.xpos[o.body] + data.xmat[o.body].reshape(3, 3) @ o.centre for o in objects]
+        for shape in objects:
+            towards += _within(data, shape, middles[label])
         placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middles[label]))
         if placed[-1].surround is not None:
             _require_no_elements(label, objects)
@@ -173,6 +174,11 @@ def _require_different_geoms(
             raise InvalidValueError(
                 f"fingertip {label!r} has no geom that could touch anything; geoms: {', '.join(names(model, 'geom'))}"
             )
+        if not any(collides(model, geom) for geom in pad_geoms):
+            raise InvalidValueError(
+                f"fingertip {label!r}: {geom_label(model, pad_geoms[0])} is only seen and never touches (its contype "
+                "and conaffinity are 0): name the geom that collides, or its body"
+            )
         for geom in pad_geoms:
             if geom in owner:
                 raise InvalidValueError(
@@ -193,6 +199,15 @@ def _middle(data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...])
     if where[0] == "site":
         return data.site_xpos[where[1]].copy()
     return data.geom_xpos[list(geoms)].mean(axis=0)
+
+
+def _within(data: mujoco.MjData, shape: BodyShape, near: np.ndarray) -> list[np.ndarray]:
+    """Where an object is as seen from a place: the nearest point of what is left of its box less half its least side
+    all round, which is a table's part below the place, a rod's beside it and a cube's centre; and its centre."""
+    body = data.xmat[shape.body].reshape(3, 3)
+    centre, axes = data.xpos[shape.body] + body @ shape.centre, body @ shape.axes
+    half = (shape.extent - shape.extent.min()) / 2
+    return [centre + axes @ np.clip(axes.T @ (near - centre), -half, half), centre]
 
 
 def _pad(

@@ -54,5 +54,10 @@ def geoms_of(model: mujoco.MjModel, kind: Kind, number: int) -> tuple[int, ...]:
     body = number if kind == "body" else int(model.site_bodyid[number])
     first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
     of_body = range(first, first + count) if count else range(0)
-    colliding = tuple(g for g in of_body if model.geom_contype[g] or model.geom_conaffinity[g])
-    return colliding or tuple(of_body)
+    return tuple(g for g in of_body if collides(model, g)) or tuple(of_body)
+
+
+def collides(model: mujoco.MjModel, geom: int) -> bool:
+    """Whether MuJoCo looks for contacts of a geom: by its masks, or as one of a <pair>."""
+    masks = model.geom_contype[geom] or model.geom_conaffinity[geom]
+    return bool(masks or geom in model.pair_geom1 or geom in model.pair_geom2)

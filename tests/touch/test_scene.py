@@ -1,0 +1,74 @@
+"""Where pads and objects are found in a scene."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+import mujoco
+import numpy as np
+import pytest
+
+from thermograsp.errors import InvalidValueError
+from thermograsp.touch import ThermalTouch
+
+SCENE = """
+<mujoco>
+  <option gravity="0 0 0"/>
+  <worldbody>
+    <geom name="table" type="box" size=".25 .25 .02" pos="0 0 -.02"/>
+    <body name="cup" pos="0 0 .3">
+      <geom name="seen" type="box" size=".02 .02 .02" contype="0" conaffinity="0"/>
+      <geom name="solid" type="box" size=".02 .02 .02" {masks}/>
+    </body>
+    <body name="tip" pos="{x} 0 .0041">
+      <joint type="slide" axis="0 0 -1" damping="20"/>
+      <geom name="cover" type="box" size=".012 .012 .005" contype="0" conaffinity="0" mass="0"/>
+      <geom name="pad" type="{kind}" size="{size}" mass=".1" {masks}/>
+    </body>
+  </worldbody>
+  <contact>{pairs}</contact>
+  <actuator><motor joint="{joint}"/></actuator>
+</mujoco>"""
+HIDDEN = 'contype="0" conaffinity="0"'
+
+
+def scene(
+    x: float = 0.0, kind: str = "box", size: str = ".01 .01 .004", masks: str = "", pairs: str = ""
+) -> mujoco.MjModel:
+    text = SCENE.format(x=x, kind=kind, size=size, masks=masks, pairs=pairs, joint="down")
+    return mujoco.MjModel.from_xml_string(text.replace('<joint type="slide"', '<joint name="down" type="slide"'))
+
+
+def felt(model: mujoco.MjModel, objects: dict, tip: str = "pad") -> tuple[float, float]:
+    """K, and N beside the pad, after half a second of 10 N."""
+    touch, data = ThermalTouch(model, fingertips={"tip": tip}, objects=objects), mujoco.MjData(model)
+    data.ctrl[0] = 10.0
+    for _ in range(250):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+    return float(reading.temperature_drop[0]), float(reading.beside[0])
+
+
+@pytest.mark.parametrize(("kind", "size"), [("box", ".01 .01 .004"), ("sphere", ".004")])
+def test_a_fingertip_feels_a_table_wherever_it_is_on_it(kind: str, size: str) -> None:
+    """Its pad looks down, although the table's middle lies aside."""
+    drop, beside = felt(scene(0.0, kind, size), {"table": "glass"})
+    aside, beside_aside = felt(scene(0.2, kind, size), {"table": "glass"})
+    assert drop > 0.3 and beside == beside_aside == 0.0
+    assert aside == pytest.approx(drop, rel=1e-3)
+
+
+def test_a_fingertip_that_only_is_seen_is_refused() -> None:
+    with pytest.raises(InvalidValueError, match="'cover' is only seen"):
+        ThermalTouch(scene(), fingertips={"tip": "cover"}, objects={"table": "glass"})
+
+
+def test_an_object_that_only_is_seen_is_told() -> None:
+    with pytest.warns(RuntimeWarning, match="object 'seen': 'seen' is only seen") as told:
+        ThermalTouch(scene(), fingertips={"tip": "pad"}, objects={"table": "glass", "seen": "steel"})
+    assert told[0].filename == __file__
+
+
+def test_geoms_that_touch_by_pairs_alone_are_felt() -> None:
+    pairs = '<pair geom1="pad" geom2="table"/>'
+    drop, _ = felt(scene(masks=HIDDEN, pairs=pairs), {"table": "glass"}, "tip")
+    np.testing.assert_allclose(drop, felt(scene(), {"table": "glass"})[0], rtol=1e-3)
