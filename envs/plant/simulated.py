@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermograsp.errors import whole_number
+from thermograsp.errors import InvalidValueError, whole_number
 from thermograsp.notice import busy
 from thermograsp.plant import Command, Reading
 
+from ...thermal.stack import any_sensor
 from ..footprint import GraspBody
 from ..limits import SAMPLE_PERIOD
 from ..mechanics import Mechanics, MechanicsState, Motion
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, slots=True)
 class PlantState:
     """Everything that decides the future of some environments of a simulated plant; picklable. rest: (n, O) m, heights
-    at which the objects lay. task: what the layout keeps of each episode."""
+    at which the objects lay. task: what the layout keeps of each episode. of: what it goes on with nowhere else, by
+    keyword."""
 
     mechanics: MechanicsState
     heat: HeatState | SceneHeatState
@@ -47,6 +49,7 @@ class PlantState:
     scenes: tuple[Scene, ...]
     rest: np.ndarray
     task: np.ndarray
+    of: Mapping[str, Any]
 
 
 class SimulatedPlant:
@@ -89,6 +92,11 @@ class SimulatedPlant:
         self._causes, nothing = config.causes, np.random.default_rng(0)
         self._rngs: list[np.random.Generator] = [nothing] * num_envs
         self._drawn = [draw((), nothing)] * num_envs
+        self._of = {
+            **{name: getattr(config, name) for name in ("mode", "tolerance", "air", "substeps", "solver", "thermostat")},
+            "sensor": any_sensor(config.sensor),
+            "longest delay": config.most_delay,
+        }
         self._rest = np.zeros((num_envs, objects))
         self._task = np.zeros((num_envs, self.layout.task_size), int)
         # Replaced, never written to: readings keep them.
@@ -205,11 +213,18 @@ class SimulatedPlant:
             scenes=tuple(self.scenes[row] for row in chosen),
             rest=self._rest[chosen],
             task=self._task[chosen],
+            of=self._of,
         )
 
     def set_state(self, rows: Sequence[int], state: PlantState) -> tuple[np.random.Generator, ...]:
         """Puts the rows into a state; what follows is bit-identical to what followed it first. Returns the generators
-        the rows now draw from."""
+        the rows now draw from. Raises InvalidValueError for a state of other keywords, which says of which."""
+        for name, ours in self._of.items():
+            theirs = state.of[name]
+            if theirs != ours:
+                brief = isinstance(ours, str | float | int)  # all of a sensor's layers are not
+                told = f"is {theirs!r} in place of {ours!r}" if brief else "is another one"
+                raise InvalidValueError(f"the state is of environments whose {name} {told}: make these like those")
         chosen = list(rows)
         self.mechanics.set_state(state.mechanics, np.array(chosen))
         self.heat.set_state(chosen, state.heat)

@@ -17,8 +17,17 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.wrappers import TimeLimit
 
 import thermograsp  # noqa: F401  registers the ids
-from thermograsp.envs import GraspBatch, GraspEnv, GraspVectorEnv, IdentifyVectorEnv, SortEnv
+from thermograsp.envs import (
+    Delay,
+    GraspBatch,
+    GraspEnv,
+    GraspVectorEnv,
+    IdentifyVectorEnv,
+    SolverSettings,
+    SortEnv,
+)
 from thermograsp.errors import InvalidValueError, ThermograspError
+from thermograsp.thermal import Thermostat
 
 from ..scripted import grasp_action
 
@@ -277,6 +286,30 @@ def test_a_state_of_another_task_or_number_is_refused_and_changes_nothing():
             other.set_state(state)
         still = np.zeros(other.action_space.shape)  # pyright: ignore[reportArgumentType, reportCallIssue]
         assert same(other.step(still)[0], twin.step(still)[0])
+
+
+@pytest.mark.parametrize(
+    ("keywords", "said"),
+    [
+        ({"mode": "O"}, "mode is 'T' in place of 'O'"),
+        ({"tolerance": 0.1}, "tolerance is 0.05"),
+        ({"air": 50.0}, "air is 5.0"),
+        ({"substeps": 5}, "substeps is 10"),
+        ({"solver": SolverSettings(timestep=0.001)}, "solver is another"),
+        ({"sensor": "biotac_like"}, "sensor is another"),
+        ({"thermostat": Thermostat()}, "thermostat is another"),
+        ({"randomize": [Delay()]}, "longest delay is 0 in place of 3"),
+    ],
+)
+def test_a_state_of_other_keywords_is_refused_and_changes_nothing(keywords: dict[str, Any], said: str):
+    """Some would go on with wrong temperatures, others break off half-way."""
+    first, other = make(1).unwrapped, make(1, **keywords).unwrapped
+    first.reset(seed=0)
+    other.reset(seed=1)
+    twin = copy.deepcopy(other)
+    with pytest.raises(InvalidValueError, match=said):
+        other.set_state(first.state())
+    assert same(other.step(np.zeros((1, 3)))[0], twin.step(np.zeros((1, 3)))[0])
 
 
 @pytest.mark.parametrize("name", ["Grasp", "Sort"])
