@@ -24,6 +24,7 @@ _MISTAKEN: dict[str, tuple[str, float, Callable[[float], float]]] = {
     "°C": ("kelvin", -_ABSOLUTE_ZERO - 100.0, lambda kelvin: kelvin + _ABSOLUTE_ZERO),
     "m": ("millimetres", 1.0, lambda mm: mm / 1000),
     "m/s": ("mm/s", 1.0, lambda rate: rate / 1000),
+    "rad": ("degrees", 10.0, lambda degrees: degrees * math.pi / 180),
     "N": ("millinewtons", 1000.0, lambda mn: mn / 1000),
 }
 """For a unit, another one that numbers are given in by mistake, from which number on, and how it is converted."""

@@ -26,7 +26,7 @@ from thermograsp.envs import (
 from thermograsp.errors import InvalidValueError, ThermograspError, UnknownNameError
 from thermograsp.hardware import open_gripper
 from thermograsp.thermal import Identifier, Thermostat, TouchSetup, sensor
-from thermograsp.touch import Fingertip
+from thermograsp.touch import Fingertip, ThermalBody
 
 Call = Callable[[Any], Any]
 NO_COUNTS: tuple[Any, ...] = (2.5, "2", None, True, -1, [2], float("nan"))
@@ -59,6 +59,13 @@ OTHERS: list[tuple[Call, Any, str]] = [
     (lambda value: SimulationConfig(randomize=value), 3, "randomize must be a list"),
     (lambda value: SimulationConfig(solver=value), 3, "solver must be SolverSettings"),
     (lambda value: GraspBatch(plant=value), 3, "unknown plant '3'; known: "),
+    (lambda value: GraspVectorEnv(plant=value), None, "unknown plant 'None'; known: "),
+    (lambda value: SimulationConfig(anywhere=value), "yes", "anywhere must be True or False, got 'yes'"),
+    (lambda value: SimulationConfig(cache=value), 0.5, "cache must be True or False, got 0.5"),
+    (lambda value: SimulationConfig(objects=value).shapes, [], "objects is an empty list"),
+    (lambda value: ObjectSpec(position=value), 3, "position must be 2 finite numbers, got 3"),
+    (lambda value: ObjectSpec(yaw=value), 45.0, "45 looks like degrees: give 0.785398"),
+    (lambda value: ThermalBody("glass", elements=value), 3, "elements must be a list of SensorElement"),
     (lambda value: GraspBatch(thermostat=value), 36.0, "thermostat must be a thermal.Thermostat"),
     (lambda value: GraspTask(seconds=value), "10", "seconds must be a number, got '10'"),
     (lambda value: GraspTask(hold_seconds=value), None, "hold_seconds must be a number"),

@@ -418,7 +418,9 @@ class ThermalTouch:
         for name, expected in self._identity.items():
             if state.of[name] != expected:
                 told = f"{state.of[name]!r} in place of {expected!r}"
-                differ = f"are {told}" if len(told) < _TOLD else "differ"  # a sensor's layers would fill a page
+                differ = (
+                    f"are {told}" if len(told) < _TOLD else "differ"
+                )  # a sensor's layers would fill a page
                 raise InvalidValueError(
                     f"the state is of another ThermalTouch, whose {name} {differ}: make this one alike"
                 )

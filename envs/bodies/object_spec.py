@@ -15,6 +15,7 @@ from thermograsp.errors import (
     celsius,
     finite,
     non_negative,
+    numbers,
     positive,
     unknown_name,
     within,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MASS = 0.1  # kg
 DEFAULT_FRICTION = 0.8
+_MOST_TURN = 10.0  # rad, more than one and a half turns
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
 
@@ -88,15 +90,14 @@ class ObjectSpec:
                 positive(field, getattr(self, field))
         if self.friction is not None:
             non_negative("friction", self.friction)
-        finite("yaw", self.yaw)
+        within("yaw", finite("yaw", self.yaw), -_MOST_TURN, _MOST_TURN, "rad")
         if self.elements and abs(math.sin(self.yaw)) > math.sqrt(0.5):
             raise InvalidValueError(
                 f"object {self.name!r} is turned by {self.yaw:.2f} rad: in mode O elements are glued to its sides "
                 "along x, which no pad meets then; swap its width and depth in place of the turn, or use mode T"
             )
-        for value in self.position:
-            if not -LONGEST <= finite("position", value) <= LONGEST:
-                within("position", value, -LONGEST, LONGEST, "m")
+        for value in numbers("position", self.position, 2):
+            within("position", value, -LONGEST, LONGEST, "m")
         set_ = object.__setattr__
         extents = self.geometry.extents if self.mesh else self.size
         set_(self, "size", checked_size(self.shape, extents))

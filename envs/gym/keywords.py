@@ -25,7 +25,7 @@ def keywords_of(environment: type) -> set[str]:
 
 def simulates(plant: str) -> bool:
     """Whether a plant's objects and materials are given by keywords, as they are of every simulation of ours."""
-    return plant.partition(":")[0] in ("simulated", "simulated-pair", "twin", "twin-pair")
+    return str(plant).partition(":")[0] in ("simulated", "simulated-pair", "twin", "twin-pair")
 
 
 def check_keywords(environment: type, given: Mapping[str, Any]) -> None:

@@ -3,7 +3,7 @@
 from .batch import Mechanics, MechanicsState
 from .contact_record import ContactRecord
 from .kernel import Motion
-from .scene import build_scene, element_geom, scene_spec
+from .scene import build_scene, element_geom, refuse_overlap, scene_spec
 from .solver_settings import SHIPPED, SolverSettings
 
 __all__ = [
@@ -15,5 +15,6 @@ __all__ = [
     "SolverSettings",
     "build_scene",
     "element_geom",
+    "refuse_overlap",
     "scene_spec",
 ]

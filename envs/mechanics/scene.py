@@ -28,6 +28,7 @@ PRIMITIVES = {
 }
 _MIDPOINT, _POWER = 0.5, 2.0  # of the impedance's rise with depth, MuJoCo's defaults
 _TORSION, _ROLLING = 0.005, 0.0001  # m, MuJoCo's defaults; a flat patch has its torsion from its corners
+_INSIDE = 2e-3  # m
 _CUBE = ObjectSpec()
 _COMPLIANCE = 1 / _CUBE.weight, float(np.mean(1 / np.linalg.eigvalsh(_CUBE.inertia[1])))  # 1/kg, 1/(kg m2)
 
@@ -72,6 +73,20 @@ def soften_alike(model: mujoco.MjModel, names: Iterable[str]) -> None:
     """
     for name in names:
         model.body_invweight0[model.body(name).id] = _COMPLIANCE
+
+
+def refuse_overlap(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str]) -> None:
+    """Raises InvalidValueError where two of these bodies lie deeper in each other than objects that were placed at
+    random may: MuJoCo would throw them off the table."""
+    mujoco.mj_forward(model, data)
+    body = {model.body(name).id: name for name in names}
+    for contact in data.contact:
+        owners = [body.get(int(model.geom_bodyid[geom])) for geom in contact.geom]
+        if None not in owners and contact.dist < -_INSIDE:
+            raise InvalidValueError(
+                f"objects {owners[0]!r} and {owners[1]!r} of the scene lie {-1e3 * contact.dist:.1f} mm deep in each "
+                "other: give them other positions"
+            )
 
 
 def scene_spec(

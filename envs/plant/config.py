@@ -29,6 +29,7 @@ from ...thermal import (
     SensorStack,
     SignalChain,
     Skin,
+    Surface,
     Surround,
     Thermostat,
     material,
@@ -154,6 +155,9 @@ class SimulationConfig:
             )
         if not isinstance(self.solver, SolverSettings):
             raise InvalidValueError(f"solver must be SolverSettings, got {self.solver!r}")
+        for name in ("anywhere", "cache"):
+            if not isinstance(getattr(self, name), bool | np.bool_):
+                raise InvalidValueError(f"{name} must be True or False, got {getattr(self, name)!r}")
         whole_number("threads", self.threads)
         period = whole_number("substeps", self.substeps, 1) * self.solver.timestep
         if self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
@@ -294,10 +298,12 @@ class SimulationConfig:
         given = ObjectSpec() if self.objects is None else self.objects
         several = [given] if isinstance(given, str | ObjectSpec) else given
         listed = tuple(_from_library(one) if isinstance(one, str) else one for one in several)
+        if not listed:
+            raise InvalidValueError("objects is an empty list: give at least one, or None for a box")
         if len({(shape.name, shape.hulls) for shape in listed}) != 1:
             raise InvalidValueError(
                 f"objects {[shape.name for shape in listed]} of {[shape.hulls for shape in listed]} convex pieces: "
-                "give at least one, all of the same name and number of pieces"
+                "give only those of one name and one number of pieces"
             )
         return listed
 
@@ -415,8 +421,12 @@ class SimulationConfig:
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
-        """A body of every shape and size that may come, so that one too large is refused at once and not in some later
-        episode."""
+        """A body of every shape and size that may come, so that one too large, or of a material whose touches are not
+        known, is refused at once and not in some later episode."""
+        if self.mode == "T":
+            own = [shape.material for shape in (*self.shapes, *self.others) if shape.material is not None]
+            for touched in (*self.choices, *own):
+                Surface.of(material(touched))
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         sizes = [1.0, *(factor for some in factors for factor in some)]

@@ -20,7 +20,7 @@ from thermograsp.plant import Command, Reading
 from ...thermal.stack import any_sensor
 from ..footprint import GraspBody
 from ..limits import SAMPLE_PERIOD
-from ..mechanics import Mechanics, MechanicsState, Motion
+from ..mechanics import Mechanics, MechanicsState, Motion, refuse_overlap
 from ..readout import Electronics, ElectronicsState, HeatedCores, Thermostats
 from ..sensing import GraspHeat, HeatState, HeatStep, start_compiling
 from .config import SimulationConfig, check_fields
@@ -72,6 +72,8 @@ class SimulatedPlant:
             lateral=self.layout.lateral,
             contacts=config.taxels is not None or config.face_temperature is not None,
         )
+        if not self._alone:
+            refuse_overlap(self.mechanics.env_model(0), self.mechanics.env_data(0), self.mechanics.names)
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.scenes: list[Scene] = [(possible[0],) * objects] * num_envs
@@ -93,7 +95,10 @@ class SimulatedPlant:
         self._rngs: list[np.random.Generator] = [nothing] * num_envs
         self._drawn = [draw((), nothing)] * num_envs
         self._of = {
-            **{name: getattr(config, name) for name in ("mode", "tolerance", "air", "substeps", "solver", "thermostat")},
+            **{
+                name: getattr(config, name)
+                for name in ("mode", "tolerance", "air", "substeps", "solver", "thermostat")
+            },
             "sensor": any_sensor(config.sensor),
             "longest delay": config.most_delay,
         }
@@ -224,7 +229,9 @@ class SimulatedPlant:
             if theirs != ours:
                 brief = isinstance(ours, str | float | int)  # all of a sensor's layers are not
                 told = f"is {theirs!r} in place of {ours!r}" if brief else "is another one"
-                raise InvalidValueError(f"the state is of environments whose {name} {told}: make these like those")
+                raise InvalidValueError(
+                    f"the state is of environments whose {name} {told}: make these like those"
+                )
         chosen = list(rows)
         self.mechanics.set_state(state.mechanics, np.array(chosen))
         self.heat.set_state(chosen, state.heat)

@@ -35,7 +35,9 @@ def scene(
     x: float = 0.0, kind: str = "box", size: str = ".01 .01 .004", masks: str = "", pairs: str = ""
 ) -> mujoco.MjModel:
     text = SCENE.format(x=x, kind=kind, size=size, masks=masks, pairs=pairs, joint="down")
-    return mujoco.MjModel.from_xml_string(text.replace('<joint type="slide"', '<joint name="down" type="slide"'))
+    return mujoco.MjModel.from_xml_string(
+        text.replace('<joint type="slide"', '<joint name="down" type="slide"')
+    )
 
 
 def felt(model: mujoco.MjModel, objects: dict, tip: str = "pad") -> tuple[float, float]:

@@ -60,6 +60,12 @@ class ThermalBody:
     def __post_init__(self) -> None:
         if self.temperature is not None:
             celsius("ThermalBody: temperature (°C)", self.temperature)
+        if not isinstance(self.elements, Sequence) or not all(
+            isinstance(e, SensorElement) for e in self.elements
+        ):
+            raise InvalidValueError(
+                f"ThermalBody: elements must be a list of SensorElement, got {self.elements!r}"
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,6 +11,7 @@ import pytest
 from thermograsp.agents.checks import violations
 from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig
 from thermograsp.errors import InvalidValueError
+from thermograsp.thermal import Material
 
 from ..scripted import grasp_action
 
@@ -118,3 +119,15 @@ def test_objects_that_meant_the_same_name_get_numbers_and_wrong_scenes_are_refus
 def test_what_is_no_list_of_objects_is_refused_by_name(name: str, given: Any) -> None:
     with pytest.raises(InvalidValueError, match=f"{name} must be ObjectSpecs or names"):
         SimulationConfig(**{name: given})
+
+
+def test_objects_inside_each_other_are_refused():
+    with pytest.raises(InvalidValueError, match="'object' and 'object_1' of the scene lie 10.0 mm deep"):
+        batch(1, ObjectSpec(), ObjectSpec(position=(0.0, 0.03)), material="glass")
+
+
+def test_a_material_of_which_touches_are_unknown_is_refused_before_an_episode_draws_it():
+    slate = Material("slate", conductivity=2.0, density=2780.0, specific_heat=760.0)
+    for given in ({"material": ["glass", slate]}, {"objects": ObjectSpec(material=slate)}):
+        with pytest.raises(InvalidValueError, match="slate has no roughness"):
+            GraspBatch(1, task=ENDLESS, **given)
