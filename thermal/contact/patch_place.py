@@ -25,9 +25,11 @@ def patch_offset(offset, length, width):
     face's. Both ends count: their images follow one another at the sensor's width m."""
     if not 0.0 < length < width * NARROW:
         return 1.0
-    near = math.sin(math.pi * length / (2 * width))
+    near = math.log(math.sin(math.pi * length / (2 * width)))
+    if near == 0.0:  # as long as the face, as far as numbers tell
+        return 1.0
     aside = math.cos(math.pi * min(abs(offset), (width - length) / 2) / width)
-    return min(math.log(aside) / math.log(near), 1.0)
+    return min(math.log(aside) / near, 1.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -45,9 +47,10 @@ def array_patch_offset(offset: Array, length: Array, width: Array) -> Array:
     """patch_offset as a pure function of arrays: NumPy, PyTorch, JAX."""
     xp = namespace_of(length)
     narrow, short = _narrow(xp, length, width)
-    near = xp.sin(math.pi * short / (2 * width))
+    near = xp.log(xp.sin(math.pi * short / (2 * width)))
     aside = xp.cos(math.pi * xp.minimum(abs(offset), (width - short) / 2) / width)
-    return xp.where(narrow, (xp.log(aside) / xp.log(near)).clip(None, 1.0), 1.0 + 0.0 * length)
+    share = xp.log(aside) / xp.where(near < 0, near, -1.0 + 0.0 * near)
+    return xp.where(narrow & (near < 0), share.clip(None, 1.0), 1.0 + 0.0 * length)
 
 
 def array_patch_ends(middle: Array, pad: Array, length: Array, side: Array, width: Array) -> Array:

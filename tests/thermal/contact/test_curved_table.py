@@ -17,11 +17,13 @@ from thermograsp.thermal.contact import (
     even_patch,
     face_joint,
     flat_footprint,
+    patch_offset,
     rigid_cylinder,
     rigid_sphere,
     round_footprint,
     skinned,
 )
+from thermograsp.thermal.contact.patch_place import array_patch_offset
 
 PAD, SKIN = Pad(), SKINS["filled_silicone"]
 BODIES = {"ball": (0.02, None), "small ball": (0.005, None), "rod": (0.02, 0.06), "short rod": (0.02, 0.012)}
@@ -197,3 +199,30 @@ def test_a_bare_ball_off_the_middle_is_a_sum_over_hertzs_gap(name: str, radius: 
                 expected, rel=0.03
             )
             assert curved_contact(table, force, *place)[0] == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("radius", "length", "name"),
+    [
+        (0.02, None, "aluminium"),
+        (0.01392, None, "steel"),
+        (0.04030, None, "steel"),
+        (0.07273, None, "copper"),
+    ],
+)
+def test_a_patch_that_is_nearly_as_wide_as_the_face_is_a_number(radius: float, length, name: str) -> None:
+    """A part in 1e9 more, and it counts as the whole face."""
+    assert np.isfinite(curved_table(PAD, None, material(name), radius, length)).all()
+
+
+@pytest.mark.parametrize("less", [1e-16, 1e-12, 1e-9, 1.1e-9, 4e-9, 1e-8, 1e-6])
+def test_shares_at_the_end_of_the_face_come_to_one(less: float) -> None:
+    width = 0.009
+    for offset in (0.0, 0.3 * width):
+        share = patch_offset(offset, (1 - less) * width, width)
+        same = array_patch_offset(np.array(offset), np.array((1 - less) * width), np.array(width))
+        assert share == same and 0.0 <= share <= 1.0
+        single = array_patch_offset(
+            *(np.array(value, np.float32) for value in (offset, (1 - less) * width, width))
+        )
+        assert 0.0 <= single <= 1.0
