@@ -74,3 +74,26 @@ def test_geoms_that_touch_by_pairs_alone_are_felt() -> None:
     pairs = '<pair geom1="pad" geom2="table"/>'
     drop, _ = felt(scene(masks=HIDDEN, pairs=pairs), {"table": "glass"}, "tip")
     np.testing.assert_allclose(drop, felt(scene(), {"table": "glass"})[0], rtol=1e-3)
+
+
+def test_a_contact_with_a_cloth_is_not_one_with_the_last_geom() -> None:
+    """A cloth lies on the block, and the fingertip, whose geom is the last, hangs above."""
+    model = mujoco.MjModel.from_xml_string("""
+<mujoco>
+  <option timestep=".0005" solver="CG" integrator="implicitfast"/>
+  <worldbody>
+    <flexcomp name="cloth" type="grid" count="4 4 1" spacing=".008 .008 .008" pos="0 0 .023" radius=".002" mass=".02"
+              dim="2"><contact selfcollide="none"/><edge equality="true"/></flexcomp>
+    <body name="block"><geom name="block" type="box" size=".02 .02 .02"/></body>
+    <body name="tip" pos="0 0 .16"><geom name="pad" type="box" size=".01 .01 .004"/></body>
+  </worldbody>
+</mujoco>""")
+    touch, data = (
+        ThermalTouch(model, fingertips={"tip": "pad"}, objects={"block": "aluminium"}),
+        mujoco.MjData(model),
+    )
+    for _ in range(200):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+    assert (data.contact.geom == -1).any() and data.efc_force.max() > 0
+    assert reading.touching == ("",) and reading.beside[0] == reading.temperature_drop[0] == 0

@@ -47,8 +47,9 @@ class ContactReader:
         self.broken = np.zeros(worlds, bool)
         self.counted = np.zeros(1, np.int64)
         """The substeps, which compiled code counts too. It stays where it is."""
-        # of each geom: the fingertip, or F plus its number among the objects' geoms, or -1
-        self._role = np.full(model.ngeom, -1, np.int64)
+        # of each geom: the fingertip, or F plus its number among the objects' geoms, or -1; the last is of geom -1, by
+        # which MuJoCo means a flex
+        self._role = np.full(model.ngeom + 1, -1, np.int64)
         self._pads = np.zeros((count, PAD))
         for f, pad in enumerate(pads):
             self._role[list(pad.geoms)] = f
