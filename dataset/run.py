@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,13 +12,14 @@ from thermograsp.dataset import in_processes, on_ray
 from thermograsp.dataset.plan import Plan, Shard
 from thermograsp.dataset.schema import arrow
 from thermograsp.dataset.shards import (
+    MANIFEST,
     missing,
     shard_bytes,
     start,
     store,
     tidy,
 )
-from thermograsp.errors import InvalidValueError, whole_number
+from thermograsp.errors import InvalidValueError, UnknownNameError, whole_number
 
 Advance = Callable[[str, float], None]
 
@@ -60,15 +61,32 @@ def make(
     if address is not None:
         on_ray.ray_package()
     folder = Path(folder)
-    plan = start(folder, plan)
-    todo = missing(folder, plan)
-    if todo:
-        with progress(sum(shard.count for shard in todo)) as advance:
-            with closing(_produced(plan, todo, workers, address, advance)) as made:
-                for shard, content in made:  # workers end with it, whatever happens here
-                    store(folder, shard, content)
+    with _empty_handed(folder):
+        plan = start(folder, plan)
+        todo = missing(folder, plan)
+        if todo:
+            with progress(sum(shard.count for shard in todo)) as advance:
+                with closing(_produced(plan, todo, workers, address, advance)) as made:
+                    for shard, content in made:  # workers end with it, whatever happens here
+                        store(folder, shard, content)
     tidy(folder, plan)
     return ShardCounts(len(plan.shards), len(plan.shards) - len(todo))
+
+
+@contextmanager
+def _empty_handed(folder: Path) -> Iterator[None]:
+    """Leaves no dataset behind that was begun here with a value that no environment takes: the same folder serves the
+    next try."""
+    known, begun = folder.exists(), (folder / MANIFEST).exists()
+    try:
+        yield
+    except (InvalidValueError, UnknownNameError):
+        if folder.is_dir() and not begun and not any(folder.glob("*.parquet")):
+            (folder / MANIFEST).unlink(missing_ok=True)
+            if not known:
+                with suppress(OSError):
+                    folder.rmdir()
+        raise
 
 
 def _produced(

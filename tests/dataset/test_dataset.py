@@ -160,6 +160,21 @@ def test_lost_and_broken_files_are_made_again_and_no_others(folder: Path, tmp_pa
     assert contents(tmp_path) == whole
 
 
+@pytest.mark.parametrize("keywords", [{"tolerence": 0.1}, {"tolerance": -1.0}, {"skin": "cotton wool"}])
+@pytest.mark.parametrize("known", [False, True])
+def test_what_no_environment_takes_leaves_no_dataset_behind(
+    tmp_path: Path, keywords: dict[str, Any], known: bool
+) -> None:
+    """So that the same folder serves the command without the mistake."""
+    folder = tmp_path / "d"
+    if known:
+        folder.mkdir()
+        (folder / "mine.txt").write_text("kept")
+    with pytest.raises((InvalidValueError, UnknownNameError)):
+        dataset.make(dataclasses.replace(PLAN, keywords=keywords), folder)
+    assert [path.name for path in tmp_path.rglob("*")] == (["d", "mine.txt"] if known else [])
+
+
 @pytest.mark.parametrize(
     ("changed", "message"),
     [

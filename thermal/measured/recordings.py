@@ -130,6 +130,12 @@ def _checked(arrays: dict[str, np.ndarray]) -> Recordings:
     for name in ("heated_degC", "passive_degC"):
         _within(name, curves[name], _COLDEST, _HOTTEST, "°C")
     _within("force_N", curves["force_N"], -_STRONGEST, _STRONGEST, "N")
+    warmer = (curves["heated_degC"] - curves["passive_degC"])[:, t < 0].mean(axis=1)
+    if (warmer < 0).all():
+        raise InvalidValueError(
+            f"heated_degC is {-warmer.mean():.1f} K below passive_degC before the touch: are the two sensors' "
+            "temperatures exchanged?"
+        )
     idle = np.flatnonzero(curves["force_N"][:, t >= 0].max(axis=1) <= NO_FORCE)
     if len(idle):
         raise InvalidValueError(

@@ -192,6 +192,7 @@ def arrays() -> dict[str, np.ndarray]:
         ),
         ("passive_degC", None, "lacks passive_degC"),
         ("heated_degC", np.zeros((4, 151), complex), "must be numbers"),
+        ("passive_degC", np.full((4, 151), 90.0), "below passive_degC before the touch: are the two"),
     ],
 )
 def test_a_broken_file_is_refused_with_why(tmp_path: Path, name: str, value: object, message: str) -> None:
