@@ -507,6 +507,11 @@ class ThermalTouch:
         elapsed = (now - self._time.item()) / self._step
         passed = round(elapsed)
         if passed < 0 or abs(elapsed - passed) > _ON_TIME * max(passed, 1):
+            if self._model.opt.timestep != self._step:
+                raise InvalidValueError(
+                    f"the model's timestep is {self._model.opt.timestep:g} s, and was {self._step:g} s when this "
+                    "ThermalTouch was made: make another one"
+                )
             raise InvalidValueError(
                 f"the data are at {now:g} s, the last update was at {self._time[0]:g} s, steps of {self._step:g} s: "
                 "call touch.reset(data) after the simulation was reset, or touch.set_state for a saved one"

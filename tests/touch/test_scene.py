@@ -3,9 +3,12 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+from contextlib import nullcontext
+
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.touch import ThermalTouch
@@ -97,3 +100,31 @@ def test_a_contact_with_a_cloth_is_not_one_with_the_last_geom() -> None:
         reading = touch.update(data)
     assert (data.contact.geom == -1).any() and data.efc_force.max() > 0
     assert reading.touching == ("",) and reading.beside[0] == reading.temperature_drop[0] == 0
+
+
+@pytest.mark.parametrize("inwards", [False, True])
+def test_a_mesh_whose_faces_look_inwards_is_refused(inwards: bool) -> None:
+    cube = trimesh.creation.box((0.04, 0.04, 0.04))
+    if inwards:
+        cube.invert()
+    spec = mujoco.MjSpec()
+    spec.add_mesh(name="cube", uservert=cube.vertices.ravel(), userface=cube.faces.ravel())
+    spec.worldbody.add_geom(name="cube", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="cube")
+    tip = spec.worldbody.add_body(pos=(0, 0, 0.1))
+    tip.add_geom(name="pad", type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.01, 0.01, 0.004))
+    with pytest.raises(InvalidValueError, match="of mesh 'cube' look inwards") if inwards else nullcontext():
+        ThermalTouch(spec.compile(), fingertips={"tip": "pad"}, objects={"cube": "glass"})
+
+
+def test_a_timestep_that_has_changed_is_told() -> None:
+    model = scene()
+    touch, data = (
+        ThermalTouch(model, fingertips={"tip": "pad"}, objects={"table": "glass"}),
+        mujoco.MjData(model),
+    )
+    mujoco.mj_step(model, data)
+    touch.update(data)
+    model.opt.timestep = 0.0033
+    mujoco.mj_step(model, data)
+    with pytest.raises(InvalidValueError, match="timestep is 0.0033 s, and was 0.002 s"):
+        touch.update(data)

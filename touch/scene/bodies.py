@@ -286,6 +286,11 @@ def _measured(model: mujoco.MjModel, name: str, geom: int) -> tuple[np.ndarray, 
         if volume > 1e-12:
             surface = float(np.linalg.norm(np.cross(q - p, r - p), axis=1).sum() / 2)
             return extent * min((volume / float(np.prod(extent))) ** (1 / 3), 1.0), extent, surface
+        if volume < -1e-12:
+            raise InvalidValueError(
+                f"object {name!r}: the faces of mesh {geom_label(model, geom)} look inwards: turn them, e.g. with "
+                "trimesh's invert()"
+            )
     label = kind.name.removeprefix("mjGEOM_").lower()
     raise InvalidValueError(
         f"object {name!r}: geom {geom_label(model, geom)} is a {label} without volume, so it holds no heat: "
