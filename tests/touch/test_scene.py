@@ -49,7 +49,8 @@ def felt(model: mujoco.MjModel, objects: dict, tip: str = "pad") -> tuple[float,
     data.ctrl[0] = 10.0
     for _ in range(250):
         mujoco.mj_step(model, data)
-        reading = touch.update(data)
+        touch.update(data)
+    reading = touch.reading
     return float(reading.temperature_drop[0]), float(reading.beside[0])
 
 
@@ -97,7 +98,8 @@ def test_a_contact_with_a_cloth_is_not_one_with_the_last_geom() -> None:
     )
     for _ in range(200):
         mujoco.mj_step(model, data)
-        reading = touch.update(data)
+        touch.update(data)
+    reading = touch.reading
     assert (data.contact.geom == -1).any() and data.efc_force.max() > 0
     assert reading.touching == ("",) and reading.beside[0] == reading.temperature_drop[0] == 0
 

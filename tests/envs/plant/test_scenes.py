@@ -128,6 +128,7 @@ def test_objects_inside_each_other_are_refused():
 
 def test_a_material_of_which_touches_are_unknown_is_refused_before_an_episode_draws_it():
     slate = Material("slate", conductivity=2.0, density=2780.0, specific_heat=760.0)
-    for given in ({"material": ["glass", slate]}, {"objects": ObjectSpec(material=slate)}):
+    both: list[dict[str, Any]] = [{"material": ["glass", slate]}, {"objects": ObjectSpec(material=slate)}]
+    for given in both:
         with pytest.raises(InvalidValueError, match="slate has no roughness"):
             GraspBatch(1, task=ENDLESS, **given)
