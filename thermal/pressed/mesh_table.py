@@ -25,6 +25,7 @@ from ..contact import (
     PLACES,
     Joint,
     Pad,
+    bared,
     conductance,
     even_places,
     flat_law,
@@ -38,6 +39,9 @@ from .lying import end, lie
 from .rounded import corner_normals
 from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
 
+_FINE = 65  # places, among which those of a table are chosen
+_STRAIGHT = 1e-3  # of the largest share, off a straight line
+_NEAR_CROWN = (0.0, 0.35, 0.65)  # of half the face, and
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 
 
@@ -137,6 +141,10 @@ def pressed_view(
     across = corners @ seen.axes[1:].T
     low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
     places = np.stack([_places(pad.face, float(span)) for span in high - low])
+    if rounded:
+        fine = np.stack([np.linspace(0.0, span, _FINE) for span in (high - low).tolist()])
+        sheet = bared(pad) if pad.face_stiffness is None else pad
+        places = _bent(PressedView(fine, sheet, seen, low, high - low))
     places.flags.writeable = False
     return PressedView(places, pad, seen, low, high - low)
 
@@ -146,6 +154,33 @@ def _places(face: float, span: float) -> np.ndarray:
     where a straight edge of the mesh begins and ceases to cross the face."""
     crown = [span / 2 + way * near * face / 2 for near in _NEAR_EDGE for way in (-1, 1)]
     return even_places(0.0, span, (face, span - face, *crown))
+
+
+def _bent(view: PressedView) -> np.ndarray:
+    """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: where the face begins and ceases to be
+    wholly over the mesh, and then where its share of the force, along the middle, is furthest from a straight line
+    between those that there are."""
+    found, middle = np.empty((2, PLACES)), (_FINE // 2, _FINE // 2 + 1)
+    for axis in range(2):
+        fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
+        some = (every, middle) if axis == 0 else (middle, every)
+        shares = view.touched(*some)[0::2, ..., 1].reshape(-1, _FINE)
+        shares /= np.maximum(shares.max(axis=1, keepdims=True), 1e-9)
+        near = [span / 2 + way * each * view.pad.face / 2 for each in _NEAR_CROWN for way in (-1, 1)]
+        ends = [each for each in (view.pad.face, span - view.pad.face, *near) if 0 < each < span]
+        chosen = sorted({0.0, span, *ends})
+        while len(chosen) < PLACES - 1:
+            at = np.sort(chosen)
+            off = np.max(
+                [np.abs(row - np.interp(fine, at, np.interp(at, fine, row))) for row in shares], axis=0
+            )
+            both = np.maximum(off, off[::-1])
+            most = int(np.argmax(both))
+            if both[most] < _STRAIGHT:
+                break
+            chosen += {float(fine[most]), float(span - fine[most])}
+        found[axis] = even_places(0.0, span, chosen)
+    return found
 
 
 def conducting(pad: Pad, faces: Joint, places: np.ndarray, touched: np.ndarray) -> np.ndarray:
