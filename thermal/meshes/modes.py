@@ -133,7 +133,7 @@ def _modes(
             )
         )
         grid = _uniform(checked(body))
-        sink = np.zeros(len(grid.capacity)) if film is None else film.spread(grid)
+        sink = np.zeros(len(grid.capacity)) if film is None else film.sink(grid, body.outside)
         rates, fields = _slowest(grid, sink)
         axes = {
             f"{name} {k}": getattr(axis, name)
