@@ -41,9 +41,7 @@ class Film(NamedTuple):
         return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
     def spread(self, grid: MeshGrid) -> np.ndarray:
-        """(N,) W/K of each cell's share, by the area of its wall. On a uniform grid, whose cells are about as large as
-        walls are thick, their links resist as much already as the way from there to the wall does (see PLACED_FILM for
-        what this was measured to leave)."""
+        """(N,) W/K of each cell's share, by the area of its wall, through the film alone."""
         areas = np.linalg.norm(self._walls(grid), axis=1)
         return self.conductance * areas / areas.sum()
 

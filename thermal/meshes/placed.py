@@ -152,7 +152,7 @@ def placed_network(
             impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     alone = impedance[:, ::count, ::count] + _impedance(slow.held.T[::count], slow.fades)
     weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(below))], axis=0)
-    slowest = max(modes.diffusivity * modes.rates[:_SLOW][-1], LEVEL.slowest)
+    slowest = max(modes.diffusivity * modes.rates[: _told(modes)][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(level.pitch)) + 1)
     fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
     none = np.zeros(len(fading))
@@ -179,11 +179,18 @@ def _slow(modes: BodyModes, seen: np.ndarray, film: Film | None) -> _Slow:
     even = np.tile(
         np.eye(LEVEL.patterns)[0], len(seen) // LEVEL.patterns
     )  # the mean of the first pattern alone is not 0
-    network = modes.network(seen[:, :_SLOW], even, 0.0 if film is None else film.conductance)
+    network = modes.network(seen[:, : _told(modes)], even, 0.0 if film is None else film.conductance)
     if film is None:
         return _Slow(network, network.rates, network.ports)
     fades, turn = held_apart(network, film.conductance)
     return _Slow(network, fades, turn.T @ network.ports)
+
+
+def _told(modes: BodyModes) -> int:
+    """How many modes are states. Where contents take the heat before it has gone a cell along, modes tell cells apart
+    and no places, and the first alone is one."""
+    cell = max(float(np.median(np.diff(edges))) for edges in modes.grid.edges)
+    return 1 if modes.sink.any() and modes.rates[0] * cell**2 > 1 else _SLOW
 
 
 @lru_cache(maxsize=_KEPT)
