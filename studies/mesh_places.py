@@ -4,11 +4,13 @@ A sensor of the paper touches a body at one place, or at two at once. The drop o
 network that environments use (thermal/meshes/placed.py), and from one whose states are fields of a grid that is fine at
 the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
 CONDUCTANCES over TIMES. Mugs with contents that are held at its first temperature behind a film of FILMS are compared
-with a grid that is finer still.
+with a grid that is finer still, whose states are fields with that film. So are drawn places of the
+library's vessels, at FELT over LONG, bare and skinned, beside the networks that touched_body makes.
 
     python studies/mesh_places.py                  every case, some minutes
     python studies/mesh_places.py rim --json       those with "rim" in their name
     python studies/mesh_places.py --filled         places of mugs with contents instead
+    python studies/mesh_places.py --vessels        drawn places of the library's vessels with contents instead
     python studies/mesh_places.py --times          how long modes and networks take instead
 """
 
@@ -28,8 +30,10 @@ import numpy as np
 import trimesh
 
 from thermograsp import thermal
-from thermograsp.thermal import Solid, SurfacePatch
-from thermograsp.thermal.meshes import body_network
+from thermograsp.envs.bodies.library import library_object
+from thermograsp.envs.bodies.object_solids import object_solid
+from thermograsp.thermal import Demand, SensorStack, Solid, SurfacePatch
+from thermograsp.thermal.meshes import body_network, touched_body
 from thermograsp.thermal.meshes.film import Film, film_of, held_apart
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
@@ -167,7 +171,7 @@ FILLED = [
     name for name, (body, _) in ONE.items() if body in ("mug", "pot of 1 mm", "cup of .6 mm", "tube of .2 mm")
 ]
 """Places of ONE, with contents."""
-_FINEST = MeshGridding(growth=0.3, largest=1e-3)
+_FINEST = MeshGridding(growth=0.3, largest=1e-3, relief=24)
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,11 +249,11 @@ def with_contents(name: str, material: str) -> list[Row]:
     body = whole(kind, material)
     one = film_of(body, 1.0)
     assert one is not None
-    fields, found = patch_fields(body, patch, face_patterns(TIP), _FINEST), []
+    found = []
     for film in FILMS:
         inside = Film(film * one.area, one.walls)
         fast = _held(placed_network(body, [patch], STACK, inside.conductance).network, inside.conductance)
-        held = fields.behind(inside)
+        held = patch_fields(body, patch, face_patterns(TIP), _FINEST, inside)
         fine = ThermalNetwork(held.rates, held.ports, np.zeros((held.ports.shape[1],) * 2))
         worst = Row(f"{name}, {film:g} W/(m2 K) to contents", material, 0.0, 0.0, 0.0, 0.0)
         for conductance in CONDUCTANCES:
@@ -261,6 +265,132 @@ def with_contents(name: str, material: str) -> list[Row]:
                 worst = Row(worst.case, material, *told, conductance)
         found.append(worst)
     return found
+
+
+VESSELS = (
+    "mug_of_coffee",
+    "espresso_cup",
+    "paper_cup_of_tea",
+    "glass_of_ice_water",
+    "travel_mug",
+    "plastic_cup",
+    "beer_bottle",
+    "jam_jar",
+    "bottle_of_water",
+    "food_tin",
+    "drinks_can",
+    "sleeved_mug",
+)
+DRAWN = 3  # places of each
+VESSEL_FILMS = 50.0, 500.0  # W/(m2 K)
+FELT = 1e3, 3e3, 1e4, 1e5  # W/(m2 K)
+LONG = np.unique(np.concatenate((np.arange(0.05, 0.5, 0.01), np.arange(0.5, 20, 0.1))))  # s
+SKINNED = thermal.SKINS["filled_silicone"].over(STACK)
+_LAYERED = MeshGridding(growth=0.2, largest=0.7e-3)
+
+
+@dataclass(frozen=True, slots=True)
+class VesselRow:
+    """Errors of a drawn place, shares of the difference with their signs, the largest over LONG, at each of FELT: bare
+    and skinned of the fine networks, bare of the usual and of touched_body's ones. plain: whether a box stands for the
+    body there. seconds: of processor time that fine network and touched_body's took."""
+
+    vessel: str
+    place: tuple[float, float, float]
+    film: float
+    fine: tuple[float, ...]
+    skinned: tuple[float, ...]
+    usual: tuple[float, ...]
+    touched: tuple[float, ...]
+    seconds: tuple[float, float]
+
+
+def vessel_rows(chosen: str) -> list[VesselRow]:
+    """Of the vessels with this in their name."""
+    found = []
+    for name in VESSELS:
+        if chosen in name:
+            preset = library_object(name)
+            body = object_solid(preset.spec(), thermal.material(preset.material))
+            rng = np.random.default_rng([7, *name.encode()])
+            for _ in range(DRAWN):
+                found += _vessel(name, body, _drawn(body, rng))
+    return found
+
+
+def _vessel(name: str, body: Solid, patch: SurfacePatch) -> list[VesselRow]:
+    one, rows_ = film_of(body, 1.0), []
+    assert one is not None
+    grid = _FINEST if len(body.parts) == 1 else _LAYERED
+    for film in VESSEL_FILMS:
+        inside = Film(film * one.area, one.walls)
+        expected, found, seconds = {}, {}, []
+        for stack in (STACK, SKINNED):
+            tip = centred_tip(stack, AREA)
+            held = patch_fields(body, patch, face_patterns(tip), grid, inside)
+            expected[stack] = [_drop((held.rates, held.ports), tip.side, h) for h in FELT]
+        body_modes(body, inside)
+        for stack, fine in ((STACK, True), (SKINNED, True), (STACK, False)):
+            begin = time.process_time()
+            network = placed_network(body, [patch], stack, inside.conductance, fine=fine).network
+            seconds.append(time.process_time() - begin)
+            found[stack, fine] = _held(network, inside.conductance), centred_tip(stack, AREA).side
+        begin = time.process_time()
+        demand = Demand(0.05, 29.3, (1e2, 1e3, 1e4, 1e5), 20.0)
+        slow = touched_body(body, [patch], STACK, demand, fingertips=1, film=inside.conductance, cache=False)
+        seconds.append(time.process_time() - begin)
+        found["slow"] = _held(slow.object, inside.conductance), slow.sensor
+
+        def off(key: object, stack: SensorStack, found: dict = found, expected: dict = expected) -> tuple:
+            network, side = found[key]
+            errors = (
+                _drop((network.rates, network.ports), side, h) - expected[stack][n]
+                for n, h in enumerate(FELT)
+            )
+            return tuple(float(error[np.abs(error).argmax()]) for error in errors)
+
+        rows_.append(
+            VesselRow(
+                name,
+                patch.centre,
+                film,
+                off((STACK, True), STACK),
+                off((SKINNED, True), SKINNED),
+                off((STACK, False), STACK),
+                off("slow", STACK),
+                (seconds[0], seconds[-1]),
+            )
+        )
+    return rows_
+
+
+def _drawn(body: Solid, rng: np.random.Generator) -> SurfacePatch:
+    """Anywhere on the surface by its area, not in the hollow."""
+    a, b, c = body.outside.transpose(1, 0, 2)
+    areas = np.cross(b - a, c - a)
+    walls = film_of(body, 1.0)
+    assert walls is not None
+    wet = {each.tobytes() for each in np.round(walls.triangles.mean(axis=1), 7)}
+    inside = np.array([each.tobytes() in wet for each in np.round((a + b + c) / 3, 7)])
+    inside |= (areas * (a + b + c))[:, :2].sum(axis=1) < 0
+    sizes = np.where(inside, 0.0, np.linalg.norm(areas, axis=1))
+    n = rng.choice(len(sizes), p=sizes / sizes.sum())
+    u, v = rng.random(2)
+    u, v = (1 - u, 1 - v) if u + v > 1 else (u, v)
+    outward = areas[n] / np.linalg.norm(areas[n])
+    place = a[n] + u * (b[n] - a[n]) + v * (c[n] - a[n])
+    return _at(tuple(place.tolist()), tuple(outward.tolist()))
+
+
+def _drop(body: tuple[np.ndarray, np.ndarray], side: ThermalNetwork, conductance: float) -> np.ndarray:
+    """(LONG,) of the difference, of one fingertip from time 0 on. body: rates and ports."""
+    rates = np.concatenate((body[0], side.rates))
+    ports = np.concatenate((body[1], -side.ports))
+    row = np.concatenate((np.zeros(len(body[0])), side.outputs["drop"]))
+    fades, turn = np.linalg.eigh(np.diag(rates) + conductance * AREA * ports @ ports.T)
+    fades = np.maximum(fades, 1e-14)
+    drive = conductance * AREA * turn.T @ ports[:, 0]
+    return -np.expm1(-np.outer(LONG, fades)) / fades * drive @ (row @ turn)
 
 
 def _held(network: ThermalNetwork, film: float) -> ThermalNetwork:
@@ -335,13 +465,36 @@ def timed(name: str) -> Times:
     return Times(name, cells, modes, (medians[0], medians[1], medians[2]))
 
 
+def _print_vessels(found: Sequence[VesselRow]) -> None:
+    for row in found:
+        errors = "  ".join(
+            " ".join(f"{100 * share:+.2f}" for share in kind)
+            for kind in (row.fine, row.skinned, row.usual, row.touched)
+        )
+        took = " ".join(f"{seconds:.2f}" for seconds in row.seconds)
+        place = " ".join(f"{1e3 * x:.0f}" for x in row.place)
+        print(f"{row.vessel:20}{place:12}{row.film:5g}  {errors}  % in {took} s")
+    for kind in ("fine", "skinned", "usual", "touched"):
+        for n, felt in enumerate(FELT):
+            shares = [100 * abs(getattr(row, kind)[n]) for row in found]
+            middle, ninth = np.quantile(shares, [0.5, 0.9])
+            print(
+                f"{kind:8}{felt:.0e} W/(m2 K): half within {middle:.3f} %, nine of ten {ninth:.3f} %, "
+                f"all {max(shares):.3f} %"
+            )
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n", 1)[0])
     parser.add_argument("case", nargs="?", default="", help="part of a case's name")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--times", action="store_true", help="how long modes and networks take")
     parser.add_argument("--filled", action="store_true", help="places of mugs with contents")
+    parser.add_argument("--vessels", action="store_true", help="drawn places of vessels with contents")
     chosen = parser.parse_args()
+    if chosen.vessels:
+        _print_vessels(vessel_rows(chosen.case))
+        return 0
     if chosen.times:
         taken = [timed(name) for name in ROUND]
         if chosen.json:

@@ -140,10 +140,18 @@ def _body(
     film: float,
     cache: bool,
 ) -> TouchedBody:
-    still = film == 0 or film <= PLACED_FILM * (wetted_area(body) or math.inf)
-    if still and demand.tolerance >= PLACED_SHARE * abs(demand.difference):
+    loose = demand.tolerance >= PLACED_SHARE * abs(demand.difference)
+    # through a film the other way's error is larger, whatever it is asked for (studies/mesh_places.py --vessels)
+    if film <= PLACED_FILM * (wetted_area(body) or math.inf) if film else loose:
         return placed_body(
-            body, patches, stack, demand.difference, fingertips=fingertips, film=film, cache=cache
+            body,
+            patches,
+            stack,
+            demand.difference,
+            fingertips=fingertips,
+            film=film,
+            fine=not loose,
+            cache=cache,
         )
     return touched_body(body, patches, stack, demand, fingertips=fingertips, film=film, cache=cache)
 

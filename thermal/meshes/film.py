@@ -16,6 +16,8 @@ from ..surfaces import Solid, enclosed, wetted_faces
 from .grid import MeshGrid, snapped
 
 _LEAST = 1e-9  # singular values below that share of the largest are left out
+_ALONE = 1e-3  # of a wall's area in a cell, that others may add there
+_LEAST_FILM = 0.2  # of the film's resistance, that is left where a wall lies before its cell's node
 _TERMS = 12
 _EARLY = 0.02  # of the depth's square
 
@@ -39,25 +41,42 @@ class Film(NamedTuple):
         return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
     def spread(self, grid: MeshGrid) -> np.ndarray:
-        """(N,) W/K of each cell's share, by the area of its wall. On a uniform grid, whose cells are about as large as
-        walls are thick, their links resist as much already as the way from there to the wall does (see PLACED_FILM for
-        what this was measured to leave)."""
+        """(N,) W/K of each cell's share, by the area of its wall, through the film alone."""
         areas = np.linalg.norm(self._walls(grid), axis=1)
         return self.conductance * areas / areas.sum()
 
-    def sink(self, grid: MeshGrid) -> np.ndarray:
-        """(N,) W/K of each cell of a fine grid to the contents: through half of the cell, its volume over its wall, and
-        the film."""
-        vectors = self._walls(grid)
-        squares = (vectors**2).sum(axis=1)
-        wet, through = squares > 0, self.spread(grid)
-        inward = 2 * (grid.conductivity[wet] * vectors[wet] ** 2).sum(axis=1) / grid.volume[wet]
-        through[wet] = 1 / (1 / through[wet] + 1 / inward)
+    def sink(self, grid: MeshGrid, outside: np.ndarray) -> np.ndarray:
+        """(N,) W/K of each cell of a fine grid to the contents: from its node to the wall, and through the film.
+        outside: (F, 3, 3) m, the body's surface. Where a wall alone cuts a cell, the share that is left of it tells how
+        far from the node that wall is, beyond it or before it; elsewhere half of what is left lies between."""
+        vectors, through = self._walls(grid), self.spread(grid)
+        wet = np.flatnonzero((vectors**2).sum(axis=1) > 0)
+        whole, held = self._cut(grid, outside)[wet], vectors[wet]
+        areas = np.linalg.norm(held, axis=1)
+        at = np.nonzero(grid.index >= 0)
+        lengths = np.stack(
+            [np.diff(axis.edges)[n[wet]] for axis, n in zip(grid.axes, at, strict=True)], axis=1
+        )
+        nodes = np.stack(
+            [(axis.nodes - axis.edges[:-1])[n[wet]] for axis, n in zip(grid.axes, at, strict=True)], axis=1
+        )
+        normal = held / areas[:, None]
+        filled = (grid.volume[wet] / lengths.prod(axis=1))[:, None] * lengths
+        beyond = np.where(normal > 0, filled - nodes, filled - lengths + nodes)
+        alone = np.linalg.norm(whole - held, axis=1) < _ALONE * areas
+        way = np.where(alone, (np.abs(normal) * beyond).sum(axis=1), grid.volume[wet] / (2 * areas))
+        resistance = way / (areas * (grid.conductivity[wet] * normal**2).sum(axis=1))
+        through[wet] = 1 / np.maximum(1 / through[wet] + resistance, _LEAST_FILM / through[wet])
         return through
 
     def _walls(self, grid: MeshGrid) -> np.ndarray:
         """(N, 3) m2, area vectors of what is wet in each cell."""
-        faces = enclosed(snapped(self.triangles @ grid.frame.T, grid.edges), grid.edges)[1]
+        return self._cut(grid, self.triangles)
+
+    @staticmethod
+    def _cut(grid: MeshGrid, triangles: np.ndarray) -> np.ndarray:
+        """(N, 3) m2, area vectors of triangles (F, 3, 3) m in each cell."""
+        faces = enclosed(snapped(triangles @ grid.frame.T, grid.edges), grid.edges)[1]
         held = grid.index >= 0
         vectors = np.zeros((len(grid.capacity), 3))
         vectors[grid.index[held]] = faces[held]

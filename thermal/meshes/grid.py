@@ -27,7 +27,6 @@ _SNAP = 1e-6  # m, from a plane of the grid within which a vertex is in it
 _EMPTY = 1e-7  # of a cell, less than which is nothing
 _LEAST_PLANE = 0.02  # of the surface, in one plane across an axis, for which the grid has a plane there
 _FLAT = 20e-6  # m that the surface of a patch may rise or fall and be flat to the grid
-_RELIEF_CELLS = 12  # between the middle of a patch that is not flat and its lowest or highest place
 _CRUMB = 1e-3  # of the solid's volume, less than which a piece of its own is left out
 
 
@@ -40,7 +39,8 @@ order in the length of its cells, where 1/2 makes it err by (length/penetration)
 class MeshGridding:
     """How fine a grid is. depth: m, first cell under a patch. side: m, cells at a patch's edge. growth:
     length of a cell per distance from there. largest: m, longest cell. slanted: m, cells at a patch of which one side
-    is along the grid's axes. oblique: m, at one of which none is."""
+    is along the grid's axes. oblique: m, at one of which none is. relief: cells between the middle of a patch that is
+    not flat and its lowest or highest place."""
 
     depth: float = 20e-6
     side: float = 0.05e-3
@@ -48,6 +48,7 @@ class MeshGridding:
     largest: float = 4e-3
     slanted: float = 0.2e-3
     oblique: float = 0.4e-3
+    relief: int = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +134,7 @@ def grid_axes(
             else:
                 for end in (-patch.half_width, patch.half_width):
                     fine[float(np.clip(at + end, low[axis], high[axis]))] = gridding.side
-                places, length = _along_relief(patch, axis)
+                places, length = _along_relief(patch, axis, gridding)
             for place in np.clip(at + places, low[axis], high[axis]).tolist():
                 fine[place] = min(length, fine.get(place, length))
         axes.append(_staggered(distinct(breaks), fine, gridding.growth, largest))
@@ -147,19 +148,19 @@ def _across_relief(patch: PlacedPatch, layer: float, gridding: MeshGridding) -> 
     relief = max(patch.relief)
     if relief <= _FLAT:
         return np.zeros(0), gridding.depth
-    step = 2 * relief / _RELIEF_CELLS
+    step = 2 * relief / gridding.relief
     places = np.arange(-round((below + layer) / step), round(above / step) + 1)
     return step * places[places != 0], max(step / 2, gridding.depth)
 
 
-def _along_relief(patch: PlacedPatch, axis: int) -> tuple[np.ndarray, float]:
+def _along_relief(patch: PlacedPatch, axis: int, gridding: MeshGridding) -> tuple[np.ndarray, float]:
     """Places m from a patch's centre along one of its sides, so near that the surface goes up or down by no more than
     the length of the cells across it, and the cells' length."""
     relief = max(patch.relief)
     slope = patch.slopes[int(np.argmax(np.abs(patch.sides[:, axis])))]
     if min(relief, slope) <= _FLAT:
         return np.zeros(0), patch.half_width
-    count = int(np.ceil(_RELIEF_CELLS / 2 * slope / relief))
+    count = int(np.ceil(gridding.relief / 2 * slope / relief))
     return patch.half_width * np.arange(1 - count, count) / count, patch.half_width / (2 * count)
 
 

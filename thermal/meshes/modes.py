@@ -133,7 +133,7 @@ def _modes(
             )
         )
         grid = _uniform(checked(body))
-        sink = np.zeros(len(grid.capacity)) if film is None else film.spread(grid)
+        sink = np.zeros(len(grid.capacity)) if film is None else _sink(grid, film, body)
         rates, fields = _slowest(grid, sink)
         axes = {
             f"{name} {k}": getattr(axis, name)
@@ -157,6 +157,14 @@ def _modes(
 
 
 _ARRAYS = "frame", "index", "capacity", "neighbours", "links", "conductivity", "volume"
+
+
+def _sink(grid: MeshGrid, film: Film, body: Solid) -> np.ndarray:
+    """(N,) of each cell to the contents: through the cell and the film where a wall is as thick as cells are long. A
+    thinner one lies in one cell here and in two there, whose links resist as much as its depth does, or more."""
+    wall = sum(part.volume for part in body.parts) / film.area
+    length = max(float(np.median(np.diff(edges))) for edges in grid.edges)
+    return film.sink(grid, body.outside) if wall >= length else film.spread(grid)
 
 
 def _uniform(body: Solid) -> MeshGrid:

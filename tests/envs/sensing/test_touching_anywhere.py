@@ -21,10 +21,13 @@ from thermograsp.envs import (
     water,
 )
 from thermograsp.envs.bodies.object_solids import object_solid
+from thermograsp.envs.sensing import touches
 from thermograsp.envs.sensing.heat import GraspHeat
 from thermograsp.envs.sensing.touches import first_touches
+from thermograsp.thermal import Demand
 from thermograsp.thermal.batch import FIXED_LEVEL
 from thermograsp.thermal.kernels import Patches, box_side, tip
+from thermograsp.thermal.meshes.placed import FILLED_SHARE
 from thermograsp.thermal.meshes.touched import field_carried, surface_normal
 
 from ..scripted import grasp_action
@@ -139,6 +142,21 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
         assert gained == pytest.approx(taken + supplied - lost, abs=1e-7)
         flows[celsius, inside is not None] = taken
     assert flows[60.0, True] < 1.1 * flows[60.0, False] < 0 < flows[0.0, True]
+
+
+def test_hot_contents_need_no_grid_of_the_whole_at_the_usual_tolerance(meshes, monkeypatch):
+    """Nor for a place that is new; what the network's error may be is told."""
+
+    def refused(*_, **__):
+        raise AssertionError("a grid of the whole mug, fine at each of its places")
+
+    monkeypatch.setattr(touches, "touched_body", refused)
+    spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8, reservoir=water(0.03, 2.0))
+    demand = Demand(0.05, 29.3, (1e2, 1e3, 1e4, 1e5), 20.0)
+    first = first_touches(replace(grasp_body(spec, "ceramic"), temperature=60.0, ambient=24.0), demand, False)
+    assert first is not None and first.fed
+    assert len(first.moved(0, np.array([0.0, -0.02, 0.004])).body.patches) == 2
+    assert first.body.error == pytest.approx(FILLED_SHARE * 29.3)
 
 
 @pytest.mark.parametrize("name", ["glass", pytest.param("aluminium", marks=pytest.mark.slow)])
