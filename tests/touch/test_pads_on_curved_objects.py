@@ -86,7 +86,7 @@ def test_a_ring_touches_of_a_mesh_what_it_does_of_the_round_body(
         of_round, of_mesh = table(rounded), table(pressed(mesh, ring))
         conducts, area, _ = curved_contact(of_round, force, aside, 0.0)
         meshed, touched, _ = curved_contact(of_mesh, force, middle[0] + aside, middle[1])
-        assert meshed == pytest.approx(conducts, rel=0.1, abs=0.02)
+        assert meshed == pytest.approx(conducts, rel=0.1, abs=0.025)
         assert touched == pytest.approx(area, rel=0.1, abs=1.2e-6)
 
 

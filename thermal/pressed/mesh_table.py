@@ -41,7 +41,7 @@ from .springs import Ring, between_forces, borne, loads, lowered, rises, springs
 
 _FINE = 65  # places, among which those of a table are chosen
 _STRAIGHT = 1e-3  # of the largest share, off a straight line
-_NEAR_CROWN = (0.0, 0.5)  # of half the face, and
+_NEAR_CROWN = (0.0, 0.35, 0.65)  # of half the face, and
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 
 
@@ -162,8 +162,9 @@ def _fine(face: float, span: float) -> np.ndarray:
 
 
 def _bent(view: PressedView) -> np.ndarray:
-    """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: near a crown in the middle, and then where
-    the face's share of the force, along the middle, is furthest from a straight line between those that there are."""
+    """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: near a crown in the middle, where the face
+    begins and ceases to be wholly over a mesh that touches it there, and then where its share of the force, along the
+    middle, is furthest from a straight line between those that there are."""
     found, middle = np.empty((2, PLACES)), (_FINE // 2, _FINE // 2 + 1)
     for axis in range(2):
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
@@ -171,7 +172,8 @@ def _bent(view: PressedView) -> np.ndarray:
         shares = view.touched(*some)[0::2, ..., 1].reshape(-1, _FINE)
         shares /= np.maximum(shares.max(axis=1, keepdims=True), 1e-9)
         near = [span / 2 + way * each * view.pad.face / 2 for each in _NEAR_CROWN for way in (-1, 1)]
-        chosen = sorted({0.0, span, *(each for each in near if 0 < each < span)})
+        ends = [each for each in (view.pad.face, span - view.pad.face) if shares[:, fine == each].max() > 0]
+        chosen = sorted({0.0, span, *(each for each in (*ends, *near) if 0 < each < span)})
         while len(chosen) < PLACES - 1:
             at = np.sort(chosen)
             off = np.max(
@@ -200,8 +202,7 @@ def filled(places: np.ndarray, values: np.ndarray, shares: np.ndarray) -> np.nda
     table = np.empty(CURVED_TABLE)
     table[: 2 * PLACES] = places.ravel()
     of_values, of_shares = table_values(table)
-    of_values[..., 0], of_shares[:] = values[..., 0], shares
-    of_values[..., 1:] = values[..., :1] * values[..., 1:]
+    of_values[:], of_shares[:] = values, shares
     table.flags.writeable = False
     return table
 

@@ -1,7 +1,6 @@
 /* Area and conductance of a pad's contact by its force, as thermal/contact/footprint.py for what is flat. */
 
 #include <math.h>
-#include <string.h>
 
 #include "heat.h"
 
@@ -80,24 +79,23 @@ double heat_curved(const double* table, const double grid[3], double force, doub
   double w = lesser(at - k, 1);
   const double* low = table + 2 * PLACES + VALUES * ((k * PLACES + i) * PLACES + j);
   const double* high = low + VALUES * PLACES * PLACES;
-  double less = even(low, u, v), more = even(high, u, v), conducts = greater(less, grid[2]);
-  conducts *= exp(w * log(greater(more, grid[2]) / conducts));
+  double conducts = greater(even(low, u, v), grid[2]);
+  conducts *= exp(w * log(greater(even(high, u, v), grid[2]) / conducts));
   if (conducts <= 2 * grid[2]) return 0;
   w = greater(w, 0);
-  double mean = less + w * (more - less), total = 0;
   *area = even(low + 1, u, v);
-  *area = (*area + w * (even(high + 1, u, v) - *area)) / mean;
+  *area += w * (even(high + 1, u, v) - *area);
   *length = even(low + 2, u, v);
-  *length = (*length + w * (even(high + 2, u, v) - *length)) / mean;
+  *length += w * (even(high + 2, u, v) - *length);
   const double* first = table + SHARES + ENDS * ((k * PLACES + i) * PLACES + j);
-  memset(shares, 0, ENDS * sizeof *shares);
-  for (int corner = 0; corner < 8; corner++) {
-    int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2, at_corner = (a * PLACES + b) * PLACES + c;
-    double weight = (a ? w : 1 - w) * (b ? u : 1 - u) * (c ? v : 1 - v) * low[VALUES * at_corner];
-    total += weight;
-    for (int n = 0; n < ENDS; n++) shares[n] += weight * first[ENDS * at_corner + n];
+  for (int n = 0; n < ENDS; n++) {
+    shares[n] = 0;
+    for (int corner = 0; corner < 8; corner++) {
+      int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+      double weight = (a ? w : 1 - w) * (b ? u : 1 - u) * (c ? v : 1 - v);
+      shares[n] += weight * first[ENDS * ((a * PLACES + b) * PLACES + c) + n];
+    }
   }
-  for (int n = 0; n < ENDS; n++) shares[n] /= total > 0 ? total : 1;
   return conducts;
 }
 
