@@ -40,6 +40,7 @@ from .rounded import corner_normals
 from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
 
 _FINE = 65  # places, among which those of a table are chosen
+_USUAL = slice(4, 12, 2)  # of the forces, 0.5 to 53 N, of those that are computed
 _STRAIGHT = 1e-3  # of the largest share, off a straight line
 _NEAR_CROWN = (0.0, 0.35, 0.65)  # of half the face, and
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
@@ -169,7 +170,7 @@ def _bent(view: PressedView) -> np.ndarray:
     for axis in range(2):
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
         some = (every, middle) if axis == 0 else (middle, every)
-        shares = view.touched(*some)[0::2, ..., 1].reshape(-1, _FINE)
+        shares = view.touched(*some)[_USUAL, ..., 1].reshape(-1, _FINE)
         shares /= np.maximum(shares.max(axis=1, keepdims=True), 1e-9)
         near = [span / 2 + way * each * view.pad.face / 2 for each in _NEAR_CROWN for way in (-1, 1)]
         ends = [each for each in (view.pad.face, span - view.pad.face) if shares[:, fine == each].max() > 0]
