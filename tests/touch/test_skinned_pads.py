@@ -105,3 +105,34 @@ def test_a_ball_is_felt_less_than_a_rod_and_a_rod_less_than_a_box(skin: str | No
     assert 0.2 < ball < rod < box
     if skin is None:
         assert ball < 0.2 * box  # a rigid face touches 0.03 mm2 of it
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize(
+    ("geom", "name"),
+    [
+        ('type="sphere" size=".02"', "aluminium"),
+        ('type="cylinder" size=".02 .03" euler="0 90 0"', "aluminium"),
+    ],
+)
+def test_the_further_the_crown_the_less_is_felt(geom: str, name: str, skin: str | None) -> None:
+    """Over the sensor's edge and off the pad, to .1 K of 12: where it leaves the face, gas conducts through all of it,
+    and a table must not take that width for the contact's."""
+    drops = []
+    for aside in np.arange(0.0, 0.0099, 0.0005).tolist():
+        model = mujoco.MjModel.from_xml_string(f"""
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <body name="thing" pos="0 {aside} .0202">
+    <joint type="slide" axis="0 0 -1" damping="50"/><geom {geom} mass="1"/></body>
+  <body name="tip" pos="0 0 -.01"><geom name="tip" type="box" size=".01 .01 .01"/></body>
+</worldbody></mujoco>""")
+        touch = ThermalTouch(
+            model, fingertips={"tip": Fingertip("tip", skin=skin)}, objects={"thing": name}, chain="ideal"
+        )
+        data = mujoco.MjData(model)
+        data.qfrc_applied[0] = 8.0
+        for _ in range(500):
+            mujoco.mj_step(model, data)
+            touch.update(data)
+        drops.append(float(touch.reading.temperature_drop[0]))
+    assert np.diff(drops).max() < 0.1 and 0 < drops[-1] < 0.1 < 0.5 < drops[0]

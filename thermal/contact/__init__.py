@@ -16,6 +16,7 @@ from .curved_table import (
     curved_shares,
     curved_table,
     even_places,
+    narrow_gas,
     table_values,
 )
 from .fingertip import element_joint, face_joint, pad_joint, skinned, touching
@@ -130,6 +131,7 @@ __all__ = [
     "footprint",
     "gas_conduction",
     "joint",
+    "narrow_gas",
     "pad_joint",
     "pad_law",
     "patch_ends",

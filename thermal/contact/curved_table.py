@@ -36,6 +36,7 @@ _SHARES = 2 * PLACES + 3 * FORCES * PLACES * PLACES
 CURVED_TABLE = _SHARES + 4 * FORCES * PLACES * PLACES
 _RIM = 0.001  # m beyond a pad's sides, where a contact may be named
 _INSIDE = np.array([0.0, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98, 1.0])  # of the face's half width
+_MORE = 5.0
 _NEAR = 1e-6  # m: places of a table are further apart, in single precision too
 
 
@@ -60,6 +61,7 @@ def curved_table(
         values,
         shares,
     )
+    narrow_gas(values, shares)
     table.flags.writeable = False
     return table
 
@@ -68,6 +70,24 @@ def table_values(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Views of a table: (FORCES, PLACES, PLACES, 3) W/K, m2 and m, and (FORCES, PLACES, PLACES, 4) shares."""
     grid = FORCES, PLACES, PLACES
     return table[2 * PLACES : _SHARES].reshape(*grid, 3), table[_SHARES:].reshape(*grid, 4)
+
+
+def narrow_gas(values: np.ndarray, shares: np.ndarray) -> None:
+    """Makes the patch of gas alone that of a contact at the next force or place that conducts over _MORE times as much:
+    in between most heat passes the contact, and not the wide patch that gas conducts through. values, shares: as
+    table_values tells them."""
+    through, patches, ends = values[..., 0].copy(), values[..., 1:].copy(), shares.copy()
+    most = np.zeros_like(through)
+    for axis, way in ((0, -1), (1, -1), (1, 1), (2, -1), (2, 1)):
+        beside = np.roll(through, way, axis)
+        edge = [slice(None)] * 3
+        edge[axis] = slice(-1, None) if way < 0 else slice(0, 1)
+        beside[tuple(edge)] = 0.0
+        small = np.roll(patches, way, axis)
+        taken = (beside > _MORE * through) & (beside > most) & (small[..., 0] < patches[..., 0])
+        most[taken] = beside[taken]
+        values[..., 1:][taken] = small[taken]
+        shares[taken] = np.roll(ends, way, axis)[taken]
 
 
 def curved_places(pad: Pad, length: float | None) -> tuple[np.ndarray, np.ndarray]:

@@ -29,6 +29,7 @@ from ..contact import (
     conductance,
     even_places,
     flat_law,
+    narrow_gas,
     skinned,
     table_values,
 )
@@ -204,6 +205,7 @@ def filled(places: np.ndarray, values: np.ndarray, shares: np.ndarray) -> np.nda
     table[: 2 * PLACES] = places.ravel()
     of_values, of_shares = table_values(table)
     of_values[:], of_shares[:] = values, shares
+    narrow_gas(of_values, of_shares)
     table.flags.writeable = False
     return table
 
