@@ -161,10 +161,6 @@ def sample_times(seconds: float, dt: float) -> np.ndarray:
     positive("dt (s)", dt)
     positive("seconds", seconds)
     count = int(np.floor(seconds / dt * (1 + 1e-12))) + 1
-    if count < 2:
-        raise InvalidValueError(
-            f"{seconds:g} s hold no sample at dt {dt:g} s: give a smaller dt, or more seconds"
-        )
     if count > _MOST_SAMPLES:
         raise InvalidValueError(f"{seconds:g} s at dt {dt:g} s are {count} samples: give a larger dt")
     return np.arange(count) * dt
