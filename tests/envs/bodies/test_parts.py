@@ -167,7 +167,7 @@ def test_several_solids_in_one_file_weigh_what_their_outline_does(files):
 @pytest.mark.slow
 def test_several_solids_in_one_file_are_felt_as_their_outline(files):
     drops = [held(1.0, objects=spec)[0] for spec in screwdrivers(files)]
-    assert drops[0].max() > 0.2
+    assert drops[0].max() > 0.1  # a rigid face on a round handle of rubber
     assert np.abs(drops[0] - drops[1]).max() < 0.02
 
 

@@ -105,7 +105,7 @@ def test_an_empty_cup_and_a_full_one_are_told_apart_by_touch(meshes):
     for name in ("cup", "full"):
         spec = ObjectSpec(shape="mesh", mesh=meshes[name], mass=0.05, friction=0.8)
         batch = GraspBatch(
-            1, objects=spec, material="ceramic", task=ENDLESS, signal="ideal", placement=(0.0, 0.0), skin=None
+            1, objects=spec, material="ceramic", task=ENDLESS, signal="ideal", placement=(0.0, 0.0)
         )
         batch.reset([0], [np.random.default_rng(0)])
         steps = [batch.step(grasp_action(batch)) for _ in range(350)]
