@@ -66,8 +66,10 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     end = ends.max()
     beyond = pieces((touch.width / 2, end), cells(4))[1:] if end > touch.width / 2 else np.zeros(0)
     touched = np.minimum(np.minimum(ends, wide), np.array(touch.spot or (np.inf, np.inf)) / 2)
-    marked = [each for each in (*ends.tolist(), *touched.tolist()) if each < touch.width / 2]
-    lines = _marked(np.concatenate([near, ring, beyond]), marked)
+    touched = np.minimum(np.minimum(ends, wide), np.array(touch.spot or (np.inf, np.inf)) / 2)
+    marked = [each for each in ends.tolist() if _HALF < each < touch.width / 2]
+    marked += [each / 2 for each in touch.spot or () if each < touch.width]
+    lines = np.unique(np.round(np.concatenate([near, ring, beyond, marked]), 9))
     below = pieces(heights.tolist(), cells(3, 4, 4, 2)[: len(stack.layers)])
     above = heights[-1] + np.concatenate([[0.0], np.geomspace(4e-5, touch.size[1], cells(9)[0])])
     inside = lines[lines <= wide * (1 + 1e-9)]
@@ -102,15 +104,6 @@ def drops(touch: Touch, refine: float = 1.0) -> np.ndarray:
     drop = np.zeros(len(u))
     drop[: lower.N] = _mean(lower, heights[1]) - _mean(lower, heights[2])
     return marched(*joined, plate, u, drop, (0.025, 0.025, 0.05, 0.1, 0.1))
-
-
-def _marked(lines: np.ndarray, marked: Sequence[float]) -> np.ndarray:
-    """Mesh lines with the marked ones among them, in place of any that is too near to one."""
-    for each in marked:
-        apart = np.abs(lines - each) > 0.2 * each
-        kept = np.isin(np.round(lines, 9), np.round((0.0, _HALF, *marked, lines.max()), 9))
-        lines = np.append(lines[apart | kept], each)
-    return np.unique(np.round(lines, 9))
 
 
 def _ordered(basis: Basis, facets: FacetBasis) -> np.ndarray:
