@@ -142,8 +142,9 @@ def pressed_view(
     seen = height_map(corners, triangles, np.frombuffer(axes).reshape(3, 3), normals)
     across = corners @ seen.axes[1:].T
     low, high = across.min(axis=0) - pad.face / 2, across.max(axis=0) + pad.face / 2
-    places = np.stack([_places(pad.face, float(span)) for span in high - low])
-    if rounded:
+    if not rounded:
+        places = np.stack([_places(pad.face, float(span)) for span in high - low])
+    else:
         fine = np.stack([_fine(pad.face, span) for span in (high - low).tolist()])
         sheet = bared(pad) if pad.face_stiffness is None else pad
         places = _bent(PressedView(fine, sheet, seen, low, high - low))

@@ -180,7 +180,7 @@ def between_forces(at):
 def begun(at):
     """Makes rows (FORCES, n) of every second force begin with something: between forces a power of them is taken, which
     must not begin at nothing."""
-    for n in range(len(at) - 4, -1, -2):
+    for n in range((len(at) - 3) // 2 * 2, -1, -2):
         for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
             if at[n, k] < faded * at[n + 2, k]:
                 at[n, k] = faded * at[n + 2, k]
