@@ -199,8 +199,12 @@ def test_a_thread_touches_less_than_a_rod_and_more_force_touches_more(skin: str 
 
 @pytest.mark.parametrize("name", MESHES)
 def test_nothing_jumps_over_the_face_s_edge_and_beyond_it_nothing_is_left(name: str) -> None:
-    through = np.array([found(name, None, 10.0, aside)[0] for aside in np.linspace(0.0, 0.026, 521)])
-    assert abs(np.diff(through)).max() < 0.06 * through.max()  # in .05 mm
+    """Steps that are four times as fine make changes that are nearly as much smaller."""
+    changes = []
+    for steps in (521, 2081):
+        through = np.array([found(name, None, 10.0, aside)[0] for aside in np.linspace(0.0, 0.026, steps)])
+        changes.append(abs(np.diff(through)).max() / through.max())
+    assert changes[0] < 0.1 and changes[1] < 0.35 * changes[0]  # in .05 and .0125 mm
     assert through[-1] < 1e-2 * through.max()  # gas across some millimetres
 
 
@@ -241,7 +245,7 @@ def test_what_springs_bear_is_the_force() -> None:
             map_heights(*seen, np.stack([middle, *axes]), points, heights, cover)
             heights -= heights[cover > 0].min()
             load = force * sheet.thickness / sheet.foundation_modulus
-            depth = depth_under(heights, cover * areas, stiffness, load)
+            depth = depth_under(heights, cover * areas, stiffness, load, np.inf)
             held = (cover * areas * stiffness * np.maximum(depth - heights, 0.0)).sum()
             assert held == pytest.approx(load, rel=1e-6)
 

@@ -11,12 +11,12 @@ from .curved_table import (
     PLACES,
     array_curved_contact,
     array_curved_shares,
+    begin_contacts,
     curved_contact,
     curved_places,
     curved_shares,
     curved_table,
     even_places,
-    narrow_gas,
     table_values,
 )
 from .fingertip import element_joint, face_joint, pad_joint, skinned, touching
@@ -131,7 +131,6 @@ __all__ = [
     "footprint",
     "gas_conduction",
     "joint",
-    "narrow_gas",
     "pad_joint",
     "pad_law",
     "patch_ends",

@@ -1,11 +1,16 @@
 """A curved body's contact as a table over force and place, for code that has not its law: arrays, and C.
 
-What a footprint conducts, gas beside it with it, and the patch that stands for it (footprint.py, spread.py), at FORCES
-and at places of the body's crown, or of its middle along a cylinder, from the pad's middle. In between it is taken
-evenly by the places, and the conductance as a power of the force. A table is a row of numbers: PLACES distances m along
-the pad's two axes each; then W/K, m2 and m (the patch's length along the second) by force and both places; then by the
-same the shares by which the patch lies at an end of the face along both axes, and at an end of the body
-(patch_place.py).
+What the contact and the gas beside it conduct, and the patches that stand for them (footprint.py, spread.py), at FORCES
+and at places of the body's crown, or of its middle along a cylinder, from the pad's middle. A table is a row of
+numbers: PLACES distances m along the pad's two axes each; then by force and both places W/K of the contact and of the
+gas, m2 of both patches and m of both along the second axis; then by the same the shares by which the patch lies at an
+end of the face along both axes, and at an end of the body (patch_place.py).
+
+In between, values are taken evenly by the places. What the contact conducts is a power of the force, up to the power
+that ends a table: 1, or more for soft bodies, which touch ever more of the face. Where it rises faster, the force has
+only begun to reach the face; it is then taken evenly by that power of the force. Below it a table has it less than 0, on
+the line from the forces above, so that a contact begins where it does and not at the next force or place. The patch of
+both, and its sides to one another, are the mean of theirs, weighted by what they conduct.
 """
 
 from __future__ import annotations
@@ -25,18 +30,22 @@ from .fingertip import touching
 from .law import CYLINDER, round_footprint
 from .patch_place import patch_ends, patch_offset
 from .rough_faces import Surface
-from .spread import beneath, even_contact
+from .spread import beneath, both_contacts
 
-FORCES, PLACES = 14, 16
+FORCES, PLACES = 14, 24
 FIRST_FORCE, FORCE_STEP = math.log(0.02), math.log(2.2)
 """Logarithms of the first force N and of the ratio of two that follow one another."""
+_RATIO = math.exp(FORCE_STEP)
 LEAST_CURVED = 1e-9
 """W/K: less is none."""
-_SHARES = 2 * PLACES + 3 * FORCES * PLACES * PLACES
-CURVED_TABLE = _SHARES + 4 * FORCES * PLACES * PLACES
+_CONTACT, _GAS, _PATCH, _WIDE, _LONG, _LONGER, _VALUES = range(7)
+_SHARES = 2 * PLACES + _VALUES * FORCES * PLACES * PLACES
+CURVED_TABLE = _SHARES + 4 * FORCES * PLACES * PLACES + 1
 _RIM = 0.001  # m beyond a pad's sides, where a contact may be named
 _INSIDE = np.array([0.0, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98, 1.0])  # of the face's half width
-_MORE = 5.0
+_LATEST = 0.95  # a contact begins, over the force at which it is
+_LITTLE, _MOST_POWER = 0.01, 4.0
+_THIN = 1e-12  # m: a patch that is narrower is none
 _NEAR = 1e-6  # m: places of a table are further apart, in single precision too
 
 
@@ -61,33 +70,76 @@ def curved_table(
         values,
         shares,
     )
-    narrow_gas(values, shares)
+    table[-1] = begin_contacts(values)
     table.flags.writeable = False
     return table
 
 
 def table_values(table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Views of a table: (FORCES, PLACES, PLACES, 3) W/K, m2 and m, and (FORCES, PLACES, PLACES, 4) shares."""
+    """Views of a table: (FORCES, PLACES, PLACES, 6) W/K of the contact and of the gas, m2 of their patches, m of
+    these along the second axis, and (FORCES, PLACES, PLACES, 4) shares."""
     grid = FORCES, PLACES, PLACES
-    return table[2 * PLACES : _SHARES].reshape(*grid, 3), table[_SHARES:].reshape(*grid, 4)
+    return table[2 * PLACES : _SHARES].reshape(*grid, _VALUES), table[_SHARES:-1].reshape(*grid, 4)
 
 
-def narrow_gas(values: np.ndarray, shares: np.ndarray) -> None:
-    """Makes the patch of gas alone that of a contact at the next force or place that conducts over _MORE times as much:
-    in between most heat passes the contact, and not the wide patch that gas conducts through. values, shares: as
-    table_values tells them."""
-    through, patches, ends = values[..., 0].copy(), values[..., 1:].copy(), shares.copy()
-    most = np.zeros_like(through)
-    for axis, way in ((0, -1), (1, -1), (1, 1), (2, -1), (2, 1)):
-        beside = np.roll(through, way, axis)
-        edge = [slice(None)] * 3
-        edge[axis] = slice(-1, None) if way < 0 else slice(0, 1)
-        beside[tuple(edge)] = 0.0
-        small = np.roll(patches, way, axis)
-        taken = (beside > _MORE * through) & (beside > most) & (small[..., 0] < patches[..., 0])
-        most[taken] = beside[taken]
-        values[..., 1:][taken] = small[taken]
-        shares[taken] = np.roll(ends, way, axis)[taken]
+@njit(cache=True, error_model="numpy")
+def begin_contacts(values):
+    """Continues what contacts conduct below the force at which they begin, on a straight line over that power of the
+    force which is returned, with the patch that they begin with. values: of table_values, the contact's 0 where there
+    is none."""
+    last, power = len(values) - 1, _power(values)
+    ratio = _RATIO**power
+    for i in range(values.shape[1]):
+        for j in range(values.shape[2]):
+            at, first = values[:, i, j], 0
+            while first <= last and at[first, _CONTACT] <= 0.0:
+                first += 1
+            if first == 0 or first > last:
+                continue
+            one, least, slope = at[first, _CONTACT], 1.0 / ratio, 0.0
+            if first < last - 1:
+                least = _beginning(ratio, one, at[first + 1, _CONTACT], at[first + 2, _CONTACT])
+            if first < last and at[first + 1, _CONTACT] > one:
+                like = math.log(at[first + 1, _CONTACT] / one) / math.log((ratio - least) / (1.0 - least))
+                slope = one * (least / (1.0 - least)) ** like / least  # to twice that force
+            for k in range(first):
+                at[k, _CONTACT] = min(slope * (ratio ** (k - first) - least), 0.0)
+                at[k, _PATCH], at[k, _LONG] = at[first, _PATCH], at[first, _LONG]
+    return power
+
+
+@njit(cache=True, error_model="numpy")
+def _power(values):
+    """Of the force, at most, by which a contact that touches at every force conducts more, where it conducts."""
+    most, found = 0.0, 1.0
+    for i in range(values.shape[1]):
+        for j in range(values.shape[2]):
+            most = max(most, values[-1, i, j, _CONTACT])
+    for i in range(values.shape[1]):
+        for j in range(values.shape[2]):
+            at = values[:, i, j, _CONTACT]
+            for k in range(1, len(at)):
+                if at.min() > 0.0 and at[k] > _LITTLE * most:
+                    found = max(found, math.log(at[k] / at[k - 1]) / FORCE_STEP)
+    return min(found, _MOST_POWER)
+
+
+@njit(cache=True, error_model="numpy")
+def _beginning(ratio, one, two, three):
+    """The force, over the first of three that are that ratio apart, of which a power's excess conducts so much at them;
+    at least that before the first."""
+    low, high = 1.0 / ratio, 1.0
+    if not one < two < three:
+        return low
+    rise, more = math.log(two / one), math.log(three / two)
+    for _ in range(30):
+        middle = (low + high) / 2
+        after = math.log((ratio - middle) / (1.0 - middle))
+        if after * more < rise * math.log((ratio * ratio - middle) / (ratio - middle)):
+            low = middle
+        else:
+            high = middle
+    return min(low, _LATEST)
 
 
 def curved_places(pad: Pad, length: float | None) -> tuple[np.ndarray, np.ndarray]:
@@ -131,13 +183,19 @@ def _fill(law, resistance, forces, aside, along, values, shares):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]
             for k in range(len(forces)):
-                conducts, area = even_contact(law, resistance, forces[k], place)
-                long = math.sqrt(area)
+                at = values[k, i, j]
+                at[_CONTACT], at[_GAS], at[_PATCH], at[_WIDE] = both_contacts(
+                    law, resistance, forces[k], place
+                )
+                total = at[_CONTACT] + at[_GAS]
+                area = (at[_CONTACT] * at[_PATCH] + at[_GAS] * at[_WIDE]) / total if total > 0.0 else 0.0
+                at[_LONG], at[_LONGER], long = math.sqrt(at[_PATCH]), math.sqrt(at[_WIDE]), math.sqrt(area)
                 beside = along[j]
                 if law.shape == CYLINDER:
                     half, other = law.half_face, law.length / 2
                     low, high = max(-half, -along[j] - other), min(half, other - along[j])
                     long, beside = max(high - low, 0.0), (low + high) / 2
+                    at[_LONG], at[_LONGER] = long, long
                     middle = along[j] + beside
                     shares[k, i, j, 3] = patch_ends(middle, along[j], long, law.length, width)
                 else:
@@ -146,7 +204,6 @@ def _fill(law, resistance, forces, aside, along, values, shares):
                 shares[k, i, j, 0] = patch_offset(aside[i], broad, width)
                 shares[k, i, j, 1] = patch_offset(beside, long, width)
                 shares[k, i, j, 2] = 0.0
-                values[k, i, j, 0], values[k, i, j, 1], values[k, i, j, 2] = conducts, area, long
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -158,16 +215,31 @@ def curved_contact(table, force, aside, along):
     at = (math.log(force) - FIRST_FORCE) / FORCE_STEP
     k = min(max(int(at), 0), FORCES - 2)
     w = min(at - k, 1.0)
-    first = 2 * PLACES + 3 * ((k * PLACES + i) * PLACES + j)
-    low, high = first, first + 3 * PLACES * PLACES
-    conducts = max(_even(table, low, u, v), LEAST_CURVED)
-    conducts *= math.exp(w * math.log(max(_even(table, high, u, v), LEAST_CURVED) / conducts))
-    if conducts <= 2 * LEAST_CURVED:
-        return 0.0, 0.0, 0.0
+    low = 2 * PLACES + _VALUES * ((k * PLACES + i) * PLACES + j)
+    high = low + _VALUES * PLACES * PLACES
+    contact = _by_force(_even(table, low, u, v), _even(table, high, u, v), w, table[CURVED_TABLE - 1])
     w = max(w, 0.0)
-    area, more = _even(table, low + 1, u, v), _even(table, high + 1, u, v)
-    long, longer = _even(table, low + 2, u, v), _even(table, high + 2, u, v)
-    return conducts, area + w * (more - area), long + w * (longer - long)
+    gas = _mixed(table, low + _GAS, high + _GAS, u, v, w)
+    total = contact + gas
+    if total <= LEAST_CURVED:
+        return 0.0, 0.0, 0.0
+    part = contact / total
+    wide, longer = (
+        _mixed(table, low + _WIDE, high + _WIDE, u, v, w),
+        _mixed(table, low + _LONGER, high + _LONGER, u, v, w),
+    )
+    area, long = (
+        _mixed(table, low + _PATCH, high + _PATCH, u, v, w),
+        _mixed(table, low + _LONG, high + _LONG, u, v, w),
+    )
+    broad = area / long if long > _THIN else 0.0
+    broader = wide / longer if longer > _THIN else 0.0
+    area, long, broad = (
+        wide + part * (area - wide),
+        longer + part * (long - longer),
+        broader + part * (broad - broader),
+    )
+    return total, area, math.sqrt(area * long / broad) if broad > _THIN else long
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -200,10 +272,26 @@ def _between(places, at):
 @njit(cache=True, inner=True, error_model="numpy")
 def _even(table, at, u, v):
     """Between four places."""
-    one = table[at] + v * (table[at + 3] - table[at])
-    at += 3 * PLACES
-    other = table[at] + v * (table[at + 3] - table[at])
+    one = table[at] + v * (table[at + _VALUES] - table[at])
+    at += _VALUES * PLACES
+    other = table[at] + v * (table[at + _VALUES] - table[at])
     return one + u * (other - one)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _mixed(table, low, high, u, v, w):
+    """Between four places at two forces."""
+    one = _even(table, low, u, v)
+    return one + w * (_even(table, high, u, v) - one)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _by_force(low, high, w, power):
+    """What a contact conducts between two forces of a table."""
+    ratio = math.exp(FORCE_STEP * power)
+    if 0.0 < low and 0.0 < high < ratio * low:
+        return low * math.exp(w * math.log(high / low))
+    return max(low + (high - low) * (math.exp(w * FORCE_STEP * power) - 1.0) / (ratio - 1.0), 0.0)
 
 
 def array_curved_contact(
@@ -220,23 +308,46 @@ def array_curved_contact(
     before = at.clip(0.0, FORCES - 2.0)
     k = as_integers(before)
     w = (at - k).clip(None, 1.0)
-    low = start + 2 * PLACES + 3 * ((k * PLACES + i) * PLACES + j)
-    high = low + 3 * PLACES * PLACES
+    low = start + 2 * PLACES + _VALUES * ((k * PLACES + i) * PLACES + j)
 
     def even(first: Array) -> Array:
-        one = tables[first] + v * (tables[first + 3] - tables[first])
-        second = first + 3 * PLACES
-        other = tables[second] + v * (tables[second + 3] - tables[second])
+        one = tables[first] + v * (tables[first + _VALUES] - tables[first])
+        second = first + _VALUES * PLACES
+        other = tables[second] + v * (tables[second + _VALUES] - tables[second])
         return one + u * (other - one)
 
-    conducts = even(low).clip(LEAST_CURVED, None)
-    conducts = conducts * xp.exp(w * xp.log(even(high).clip(LEAST_CURVED, None) / conducts))
+    more = _VALUES * PLACES * PLACES
+    less, most = even(low), even(low + more)
+    step = FORCE_STEP * tables[start + CURVED_TABLE - 1]
+    ratio = xp.exp(step)
+    gently = (less > 0) & (most > 0) & (most < ratio * less)
+    first, second = (xp.where(gently, each, 1.0 + 0.0 * each) for each in (less, most))
+    steep = (less + (most - less) * (xp.exp(w * step) - 1.0) / (ratio - 1.0)).clip(0.0, None)
+    contact = xp.where(gently, first * xp.exp(w * xp.log(second / first)), steep)
     w = w.clip(0.0, None)
-    area, long = even(low + 1), even(low + 2)
-    area, long = area + w * (even(high + 1) - area), long + w * (even(high + 2) - long)
-    closed = (force > 0) & (conducts > 2 * LEAST_CURVED)
-    none = 0.0 * force
-    return xp.where(closed, conducts, none), xp.where(closed, area, none), xp.where(closed, long, none)
+
+    def mixed(value: int) -> Array:
+        one = even(low + value)
+        return one + w * (even(low + more + value) - one)
+
+    total = contact + mixed(_GAS)
+    closed, none = (force > 0) & (total > LEAST_CURVED), 0.0 * force
+    part = contact / xp.where(closed, total, 1.0 + none)
+    wide, longer = mixed(_WIDE), mixed(_LONGER)
+    area, long = mixed(_PATCH), mixed(_LONG)
+    broad, broader = (
+        area / xp.where(long > _THIN, long, 1.0 + none),
+        wide / xp.where(longer > _THIN, longer, 1.0 + none),
+    )
+    broad, broader = xp.where(long > _THIN, broad, none), xp.where(longer > _THIN, broader, none)
+    area, long, broad = (
+        wide + part * (area - wide),
+        longer + part * (long - longer),
+        broader + part * (broad - broader),
+    )
+    square = area * long / xp.where(broad > _THIN, broad, 1.0 + none)
+    long = xp.where(broad > _THIN, xp.sqrt(xp.where(broad > _THIN, square, 1.0 + none)), long)
+    return xp.where(closed, total, none), xp.where(closed, area, none), xp.where(closed, long, none)
 
 
 def array_curved_shares(tables: Array, number: Array, force: Array, aside: Array, along: Array) -> Array:

@@ -29,27 +29,33 @@ _MIDDLE = np.zeros(3)
 
 def even_patch(law: np.void, body: Material, force: float, face: Surface = LAPPED_ALUMINA) -> float:
     """m2, of a bare_footprint of the body at a force N > 0 on the pad, over the face's middle."""
-    return float(even_contact(law, beneath(body, face), force, _MIDDLE)[1])
+    contact, gas, area, wide = both_contacts(law, beneath(body, face), force, _MIDDLE)
+    total = contact + gas
+    return float((contact * area + gas * wide) / total) if total > 0 else area
 
 
 def beneath(body: Material, face: Surface) -> float:
-    """m2 K/W, the resistance of both bodies: what even_contact takes."""
+    """m2 K/W, the resistance of both bodies: what both_contacts takes."""
     depth = min(float(np.sqrt(body.diffusivity * _SECONDS)), _DEEPEST)
     return depth * (1 / face.conductivity + 1 / body.conductivity)
 
 
 @njit(cache=True, error_model="numpy")
-def even_contact(law, resistance, force, place):
-    """(W/K, m2 of the even patch) at a force N > 0 on the pad; see footprint's conduction."""
+def both_contacts(law, resistance, force, place):
+    """(W/K of the contact, W/K of the gas, m2 of their two patches) at a force N > 0 on the pad; see footprint's
+    conduction. The gas is as it would be without force under the contact too, where it is spread as wide as beside it
+    if heat is constricted."""
     area, load, square, hertz = touched(law, force, place)
-    gas = beside(law, law.mean_gap, area, square, hertz, place)
-    total = solid_conduction(law, area, load) + gas
-    if gas <= 0.0:
-        return total, area
-    less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
-    spread = max(4 * law.half_face * law.half_face - area, 0.0)
-    if gas > less:
-        spread = min(gas * less * resistance / (gas - less), spread)
-    if law.constriction > 0.0:  # what would flow there without force is spread as wide
-        gas += law.gas / law.mean_gap * area
-    return total, area + spread * min(gas / total, 1.0)
+    around = beside(law, law.mean_gap, area, square, hertz, place)
+    total, spread = solid_conduction(law, area, load) + around, 0.0
+    if law.mean_gap <= 0.0:
+        return total, 0.0, area, area
+    if around > 0.0:
+        less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
+        spread = max(4 * law.half_face * law.half_face - area, 0.0)
+        if around > less:
+            spread = min(around * less * resistance / (around - less), spread)
+    gas = min(around + law.gas / law.mean_gap * area, total)
+    if law.constriction == 0.0 and gas > 0.0:
+        spread *= around / gas
+    return total - gas, gas, area, area + spread

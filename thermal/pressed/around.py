@@ -17,7 +17,7 @@ from thermograsp.compiled import njit
 from ..contact import FORCES, PLACES, Pad, bared, curved_places, skinned
 from ..matter import Material, Skin
 from .mesh_table import conducting
-from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
+from .springs import Ring, borne, loads, lowered, rises, springs, touching_joint
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class RoundRing:
 
 @njit(cache=True, error_model="numpy")
 def _press_round(radius, length, ball, places, points, areas, stiffness, counted, loads, touched):
-    """Fills touched[..., :2] of springs at (n, 2) points m, of which the first are looked at, under a ball, or under
+    """Fills touched[..., 5:] of springs at (n, 2) points m, of which the first are looked at, under a ball, or under
     a cylinder of that length m along the second axis. loads: m3, forces over the stiffness of springs around the
     face."""
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
@@ -63,6 +63,8 @@ def _press_round(radius, length, ball, places, points, areas, stiffness, counted
                 continue
             lowered(heights, cover)
             rises(heights, cover, slopes)
-            for n in range(0, len(loads), 2):
-                _, at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
-            between_forces(at)
+            depth = np.inf
+            for n in range(len(loads) - 1, -1, -1):
+                depth, at[n, 5], at[n, 6] = borne(
+                    heights, cover, stiffness, slopes, loads[n], depth, touching
+                )

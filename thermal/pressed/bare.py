@@ -33,7 +33,7 @@ from ..contact import (
 from ..matter import Material
 from .height_map import HeightMap, map_heights
 from .lying import lie
-from .springs import Ring, begun, between_forces, borne, loads, lowered, on_face, rises, springs
+from .springs import Ring, borne, loads, lowered, on_face, rises, springs
 
 _AROUND = 1e-3  # m, within which a crown's curvature is told
 _LINE, _COMPACT = 0.1, 0.25
@@ -55,11 +55,12 @@ def pressed_bare(
     rows: tuple[int, int] = (0, PLACES),
     columns: tuple[int, int] = (0, PLACES),
 ) -> np.ndarray:
-    """(FORCES, rows, columns, 7) of a pad without a skin, at the places from one up to another. Of the sensor's face:
-    W/K, m2 of the patch that stands for what conducts, its length m and its shares, as PressedView.touched tells them;
-    of a ring around it: m2 that touch, and their share of the force. seen, begin, places, spans: as PressedView has
-    them."""
-    touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], 7))
+    """(FORCES, rows, columns, 10) of a pad without a skin, at the places from one up to another. Of the sensor's face:
+    the shares by which what conducts lies at ends, as PressedView.touched tells them, m, how long the patches of the
+    contact and of the gas are along the second axis, W/K of both, and m2 of the patches. Of a ring around it
+    (FORCES, rows, columns, 7), as PressedView.touched tells it. seen, begin, places, spans: as PressedView has them."""
+    columns_of = 10 if ring is None else 7
+    touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], columns_of))
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
     laws = rigid_face(pad, Surface.of(body)), beneath(body, touching(None)), ring is None
     some = springs(bared(pad), ring), on_face(pad, ring), loads(pad), forces
@@ -101,27 +102,33 @@ def _press(
             for i in range(len(points)):
                 heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes)
-            for n in range(0, len(loads), 1 if of_face else 2):
-                depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], touching)
+            depth, soft_depth = np.inf, np.inf
+            for n in range(len(loads) - 1, -1, -1):
+                row = at[n]
+                depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], depth, touching)
                 flat = _flat(heights, cover, depth, span)
                 if flat > _CURVED:
-                    _, _, soft = borne(heights, cover, even, slopes, loads[n], other)
+                    soft_depth, _, soft = borne(heights, cover, even, slopes, loads[n], soft_depth, other)
                     share += flat * (soft - share)
-                if of_face:
-                    row = at[n]
-                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, 0.0, row)
-                    where = points, heights, cover
-                    least = _conduct(
-                        *where, depth, area, share * forces[n], face, law, resistance, touching, row
-                    )
-                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, least, row)
-                else:
-                    at[n, 0], at[n, 1] = area, share
-            if of_face:
-                begun(at)
-                begun(at[1:])
-            else:
-                between_forces(at)
+                if not of_face:
+                    row[5], row[6] = area, share
+                    continue
+                where = areas[0], places[0, a], places[1, b], spans, face
+                lie(points, touching, *where, 0.0, row)
+                _conduct(
+                    points,
+                    heights,
+                    cover,
+                    depth,
+                    area,
+                    share * forces[n],
+                    where,
+                    law,
+                    resistance,
+                    touching,
+                    other,
+                    row,
+                )
 
 
 @njit(cache=True, error_model="numpy")
@@ -136,39 +143,49 @@ def _flat(heights, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(points, heights, cover, depth, area, load, face, law, resistance, touching, row):
-    """Writes W/K and m2 of the patch that stands for what conducts to row[:2]; makes of touching (C,), m2, what of the
-    patch lies at each point. row[2]: m, the contact's length. load: N on the face. Returns m that the patch's longer
-    side has at least, of a line."""
-    long = max(row[2], area / row[2]) if area > 0.0 else 0.0
+def _conduct(points, heights, cover, depth, area, load, where, law, resistance, touching, beside, row):
+    """Fills a row of pressed_bare, of which the contact's length is known. touching: (C,) m2 of the contact at each
+    point; beside: (C,), room. where: what `lie` takes after them, without a least length. load: N on the face."""
+    face, found = where[-1], np.zeros(5)
+    long = max(row[4], area / row[4]) if area > 0.0 else 0.0
     hertz, round = _hertz(points, heights, cover, touching, load, long, law)
     if round == 0.0 and area > 0.0:
-        round = min(area / row[2] ** 2, row[2] ** 2 / area)
+        round = min(area / row[4] ** 2, row[4] ** 2 / area)
     if hertz < area:
         for i in range(len(touching)):
             touching[i] *= hertz / area
         area = hertz
-    solid = 0.0
+    solid, least = 0.0, min(long, face) * (1.0 - _compact(round))
     if area > 0.0:
         solid = conductance(law, load / area) * area
         solid = constricted(law, area, solid, law.constriction * _compact(round))
+        lie(points, touching, *where, least, found)
+        row[4] = found[4]
     gas, less = 0.0, 0.0
     for i in range(len(touching)):
-        gap, beside = law.mean_gap + max(heights[i] - depth, 0.0), max(cover[i] - touching[i], 0.0)
-        conducts = law.gas * beside / gap if law.mean_gap > 0.0 else 0.0
-        less += law.gas * beside / (gap + law.gas * resistance) if law.mean_gap > 0.0 else 0.0
-        gas += conducts
-        touching[i] = conducts + (solid / area * touching[i] if area > 0.0 else 0.0)
-    total, patch = solid + gas, area
+        gap, free = law.mean_gap + max(heights[i] - depth, 0.0), max(cover[i] - touching[i], 0.0)
+        beside[i] = law.gas * free / gap if law.mean_gap > 0.0 else 0.0
+        less += law.gas * free / (gap + law.gas * resistance) if law.mean_gap > 0.0 else 0.0
+        gas += beside[i]
+    total, wide = solid + gas, area
+    around = gas
     if gas > 0.0:
         rest = max(face * face - area, 0.0)
-        spread = min(gas * less * resistance / (gas - less), rest) if gas > less else rest
-        around = gas + law.gas / law.mean_gap * area  # what would flow there without force is spread as wide
-        patch += spread * min(around / total, 1.0)
-    row[0], row[1] = total, patch
+        wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
+        around = min(
+            gas + law.gas / law.mean_gap * area, total
+        )  # what would flow there without force is as wide
+        for i in range(len(touching)):
+            beside[i] *= wide / gas
+        lie(points, beside, *where, least, found)
+        row[5] = found[4]
+    patch = ((total - around) * area + around * wide) / total if total > 0.0 else 0.0
     for i in range(len(touching)):
-        touching[i] *= patch / total if total > 0.0 else 0.0
-    return min(long, face) * (1.0 - _compact(round))
+        touching[i] = patch / total * (touching[i] * (solid / area) if area > 0.0 else 0.0)
+        touching[i] += patch / total * beside[i] * (gas / wide) if gas > 0.0 else 0.0
+    lie(points, touching, *where, least, found)
+    row[:4] = found[:4]
+    row[6], row[7], row[8], row[9] = total - around, around, area, wide
 
 
 @njit(cache=True, inner=True, error_model="numpy")

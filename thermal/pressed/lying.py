@@ -13,19 +13,20 @@ from ..contact import patch_ends, patch_offset
 _WHOLE = 0.98  # of the face: what is longer covers it, to its points
 
 
-def end(touched: np.ndarray) -> None:
-    """Where a contact vanishes it is a strip at both ends."""
+def end(shares: np.ndarray, lengths: np.ndarray) -> None:
+    """Where a contact vanishes it is a strip at both ends. shares: (forces, places, places, 4) and lengths the same way
+    along the second axis, at places of which the first and the last touch nothing."""
     for end, beside in ((0, 1), (-1, -2)):
-        touched[:, end, :, 2:] = touched[:, beside, :, 2:]
-        touched[:, end, :, 3], touched[:, end, :, 5] = 1.0, 1.0
+        lengths[:, end], shares[:, end] = lengths[:, beside], shares[:, beside]
+        shares[:, end, :, 0], shares[:, end, :, 2] = 1.0, 1.0
     for end, beside in ((0, 1), (-1, -2)):
-        touched[:, :, end, 3:] = touched[:, :, beside, 3:]
-        touched[:, :, end, 2], touched[:, :, end, 4], touched[:, :, end, 6] = 0.0, 1.0, 1.0
+        shares[:, :, end], lengths[:, :, end] = shares[:, :, beside], 0.0
+        shares[:, :, end, 1], shares[:, :, end, 3] = 1.0, 1.0
 
 
 @njit(cache=True, error_model="numpy")
-def lie(points, touching, square, aside, along, spans, face, least, touched):
-    """Writes a contact's length m and its shares to touched[2:], by the moments of what of each point touches, m2; a
+def lie(points, touching, square, aside, along, spans, face, least, found):
+    """Writes a contact's shares and its length m to found (5,), by the moments of what of each point touches, m2; a
     point counts as a square of that area m2. aside, along: m, the pad's place. least: m, of the longer side."""
     s, sy, sz, syy, syz, szz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(touching)):
@@ -38,11 +39,11 @@ def lie(points, touching, square, aside, along, spans, face, least, touched):
     middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
     longer = math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
     longer = max(longer, least)
-    touched[2] = longer if zz >= yy else s / longer
+    found[4] = longer if zz >= yy else s / longer
     for axis in range(2):
-        length = touched[2] if axis == 1 else s / touched[2]
+        length = found[4] if axis == 1 else s / found[4]
         pad, off = (along, sz / s) if axis == 1 else (aside, sy / s)
         pad -= spans[axis] / 2
         length = face if length > _WHOLE * face else length
-        touched[3 + axis] = patch_offset(off, length, face)
-        touched[5 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)
+        found[axis] = patch_offset(off, length, face)
+        found[2 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)

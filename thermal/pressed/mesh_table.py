@@ -26,10 +26,10 @@ from ..contact import (
     Joint,
     Pad,
     bared,
+    begin_contacts,
     conductance,
     even_places,
     flat_law,
-    narrow_gas,
     skinned,
     table_values,
 )
@@ -38,12 +38,15 @@ from .bare import pressed_bare
 from .height_map import HeightMap, height_map, map_heights
 from .lying import end, lie
 from .rounded import corner_normals
-from .springs import Ring, between_forces, borne, loads, lowered, rises, springs, touching_joint
+from .springs import Ring, borne, loads, lowered, rises, springs, touching_joint
 
-_FINE = 65  # places, among which those of a table are chosen
-_USUAL = slice(4, 12, 2)  # of the forces, 0.5 to 53 N, of those that are computed
-_STRAIGHT = 1e-3  # of the largest share, off a straight line
-_NEAR_CROWN = (0.0, 0.35, 0.65)  # of half the face, and
+_FINE = 97  # places, among which those of a table are chosen
+_USUAL = slice(4, 11)  # of the forces, 0.5 to 53 N
+_UNFELT = 1e-3  # of the most that can be felt
+_HALF_FELT = 0.4  # W/K, about
+_BARE = 0.09  # W/K on a newton of force on the face, and
+_SKINNED = 2e5  # on a m2, about
+_NEAR_CROWN = (0.35, 0.65, 0.85, 1.0)  # of half the face, and
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 
 
@@ -71,9 +74,10 @@ class PressedMesh:
         else:
             touched = view.touched(ring=self.ring)
         if self.ring is None:
-            end(touched)
+            end(touched[..., :4], touched[..., 4 : 5 if self.skin else 6])
             if self.skin is None:
-                return filled(view.places, touched[..., :3], touched[..., 3:])
+                values = np.concatenate((touched[..., 6:], touched[..., 4:6]), axis=-1)
+                return filled(view.places, values, touched[..., :4])
         return conducting(sheet, touching_joint(self.skin, self.body, self.ring), view.places, touched)
 
 
@@ -95,25 +99,16 @@ class PressedView:
         columns: tuple[int, int] = (0, PLACES),
         ring: Ring | None = None,
     ) -> np.ndarray:
-        """(FORCES, rows, columns, 7) at the places from one up to another: m2 of the face in contact, its share of the
-        force, m, the length along the second axis of a rectangle of that area that is as long to broad as the contact,
-        and the shares by which it lies at an end of the face along both axes, and of the mesh
-        (thermal/contact/patch_place.py). Only areas and shares of the force mean anything at the first and last place,
-        where nothing is touched. ring: what lies around the face in its place, whose areas and shares of the force
-        alone are told, also where the face touches nothing."""
+        """(FORCES, rows, columns, 7) at the places from one up to another: the shares by which the contact lies at an
+        end of the face along both axes, and of the mesh (thermal/contact/patch_place.py), m, the length along the
+        second axis of a rectangle of the contact's area that is as long to broad as the contact, m2 of the face in
+        contact, and its share of the force. Only areas and shares of the force mean anything at the first and last
+        place, where nothing is touched. ring: what lies around the face in its place, whose areas and shares of the
+        force alone are told, also where the face touches nothing."""
         touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], 7))
-        some, pad, at = np.array([rows, columns]), self.pad, (self.begin, self.places)
-        _press(
-            *self.seen,
-            *at,
-            some,
-            *springs(pad, ring),
-            loads(pad),
-            self.spans,
-            pad.face,
-            ring is None,
-            touched,
-        )
+        where = *self.seen, self.begin, self.places, np.array([rows, columns])
+        lies = self.spans, self.pad.face, ring is None
+        _press(*where, *springs(self.pad, ring), loads(self.pad), *lies, touched)
         return touched
 
     def touched_bare(
@@ -123,8 +118,8 @@ class PressedView:
         rows: tuple[int, int] = (0, PLACES),
         columns: tuple[int, int] = (0, PLACES),
     ) -> np.ndarray:
-        """The same of a pad without a skin, whose face is rigid, on a mesh of that material: in place of the face's
-        area and share of the force W/K and m2 of the patch that stands for what conducts."""
+        """(..., 10) of a pad without a skin, whose face is rigid, on a mesh of that material: the same shares, and what
+        tables of curved bodies tell of the contact and the gas. Of a ring as `touched` tells it."""
         where = self.seen, self.begin, self.places, self.spans
         return pressed_bare(self.pad, body, *where, ring, rows, columns)
 
@@ -145,7 +140,7 @@ def pressed_view(
     if not rounded:
         places = np.stack([_places(pad.face, float(span)) for span in high - low])
     else:
-        fine = np.stack([_fine(pad.face, span) for span in (high - low).tolist()])
+        fine = np.stack([_fine(pad, span) for span in (high - low).tolist()])
         sheet = bared(pad) if pad.face_stiffness is None else pad
         places = _bent(PressedView(fine, sheet, seen, low, high - low))
     places.flags.writeable = False
@@ -159,54 +154,76 @@ def _places(face: float, span: float) -> np.ndarray:
     return even_places(0.0, span, (face, span - face, *crown))
 
 
-def _fine(face: float, span: float) -> np.ndarray:
-    """(_FINE,) m up to the span, symmetric, where the face begins and ceases to be wholly over the mesh among them."""
-    return np.sort(np.concatenate((np.linspace(0.0, span, _FINE - 2), (face, span - face))))
+def _fine(pad: Pad, span: float) -> np.ndarray:
+    """(_FINE,) m up to the span, symmetric: half of them where a crown in the mesh's middle is under the pad, and where
+    the face begins and ceases to be wholly over the mesh among them."""
+    half = min(pad.width / 2, span / 2)
+    near = span / 2 + np.linspace(-half, half, _FINE // 2 + 2)[1:-1]
+    return np.sort(
+        np.concatenate((np.linspace(0.0, span, _FINE // 2 - 1), near, (pad.face, span - pad.face)))
+    )
 
 
 def _bent(view: PressedView) -> np.ndarray:
-    """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: near a crown in the middle, where the face
-    begins and ceases to be wholly over a mesh that touches it there, and then where its share of the force, along the
-    middle, is furthest from a straight line between those that there are."""
+    """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: where the face begins and ceases to be
+    wholly over a mesh that touches it there, or to touch a crown in the middle, and then where what is felt of it, along
+    the middle, is furthest from what a table would tell with those that there are."""
     found, middle = np.empty((2, PLACES)), (_FINE // 2, _FINE // 2 + 1)
     for axis in range(2):
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
         some = (every, middle) if axis == 0 else (middle, every)
-        shares = view.touched(*some)[_USUAL, ..., 1].reshape(-1, _FINE)
-        shares /= np.maximum(shares.max(axis=1, keepdims=True), 1e-9)
-        near = [span / 2 + way * each * view.pad.face / 2 for each in _NEAR_CROWN for way in (-1, 1)]
-        ends = [each for each in (view.pad.face, span - view.pad.face) if shares[:, fine == each].max() > 0]
-        chosen = sorted({0.0, span, *(each for each in (*ends, *near) if 0 < each < span)})
+        signed = _signed(view, view.touched(*some))
+        felt = _felt(signed)
+        face, half = view.pad.face, view.pad.face / 2
+        crown = [span / 2 + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
+        ends = [each for each in (face, span - face, *crown) if 0 < each < span]
+        touching = np.max([np.interp(ends, fine, row) for row in felt], axis=0) > 0
+        chosen = {0.0, span / 2, span, *np.array(ends)[touching].tolist()}
         while len(chosen) < PLACES - 1:
-            at = np.sort(chosen)
-            off = np.max(
-                [np.abs(row - np.interp(fine, at, np.interp(at, fine, row))) for row in shares], axis=0
-            )
+            at = np.sort(list(chosen))
+            told = [_felt(np.interp(fine, at, np.interp(at, fine, row))) for row in signed]
+            off = np.abs(told - felt).max(axis=0)
             both = np.maximum(off, off[::-1])
             most = int(np.argmax(both))
-            if both[most] < _STRAIGHT:
+            if both[most] < _UNFELT:
                 break
-            chosen += {float(fine[most]), float(span - fine[most])}
+            chosen |= {float(fine[most]), float(span - fine[most])}
         found[axis] = even_places(0.0, span, chosen)
     return found
+
+
+def _signed(view: PressedView, touched: np.ndarray) -> np.ndarray:
+    """(usual forces, places): about what contacts conduct over _HALF_FELT, W/K, as a table has it."""
+    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))[:, None, None]
+    values = np.zeros((*touched.shape[:3], 6))
+    bare = view.pad.face_stiffness == bared(view.pad).face_stiffness
+    values[..., 0] = touched[..., 6] * forces * _BARE if bare else touched[..., 5] * _SKINNED
+    begin_contacts(values)
+    return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_FELT
+
+
+def _felt(conducts: np.ndarray) -> np.ndarray:
+    """The share of the most that can be felt."""
+    return np.maximum(conducts, 0.0) / (1.0 + np.maximum(conducts, 0.0))
 
 
 def conducting(pad: Pad, faces: Joint, places: np.ndarray, touched: np.ndarray) -> np.ndarray:
     """(CURVED_TABLE,) of what is touched (FORCES, PLACES, PLACES, 7), as PressedView tells it, at places (2, PLACES) m.
     pad: with its skin's springs."""
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    values = np.empty((*touched.shape[:3], 3))
+    values = np.zeros((*touched.shape[:3], 6))
     _conduct(flat_law(pad, faces, (pad.width, pad.width)), forces, touched, values)
-    return filled(places, values, touched[..., 3:])
+    return filled(places, values, touched[..., :4])
 
 
 def filled(places: np.ndarray, values: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """(CURVED_TABLE,) of these places (2, PLACES) m, and by force and place W/K, m2 and m, and shares."""
+    """(CURVED_TABLE,) of these places (2, PLACES) m, and by force and place values and shares, as table_values tells
+    them."""
     table = np.empty(CURVED_TABLE)
     table[: 2 * PLACES] = places.ravel()
     of_values, of_shares = table_values(table)
     of_values[:], of_shares[:] = values, shares
-    narrow_gas(of_values, of_shares)
+    table[-1] = begin_contacts(of_values)
     table.flags.writeable = False
     return table
 
@@ -236,11 +253,13 @@ def _press(
             if cover[:counted].max() == 0.0:
                 continue
             rises(heights, cover, slopes)
-            for n in range(0, len(loads), 2):
-                _, at[n, 0], at[n, 1] = borne(heights, cover, stiffness, slopes, loads[n], touching)
+            depth = np.inf
+            for n in range(len(loads) - 1, -1, -1):
+                depth, at[n, 5], at[n, 6] = borne(
+                    heights, cover, stiffness, slopes, loads[n], depth, touching
+                )
                 if on_face:
                     lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, 0.0, at[n])
-            between_forces(at)
 
 
 @njit(cache=True, error_model="numpy")
@@ -248,7 +267,7 @@ def _conduct(law, forces, touched, values):
     for n in range(touched.shape[0]):
         for a in range(touched.shape[1]):
             for b in range(touched.shape[2]):
-                area = touched[n, a, b, 0]
-                load = touched[n, a, b, 1] * forces[n]
-                values[n, a, b, 0] = conductance(law, load / area) * area if load > 0.0 else 0.0
-                values[n, a, b, 1], values[n, a, b, 2] = area, touched[n, a, b, 2]
+                long, area = touched[n, a, b, 4], touched[n, a, b, 5]
+                load, at = touched[n, a, b, 6] * forces[n], values[n, a, b]
+                at[0] = conductance(law, load / area) * area if load > 0.0 else 0.0
+                at[2], at[4] = area, long

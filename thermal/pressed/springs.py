@@ -21,7 +21,6 @@ _POINTS = 40  # along the pad's side
 _FINER = 4  # times as many on the face
 _STEPS = 50
 _TOLERANCE = 1e-12  # of the force
-_FADED = 0.1  # of what a force five times as large touches, at least
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,10 +120,10 @@ def rises(heights, cover, slopes):
 
 
 @njit(cache=True, error_model="numpy")
-def borne(heights, cover, stiffness, slopes, load, touching):
+def borne(heights, cover, stiffness, slopes, load, deepest, touching):
     """(m by which the springs sink in, m2 of the C points that touches, its share of the load m3). Fills touching (C,)
-    m2. cover: m2 of the points that lie under the surface. slopes: of rises."""
-    depth, held = depth_under(heights, cover, stiffness, load), 0.0
+    m2. cover: m2 of the points that lie under the surface. slopes: of rises. deepest: of depth_under."""
+    depth, held = depth_under(heights, cover, stiffness, load, deepest), 0.0
     for i in range(len(touching)):
         sunk = depth - heights[i]
         touching[i] = cover[i] * part_touched(sunk, slopes[i])
@@ -141,15 +140,16 @@ def part_touched(sunk, slope):
 
 
 @njit(cache=True, error_model="numpy")
-def depth_under(heights, cover, stiffness, load):
-    """m at which springs take the load, m3; -inf where there are none."""
+def depth_under(heights, cover, stiffness, load, deepest):
+    """m at which springs take the load, m3; -inf where there are none. deepest: m at which they take at least that, inf
+    where no such depth is known."""
     depth, whole = load, 0.0
     for i in range(len(heights)):
         depth += cover[i] * stiffness[i] * heights[i]
         whole += cover[i] * stiffness[i]
     if whole == 0.0:
         return -np.inf
-    depth /= whole  # if all pushed: at least as deep as it will be
+    depth = min(depth / whole, deepest)  # if all pushed: at least as deep as it will be
     for _ in range(_STEPS):
         held, rate = 0.0, 0.0
         for i in range(len(heights)):
@@ -162,26 +162,3 @@ def depth_under(heights, cover, stiffness, load):
             break
         depth -= wrong / rate
     return depth
-
-
-@njit(cache=True, error_model="numpy")
-def between_forces(at):
-    """Fills what a place's rows (FORCES, n) tell of every second force from those before and behind; areas and shares
-    of the force come first."""
-    begun(at)
-    for n in range(1, len(at), 2):
-        above = min(n + 1, len(at) - 2)
-        at[n, 0] = math.sqrt(at[n - 1, 0] * at[above, 0])
-        for k in range(1, at.shape[1]):
-            at[n, k] = (at[n - 1, k] + at[above, k]) / 2
-
-
-@njit(cache=True, error_model="numpy")
-def begun(at):
-    """Makes rows (FORCES, n) of every second force begin with something: between forces a power of them is taken, which
-    must not begin at nothing."""
-    for n in range((len(at) - 3) // 2 * 2, -1, -2):
-        for k, faded in enumerate((_FADED, _FADED, math.sqrt(_FADED))):
-            if at[n, k] < faded * at[n + 2, k]:
-                at[n, k] = faded * at[n + 2, k]
-                at[n, 3:] = at[n + 2, 3:]

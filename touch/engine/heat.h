@@ -25,9 +25,11 @@ enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
 enum { SHAPE_CYLINDER = 1 };
 /* an element that is glued on: object, resistance m K/W of a small contact, W/K of the glue */
 enum { ON, SMALL, BOND, GLUED };
-/* a table of a curved contact: places along two axes, forces, and of each W/K, m2 and m, then shares */
-enum { PLACES = 16, FORCES = 14, VALUES = 3, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES * PLACES * PLACES,
-       CURVED = SHARES + ENDS * FORCES * PLACES * PLACES };
+/* a table of a curved contact: places along two axes, forces, and of each W/K of the contact and of the gas, m2 of their
+   patches and m; then shares, and a power of the force */
+enum { OF_CONTACT, OF_GAS, PATCH, WIDE_PATCH, PATCH_LENGTH, WIDE_LENGTH, VALUES };
+enum { PLACES = 24, FORCES = 14, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES * PLACES * PLACES,
+       CURVED = SHARES + ENDS * FORCES * PLACES * PLACES + 1 };
 /* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
 enum { BEND = 7, CURVES = 4 };
 /* a mesh from one side: three axes, the first inwards, and m along the others where it begins */

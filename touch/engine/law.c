@@ -55,6 +55,8 @@ double heat_flat_patch(const Law* law, double area, const double place[3], doubl
   return length;
 }
 
+#define THIN 1e-12 /* m: a patch that is narrower is none */
+
 /* The place of a table before `at` m, and the share of the way to the next. */
 static int between(const double* places, double at, double* share) {
   int k = 0;
@@ -69,24 +71,38 @@ static double even(const double* value, double u, double v) {
   return one + u * (other - one);
 }
 
+/* What a contact conducts between two forces of a table; step: of that power of theirs which counts, a logarithm. */
+static double by_force(double low, double high, double w, double step) {
+  double ratio = exp(step);
+  if (low > 0 && high > 0 && high < ratio * low) return low * exp(w * log(high / low));
+  return greater(low + (high - low) * (exp(w * step) - 1) / (ratio - 1), 0);
+}
+
 /* W/K, and the patch's area m2, length m and shares, by a table, as thermal/contact/curved_table.py. */
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
                    double* length, double shares[4]) {
-  double u, v;
+  double u, v, mean[VALUES];
   int i = between(table, fabs(aside), &u), j = between(table + PLACES, fabs(along), &v);
   double at = (log(force) - grid[0]) / grid[1];
   int k = (int)lesser(greater(at, 0), FORCES - 2);
   double w = lesser(at - k, 1);
   const double* low = table + 2 * PLACES + VALUES * ((k * PLACES + i) * PLACES + j);
   const double* high = low + VALUES * PLACES * PLACES;
-  double conducts = greater(even(low, u, v), grid[2]);
-  conducts *= exp(w * log(greater(even(high, u, v), grid[2]) / conducts));
-  if (conducts <= 2 * grid[2]) return 0;
+  double contact = by_force(even(low + OF_CONTACT, u, v), even(high + OF_CONTACT, u, v), w, grid[1] * table[CURVED - 1]);
   w = greater(w, 0);
-  *area = even(low + 1, u, v);
-  *area += w * (even(high + 1, u, v) - *area);
-  *length = even(low + 2, u, v);
-  *length += w * (even(high + 2, u, v) - *length);
+  for (int n = 1; n < VALUES; n++) {
+    mean[n] = even(low + n, u, v);
+    mean[n] += w * (even(high + n, u, v) - mean[n]);
+  }
+  double conducts = contact + mean[OF_GAS];
+  if (conducts <= grid[2]) return 0;
+  double part = contact / conducts;
+  *area = mean[WIDE_PATCH] + part * (mean[PATCH] - mean[WIDE_PATCH]);
+  double broad = mean[PATCH_LENGTH] > THIN ? mean[PATCH] / mean[PATCH_LENGTH] : 0;
+  double broader = mean[WIDE_LENGTH] > THIN ? mean[WIDE_PATCH] / mean[WIDE_LENGTH] : 0;
+  broad = broader + part * (broad - broader);
+  *length = mean[WIDE_LENGTH] + part * (mean[PATCH_LENGTH] - mean[WIDE_LENGTH]);
+  if (broad > THIN) *length = sqrt(*area * *length / broad);
   const double* first = table + SHARES + ENDS * ((k * PLACES + i) * PLACES + j);
   for (int n = 0; n < ENDS; n++) {
     shares[n] = 0;
