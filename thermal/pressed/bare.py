@@ -31,6 +31,7 @@ from ..contact import (
     touching,
 )
 from ..matter import Material
+from ..numerics import FAST
 from .height_map import HeightMap, map_heights
 from .lying import lie
 from .springs import Ring, borne, loads, lowered, on_face, rises, springs
@@ -131,7 +132,7 @@ def _press(
                 )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _flat(heights, cover, depth, span):
     """The share that touches of what the mesh covers of the face."""
     touches, covered = 0.0, 0.0
@@ -142,7 +143,7 @@ def _flat(heights, cover, depth, span):
     return touches / covered if covered > 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _conduct(points, heights, cover, depth, area, load, where, law, resistance, touching, beside, row):
     """Fills a row of pressed_bare, of which the contact's length is known. touching: (C,) m2 of the contact at each
     point; beside: (C,), room. where: what `lie` takes after them, without a least length. load: N on the face."""
@@ -162,11 +163,14 @@ def _conduct(points, heights, cover, depth, area, load, where, law, resistance, 
         lie(points, touching, *where, least, found)
         row[4] = found[4]
     gas, less = 0.0, 0.0
-    for i in range(len(touching)):
-        gap, free = law.mean_gap + max(heights[i] - depth, 0.0), max(cover[i] - touching[i], 0.0)
-        beside[i] = law.gas * free / gap if law.mean_gap > 0.0 else 0.0
-        less += law.gas * free / (gap + law.gas * resistance) if law.mean_gap > 0.0 else 0.0
-        gas += beside[i]
+    if law.mean_gap > 0.0:
+        apart, gently = law.mean_gap - depth, law.gas * resistance
+        for i in range(len(touching)):
+            gap, free = max(apart + heights[i], law.mean_gap), max(cover[i] - touching[i], 0.0)
+            beside[i] = law.gas * free / gap
+            less += free / (gap + gently)
+            gas += beside[i]
+        less *= law.gas
     total, wide = solid + gas, area
     around = gas
     if gas > 0.0:
@@ -193,7 +197,7 @@ def _compact(round):
     return min(max((round - _LINE) / (_COMPACT - _LINE), 0.0), 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _hertz(points, heights, cover, touching, load, long, law):
     """(m2 of Hertz's contact on a crown that is as curved as the mesh around the middle of what touches, how round it
     is: its breadth over its length); inf and 0 where it is no crown: flat, or a shape that no paraboloid is. long: m,
