@@ -144,7 +144,7 @@ def _around(view: PressedView, i: int, j: int, bare: Material | None) -> np.ndar
     """(forces, 2, 2, 2): what `_between` tells at the places round one of the view's cells."""
     cell = (i, i + 2), (j, j + 2)
     if bare is None:
-        return view.touched(*cell)[..., 5:]
-    contact, gas, area, wide = np.moveaxis(view.touched_bare(bare, None, *cell)[..., 6:], -1, 0)
+        return view.touched(some=cell)
+    contact, gas, area, wide = np.moveaxis(view.conducted(None, bare, cell)[..., 6:], -1, 0)
     through = contact + gas
     return np.stack((through, (contact * area + gas * wide) / np.maximum(through, _LEAST)), axis=-1)

@@ -8,9 +8,9 @@ end of the face along both axes, and at an end of the body (patch_place.py).
 
 In between, values are taken evenly by the places. What the contact conducts is a power of the force, up to the power
 that ends a table: 1, or more for soft bodies, which touch ever more of the face. Where it rises faster, the force has
-only begun to reach the face; it is then taken evenly by that power of the force. Below it a table has it less than 0, on
-the line from the forces above, so that a contact begins where it does and not at the next force or place. The patch of
-both, and its sides to one another, are the mean of theirs, weighted by what they conduct.
+only begun to reach the face; it is then taken evenly by that power of the force. Below it a table has it less than 0,
+on the line from the forces above, so that a contact begins where it does and not at the next force or place. The patch
+of both, and its sides to one another, are the mean of theirs, weighted by what they conduct.
 """
 
 from __future__ import annotations

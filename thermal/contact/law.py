@@ -189,16 +189,20 @@ def _contact_modulus(face: Surface, body: Surface) -> float:
     return 1 / sum((1 - one.poisson_ratio**2) / one.youngs_modulus for one in (face, body))
 
 
-def rigid_face(pad: Pad, body: Surface, face: Surface = LAPPED_ALUMINA, gas: Gas | None = AIR) -> np.void:
-    """The law of a rigid face that wears no skin, on a body of any shape whose area of contact and force are told from
-    elsewhere: what solid_conduction takes, with the gap of faces that touch without force. gas: None for vacuum."""
-    pad, pair = bared(pad, face), joint(face, body, gas, full_contact=True)
+def face_footprint(pad: Pad, skin: Skin | None, body: Surface) -> np.void:
+    """The law of a sensor's face on a body of any shape whose area of contact and force are told from elsewhere: what
+    solid_conduction takes, with the gap of faces that touch without force. pad: its silicone; skin: over it, None for a
+    bare face, which is rigid."""
+    if skin is not None:
+        pair = face_joint(skin, body)
+        return _followed(flat_law(skinned(pad, skin), pair, (pad.width, pad.width)), mean_gap=_mean_gap(pair))
+    pair = joint(LAPPED_ALUMINA, body, AIR, full_contact=True)
     numbers = {
         "mean_gap": _mean_gap(pair),
-        "modulus": _contact_modulus(face, body),
-        "constriction": (1 / face.conductivity + 1 / body.conductivity) / 4,
+        "modulus": _contact_modulus(LAPPED_ALUMINA, body),
+        "constriction": (1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity) / 4,
     }
-    return _followed(flat_law(pad, pair, (pad.width, pad.width)), **numbers)
+    return _followed(flat_law(bared(pad), pair, (pad.width, pad.width)), **numbers)
 
 
 def bared(pad: Pad, face: Surface = LAPPED_ALUMINA) -> Pad:

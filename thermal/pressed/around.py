@@ -36,7 +36,7 @@ class RoundRing:
         """(CURVED_TABLE,), at the places of the face's own."""
         sheet = bared(self.pad) if self.skin is None else skinned(self.pad, self.skin)
         places = np.stack(curved_places(self.pad, self.length))
-        touched = np.zeros((FORCES, PLACES, PLACES, 7))
+        touched = np.zeros((FORCES, PLACES, PLACES, 2))
         length = math.inf if self.length is None else self.length
         shape = self.radius, length, self.length is None
         _press_round(*shape, places, *springs(sheet, self.ring), loads(sheet), touched)
@@ -45,7 +45,7 @@ class RoundRing:
 
 @njit(cache=True, error_model="numpy")
 def _press_round(radius, length, ball, places, points, areas, stiffness, counted, loads, touched):
-    """Fills touched[..., 5:] of springs at (n, 2) points m, of which the first are looked at, under a ball, or under
+    """Fills touched of springs at (n, 2) points m, of which the first are looked at, under a ball, or under
     a cylinder of that length m along the second axis. loads: m3, forces over the stiffness of springs around the
     face."""
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
@@ -65,6 +65,6 @@ def _press_round(radius, length, ball, places, points, areas, stiffness, counted
             rises(heights, cover, slopes)
             depth = np.inf
             for n in range(len(loads) - 1, -1, -1):
-                depth, at[n, 5], at[n, 6] = borne(
+                depth, at[n, 0], at[n, 1] = borne(
                     heights, cover, stiffness, slopes, loads[n], depth, touching
                 )

@@ -20,26 +20,32 @@ from thermograsp.compiled import njit
 from ..contact import (
     CURVED_TABLE,
     FIRST_FORCE,
+    FOOTPRINT_LAW,
     FORCE_STEP,
     FORCES,
     PLACES,
     Joint,
     Pad,
+    Surface,
     bared,
     begin_contacts,
+    beneath,
     conductance,
     even_places,
+    face_footprint,
     flat_law,
     skinned,
     table_values,
+    touching,
 )
 from ..matter import Material, Skin
-from .bare import pressed_bare
-from .height_map import HeightMap, height_map, map_heights
-from .lying import end, lie
+from .face import Seen, conducted, pressed
+from .height_map import HeightMap, height_map
+from .lying import end
 from .rounded import corner_normals
-from .springs import Ring, borne, loads, lowered, rises, springs, touching_joint
+from .springs import Ring, touching_joint
 
+_ALL = ((0, PLACES), (0, PLACES))
 _FINE = 97  # places, among which those of a table are chosen
 _USUAL = slice(4, 11)  # of the forces, 0.5 to 53 N
 _UNFELT = 1e-3  # of the most that can be felt
@@ -67,18 +73,13 @@ class PressedMesh:
 
     def table(self) -> np.ndarray:
         """(CURVED_TABLE,)."""
-        sheet = skinned(self.pad, self.skin)
-        view = pressed_view(sheet, self.vertices, self.faces, self.axes)
-        if self.skin is None:
-            touched = view.touched_bare(self.body, self.ring)
-        else:
-            touched = view.touched(ring=self.ring)
-        if self.ring is None:
-            end(touched[..., :4], touched[..., 4 : 5 if self.skin else 6])
-            if self.skin is None:
-                values = np.concatenate((touched[..., 6:], touched[..., 4:6]), axis=-1)
-                return filled(view.places, values, touched[..., :4])
-        return conducting(sheet, touching_joint(self.skin, self.body, self.ring), view.places, touched)
+        view = pressed_view(skinned(self.pad, self.skin), self.vertices, self.faces, self.axes)
+        if self.ring is not None:
+            touched = view.touched(self.ring, bare=self.body if self.skin is None else None)
+            return conducting(view.pad, touching_joint(self.skin, self.body, self.ring), view.places, touched)
+        found = view.conducted(self.skin, self.body)
+        end(found[..., :4], found[..., 4:6])
+        return filled(view.places, np.concatenate((found[..., 6:], found[..., 4:6]), axis=-1), found[..., :4])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,33 +96,31 @@ class PressedView:
 
     def touched(
         self,
-        rows: tuple[int, int] = (0, PLACES),
-        columns: tuple[int, int] = (0, PLACES),
         ring: Ring | None = None,
+        some: tuple[tuple[int, int], tuple[int, int]] = _ALL,
+        *,
+        bare: Material | None = None,
     ) -> np.ndarray:
-        """(FORCES, rows, columns, 7) at the places from one up to another: the shares by which the contact lies at an
-        end of the face along both axes, and of the mesh (thermal/contact/patch_place.py), m, the length along the
-        second axis of a rectangle of the contact's area that is as long to broad as the contact, m2 of the face in
-        contact, and its share of the force. Only areas and shares of the force mean anything at the first and last
-        place, where nothing is touched. ring: what lies around the face in its place, whose areas and shares of the
-        force alone are told, also where the face touches nothing."""
-        touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], 7))
-        where = *self.seen, self.begin, self.places, np.array([rows, columns])
-        lies = self.spans, self.pad.face, ring is None
-        _press(*where, *springs(self.pad, ring), loads(self.pad), *lies, touched)
-        return touched
+        """(FORCES, rows, columns, 2) at some of the places: m2 that touch of the face, or of a ring around it, and
+        their share of the force. bare: the mesh's material, if the fingertip has no skin and its face is rigid."""
+        pad, law = self.pad, np.zeros(1, FOOTPRINT_LAW)[0]
+        if bare is not None:
+            pad, law = bared(pad), face_footprint(pad, None, Surface.of(bare))
+        return pressed(pad, ring, law, self._seen(some))
 
-    def touched_bare(
-        self,
-        body: Material,
-        ring: Ring | None = None,
-        rows: tuple[int, int] = (0, PLACES),
-        columns: tuple[int, int] = (0, PLACES),
+    def conducted(
+        self, skin: Skin | None, body: Material, some: tuple[tuple[int, int], tuple[int, int]] = _ALL
     ) -> np.ndarray:
-        """(..., 10) of a pad without a skin, whose face is rigid, on a mesh of that material: the same shares, and what
-        tables of curved bodies tell of the contact and the gas. Of a ring as `touched` tells it."""
-        where = self.seen, self.begin, self.places, self.spans
-        return pressed_bare(self.pad, body, *where, ring, rows, columns)
+        """(FORCES, rows, columns, 10) at some of the places: what a mesh of that material conducts, as face.conducted
+        tells it. skin: of which the pad has the springs; None for a bare face, which is rigid. Only W/K and m2 mean
+        anything at the first and last place, where nothing is touched."""
+        pad, law = self.pad, face_footprint(self.pad, skin, Surface.of(body))
+        return conducted(
+            bared(pad) if skin is None else pad, law, beneath(body, touching(skin)), self._seen(some)
+        )
+
+    def _seen(self, some: tuple[tuple[int, int], tuple[int, int]]) -> Seen:
+        return Seen(self.seen, self.begin, self.places, self.spans, np.array(some))
 
 
 @lru_cache(maxsize=256)
@@ -166,13 +165,13 @@ def _fine(pad: Pad, span: float) -> np.ndarray:
 
 def _bent(view: PressedView) -> np.ndarray:
     """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: where the face begins and ceases to be
-    wholly over a mesh that touches it there, or to touch a crown in the middle, and then where what is felt of it, along
-    the middle, is furthest from what a table would tell with those that there are."""
+    wholly over a mesh that touches it there, or to touch a crown in the middle, and then where what is felt of it,
+    along the middle, is furthest from what a table would tell with those that there are."""
     found, middle = np.empty((2, PLACES)), (_FINE // 2, _FINE // 2 + 1)
     for axis in range(2):
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
         some = (every, middle) if axis == 0 else (middle, every)
-        signed = _signed(view, view.touched(*some))
+        signed = _signed(view, view.touched(some=some))
         felt = _felt(signed)
         face, half = view.pad.face, view.pad.face / 2
         crown = [span / 2 + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
@@ -197,7 +196,7 @@ def _signed(view: PressedView, touched: np.ndarray) -> np.ndarray:
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))[:, None, None]
     values = np.zeros((*touched.shape[:3], 6))
     bare = view.pad.face_stiffness == bared(view.pad).face_stiffness
-    values[..., 0] = touched[..., 6] * forces * _BARE if bare else touched[..., 5] * _SKINNED
+    values[..., 0] = touched[..., 1] * forces * _BARE if bare else touched[..., 0] * _SKINNED
     begin_contacts(values)
     return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_FELT
 
@@ -208,12 +207,12 @@ def _felt(conducts: np.ndarray) -> np.ndarray:
 
 
 def conducting(pad: Pad, faces: Joint, places: np.ndarray, touched: np.ndarray) -> np.ndarray:
-    """(CURVED_TABLE,) of what is touched (FORCES, PLACES, PLACES, 7), as PressedView tells it, at places (2, PLACES) m.
-    pad: with its skin's springs."""
+    """(CURVED_TABLE,) of what is touched of a ring (FORCES, PLACES, PLACES, 2), as PressedView tells it, at places
+    (2, PLACES) m, but for where it lies. pad: with its skin's springs."""
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
     values = np.zeros((*touched.shape[:3], 6))
     _conduct(flat_law(pad, faces, (pad.width, pad.width)), forces, touched, values)
-    return filled(places, values, touched[..., :4])
+    return filled(places, values, np.zeros((*touched.shape[:3], 4)))
 
 
 def filled(places: np.ndarray, values: np.ndarray, shares: np.ndarray) -> np.ndarray:
@@ -229,45 +228,10 @@ def filled(places: np.ndarray, values: np.ndarray, shares: np.ndarray) -> np.nda
 
 
 @njit(cache=True, error_model="numpy")
-def _press(
-    axes, corner, height, pitch, begin, places, some, points, areas, stiffness, counted, loads, spans, face, on_face,
-    touched,
-):  # fmt: skip
-    """Fills touched, some of the places: (2, 2) from which to before which. counted: how many points are looked at, and
-    on_face: whether they are the face's. loads: m3, forces over the stiffness of springs around the face. spans: (2,) m
-    of places, the mesh's outline and the face's side."""
-    frame = np.zeros((4, 3))
-    frame[1:] = axes
-    heights, cover = np.zeros(len(points)), np.zeros(len(points))
-    slopes, touching = np.zeros(counted), np.zeros(counted)
-    begun = 1 if on_face else 0  # a face touches nothing at the ends
-    last = places.shape[1] - begun
-    for a in range(max(some[0, 0], begun), min(some[0, 1], last)):
-        for b in range(max(some[1, 0], begun), min(some[1, 1], last)):
-            at = touched[:, a - some[0, 0], b - some[1, 0]]
-            for k in range(3):
-                frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
-            map_heights(axes, corner, height, pitch, frame, points, heights, cover)
-            cover *= areas
-            lowered(heights, cover)
-            if cover[:counted].max() == 0.0:
-                continue
-            rises(heights, cover, slopes)
-            depth = np.inf
-            for n in range(len(loads) - 1, -1, -1):
-                depth, at[n, 5], at[n, 6] = borne(
-                    heights, cover, stiffness, slopes, loads[n], depth, touching
-                )
-                if on_face:
-                    lie(points, touching, areas[0], places[0, a], places[1, b], spans, face, 0.0, at[n])
-
-
-@njit(cache=True, error_model="numpy")
 def _conduct(law, forces, touched, values):
     for n in range(touched.shape[0]):
         for a in range(touched.shape[1]):
             for b in range(touched.shape[2]):
-                long, area = touched[n, a, b, 4], touched[n, a, b, 5]
-                load, at = touched[n, a, b, 6] * forces[n], values[n, a, b]
+                area, load, at = touched[n, a, b, 0], touched[n, a, b, 1] * forces[n], values[n, a, b]
                 at[0] = conductance(law, load / area) * area if load > 0.0 else 0.0
-                at[2], at[4] = area, long
+                at[2] = area

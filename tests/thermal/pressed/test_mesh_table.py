@@ -13,13 +13,9 @@ from thermograsp.thermal.contact import (
     FIRST_FORCE,
     FORCE_STEP,
     FORCES,
-    conductance,
     curved_contact,
-    face_joint,
-    flat_law,
     skinned,
 )
-from thermograsp.thermal.contact.rough_faces import Surface
 from thermograsp.thermal.pressed import PressedMesh, pressed_view
 
 PAD, SKIN, METAL = Pad(), SKINS["filled_silicone"], material("aluminium")
@@ -37,7 +33,7 @@ HALF_FELT = 0.4  # W/K, by which about half of the temperature difference is fel
 @pytest.mark.parametrize("shape", SOLIDS)
 def test_between_places_it_tells_what_the_springs_do(shape: str, skin: str | None) -> None:
     """At forces of .5 to 25 N, while a crown slides over the face's edge and beyond it, where a contact ends within
-    tenths of a millimetre: in shares of what can be felt, beyond what the springs tell a quarter of a millimetre away."""
+    tenths of a millimetre: in shares of what can be felt, beyond what springs tell a quarter of a millimetre away."""
     solid, worn = SOLIDS[shape], SKINS[skin] if skin else None
     vertices, faces = np.ascontiguousarray(solid.vertices, float), np.asarray(solid.faces, np.int64)
     one = PressedMesh(PAD, worn, METAL, vertices.tobytes(), faces.tobytes(), AXES.tobytes())
@@ -47,15 +43,8 @@ def test_between_places_it_tells_what_the_springs_do(shape: str, skin: str | Non
     across = np.linspace(-0.0115, 0.0115, count)
     finer = replace(view, places=np.stack((middle[0] + across, np.full(count, middle[1]))))
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    if worn is None:
-        contact, gas = finer.touched_bare(METAL, None, (1, count - 1), (1, 2))[:, :, 0, 6:8].transpose(2, 0, 1)
-        conducts = contact + gas
-    else:
-        law = flat_law(sheet, face_joint(worn, Surface.of(METAL)), (PAD.width, PAD.width))
-        area, share = finer.touched((1, count - 1), (1, 2))[:, :, 0, 5:].transpose(2, 0, 1)
-        conducts = np.zeros_like(area)
-        for n, i in np.argwhere(share > 0).tolist():
-            conducts[n, i] = area[n, i] * conductance(law, share[n, i] * forces[n] / area[n, i])
+    found = finer.conducted(worn, METAL, ((1, count - 1), (1, 2)))[:, :, 0]
+    conducts = found[..., 6] + found[..., 7]
     felt = conducts / (conducts + HALF_FELT)
     off = []
     for n in range(4, 10):

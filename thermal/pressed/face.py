@@ -1,9 +1,9 @@
-"""What a bare sensor's face, which is rigid, and the pad around it touch of a mesh.
+"""What a sensor's face and the pad around it touch of a mesh, and what that conducts.
 
-Faces of lapped alumina do not sink in. A mesh's crests lie on it: what of them is within the faces' roughness of the
-highest touches, on springs as stiff as a column of alumina. Spots conduct there and constrict the heat where they are
-small; gas conducts beside them over the gap, place by place. One patch of even conductance stands for both, as it does
-under a ball (thermal/contact/spread.py).
+A face with a skin sinks in on its springs. A bare one of lapped alumina does not: a mesh's crests lie on it, what of
+them is within the faces' roughness of the highest touches, on springs as stiff as a column of alumina. Spots conduct
+there and constrict the heat where they are small. Gas conducts beside what touches over the gap, place by place. Two
+patches of even conductance stand for both, as they do under a ball (thermal/contact/spread.py).
 
 Under a crest the rigid face bears nearly all of the force. A flat face meets it flush with the pad, whose springs are
 then taken as the same all over, as they are for boxes (thermal/contact/area.py). In between, the share that touches of
@@ -11,6 +11,8 @@ what the mesh covers of the face tells how flat that is.
 """
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,17 +22,10 @@ from ..contact import (
     FIRST_FORCE,
     FORCE_STEP,
     FORCES,
-    PLACES,
     Pad,
-    Surface,
-    bared,
-    beneath,
     conductance,
     constricted,
-    rigid_face,
-    touching,
 )
-from ..matter import Material
 from ..numerics import FAST
 from .height_map import HeightMap, map_heights
 from .lying import lie
@@ -45,54 +40,72 @@ _FEWEST = 60  # points
 _UNLIKE = 0.1  # of the squares of the heights' differences, that a paraboloid leaves at most
 
 
-def pressed_bare(
-    pad: Pad,
-    body: Material,
-    seen: HeightMap,
-    begin: np.ndarray,
-    places: np.ndarray,
-    spans: np.ndarray,
-    ring: Ring | None,
-    rows: tuple[int, int] = (0, PLACES),
-    columns: tuple[int, int] = (0, PLACES),
-) -> np.ndarray:
-    """(FORCES, rows, columns, 10) of a pad without a skin, at the places from one up to another. Of the sensor's face:
-    the shares by which what conducts lies at ends, as PressedView.touched tells them, m, how long the patches of the
-    contact and of the gas are along the second axis, W/K of both, and m2 of the patches. Of a ring around it
-    (FORCES, rows, columns, 7), as PressedView.touched tells it. seen, begin, places, spans: as PressedView has them."""
-    columns_of = 10 if ring is None else 7
-    touched = np.zeros((FORCES, rows[1] - rows[0], columns[1] - columns[0], columns_of))
-    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    laws = rigid_face(pad, Surface.of(body)), beneath(body, touching(None)), ring is None
-    some = springs(bared(pad), ring), on_face(pad, ring), loads(pad), forces
-    _press(
-        *seen, begin, places, np.array([rows, columns]), spans, pad.face, *some[0], *some[1:], *laws, touched
-    )
+class Seen(NamedTuple):
+    """A mesh along one direction as `pressed` takes it. seen: its heights; begin (2,), places (2, PLACES) and spans
+    (2,) m: as PressedView has them. some: (2, 2) from which of the places to before which."""
+
+    seen: HeightMap
+    begin: np.ndarray
+    places: np.ndarray
+    spans: np.ndarray
+    some: np.ndarray
+
+    def room(self, width: int) -> np.ndarray:
+        """(FORCES, rows, columns, width) zeros."""
+        rows, columns = np.diff(self.some)[:, 0].tolist()
+        return np.zeros((FORCES, rows, columns, width))
+
+
+def pressed(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> np.ndarray:
+    """(FORCES, rows, columns, 2): m2 that touch of the sensor's face, or of a ring around it, and their share of the
+    force. pad: with its springs. law: of face_footprint; a bare face is rigid."""
+    touched = where.room(2)
+    _press(*_arguments(pad, ring, law, where), 0.0, touched)
     return touched
+
+
+def conducted(pad: Pad, law: np.void, resistance: float, where: Seen) -> np.ndarray:
+    """(FORCES, rows, columns, 10) of the sensor's face: the shares by which what conducts lies at an end of the face
+    along both axes, and of the mesh (thermal/contact/patch_place.py); m, how long the patches of the contact and of the
+    gas are along the second axis; W/K of both; m2 of the patches. pad, law: as pressed has them. resistance: m2 K/W of
+    both bodies."""
+    found = where.room(10)
+    _press(*_arguments(pad, None, law, where), resistance, found)
+    return found
+
+
+def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[Any, ...]:
+    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
+    of_pad = *springs(pad, ring), np.array(on_face(pad, ring)), loads(pad), forces
+    return (
+        *where.seen,
+        where.begin,
+        where.places,
+        where.some,
+        where.spans,
+        pad.face,
+        ring is None,
+        *of_pad,
+        law,
+    )
 
 
 @njit(cache=True, error_model="numpy")
 def _press(
-    axes, corner, height, pitch, begin, places, some, spans, face, points, areas, stiffness, counted, span, loads,
-    forces, law, resistance, of_face, touched,
+    axes, corner, height, pitch, begin, places, some, spans, face, of_face, points, areas, stiffness, counted, span,
+    loads, forces, law, resistance, found,
 ):  # fmt: skip
-    """Fills touched, some of the places: (2, 2) from which to before which. span: from which of the points up to which
-    are on the face; of_face: whether they are looked at, or those of a ring. loads: m3, forces N over the stiffness of
-    springs around the face. law: of rigid_face. resistance: m2 K/W of both bodies."""
-    frame = np.zeros((4, 3))
+    """Fills found, of `pressed` or `conducted`. of_face: whether the face is looked at, or a ring. span: from which of
+    the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face."""
+    frame, rigid = np.zeros((4, 3)), law.modulus > 0.0
     frame[1:] = axes
-    heights, cover = np.zeros(len(points)), np.zeros(len(points))
-    slopes, touching, other, even = (
-        np.zeros(counted),
-        np.zeros(counted),
-        np.zeros(counted),
-        np.ones(len(points)),
-    )
+    heights, cover, even = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
+    slopes, touching, other = np.zeros(counted), np.zeros(counted), np.zeros(counted)
     first = 1 if of_face else 0  # a face touches nothing at the ends
     last = places.shape[1] - first
     for a in range(max(some[0, 0], first), min(some[0, 1], last)):
         for b in range(max(some[1, 0], first), min(some[1, 1], last)):
-            at = touched[:, a - some[0, 0], b - some[1, 0]]
+            at = found[:, a - some[0, 0], b - some[1, 0]]
             for k in range(3):
                 frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
             map_heights(axes, corner, height, pitch, frame, points, heights, cover)
@@ -100,36 +113,35 @@ def _press(
             if cover[:counted].max() == 0.0:
                 continue
             lowered(heights, cover)
-            for i in range(len(points)):
-                heights[i] = max(heights[i] - law.roughness, 0.0)
+            if rigid:
+                for i in range(len(points)):
+                    heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes)
             depth, soft_depth = np.inf, np.inf
             for n in range(len(loads) - 1, -1, -1):
-                row = at[n]
                 depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], depth, touching)
-                flat = _flat(heights, cover, depth, span)
+                flat = _flat(heights, cover, depth, span) if rigid else 0.0
                 if flat > _CURVED:
                     soft_depth, _, soft = borne(heights, cover, even, slopes, loads[n], soft_depth, other)
                     share += flat * (soft - share)
-                if not of_face:
-                    row[5], row[6] = area, share
-                    continue
-                where = areas[0], places[0, a], places[1, b], spans, face
-                lie(points, touching, *where, 0.0, row)
-                _conduct(
-                    points,
-                    heights,
-                    cover,
-                    depth,
-                    area,
-                    share * forces[n],
-                    where,
-                    law,
-                    resistance,
-                    touching,
-                    other,
-                    row,
-                )
+                if found.shape[3] == 2:
+                    at[n, 0], at[n, 1] = area, share
+                else:
+                    where, load = (areas[0], places[0, a], places[1, b], spans, face), share * forces[n]
+                    _conduct(
+                        points,
+                        heights,
+                        cover,
+                        depth,
+                        area,
+                        load,
+                        where,
+                        law,
+                        resistance,
+                        touching,
+                        other,
+                        at[n],
+                    )
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -145,18 +157,24 @@ def _flat(heights, cover, depth, span):
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _conduct(points, heights, cover, depth, area, load, where, law, resistance, touching, beside, row):
-    """Fills a row of pressed_bare, of which the contact's length is known. touching: (C,) m2 of the contact at each
-    point; beside: (C,), room. where: what `lie` takes after them, without a least length. load: N on the face."""
-    face, found = where[-1], np.zeros(5)
-    long = max(row[4], area / row[4]) if area > 0.0 else 0.0
-    hertz, round = _hertz(points, heights, cover, touching, load, long, law)
-    if round == 0.0 and area > 0.0:
-        round = min(area / row[4] ** 2, row[4] ** 2 / area)
+    """Fills a row of `conducted`. touching: (C,) m2 of the contact at each point; beside: (C,), room. where: what `lie`
+    takes after them, without a least length. load: N on the face."""
+    face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
+    hertz, round, least = np.inf, 0.0, 0.0
+    if area > 0.0:
+        lie(points, touching, *where, 0.0, found)
+        row[4] = found[4]
+    if rigid and area > 0.0:
+        long = max(row[4], area / row[4])
+        hertz, round = _hertz(points, heights, cover, touching, load, long, law)
+        if round == 0.0:
+            round = min(area / row[4] ** 2, row[4] ** 2 / area)
+        least = min(long, face) * (1.0 - _compact(round))
     if hertz < area:
         for i in range(len(touching)):
             touching[i] *= hertz / area
         area = hertz
-    solid, least = 0.0, min(long, face) * (1.0 - _compact(round))
+    solid = 0.0
     if area > 0.0:
         solid = conductance(law, load / area) * area
         solid = constricted(law, area, solid, law.constriction * _compact(round))
@@ -176,9 +194,10 @@ def _conduct(points, heights, cover, depth, area, load, where, law, resistance, 
     if gas > 0.0:
         rest = max(face * face - area, 0.0)
         wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
-        around = min(
-            gas + law.gas / law.mean_gap * area, total
-        )  # what would flow there without force is as wide
+        # what would flow under the contact without force is as wide as beside a constricted one
+        around = min(gas + law.gas / law.mean_gap * area, total)
+        if not rigid:
+            wide = area + (wide - area) * gas / around
         for i in range(len(touching)):
             beside[i] *= wide / gas
         lie(points, beside, *where, least, found)
