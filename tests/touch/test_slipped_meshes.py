@@ -16,7 +16,7 @@ import pytest
 import trimesh
 
 from thermograsp.errors import MissingDependencyError
-from thermograsp.thermal import IDEAL, Pad, cylinder_contact, material, sphere_contact
+from thermograsp.thermal import IDEAL, Pad, material
 from thermograsp.thermal.contact import curved_contact, curved_table, skinned
 from thermograsp.thermal.matter import skin as named_skin
 from thermograsp.thermal.pressed import PressedMesh, height_map, map_heights
@@ -108,17 +108,19 @@ def found(name: str, skin: str | None, force: float, aside: float = 0.0) -> tupl
     return curved_contact(tables[laws.curved[0, 0, k]], force, u, v)
 
 
-@pytest.mark.parametrize("aside", [0.0, 0.002, 0.004, 0.006])
-def test_rods_and_balls_are_those_of_the_closed_forms(aside: float) -> None:
-    """Under a skin. To what tables tell of a narrow crown: their places are about 2 mm apart."""
-    sheet = skinned(PAD, named_skin("filled_silicone"))
-    for force in (3.0, 10.0):
-        whole = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
-        rod = float(cylinder_contact(sheet, force, 0.01, 0.04, offset=(0.0, aside)).face)
-        assert found("rod", "filled_silicone", force, aside)[1] == pytest.approx(rod, abs=0.17 * whole)
-        whole = float(sphere_contact(sheet, force, 0.02).face)
-        ball = float(sphere_contact(sheet, force, 0.02, offset=(aside, 0.0)).face)
-        assert found("ball", "filled_silicone", force, aside)[1] == pytest.approx(ball, abs=0.25 * whole)
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize("aside", [0.0, 0.002, 0.004, 0.006, 0.008])
+def test_rods_and_balls_are_those_of_the_closed_forms(aside: float, skin: str | None) -> None:
+    """What they conduct, contact and gas, in parts of what they do in the middle: to a fifth where a contact ends, which
+    it does within half a millimetre."""
+    worn = named_skin(skin) if skin else None
+    for name, size, place in (("rod", (0.01, 0.04), (aside, 0.0)), ("ball", (0.02, None), (0.0, aside))):
+        known = curved_table(PAD, worn, material("steel"), *size)
+        for force in (3.0, 10.0):
+            whole, there = (curved_contact(known, force, *each)[0] for each in ((0.0, 0.0), place))
+            assert found(name, skin, force, aside)[0] == pytest.approx(
+                there, abs=(0.08 if aside < PAD.face / 2 else 0.2) * whole
+            )
 
 
 @pytest.mark.parametrize("name", ["aluminium", "steel", "glass", "wood"])
@@ -175,9 +177,9 @@ def test_a_rod_is_a_strip_and_a_ball_a_square_to_the_heat(skin: str | None) -> N
 
 def test_a_narrow_contact_is_not_counted_in_whole_points() -> None:
     """In the middle, where a table has a place, at forces between which a strip is ever broader."""
-    sheet = skinned(PAD, named_skin("filled_silicone"))
+    known = curved_table(PAD, named_skin("filled_silicone"), material("steel"), 0.01, 0.04)
     for force in np.geomspace(1.0, 30.0, 8):
-        strip = float(cylinder_contact(sheet, force, 0.01, 0.04).face)
+        strip = curved_contact(known, force, 0.0, 0.0)[1]
         assert found("rod", "filled_silicone", force)[1] == pytest.approx(strip, rel=0.03)
 
 
@@ -191,7 +193,9 @@ def test_a_face_counts_up_to_its_edge(aside: float) -> None:
 def test_a_thread_touches_less_than_a_rod_and_more_force_touches_more(skin: str | None) -> None:
     for force in (0.3, 3.0, 10.0, 30.0):
         rough, plain = found("thread", skin, force), found("rod", skin, force)
-        assert 0 < rough[0] < 0.8 * plain[0] and 0 < rough[1] < 0.8 * plain[1]
+        assert 0 < rough[0] < 0.8 * plain[0]
+        if skin is not None:  # on a bare face the patch is as wide as the gas
+            assert 0 < rough[1] < 0.8 * plain[1]
     for name in MESHES:
         through = [found(name, skin, force)[0] for force in np.geomspace(0.05, 60.0, 25)]
         assert (np.diff(through) > -1e-9).all()
@@ -199,12 +203,12 @@ def test_a_thread_touches_less_than_a_rod_and_more_force_touches_more(skin: str 
 
 @pytest.mark.parametrize("name", MESHES)
 def test_nothing_jumps_over_the_face_s_edge_and_beyond_it_nothing_is_left(name: str) -> None:
-    """Steps that are four times as fine make changes that are nearly as much smaller."""
+    """Steps that are ever finer make changes that are as much smaller."""
     changes = []
-    for steps in (521, 2081):
+    for steps in (1041, 8321):
         through = np.array([found(name, None, 10.0, aside)[0] for aside in np.linspace(0.0, 0.026, steps)])
         changes.append(abs(np.diff(through)).max() / through.max())
-    assert changes[0] < 0.1 and changes[1] < 0.35 * changes[0]  # in .05 and .0125 mm
+    assert changes[1] < 0.25 * changes[0]
     assert through[-1] < 1e-2 * through.max()  # gas across some millimetres
 
 
@@ -245,7 +249,7 @@ def test_what_springs_bear_is_the_force() -> None:
             map_heights(*seen, np.stack([middle, *axes]), points, heights, cover)
             heights -= heights[cover > 0].min()
             load = force * sheet.thickness / sheet.foundation_modulus
-            depth = depth_under(heights, cover * areas, stiffness, load, np.inf)
+            depth = depth_under(heights, cover * areas, stiffness, np.zeros(len(points)), load, np.inf)
             held = (cover * areas * stiffness * np.maximum(depth - heights, 0.0)).sum()
             assert held == pytest.approx(load, rel=1e-6)
 

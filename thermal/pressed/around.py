@@ -49,7 +49,7 @@ def _press_round(radius, length, ball, places, points, areas, stiffness, counted
     a cylinder of that length m along the second axis. loads: m3, forces over the stiffness of springs around the
     face."""
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
-    slopes, touching = np.zeros(counted), np.zeros(counted)
+    slopes, touching = np.zeros(len(points)), np.zeros(counted)
     for a in range(places.shape[1]):
         for b in range(places.shape[1]):
             at = touched[:, a, b]
@@ -62,7 +62,7 @@ def _press_round(radius, length, ball, places, points, areas, stiffness, counted
             if cover[:counted].max() == 0.0:
                 continue
             lowered(heights, cover)
-            rises(heights, cover, slopes)
+            rises(heights, cover, slopes[:counted])
             depth = np.inf
             for n in range(len(loads) - 1, -1, -1):
                 depth, at[n, 0], at[n, 1] = borne(

@@ -36,7 +36,8 @@ _LINE, _COMPACT = 0.1, 0.25
 """Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
 as a disc."""
 _CURVED = 1e-3  # of the face: what touches less is no flat face
-_FEWEST = 60  # points
+_FEWEST = 30  # points
+_FLATTEST = 0.5  # m, of the radii of crowns
 _UNLIKE = 0.1  # of the squares of the heights' differences, that a paraboloid leaves at most
 
 
@@ -100,7 +101,7 @@ def _press(
     frame, rigid = np.zeros((4, 3)), law.modulus > 0.0
     frame[1:] = axes
     heights, cover, even = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
-    slopes, touching, other = np.zeros(counted), np.zeros(counted), np.zeros(counted)
+    slopes, touching, other = np.zeros(len(points)), np.zeros(counted), np.zeros(counted)
     first = 1 if of_face else 0  # a face touches nothing at the ends
     last = places.shape[1] - first
     for a in range(max(some[0, 0], first), min(some[0, 1], last)):
@@ -116,7 +117,7 @@ def _press(
             if rigid:
                 for i in range(len(points)):
                     heights[i] = max(heights[i] - law.roughness, 0.0)
-            rises(heights, cover, slopes)
+            rises(heights, cover, slopes[:counted])
             depth, soft_depth = np.inf, np.inf
             for n in range(len(loads) - 1, -1, -1):
                 depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], depth, touching)
@@ -170,10 +171,11 @@ def _conduct(points, heights, cover, depth, area, load, where, law, resistance, 
         if round == 0.0:
             round = min(area / row[4] ** 2, row[4] ** 2 / area)
         least = min(long, face) * (1.0 - _compact(round))
-    if hertz < area:
-        for i in range(len(touching)):
-            touching[i] *= hertz / area
-        area = hertz
+        if hertz < np.inf:
+            hertz = min(hertz, cover[: len(touching)].sum())
+            for i in range(len(touching)):
+                touching[i] *= hertz / area
+            area = hertz
     solid = 0.0
     if area > 0.0:
         solid = conductance(law, load / area) * area
@@ -228,15 +230,15 @@ def _hertz(points, heights, cover, touching, load, long, law):
         z += touching[i] * points[i, 1]
     if total == 0.0:
         return np.inf, 0.0
-    matrix, right, square, count = np.zeros((4, 4)), np.zeros(4), 0.0, 0
-    row = np.ones(4)
+    matrix, right, square, count = np.zeros((6, 6)), np.zeros(6), 0.0, 0
+    row = np.ones(6)
     for i in range(len(touching)):
         u, v = (points[i, 0] - y / total) / _AROUND, (points[i, 1] - z / total) / _AROUND
         if cover[i] > 0.0 and u * u + v * v < 1.0:
-            row[1], row[2], row[3] = u * u, v * v, u * v
-            for j in range(4):
+            row[1], row[2], row[3], row[4], row[5] = u * u, v * v, u * v, u, v
+            for j in range(6):
                 right[j] += row[j] * heights[i]
-                for k in range(4):
+                for k in range(6):
                     matrix[j, k] += row[j] * row[k]
             square += heights[i] ** 2
             count += 1
@@ -247,7 +249,7 @@ def _hertz(points, heights, cover, touching, load, long, law):
     left = square - (found * right).sum()
     mean, half = (found[1] + found[2]) / 2, np.hypot((found[1] - found[2]) / 2, found[3] / 2)
     most, least = mean + half, mean - half
-    if not (most > 0.0 and left < _UNLIKE * spread):
+    if not (most > _AROUND**2 / (2 * _FLATTEST) and left < _UNLIKE * spread):
         return np.inf, 0.0
     round = (max(least, 0.0) / most) ** (2 / 3)  # nearly, of Hertz's ellipse
     if round <= _LINE:

@@ -37,8 +37,10 @@ def lie(points, touching, square, aside, along, spans, face, least, found):
     if s == 0.0:
         return
     yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
-    middle, spread = (yy + zz) / 2 + square / 12, math.hypot((yy - zz) / 2, yz)
-    longer = math.sqrt(s * math.sqrt((middle + spread) / max(middle - spread, square / 12)))
+    middle, spread = (yy + zz) / 2, math.hypot((yy - zz) / 2, yz)
+    most, least_moment = middle + spread + square / 12, max(middle - spread, 0.0)
+    thin = s / math.sqrt(12 * most)  # m, its breadth if it is a strip, within a row of points too
+    longer = math.sqrt(s * math.sqrt(most / (least_moment + min(square, thin * thin) / 12)))
     longer = max(longer, least)
     found[4] = longer if zz >= yy else s / longer
     for axis in range(2):

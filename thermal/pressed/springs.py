@@ -105,8 +105,8 @@ def lowered(heights, cover):
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def rises(heights, cover, slopes):
-    """Writes by how many m the surface rises over the square of each of the C points, the gentler of the two ways along
-    both axes: a point at the edge of a crest is on it."""
+    """Writes to slopes (C,) by how many m the surface rises over the square of each of the points, the gentler of the
+    two ways along both axes: a point at the edge of a crest is on it."""
     side = round(math.sqrt(len(slopes)))
     for i in range(len(slopes)):
         slopes[i] = 0.0
@@ -123,41 +123,45 @@ def rises(heights, cover, slopes):
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def borne(heights, cover, stiffness, slopes, load, deepest, touching):
     """(m by which the springs sink in, m2 of the C points that touches, its share of the load m3). Fills touching (C,)
-    m2. cover: m2 of the points that lie under the surface. slopes: of rises. deepest: of depth_under."""
-    depth, held = depth_under(heights, cover, stiffness, load, deepest), 0.0
+    m2. cover: m2 of the points that lie under the surface. slopes: (n,) of rises. deepest: of depth_under."""
+    depth, held = depth_under(heights, cover, stiffness, slopes, load, deepest), 0.0
     for i in range(len(touching)):
-        sunk = depth - heights[i]
-        touching[i] = cover[i] * part_touched(sunk, slopes[i])
-        held += cover[i] * stiffness[i] * max(sunk, 0.0)
+        sunk, part = _sunk(depth - heights[i], slopes[i])
+        touching[i] = cover[i] * part
+        held += cover[i] * stiffness[i] * sunk
     return depth, touching.sum(), held / load
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def part_touched(sunk, slope):
-    """Of a point's square, what touches where its middle has sunk in by so many m."""
-    if slope == 0.0:
-        return 1.0 if sunk > 0.0 else 0.0
-    return min(max(0.5 + sunk / slope, 0.0), 1.0)
+def _sunk(sunk, slope):
+    """(m by which a point's square has sunk in on the mean, the part of it that touches), where its middle has by so
+    many m and the surface rises by `slope` over it."""
+    ahead = sunk + slope / 2
+    if ahead <= 0.0:
+        return 0.0, 0.0
+    if ahead >= slope:
+        return sunk, 1.0
+    return ahead * ahead / (2 * slope), ahead / slope
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def depth_under(heights, cover, stiffness, load, deepest):
-    """m at which springs take the load, m3; -inf where there are none. deepest: m at which they take at least that, inf
-    where no such depth is known."""
+def depth_under(heights, cover, stiffness, slopes, load, deepest):
+    """m at which springs take the load, m3; -inf where there are none. slopes: (n,) of rises. deepest: m at which they
+    take at least that, inf where no such depth is known."""
     depth, whole = load, 0.0
     for i in range(len(heights)):
         depth += cover[i] * stiffness[i] * heights[i]
         whole += cover[i] * stiffness[i]
     if whole == 0.0:
         return -np.inf
-    depth = min(depth / whole, deepest)  # if all pushed: at least as deep as it will be
+    depth = min(depth / whole + slopes.max() / 2, deepest)  # if all pushed: at least as deep as it will be
     for _ in range(_STEPS):
         held, rate = 0.0, 0.0
         for i in range(len(heights)):
-            if heights[i] < depth:
-                spring = cover[i] * stiffness[i]
-                held += spring * (depth - heights[i])
-                rate += spring
+            sunk, part = _sunk(depth - heights[i], slopes[i])
+            spring = cover[i] * stiffness[i]
+            held += spring * sunk
+            rate += spring * part
         wrong = held - load
         if rate == 0.0 or abs(wrong) <= _TOLERANCE * load:
             break
