@@ -42,7 +42,9 @@ _CONTACT, _GAS, _PATCH, _WIDE, _LONG, _LONGER, _VALUES = range(7)
 _SHARES = 2 * PLACES + _VALUES * FORCES * PLACES * PLACES
 CURVED_TABLE = _SHARES + 4 * FORCES * PLACES * PLACES + 1
 _RIM = 0.001  # m beyond a pad's sides, where a contact may be named
-_INSIDE = np.array([0.0, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98, 1.0])  # of the face's half width
+_INSIDE = np.array(
+    [0.0, 0.15, 0.3, 0.43, 0.55, 0.66, 0.75, 0.82, 0.87, 0.91, 0.94, 0.96, 0.98, 1.0]
+)  # of the face's half width
 _LATEST = 0.95  # a contact begins, over the force at which it is
 _LITTLE, _MOST_POWER = 0.01, 4.0
 _THIN = 1e-12  # m: a patch that is narrower is none
@@ -152,9 +154,8 @@ def _aside(pad: Pad) -> np.ndarray:
     """(PLACES,) m: close together at the face's edge."""
     half = pad.face / 2
     beyond = max(pad.width / 2 + _RIM - half, 0.1 * half)
-    return np.concatenate(
-        (_INSIDE * half, half + beyond * (np.arange(1, PLACES - len(_INSIDE) + 1) / 8) ** 2)
-    )
+    more = PLACES - len(_INSIDE)
+    return np.concatenate((_INSIDE * half, half + beyond * (np.arange(1, more + 1) / more) ** 2))
 
 
 def _along(pad: Pad, length: float) -> np.ndarray:

@@ -167,12 +167,11 @@ def _conduct(points, heights, cover, depth, area, load, where, law, resistance, 
         row[4] = found[4]
     if rigid and area > 0.0:
         long = max(row[4], area / row[4])
-        hertz, round = _hertz(points, heights, cover, touching, load, long, law)
+        hertz, round = _hertz(points, heights, cover, touching, area, load, long, law)
         if round == 0.0:
             round = min(area / row[4] ** 2, row[4] ** 2 / area)
         least = min(long, face) * (1.0 - _compact(round))
         if hertz < np.inf:
-            hertz = min(hertz, cover[: len(touching)].sum())
             for i in range(len(touching)):
                 touching[i] *= hertz / area
             area = hertz
@@ -219,10 +218,11 @@ def _compact(round):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _hertz(points, heights, cover, touching, load, long, law):
+def _hertz(points, heights, cover, touching, area, load, long, law):
     """(m2 of Hertz's contact on a crown that is as curved as the mesh around the middle of what touches, how round it
-    is: its breadth over its length); inf and 0 where it is no crown: flat, or a shape that no paraboloid is. long: m,
-    of the contact, where the crown is a line."""
+    is: its breadth over its length); inf and 0 where it is no crown: flat, or a shape that no paraboloid is. area: m2
+    that touches, at most, but at the face's edge, where that is a sliver. long: m, of the contact, where the crown is a
+    line."""
     total, y, z = 0.0, 0.0, 0.0
     for i in range(len(touching)):
         total += touching[i]
@@ -230,15 +230,19 @@ def _hertz(points, heights, cover, touching, load, long, law):
         z += touching[i] * points[i, 1]
     if total == 0.0:
         return np.inf, 0.0
-    matrix, right, square, count = np.zeros((6, 6)), np.zeros(6), 0.0, 0
+    y, z = y / total, z / total
+    terms, most_area = 4, area
+    if max(abs(y), abs(z)) > law.half_face - _AROUND:  # beside a crown the surface slopes, too
+        terms, most_area = 6, np.inf
+    matrix, right, square, count = np.zeros((terms, terms)), np.zeros(terms), 0.0, 0
     row = np.ones(6)
     for i in range(len(touching)):
-        u, v = (points[i, 0] - y / total) / _AROUND, (points[i, 1] - z / total) / _AROUND
+        u, v = (points[i, 0] - y) / _AROUND, (points[i, 1] - z) / _AROUND
         if cover[i] > 0.0 and u * u + v * v < 1.0:
             row[1], row[2], row[3], row[4], row[5] = u * u, v * v, u * v, u, v
-            for j in range(6):
+            for j in range(terms):
                 right[j] += row[j] * heights[i]
-                for k in range(6):
+                for k in range(terms):
                     matrix[j, k] += row[j] * row[k]
             square += heights[i] ** 2
             count += 1
@@ -254,6 +258,6 @@ def _hertz(points, heights, cover, touching, load, long, law):
     round = (max(least, 0.0) / most) ** (2 / 3)  # nearly, of Hertz's ellipse
     if round <= _LINE:
         radius = _AROUND**2 / (2 * most)
-        return 4 * np.sqrt(load * long * radius / (np.pi * law.modulus)), round
+        return min(4 * np.sqrt(load * long * radius / (np.pi * law.modulus)), most_area), round
     radius = _AROUND**2 / (2 * np.sqrt(most * least))
-    return np.pi * (0.75 * load * radius / law.modulus) ** (2 / 3), round
+    return min(np.pi * (0.75 * load * radius / law.modulus) ** (2 / 3), most_area), round

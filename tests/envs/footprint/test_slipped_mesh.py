@@ -75,7 +75,7 @@ def test_a_block_that_turns_is_touched_at_its_edge_and_a_rod_as_before(tmp_path:
     edge, quarter = (found(block, turned(CLOSED, angle)) for angle in (np.pi / 4, np.pi / 2))
     assert (edge < 0.5 * closed).all() and (edge > 0).all()
     np.testing.assert_allclose(quarter, closed, rtol=1e-6)
-    rod = body_of(trimesh.creation.cylinder(0.01, 0.04, sections=180), tmp_path)
+    rod = body_of(trimesh.creation.cylinder(0.01, 0.04, sections=360), tmp_path)
     np.testing.assert_allclose(found(rod, turned(CLOSED, 0.8)), found(rod, CLOSED), rtol=0.1)
 
 
