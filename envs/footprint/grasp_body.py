@@ -182,8 +182,9 @@ class GraspBody:
             missed = not self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, self._up)).face > 0
         if missed:
             raise InvalidValueError(
-                f"object {spec.name!r} is a {spec.shape} {1e3 * spec.size[2]:.1f} mm high: the pads stay off the table, and the "
-                f"sensors' faces begin {1e3 * lowest:.1f} mm above it, so that they would not touch it; make it higher"
+                f"object {spec.name!r} is a {spec.shape} {1e3 * spec.size[2]:.1f} mm high: the pads stay off the "
+                f"table, and the sensors' faces begin {1e3 * lowest:.1f} mm above it, so that they would not touch it; "
+                "make it higher"
             )
 
     def contact(self, force: np.ndarray) -> ContactArea:

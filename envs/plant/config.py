@@ -421,8 +421,8 @@ class SimulationConfig:
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
-        """A body of every shape and size that may come, so that one too large or too low, or of a material whose touches
-        are not known, is refused at once and not in some later episode."""
+        """A body of every shape and size that may come, so that one too large or too low, or of a material whose
+        touches are not known, is refused at once and not in some later episode."""
         if self.mode == "T":
             own = [shape.material for shape in (*self.shapes, *self.others) if shape.material is not None]
             for touched in (*self.choices, *own):

@@ -19,6 +19,7 @@ from thermograsp.errors import (
     InvalidValueError,
     ThermograspError,
     finite,
+    positive,
     unknown_name,
 )
 from thermograsp.files import read_toml
@@ -239,7 +240,8 @@ def _conversion(cell: dict[str, Any], unit: str) -> str:
 
 
 def _check(where: str, prop: str, value: object) -> float:
-    number, (low, high) = finite(where, value), _RANGES[prop]
+    low, high = _RANGES[prop]
+    number = positive(where, value) if low > 0 else finite(where, value)
     if not low <= number <= high:
         raise InvalidValueError(f"{where} must be from {low:g} to {high:g}, got {value!r}")
     return number
