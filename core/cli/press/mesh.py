@@ -56,11 +56,11 @@ def add_mesh_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="mesh file of the object, pressed instead of a plate: .stl, .obj, .ply or .glb",
     )
-    add("--scale", type=float, help=f"metres per unit of length in the mesh file (default {_SCALE:g})")
+    add("--scale", type=float, help=f"metres per unit of length in the mesh file (default: {_SCALE:g})")
     add(
         "--side",
         choices=tuple(SIDES),
-        help=f"side of the mesh that is pressed, in its middle (default {_SIDE})",
+        help=f"side of the mesh that is pressed, in its middle (default: {_SIDE})",
     )
 
 
