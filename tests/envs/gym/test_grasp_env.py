@@ -184,7 +184,7 @@ def test_objects_lower_than_the_sensors_faces_are_refused(mode: str) -> None:
     """Forces would tell of a touch of which heat knows nothing: the pads stay off the table."""
     for shape, size in (("box", (0.03, 0.03, 0.006)), ("cylinder", (0.03, 0.03, 0.007))):
         with pytest.raises(InvalidValueError, match=r"[67]\.0 mm high.* faces begin 7\.5 mm above"):
-            GraspEnv(objects=ObjectSpec(shape=shape, size=size), mode=mode)
+            GraspEnv(objects=ObjectSpec(shape=shape, size=size), mode=mode)  # pyright: ignore[reportArgumentType]
     with pytest.raises(InvalidValueError, match="faces begin 7.5 mm"):  # one of the sizes that may be drawn
         GraspEnv(objects=ObjectSpec(size=(0.03, 0.03, 0.008)), mode=mode, randomize=[Size((0.8, 1.2))])
     if mode == "T":

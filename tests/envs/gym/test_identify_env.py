@@ -155,7 +155,8 @@ def test_a_reset_s_material_is_one_of_those_to_tell_apart():
         with pytest.raises(InvalidValueError, match="options must be a dict"):
             env.reset(options="iron")  # pyright: ignore[reportArgumentType]
     assert one.reset(seed=0, options={"material": "copper"})[1]["material"] == "copper"
-    one.close(), many.close()
+    one.close()
+    many.close()
 
 
 def test_bad_actions_are_refused():

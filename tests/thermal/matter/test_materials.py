@@ -266,7 +266,7 @@ def test_a_value_decades_off_all_matter_is_refused_with_the_range(prop: str, val
     with pytest.raises(
         InvalidValueError, match=f"mine: {prop} .* must be from .* to .*, got {re.escape(repr(value))}"
     ):
-        Material("mine", **values)
+        Material("mine", **values)  # pyright: ignore[reportArgumentType]
 
 
 def test_densities_and_specific_heats_are_refused_together() -> None:
