@@ -13,7 +13,8 @@ from gymnasium.envs.registration import register
 from thermograsp.doors import opened
 
 if TYPE_CHECKING:
-    from thermograsp.touch import Fingertip, ThermalBody, ThermalTouch, wrappers
+    from thermograsp import wrappers
+    from thermograsp.touch import Fingertip, ThermalBody, ThermalTouch
 
 __all__ = ["Fingertip", "ThermalBody", "ThermalTouch", "wrappers"]
 

@@ -22,6 +22,8 @@ def opened(package: str, *, renamed: Mapping[str, str] = MappingProxyType({})) -
         origin = _late_imports(package).get(name)
         if origin is None:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        if origin == package:  # a module of its own
+            return import_module(f"{package}.{name}")
         value = getattr(__import__(origin, fromlist=(name,)), name)
         setattr(import_module(package), name, value)
         return value
@@ -43,6 +45,5 @@ def _late_imports(package: str) -> Mapping[str, str]:
             for node in block.body:
                 assert isinstance(node, ast.ImportFrom)
                 origin = resolve_name("." * node.level + (node.module or ""), package)
-                if origin != package:  # modules of its own, which any import loads
-                    found |= {alias.name: origin for alias in node.names}
+                found |= {alias.name: origin for alias in node.names}
     return found

@@ -158,7 +158,12 @@ def within(name: str, value: Any, low: float, high: float, unit: str) -> np.ndar
     high up to round-off, and the unit that it is likely to have been given in."""
     import numpy as np  # commands that need no arrays start without it
 
-    values, slack = np.asarray(value, float), 1e-6 * high
+    try:
+        values, slack = np.asarray(value, float), 1e-6 * high
+    except (TypeError, ValueError):
+        raise InvalidValueError(
+            f"{name} must be a number in {unit}, or an array of them, got {value!r}"
+        ) from None
     wrong = values[~((values >= low - slack) & (values <= high + slack))]
     if wrong.size:
         given = float(wrong.flat[0])

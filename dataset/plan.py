@@ -181,7 +181,7 @@ def _differences(one_side: Any, other_side: Any) -> dict[str, str]:
 def _unlike(one_side: Mapping[str, Any], other_side: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """(name, "this, not that") of entries that differ."""
     for name in sorted({*one_side, *other_side}):
-        a, b = (encoded(one[name]) if name in one else "not given" for one in (one_side, other_side))
+        a, b = (encoded(one[name]) if name in one else "left out" for one in (one_side, other_side))
         if a != b:
             yield name, f"{a}, not {b}"
 

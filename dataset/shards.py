@@ -92,7 +92,7 @@ def read_plan(folder: str | os.PathLike[str]) -> Plan:
     path = Path(folder) / MANIFEST
     try:
         return Plan.from_document(json.loads(path.read_text(encoding="utf-8")))
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         raise InvalidValueError(f"{folder} is not a dataset: it has no {MANIFEST}") from None
     except (ValueError, AttributeError, ThermograspError) as error:
         raise InvalidValueError(f"cannot read {path}: {error}") from error

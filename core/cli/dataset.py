@@ -118,7 +118,10 @@ def _keyword(given: str) -> tuple[str, Any]:
 def _plan(args: argparse.Namespace) -> Plan:
     from thermograsp.dataset import Plan
 
-    drawn: dict[str, Any] = {"keywords": dict(map(_keyword, args.set))}
+    keywords = dict(map(_keyword, args.set))
+    if len(keywords) < len(args.set):
+        raise InvalidValueError(f"--set {' '.join(args.set)}: give every name once")
+    drawn: dict[str, Any] = {"keywords": keywords}
     if args.material:
         drawn["materials"] = tuple(chosen_material(name, args.materials) for name in args.material)
     elif args.materials:

@@ -77,6 +77,11 @@ class ObjectSpec:
     parts: tuple[Part, ...] = ()
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.isprintable():
+            raise InvalidValueError(f"name must be a printable string, got {self.name!r}")
+        colour = numbers("rgba (each 0 to 1)", self.rgba, 4)
+        if not all(0 <= share <= 1 for share in colour):
+            raise InvalidValueError(f"rgba must be four numbers, each 0 to 1, got {self.rgba!r}")
         if self.shape not in _SHAPES:
             raise unknown_name("shape", self.shape, _SHAPES)
         if (self.mesh is None) == (self.shape == "mesh"):

@@ -173,6 +173,20 @@ class GraspBody:
             )
         return min(area, self.stack.face_area)
 
+    def check_felt(self) -> None:
+        """Raises InvalidValueError for an object on the table that fingers close on below the sensors' faces: forces
+        would tell of a touch, and heat of none."""
+        spec, lowest = self.spec, self.spec.grasp_height - self.stack.width / 2
+        missed = spec.size[2] <= lowest
+        if not missed and self.contact_shape in ("cylinder", "sphere"):
+            missed = not self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, self._up)).face > 0
+        if missed:
+            raise InvalidValueError(
+                f"object {spec.name!r} is a {spec.shape} {1e3 * spec.size[2]:.1f} mm high: the pads stay off the "
+                f"table, and the sensors' faces begin {1e3 * lowest:.1f} mm above it, so that they would not touch it; "
+                "make it higher"
+            )
+
     def contact(self, force: np.ndarray) -> ContactArea:
         """Areas and force share at that normal force N on a pad, at the height at which the fingers are to close."""
         found = self._contact(self.pad, force, (0.0, self._up))

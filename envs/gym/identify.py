@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from thermograsp.errors import InvalidValueError
+
 from ...thermal import SEED_MATERIALS, Material
 from ..plant import SimulationConfig
-from ..tasks import IdentifyTask
+from ..spaces import Observation
+from ..tasks import IdentifyTask, Task
+from .batch import reset_options
 from .keywords import simulates
 from .single import TouchEnv
 from .vector import TouchVectorEnv
@@ -48,6 +52,13 @@ class IdentifyEnv(TouchEnv):
         task, config = _prepare(material, seconds, cost_per_second, config)
         super().__init__(task, render_mode, **config)
 
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """As GraspEnv's. Raises InvalidValueError also for a material that is none of those to tell apart."""
+        _check_options(self.batch.task, options)
+        return super().reset(seed=seed, options=options)
+
 
 class IdentifyVectorEnv(TouchVectorEnv):
     """`num_envs` identify environments in one array step; keywords as IdentifyEnv's."""
@@ -64,6 +75,13 @@ class IdentifyVectorEnv(TouchVectorEnv):
         task, config = _prepare(material, seconds, cost_per_second, config)
         super().__init__(task, num_envs, **config)
 
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """As GraspVectorEnv's. Raises InvalidValueError also for a material that is none of those to tell apart."""
+        _check_options(self.batch.task, options)
+        return super().reset(seed=seed, options=options)
+
 
 def _prepare(
     material: Materials, seconds: float, cost: float, config: dict[str, Any]
@@ -73,3 +91,17 @@ def _prepare(
     task = IdentifyTask(tuple(each.name for each in chosen), seconds, cost)
     drawn = {"material": list(chosen)} if simulates(config.get("plant", "simulated")) else {}
     return task, {**config, **drawn}
+
+
+def _check_options(task: Task, options: object) -> None:
+    """Raises InvalidValueError for a reset's material without a class: no declaration of it would be judged."""
+    assert isinstance(task, IdentifyTask)
+    given = reset_options(options)
+    if "material" not in given:
+        return
+    for each in SimulationConfig(material=given["material"]).choices:
+        if each.name not in task.classes:
+            raise InvalidValueError(
+                f"reset option material {each.name!r} is none of those to tell apart, {', '.join(task.classes)}: give "
+                "one of them, or make the environment with material=[...]"
+            )

@@ -141,7 +141,10 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
     def step(self, actions: np.ndarray) -> _Returned:
         """One control step; what becomes of environments that ended before, or end now, says autoreset_mode."""
         self.batch.require_open("step")
-        actions = np.asarray(actions)
+        try:
+            actions = np.asarray(actions)
+        except ValueError:  # lists of several lengths
+            actions = np.asarray(actions, object)
         if actions.shape != self.action_space.shape:
             raise InvalidValueError(
                 f"step takes actions of shape {self.action_space.shape}, one for each environment; got {actions.shape}"

@@ -421,20 +421,36 @@ class SimulationConfig:
         )
 
     def possible_bodies(self, stack: SensorStack) -> list[GraspBody]:
-        """A body of every shape and size that may come, so that one too large, or of a material whose touches are not
-        known, is refused at once and not in some later episode."""
+        """A body of every shape and size that may come, so that one too large or too low, or of a material whose
+        touches are not known, is refused at once and not in some later episode."""
         if self.mode == "T":
             own = [shape.material for shape in (*self.shapes, *self.others) if shape.material is not None]
             for touched in (*self.choices, *own):
                 Surface.of(material(touched))
+        self._check_drawn_temperatures()
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         sizes = [1.0, *(factor for some in factors for factor in some)]
-        return [
+        bodies = [
             self.body(stack, first, shape, {**plain, "size_factor": size})
             for shape in self.shapes
             for size in sizes
         ]
+        for body in bodies:
+            body.check_felt()
+        return bodies
+
+    def _check_drawn_temperatures(self) -> None:
+        """Raises InvalidValueError for a draw that would make an object or a thermostat too cold or too hot to be."""
+        own = [shape.temperature for shape in (*self.shapes, *self.others)]
+        starts = {self.object_temperature if given is None else given for given in own}
+        for cause in self.randomize:
+            varied = {ObjectTemperature: starts, ThermostatError: self.sensor_temperatures}.get(
+                type(cause), ()
+            )
+            for start in varied:
+                for shift in (cause.low, cause.high):  # pyright: ignore[reportAttributeAccessIssue]
+                    celsius(f"{start:g} °C with randomize's {cause}", start + shift)
 
     def gripper_for(self, bodies: Sequence[GraspBody]) -> GripperModel:
         """The gripper, read. Raises GripperError for what is none, and InvalidValueError for a body that it cannot

@@ -154,13 +154,19 @@ BAD = {
     "grasp --mesh none.stl": "no such file",
     "grasp --render a.mp4": "must end with",
     "grasp --csv missing/folder/a.csv": "create it first",
-    "grasp --seed -1": "seed must be 0 or above",
+    "grasp --seed -1": "seed must be a whole number, 0 or above, got -1",
+    "grasp --seed 1.5": "seed must be a whole number, 0 or above, got 1.5",
+    "grasp --scale 0.001": "--scale is for meshes: give --mesh FILE too",
+    "grasp --mesh none.stl --shape sphere --height 0.03": "leave out --shape and --height",
+    "grasp --shape sphere --width 0.03 --height 0.02": "as high as wide, 0.03 m: leave out --height 0.02",
+    "view --scale 0.001": "--scale is for meshes: give --mesh FILE too",
+    "dataset --episodes 1 --set seconds=1 seconds=2": "--set seconds=1 seconds=2: give every name once",
     "rollout thermograsp/Grip-v0": "cannot run 'thermograsp/Grip-v0'",
     "rollout thermograsp/Grasp-v0 --episodes 0": "episodes must be at least 1",
     "rollout thermograsp/Grasp-v0 --policy clever": "unknown policy 'clever'",
     "rollout CartPole-v1": "needs a gripper's observations",
     "rollout CartPole-v1 --policy random": "cannot run 'CartPole-v1'",
-    "demo --seed -1": "seed must be 0 or above",
+    "demo --seed -1": "seed must be a whole number, 0 or above",
 }
 
 

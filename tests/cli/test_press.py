@@ -90,6 +90,12 @@ def test_a_mesh_in_millimetres_is_the_plate(tmp_path: Path, capsys: pytest.Captu
     assert mesh["final_temperature_drop_K"] == pytest.approx(plate["final_temperature_drop_K"], abs=0.05)
 
 
+@pytest.mark.parametrize("given", ["--scale 0.001", "--scale 1", "--side top", "--side front"])
+def test_what_only_meshes_have_is_refused_without_one(given: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["press", "glass", *given.split()]) != 0
+    assert f"{given.split()[0]} is for meshes: give --mesh FILE too" in capsys.readouterr().err
+
+
 def test_a_mesh_that_cannot_be_pressed_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "plate.stl"
     trimesh.creation.box((40, 10, 40)).export(file)

@@ -180,7 +180,7 @@ def test_what_no_environment_takes_leaves_no_dataset_behind(
     [
         ({"episodes": 5}, "its episodes is 7, not 5"),
         ({"episodes": 9, "mode": "O"}, "its mode is T, not O"),  # and it does not grow
-        ({"keywords": {"tolerance": 0.1}}, "its keyword tolerance is not given, not 0.1"),
+        ({"keywords": {"tolerance": 0.1}}, "its keyword tolerance is left out, not 0.1"),
         ({"sources": "f" * 64}, "its hash of thermograsp's sources is"),
         ({"seed": 4, "policy": "random"}, "its seed is 8, not 4; its policy is scripted, not random"),
         (
@@ -504,7 +504,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main([*line, "--mode", "O"]) == 2
     assert "its mode is T, not O" in capsys.readouterr().err
     assert main([*line, "--set", "tolerance=0.1"]) == 2
-    assert "its keyword tolerance is not given, not 0.1" in capsys.readouterr().err
+    assert "its keyword tolerance is left out, not 0.1" in capsys.readouterr().err
     assert main([*line, "--set", "tolerance"]) == 2
     assert "--set takes NAME=VALUE" in capsys.readouterr().err
     for wrong in (["dataset"], ["dataset", "--episodes", "1", "--name", "x-v0"]):

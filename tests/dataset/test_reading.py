@@ -123,6 +123,8 @@ def test_filters_take_episodes(folder: Path) -> None:
 
 
 def test_what_cannot_be_read_is_named(folder: Path) -> None:
+    with pytest.raises(InvalidValueError, match=r"parquet is not a dataset: it has no manifest\.json"):
+        dataset.load(next(folder.glob("*.parquet")))
     for wrong in (["voltag"], ["next_action"], ["next_voltag"]):
         with pytest.raises(UnknownNameError, match="unknown column"):
             next(dataset.iterate(folder, 8, wrong))

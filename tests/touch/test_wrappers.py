@@ -4,6 +4,8 @@
 # pyright: reportAttributeAccessIssue=false
 
 import importlib.util
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -96,3 +98,19 @@ def test_steps_by_a_function_imported_by_name_are_felt() -> None:
 def test_an_environment_without_mujoco_is_refused() -> None:
     with pytest.raises(InvalidValueError, match="has no MuJoCo"):
         thermograsp.wrappers.AddThermalObservation(gymnasium.make("CartPole-v1"), fingertips=PADS)
+
+
+@pytest.mark.parametrize(
+    "line", ["", "from thermograsp import wrappers", "import thermograsp.wrappers", "thermograsp.wrappers"]
+)
+def test_it_has_one_name_however_it_is_imported(line: str) -> None:
+    """By a process that has imported nothing yet; `thermograsp.wrappers` is a module, not only a name."""
+    code = f"""
+import thermograsp
+{line}
+from thermograsp.wrappers import AddThermalObservation
+import thermograsp.touch.wrappers
+assert AddThermalObservation is thermograsp.wrappers.AddThermalObservation
+assert AddThermalObservation is thermograsp.touch.wrappers.AddThermalObservation
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)

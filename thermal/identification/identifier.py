@@ -191,5 +191,13 @@ def identify(
     touch: float | None = None,
     cache: bool = True,
 ) -> Identification:
-    """The posterior of one whole recording: Identifier(...).update(t, voltage), whose arguments these are."""
-    return Identifier(setup, candidates, touch=touch, cache=cache).update(t, voltage)
+    """The posterior of one whole recording: Identifier(...).update(t, voltage), whose arguments these are. Raises
+    InvalidValueError also for a touch that comes after all samples, which could tell nothing of it."""
+    found = Identifier(setup, candidates, touch=touch, cache=cache).update(t, voltage)
+    last = max(t, default=-np.inf)
+    if touch is not None and touch >= last:
+        raise InvalidValueError(
+            f"touch {touch:g} s is not before the last sample, at {last:g} s: give the time of the touch on the clock "
+            "of the samples, or leave it out, and it is found"
+        )
+    return found

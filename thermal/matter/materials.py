@@ -43,6 +43,23 @@ UNITS: Mapping[str, str] = MappingProxyType(
 )
 """Property -> the unit that a table must give; "1" is dimensionless."""
 
+_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {
+        "conductivity": (1e-4, 1e6),
+        "density": (1e-3, 1e9),
+        "specific_heat": (1e-3, 1e9),
+        "youngs_modulus": (1.0, 1e15),
+        "poisson_ratio": (0.0, 0.5),
+        "microhardness": (1.0, 1e15),
+        "roughness": (1e-15, 0.1),
+        "asperity_slope": (1e-6, 100.0),
+        "friction": (1e-6, 1e3),
+        "crushing_stress": (1e-2, 1e15),
+    }
+)
+"""Property -> the least and the most that is taken, in its unit: real matter, from gases and aerogels to diamond, with
+decades to spare."""
+_CAPACITIES = 0.1, 1e10  # J/(m3 K), density times specific heat; real matter has 1e2 to 5e6
 _REQUIRED = ("conductivity", "density", "specific_heat")
 _PASCALS = {"kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "bar": 1e5}
 _CONVERSIONS: Mapping[str, Mapping[str, float]] = {
@@ -64,7 +81,7 @@ class Material(Conductor):
     family: such as "metal". youngs_modulus: Pa. poisson_ratio: 0 .. 0.5. microhardness: Pa. roughness: m, rms height
     of a usual surface. asperity_slope: its mean absolute slope. friction: coefficient against a silicone pad.
     crushing_stress: Pa, pressure of a flat pad that leaves damage. sources: property -> citation. None: not known.
-    Raises InvalidValueError for a value that no material can have.
+    Raises InvalidValueError for a value that is decades off what any material has.
     """
 
     name: str
@@ -87,6 +104,12 @@ class Material(Conductor):
             if value is None and name not in _REQUIRED:
                 continue
             _check(f"{self.name}: {name} ({unit})", name, value)
+        low, high = _CAPACITIES
+        if not low <= self.volumetric_heat_capacity <= high:
+            raise InvalidValueError(
+                f"{self.name}: density {self.density:g} kg/m3 times specific_heat {self.specific_heat:g} J/(kg K) must "
+                f"be from {low:g} to {high:g} J/(m3 K), got {self.volumetric_heat_capacity:g}"
+            )
 
     def layer(self, thickness: float) -> Layer:
         """A layer of this material, thickness m."""
@@ -217,9 +240,8 @@ def _conversion(cell: dict[str, Any], unit: str) -> str:
 
 
 def _check(where: str, prop: str, value: object) -> float:
-    if prop != "poisson_ratio":
-        return positive(where, value)
-    ratio = finite(where, value)
-    if not 0 <= ratio <= 0.5:
-        raise InvalidValueError(f"{where} must be from 0 to 0.5, got {ratio!r}")
-    return ratio
+    low, high = _RANGES[prop]
+    number = positive(where, value) if low > 0 else finite(where, value)
+    if not low <= number <= high:
+        raise InvalidValueError(f"{where} must be from {low:g} to {high:g}, got {value!r}")
+    return number

@@ -324,8 +324,7 @@ def _smallest(
         if error <= demand.tolerance / 2:
             return replace(smaller, error=error)
     raise InvalidValueError(
-        f"no network keeps {demand.tolerance / 2:g} K for this contact; the best misses {error:.2g} K: "
-        "ask for a larger tolerance"
+        f"no network keeps {demand.tolerance:g} K for this contact: give a tolerance of {2.1 * error:.2g} K or more"
     )
 
 

@@ -11,7 +11,7 @@ from thermograsp.files import cached_arrays
 
 from ..plates import Geometry
 from .boxes import lumped_air_error
-from .choice import Choice, Demand, choose
+from .choice import Choice, Demand, UnkeptToleranceError, choose, least_error
 from .states import Orders
 from .system import ContactSystem, contact_system, sample_geometry
 
@@ -25,8 +25,8 @@ def network_for(geometry: Geometry, demand: Demand, *, air: float = 0.0, cache: 
     if lumped >= demand.tolerance:
         raise InvalidValueError(
             f"no network keeps {demand.tolerance:g} K for this contact in air of {air:g} W/(m2 K): taken at the "
-            f"object's mean temperature, the air leaves up to {lumped:.2g} K; ask for a larger tolerance, or let rung "
-            "'auto' take a grid, which has one fingertip on an ideal thermostat"
+            f"object's mean temperature, the air leaves up to {lumped:.2g} K; give a tolerance of "
+            f"{1.1 * (lumped + least_error(demand)):.2g} K or more"
         )
     remaining = replace(demand, tolerance=demand.tolerance - lumped)
 
@@ -34,7 +34,10 @@ def network_for(geometry: Geometry, demand: Demand, *, air: float = 0.0, cache: 
         choice = choose(sample_geometry(geometry), remaining)
         return {**_pack(choice.system), "error": np.array(choice.error)}
 
-    arrays = cached_arrays({**_key(geometry), "demand": remaining}, build, enabled=cache)
+    try:
+        arrays = cached_arrays({**_key(geometry), "demand": remaining}, build, enabled=cache)
+    except UnkeptToleranceError as refusal:
+        raise UnkeptToleranceError(demand.tolerance, refusal.kept + lumped) from None
     return Choice(_unpack(geometry, arrays), float(arrays["error"]) + lumped)
 
 

@@ -56,16 +56,31 @@ class Choice:
     error: float
 
 
+def least_error(demand: Demand) -> float:
+    """K, of the full network."""
+    return FLOOR * max(abs(demand.difference) / 12, 1e-3)
+
+
+class UnkeptToleranceError(InvalidValueError):
+    """No network keeps a tolerance of `asked` K. kept: K of one that is kept."""
+
+    def __init__(self, asked: float, kept: float) -> None:
+        self.kept = kept
+        super().__init__(
+            f"no network keeps {asked:g} K for this contact: give a tolerance of {1.05 * kept:.2g} K or more"
+        )
+
+
 def choose(samples: GeometrySamples, demand: Demand) -> Choice:
-    """The cheapest system that meets the demand. Raises InvalidValueError where none does, with the best error."""
-    floor = FLOOR * max(abs(demand.difference) / 12, 1e-3)
+    """The cheapest system that meets the demand. Raises UnkeptToleranceError where none does."""
+    floor = least_error(demand)
     full = {modes: samples.networks(modes) for modes in range(1, MOST_MODES + 1)}
     bases = {modes: state_bases(networks, samples.geometry.area) for modes, networks in full.items()}
     geometry = samples.geometry
     reference = responses(assemble(geometry, full[MOST_MODES]), demand)
     order = list(range(len(reference)))
-    best = np.inf
     cases = _cases(geometry.fingertips, demand)
+    system = None
     for orders in candidates(bases):
         networks = reduce(full[orders.modes], bases[orders.modes], orders)
         system = assemble(geometry, networks)
@@ -83,11 +98,9 @@ def choose(samples: GeometrySamples, demand: Demand) -> Choice:
                 break
         else:
             return Choice(system, error + floor)
-        best = min(best, error + floor)
-    raise InvalidValueError(
-        f"no network keeps {demand.tolerance:g} K for this contact: ask for a larger tolerance, or let rung 'auto' "
-        "take the semi-analytic one or a grid"
-    )
+    assert system is not None
+    left_over = float(np.max(np.abs(responses(system, demand) - reference)))
+    raise UnkeptToleranceError(demand.tolerance, left_over + floor)
 
 
 def candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:

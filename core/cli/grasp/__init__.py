@@ -202,10 +202,20 @@ def _object(args: argparse.Namespace) -> ObjectSpec:
     friction = chosen_material(args.material, args.materials).friction
     surface: dict[str, Any] = {} if friction is None else {"friction": friction}
     if args.mesh is not None:
+        if unused := [name for name in shape_options if name not in ("mesh", "scale")]:
+            raise InvalidValueError(
+                f"--mesh {args.mesh} has its own shape and size: leave out --{' and --'.join(unused)}"
+            )
         scale = _SCALE if args.scale is None else args.scale
         return ObjectSpec(shape="mesh", mesh=args.mesh, scale=scale, **surface)
+    if args.scale is not None:
+        raise InvalidValueError("--scale is for meshes: give --mesh FILE too, or leave it out")
     shape, width = args.shape or _SHAPE, shape_options.get("width", _WIDTH)
-    height = width if args.height is None or shape == "sphere" else args.height
+    if shape == "sphere" and args.height not in (None, width):
+        raise InvalidValueError(
+            f"a sphere is as high as wide, {width:g} m: leave out --height {args.height:g}"
+        )
+    height = width if args.height is None else args.height
     return ObjectSpec(shape=shape, size=(width, width, height), **surface)
 
 
@@ -235,7 +245,7 @@ def _print(output: Output, args: argparse.Namespace, grasp: Recording, crushing:
             "peak_time_s": columns["time_s"][peak],
             "final": {name: values[-1] for name, values in columns.items()},
         }
-        output.line(f"touch  {grasp.touch:.2f} s")
+        output.line("touch  none" if grasp.touch != grasp.touch else f"touch  {grasp.touch:.2f} s")
         output.line(f"peak   {drop[peak]:.3f} K at {columns['time_s'][peak]:.2f} s (left fingertip)")
         output.line(f"final  {drop[-1]:.3f} K at {columns['time_s'][-1]:.2f} s")
     for file in (args.csv, args.render):

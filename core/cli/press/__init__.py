@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from thermograsp.cli.press.mesh import KEYWORDS, PLATES, add_mesh_arguments, press_mesh
+from thermograsp.cli.press.mesh import KEYWORDS, PLATES, add_mesh_arguments, press_mesh, refuse_mesh_arguments
 from thermograsp.cli.shared import (
     Output,
     add_materials_file,
@@ -98,6 +98,7 @@ def run(args: argparse.Namespace) -> int:
         first, around = args.sensor_temperature, args.object_temperature
         thermostat = thermal.Thermostat(setpoint=first, ambient=around, power_limit=args.thermostat_power)
     if args.mesh is None:
+        refuse_mesh_arguments(args)
         result = thermal.press(material, **keywords, thermostat=thermostat, cache=not args.no_cache)
     else:
         result = press_mesh(args, material, thermostat)

@@ -21,6 +21,7 @@ SIDES = {
 """Name -> outward direction, in the file's frame."""
 
 _AREA = 81e-6  # m2
+_SCALE, _SIDE = 1.0, "top"
 PLATES = {
     "mode": "T",
     "shape": "square",
@@ -55,13 +56,19 @@ def add_mesh_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="mesh file of the object, pressed instead of a plate: .stl, .obj, .ply or .glb",
     )
-    add("--scale", type=float, default=1.0, help="metres per unit of length in the mesh file")
+    add("--scale", type=float, help=f"metres per unit of length in the mesh file (default: {_SCALE:g})")
     add(
         "--side",
         choices=tuple(SIDES),
-        default="top",
-        help="side of the mesh that is pressed, in its middle",
+        help=f"side of the mesh that is pressed, in its middle (default: {_SIDE})",
     )
+
+
+def refuse_mesh_arguments(args: argparse.Namespace) -> None:
+    """Raises InvalidValueError for what only meshes have, where a plate is pressed."""
+    for name in ("scale", "side"):
+        if getattr(args, name) is not None:
+            raise InvalidValueError(f"--{name} is for meshes: give --mesh FILE too, or leave it out")
 
 
 def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermostat | None) -> Press:
@@ -75,15 +82,16 @@ def press_mesh(args: argparse.Namespace, material: Material, thermostat: Thermos
     for name, default in PLATES.items():
         if getattr(args, name) != default:
             raise InvalidValueError(f"--{name.replace('_', '-')} is for plates: leave it out with --mesh")
-    positive("scale", args.scale)
+    scale = _SCALE if args.scale is None else positive("scale", args.scale)
+    towards = SIDES[_SIDE if args.side is None else args.side]
     surface = read_surface(args.mesh)
-    vertices = surface.vertices * args.scale
+    vertices = surface.vertices * scale
     low, high = vertices.min(axis=0), vertices.max(axis=0)
-    outward = np.array(SIDES[args.side])
+    outward = np.array(towards)
     x, y, z = ((low + high + outward * (high - low)) / 2).tolist()
     return thermal.press_body(
         thermal.solid(vertices, surface.faces, material),
-        thermal.SurfacePatch((x, y, z), SIDES[args.side], _AREA if args.area is None else args.area),
+        thermal.SurfacePatch((x, y, z), towards, _AREA if args.area is None else args.area),
         thermostat=thermostat,
         cache=not args.no_cache,
         **{name: getattr(args, name) for name in KEYWORDS},

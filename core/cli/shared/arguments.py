@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermograsp.errors import InvalidValueError, positive, unknown_name
+from thermograsp.errors import InvalidValueError, positive, unknown_name, whole_number
 
 if TYPE_CHECKING:
     from thermograsp.thermal import Material
@@ -116,9 +116,10 @@ def add_duration(parser: argparse.ArgumentParser) -> None:
 
 
 def seed_number(text: str) -> int:
-    if (seed := int(text)) < 0:
-        raise argparse.ArgumentTypeError(f"seed must be 0 or above, got {seed}")
-    return seed
+    try:
+        return whole_number("seed", int(text))
+    except ValueError:  # ours is one too
+        raise argparse.ArgumentTypeError(f"seed must be a whole number, 0 or above, got {text}") from None
 
 
 def duration(text: str) -> float:

@@ -23,6 +23,7 @@ NAME = "view"
 HELP = "Open the studio, a web page with the gripper in 3-D, live curves and all controls, or record what it shows."
 
 _PORT = 8421
+_SCALE = 1.0
 _TOKEN_VARIABLE = "THERMOGRASP_TOKEN"
 
 
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_materials_file(parser)
     add_mode(parser)
     add("--mesh", metavar="FILE", help="mesh file of one more object to choose: .stl, .obj, .ply or .glb")
-    add("--scale", type=float, default=1.0, help="metres per unit of length in the mesh file")
+    add("--scale", type=float, help=f"metres per unit of length in the mesh file (default: {_SCALE:g})")
     add(
         "--policy",
         metavar="FILE",
@@ -170,8 +171,11 @@ def _start(args: argparse.Namespace) -> tuple[Stock, Choices]:
     if args.materials is not None:
         stock = replace(stock, materials=dict(thermal.load_materials(args.materials)))
     wanted: dict[str, Any] = {"materials": args.material, "mode": args.mode}
+    if args.mesh is None and args.scale is not None:
+        raise InvalidValueError("--scale is for meshes: give --mesh FILE too, or leave it out")
     if args.mesh is not None:
-        stock = replace(stock, mesh=ObjectSpec(shape="mesh", mesh=args.mesh, scale=args.scale))
+        scale = _SCALE if args.scale is None else args.scale
+        stock = replace(stock, mesh=ObjectSpec(shape="mesh", mesh=args.mesh, scale=scale))
         wanted["shape"] = "mesh"
     choices = Choices().changed(wanted, stock)
     # What can't be read is refused here, not to each visitor.

@@ -11,7 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import thermograsp  # noqa: F401  registers the ids
-from thermograsp.envs import GraspEnv, ObjectSpec, action_of
+from thermograsp.envs import GraspEnv, ObjectSpec, Size, action_of
 from thermograsp.errors import InvalidValueError, UnknownNameError
 
 from ..scripted import grasp_action
@@ -177,6 +177,24 @@ def test_bad_keywords_say_what_to_do():
         env.step(np.zeros(3))
     with pytest.raises(InvalidValueError, match="options must be a dict, such as .*got 'glass'"):
         env.reset(options="glass")  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("mode", ["T", "O"])
+def test_objects_lower_than_the_sensors_faces_are_refused(mode: str) -> None:
+    """Forces would tell of a touch of which heat knows nothing: the pads stay off the table."""
+    for shape, size in (("box", (0.03, 0.03, 0.006)), ("cylinder", (0.03, 0.03, 0.007))):
+        with pytest.raises(InvalidValueError, match=r"[67]\.0 mm high.* faces begin 7\.5 mm above"):
+            GraspEnv(objects=ObjectSpec(shape=shape, size=size), mode=mode)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(InvalidValueError, match="faces begin 7.5 mm"):  # one of the sizes that may be drawn
+        GraspEnv(objects=ObjectSpec(size=(0.03, 0.03, 0.008)), mode=mode, randomize=[Size((0.8, 1.2))])
+    if mode == "T":
+        with pytest.raises(InvalidValueError, match="a sphere 10.0 mm high"):  # met 2.5 mm below the faces
+            GraspEnv(objects=ObjectSpec(shape="sphere", size=(0.01, 0.01, 0.01)), mode=mode)
+
+
+def test_what_just_reaches_the_sensors_faces_is_felt() -> None:
+    env = GraspEnv(objects=ObjectSpec(size=(0.03, 0.03, 0.0085)), material="aluminium")
+    assert run(env, 100)[-1][4]["temperature_drop"].min() > 1.0
 
 
 def test_observations_share_no_memory_and_all_of_them_vary():

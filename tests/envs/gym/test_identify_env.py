@@ -142,6 +142,23 @@ def test_bad_keywords_are_refused(keywords, message):
         IdentifyEnv(**keywords)
 
 
+def test_a_reset_s_material_is_one_of_those_to_tell_apart():
+    """Or no declaration could be judged: its loss was NaN, and its reward that of no end."""
+    one, many = IdentifyEnv(material=THREE), IdentifyVectorEnv(2, material=THREE)
+    for env in (one, many):
+        with pytest.raises(
+            InvalidValueError, match="material 'iron' is none of those to tell apart, glass, copper"
+        ):
+            env.reset(seed=0, options={"material": "iron"})
+        with pytest.raises(InvalidValueError, match="'iron'"):
+            env.reset(seed=0, options={"material": ["glass", "iron"]})
+        with pytest.raises(InvalidValueError, match="options must be a dict"):
+            env.reset(options="iron")  # pyright: ignore[reportArgumentType]
+    assert one.reset(seed=0, options={"material": "copper"})[1]["material"] == "copper"
+    one.close()
+    many.close()
+
+
 def test_bad_actions_are_refused():
     env = IdentifyEnv(material=THREE)
     env.reset(seed=0)

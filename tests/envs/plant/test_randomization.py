@@ -177,6 +177,12 @@ def test_a_saved_state_keeps_what_was_drawn():
         ({"randomize": [Size((3.0,))]}, "wide"),
         ({"objects": []}, "at least one"),
         ({"substeps": 7}, "whole number"),
+        ({"randomize": [ObjectTemperature(-500.0, 0.0)]}, "24 °C with randomize's ObjectTemperature.*-476"),
+        (
+            {"objects": ObjectSpec(temperature=240.0), "randomize": [ObjectTemperature(0.0, 20.0)]},
+            "240 °C with randomize's ObjectTemperature.*260",
+        ),
+        ({"randomize": [ThermostatError(-1.0, 900.0)]}, "36 °C with randomize's ThermostatError.*936"),
     ],
 )
 def test_bad_keywords_are_refused_at_once(keywords, message):

@@ -2,8 +2,10 @@
 
 import math
 import pickle
+import re
 import tomllib
 from dataclasses import FrozenInstanceError, replace
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -252,6 +254,45 @@ def test_a_material_of_impossible_values_is_refused(prop: str, value: object) ->
     values = {"conductivity": 1.0, "density": 1000.0, "specific_heat": 1000.0, prop: value}
     with pytest.raises(InvalidValueError, match=f"mine: {prop}"):
         Material("mine", **values)  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize(
+    ("prop", "value"),
+    [("poisson_ratio", 99.0), *product(sorted(set(UNITS) - {"poisson_ratio"}), (1e-99, 1e99))],
+)
+def test_a_value_decades_off_all_matter_is_refused_with_the_range(prop: str, value: float) -> None:
+    """Heat's networks would end in errors of NumPy's, or in no number, with such."""
+    values = {"conductivity": 1.0, "density": 1000.0, "specific_heat": 1000.0, prop: value}
+    with pytest.raises(
+        InvalidValueError, match=f"mine: {prop} .* must be from .* to .*, got {re.escape(repr(value))}"
+    ):
+        Material("mine", **values)  # pyright: ignore[reportArgumentType]
+
+
+def test_densities_and_specific_heats_are_refused_together() -> None:
+    with pytest.raises(InvalidValueError, match=r"must be from 0.1 to 1e\+10 J/\(m3 K\), got 1e\+12"):
+        Material("mine", 1.0, 1e6, 1e6)
+
+
+@pytest.mark.parametrize(
+    ("name", "conductivity", "density", "specific_heat"),
+    [
+        ("xenon", 0.0055, 5.4, 158.0),
+        ("hydrogen", 0.18, 0.082, 14300.0),
+        ("aerogel in a vacuum", 0.004, 3.0, 840.0),
+        ("pure diamond", 3320.0, 3515.0, 509.0),
+        ("osmium", 88.0, 22590.0, 130.0),
+        ("melting paraffin", 0.2, 900.0, 2e5),
+    ],
+)
+def test_all_real_matter_is_taken_and_felt(
+    name: str, conductivity: float, density: float, specific_heat: float
+) -> None:
+    """And what conducts or stores ten times less or more."""
+    for factor in (0.1, 1.0, 10.0):
+        matter = Material(name, factor * conductivity, density, factor * specific_heat)
+        drop = thermal.press(matter, seconds=1.0, cache=False).temperature_drop
+        assert (-0.05 <= drop).all() and (drop <= 12.0).all()
 
 
 def test_zero_is_refused_except_as_a_poisson_ratio() -> None:

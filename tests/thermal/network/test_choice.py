@@ -1,10 +1,13 @@
 """The choice of a network: monotone in the demand, honest about its error."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal import Demand
+from thermograsp.thermal import Demand, network_for
 from thermograsp.thermal.matter.materials import materials
 from thermograsp.thermal.matter.sensors import sensor
 from thermograsp.thermal.network.choice import FIRST, choose
@@ -29,9 +32,16 @@ def test_stricter_demands_cost_more(mode: str) -> None:
     assert all(choice.error <= tolerance for choice, tolerance in zip(choices, (1.0, 0.1, 0.01), strict=True))
 
 
-def test_impossible_demand_says_what_is_possible() -> None:
-    with pytest.raises(InvalidValueError, match="no network keeps"):
-        choose(sample_geometry(geometry()), Demand(1e-9, 12.0, (1e4,), 10.0))
+@pytest.mark.parametrize("air", [0.0, 10.0])
+def test_impossible_demand_says_what_is_possible(air: float) -> None:
+    """In words that help whoever has no choice of rungs, as users of environments."""
+    demand = Demand(1e-9, 12.0, (1e4,), 10.0)
+    with pytest.raises(InvalidValueError, match="no network keeps 1e-09 K") as refused:
+        network_for(geometry(), demand, air=air, cache=False)
+    assert "rung" not in str(refused.value)
+    (least,) = re.findall(r"give a tolerance of ([\d.e-]+) K or more", str(refused.value))
+    kept = network_for(geometry(), replace(demand, tolerance=float(least)), air=air, cache=False)
+    assert kept.error <= float(least)
 
 
 @pytest.mark.parametrize("fingertips", [1, 2])
