@@ -5,6 +5,7 @@ N: cells, F: triangles.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -17,7 +18,8 @@ from .grid import MeshGrid, snapped
 
 _LEAST = 1e-9  # singular values below that share of the largest are left out
 _ALONE = 1e-3  # of a wall's area in a cell, that others may add there
-_LEAST_FILM = 0.2  # of the film's resistance, that is left where a wall lies before its cell's node
+_ACROSS = 0.3  # cosine of an axis to a wall's normal, from which on a node is moved to the wall along it
+_STRETCHED = 0.2, 4.0  # of a link's resistance, that is left at least, and at most, where nodes are moved
 _TERMS = 12
 _EARLY = 0.02  # of the depth's square
 
@@ -45,29 +47,31 @@ class Film(NamedTuple):
         areas = np.linalg.norm(self._walls(grid), axis=1)
         return self.conductance * areas / areas.sum()
 
-    def sink(self, grid: MeshGrid, outside: np.ndarray) -> np.ndarray:
-        """(N,) W/K of each cell of a fine grid to the contents: from its node to the wall, and through the film.
-        outside: (F, 3, 3) m, the body's surface. Where a wall alone cuts a cell, the share that is left of it tells how
-        far from the node that wall is, beyond it or before it; elsewhere half of what is left lies between."""
+    def joined(self, grid: MeshGrid, outside: np.ndarray) -> tuple[MeshGrid, np.ndarray]:
+        """A grid that is fine or as coarse as the wall is thick, with its links, and (N,) W/K of each of its cells to
+        the contents: from its node to the wall, and through the film. outside: (F, 3, 3) m, the body's surface. Where a
+        wall alone cuts a cell, the share that is left of it tells how far from the node that wall is; elsewhere half of
+        what is left lies between. A node that lies beyond its wall is moved to it along the axes, so that the links to
+        the next ones are as long as the way is in the body."""
         vectors, through = self._walls(grid), self.spread(grid)
         wet = np.flatnonzero((vectors**2).sum(axis=1) > 0)
         whole, held = self._cut(grid, outside)[wet], vectors[wet]
         areas = np.linalg.norm(held, axis=1)
         at = np.nonzero(grid.index >= 0)
-        lengths = np.stack(
-            [np.diff(axis.edges)[n[wet]] for axis, n in zip(grid.axes, at, strict=True)], axis=1
-        )
+        lengths = np.stack([np.diff(axis.edges)[n] for axis, n in zip(grid.axes, at, strict=True)], axis=1)
         nodes = np.stack(
-            [(axis.nodes - axis.edges[:-1])[n[wet]] for axis, n in zip(grid.axes, at, strict=True)], axis=1
+            [(axis.nodes - axis.edges[:-1])[n] for axis, n in zip(grid.axes, at, strict=True)], axis=1
         )
         normal = held / areas[:, None]
-        filled = (grid.volume[wet] / lengths.prod(axis=1))[:, None] * lengths
-        beyond = np.where(normal > 0, filled - nodes, filled - lengths + nodes)
+        filled = (grid.volume[wet] / lengths[wet].prod(axis=1))[:, None] * lengths[wet]
+        beyond = np.where(normal > 0, filled - nodes[wet], filled - lengths[wet] + nodes[wet])
         alone = np.linalg.norm(whole - held, axis=1) < _ALONE * areas
         way = np.where(alone, (np.abs(normal) * beyond).sum(axis=1), grid.volume[wet] / (2 * areas))
-        resistance = way / (areas * (grid.conductivity[wet] * normal**2).sum(axis=1))
-        through[wet] = 1 / np.maximum(1 / through[wet] + resistance, _LEAST_FILM / through[wet])
-        return through
+        resistance = np.maximum(way, 0.0) / (areas * (grid.conductivity[wet] * normal**2).sum(axis=1))
+        through[wet] = 1 / (1 / through[wet] + resistance)
+        moved = np.zeros(nodes.shape)
+        moved[wet] = np.minimum(way, 0.0)[:, None] / np.where(np.abs(normal) > _ACROSS, normal, np.inf)
+        return replace(grid, links=_moved(grid, nodes, lengths - nodes, moved)), through
 
     def _walls(self, grid: MeshGrid) -> np.ndarray:
         """(N, 3) m2, area vectors of what is wet in each cell."""
@@ -81,6 +85,20 @@ class Film(NamedTuple):
         vectors = np.zeros((len(grid.capacity), 3))
         vectors[grid.index[held]] = faces[held]
         return vectors
+
+
+def _moved(grid: MeshGrid, below: np.ndarray, above: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    """(N, 6) W/K of the links where nodes are moved by (N, 3) m along the axes. below, above: (N, 3) m from each node
+    to its cell's faces."""
+    factors = np.ones(grid.links.shape)
+    for axis in range(3):
+        low = np.flatnonzero(grid.neighbours[:, 2 * axis + 1] >= 0)
+        high, along = grid.neighbours[low, 2 * axis + 1], grid.conductivity[:, axis]
+        resistance = above[low, axis] / along[low] + below[high, axis] / along[high]
+        more = moved[high, axis] / along[high] - moved[low, axis] / along[low]
+        stretched = np.clip(1 + more / resistance, *_STRETCHED)
+        factors[low, 2 * axis + 1], factors[high, 2 * axis] = stretched, stretched
+    return grid.links / factors
 
 
 def film_rows(sink: np.ndarray, fields: np.ndarray, film: float) -> dict[str, np.ndarray]:
