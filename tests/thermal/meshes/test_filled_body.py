@@ -67,12 +67,20 @@ def test_walls_of_hollows_are_found_and_nothing_else():
         assert not len(wetted_faces(thermal.solid(mesh.vertices, mesh.faces, glass)))
 
 
-@pytest.mark.parametrize(("name", "film"), [("plastic", 500.0)])
-def test_a_thin_wall_between_finger_and_contents_is_a_resistance_with_the_area_of_a_fin(name, film):
-    """At rest the patch is fed across wall and film, over an area that is wider by a fin's length sqrt(k d/h) each way
-    (Incropera et al., section 3.6), which is short here. Ever finer grids tend to 6 % above that: a wall that insulates
-    so well is no fin."""
-    made = body(name, film)
+def through_a_wall(film: float, s: float) -> float:
+    """K/W of an even flow W into a square of 9 mm in the middle of a flat wall of hollow_box, of plastic, at s 1/s:
+    waves along the wall fade into it, and through a film of W/(m2 K) at its other side."""
+    of, waves = thermal.material("plastic"), np.arange(600)
+    spread = np.sinc(waves * 0.009 / SIDE) * np.where(waves > 0, 2, 1) ** 0.5
+    along = (2 * np.pi / SIDE) ** 2 * np.add.outer(waves**2, waves**2)
+    inward = np.sqrt(along + s / of.diffusivity)
+    flow, fall = of.conductivity * inward, np.tanh(inward * WALL)
+    return float(np.sum(np.outer(spread, spread) ** 2 * (flow + film * fall) / (flow * (flow * fall + film)))) / SIDE**2
+
+
+@pytest.mark.parametrize("film", [500.0, 1e4])
+def test_a_thin_wall_between_finger_and_contents_is_a_wall_with_a_film(film):
+    made = body("plastic", film)
     inside = film * 6 * (SIDE - 2 * WALL) ** 2
     system = made.filled(inside, 0.0).system((0,))
     states = made.object.order + 1
@@ -81,10 +89,7 @@ def test_a_thin_wall_between_finger_and_contents_is_a_resistance_with_the_area_o
     assert system.reservoir is not None
     together = float(np.sum((system.object_heat + system.reservoir) ** 2))
     impedance = float(np.sum(port**2 / (rates + slow))) - 1 / (slow * together)
-    k = thermal.material(name).conductivity
-    reach = np.sqrt(k * WALL / film)
-    expected = (WALL / k + 1 / film) / (0.009 + 2 * reach) ** 2
-    assert impedance == pytest.approx(expected, rel=0.09)
+    assert impedance == pytest.approx(through_a_wall(film, slow), rel=5e-3)
     assert impedance < made.object.impedance(slow)[0, 0] / 2
 
 
@@ -155,11 +160,21 @@ def test_a_grid_s_fields_and_a_wall_s_kernel_agree_behind_a_film(film):
     assert held_impedance(made, patch, film) == pytest.approx(expected, rel=5e-3)
 
 
-def cup(wall: float) -> thermal.Solid:
+def cup(wall: float, name: str = "ceramic") -> thermal.Solid:
     inner, foot = 0.025 - wall, wall - 0.03
     profile = [(0, -0.03), (0.025, -0.03), (0.025, 0.03), (inner, 0.03), (inner, foot), (0, foot)]
     mesh = trimesh.creation.revolve(profile, sections=128)
-    return thermal.solid(mesh.vertices, mesh.faces, thermal.material("ceramic"))
+    return thermal.solid(mesh.vertices, mesh.faces, thermal.material(name))
+
+
+def test_a_round_wall_lies_where_it_is_however_coarse_its_grid():
+    """Where cells' nodes lie beyond the wall: with what is left of the film alone there it was 4 % off."""
+    made, patch = cup(0.001, "plastic"), SurfacePatch((0.025, 0.0, 0.0), (1, 0, 0), STACK.width**2)
+    found, expected = (
+        (fields.ports[:, 0] ** 2 / (SHIFTS[:, None] + fields.rates)).sum(axis=1)
+        for fields in (on_grid(made, patch, 1e4, MeshGridding(growth=growth)) for growth in (0.8, 0.3))
+    )
+    assert found == pytest.approx(expected, rel=3e-3)
 
 
 @pytest.mark.slow
