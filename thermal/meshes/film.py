@@ -44,8 +44,7 @@ class Film(NamedTuple):
 
     def spread(self, grid: MeshGrid) -> np.ndarray:
         """(N,) W/K of each cell's share, by the area of its wall, through the film alone."""
-        areas = np.linalg.norm(self._walls(grid), axis=1)
-        return self.conductance * areas / areas.sum()
+        return self._shared(_cut(grid, self.triangles))
 
     def joined(self, grid: MeshGrid, outside: np.ndarray) -> tuple[MeshGrid, np.ndarray]:
         """A grid that is fine or as coarse as the wall is thick, with its links, and (N,) W/K of each of its cells to
@@ -53,9 +52,10 @@ class Film(NamedTuple):
         wall alone cuts a cell, the share that is left of it tells how far from the node that wall is; elsewhere half of
         what is left lies between. A node that lies beyond its wall is moved to it along the axes, so that the links to
         the next ones are as long as the way is in the body."""
-        vectors, through = self._walls(grid), self.spread(grid)
+        vectors = _cut(grid, self.triangles)
+        through = self._shared(vectors)
         wet = np.flatnonzero((vectors**2).sum(axis=1) > 0)
-        whole, held = self._cut(grid, outside)[wet], vectors[wet]
+        whole, held = _cut(grid, outside)[wet], vectors[wet]
         areas = np.linalg.norm(held, axis=1)
         at = np.nonzero(grid.index >= 0)
         lengths = np.stack([np.diff(axis.edges)[n] for axis, n in zip(grid.axes, at, strict=True)], axis=1)
@@ -73,18 +73,19 @@ class Film(NamedTuple):
         moved[wet] = np.minimum(way, 0.0)[:, None] / np.where(np.abs(normal) > _ACROSS, normal, np.inf)
         return replace(grid, links=_moved(grid, nodes, lengths - nodes, moved)), through
 
-    def _walls(self, grid: MeshGrid) -> np.ndarray:
-        """(N, 3) m2, area vectors of what is wet in each cell."""
-        return self._cut(grid, self.triangles)
+    def _shared(self, vectors: np.ndarray) -> np.ndarray:
+        """(N,) W/K of walls with area vectors (N, 3)."""
+        areas = np.linalg.norm(vectors, axis=1)
+        return self.conductance * areas / areas.sum()
 
-    @staticmethod
-    def _cut(grid: MeshGrid, triangles: np.ndarray) -> np.ndarray:
-        """(N, 3) m2, area vectors of triangles (F, 3, 3) m in each cell."""
-        faces = enclosed(snapped(triangles @ grid.frame.T, grid.edges), grid.edges)[1]
-        held = grid.index >= 0
-        vectors = np.zeros((len(grid.capacity), 3))
-        vectors[grid.index[held]] = faces[held]
-        return vectors
+
+def _cut(grid: MeshGrid, triangles: np.ndarray) -> np.ndarray:
+    """(N, 3) m2, area vectors of triangles (F, 3, 3) m in each cell."""
+    faces = enclosed(snapped(triangles @ grid.frame.T, grid.edges), grid.edges)[1]
+    held = grid.index >= 0
+    vectors = np.zeros((len(grid.capacity), 3))
+    vectors[grid.index[held]] = faces[held]
+    return vectors
 
 
 def _moved(grid: MeshGrid, below: np.ndarray, above: np.ndarray, moved: np.ndarray) -> np.ndarray:

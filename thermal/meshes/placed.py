@@ -64,8 +64,6 @@ FILLED_SHARE = 3.2e-3
 """The same of fine networks with contents: 0.32 % in 72 drawn touches of twelve vessels behind films of 50 and 500
 W/(m2 K), at 1e3 to 1e4 W/(m2 K) in the first 20 s, nine of ten within 0.16 %, with the usual skin all within 0.19 %
 (studies/mesh_places.py --vessels). At 1e5 W/(m2 K) a place over the edge of a jar's foot was 0.56 % off."""
-PLACED_FILM = 550.0
-"""W/(m2 K) between a body's walls and contents, up to which networks are made so: a tenth above what was measured."""
 _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
 _TOLD = 3.0  # over the last mode's rate above the first one's, likewise
@@ -77,18 +75,16 @@ _CORNER = 6e-3  # m beyond a patch, within which the wall of a hollow may go on 
 
 
 class _Fineness(NamedTuple):
-    """alone: the grid of a place where no box stands for the body, of one material, and layered: of several. pitch:
-    between rates."""
+    """gridding: of a place where no box stands for the body. pitch: between rates."""
 
-    alone: MeshGridding
-    layered: MeshGridding
+    gridding: MeshGridding
     pitch: float
 
 
 # within 0.006 K of 12 K of the usual grid, in half of the time
-_COARSE = MeshGridding(depth=40e-6, side=0.1e-3, growth=0.8)
-_EMPTY = _Fineness(_COARSE, _COARSE, 2.7)
-_FILLED = _Fineness(MeshGridding(relief=24), MeshGridding(growth=0.3, largest=2e-3), 1.8)
+_EMPTY = _Fineness(MeshGridding(depth=40e-6, side=0.1e-3, growth=0.8), 2.7)
+# of twice as fine a one within 0.1 % of the difference, likewise
+_FILLED = _Fineness(MeshGridding(depth=30e-6, side=0.1e-3, growth=0.6, relief=16), 1.8)
 _FIELDS = 16  # grids of such places, 8 MB each
 
 
@@ -251,8 +247,7 @@ def _pair(
 def _fields(
     body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | None, level: _Fineness
 ) -> PatchFields:
-    grid = level.alone if len(body.parts) == 1 else level.layered
-    return patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), grid, film)
+    return patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), level.gridding, film)
 
 
 def _faded(seen: np.ndarray, rates: np.ndarray, taus: np.ndarray) -> np.ndarray:

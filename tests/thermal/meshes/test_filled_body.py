@@ -75,7 +75,10 @@ def through_a_wall(film: float, s: float) -> float:
     along = (2 * np.pi / SIDE) ** 2 * np.add.outer(waves**2, waves**2)
     inward = np.sqrt(along + s / of.diffusivity)
     flow, fall = of.conductivity * inward, np.tanh(inward * WALL)
-    return float(np.sum(np.outer(spread, spread) ** 2 * (flow + film * fall) / (flow * (flow * fall + film)))) / SIDE**2
+    return (
+        float(np.sum(np.outer(spread, spread) ** 2 * (flow + film * fall) / (flow * (flow * fall + film))))
+        / SIDE**2
+    )
 
 
 @pytest.mark.parametrize("film", [500.0, 1e4])
