@@ -5,7 +5,7 @@ network that environments use (thermal/meshes/placed.py), and from one whose sta
 the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
 CONDUCTANCES over TIMES. Mugs with contents that are held at its first temperature behind a film of FILMS are compared
 with a grid that is finer still, whose states are fields with that film. So are drawn places of the
-library's vessels, at FELT over LONG, bare and skinned.
+library's vessels, at FELT over LONG.
 
     python studies/mesh_places.py                  every case, some minutes
     python studies/mesh_places.py rim --json       those with "rim" in their name
@@ -290,20 +290,18 @@ VESSEL_FILMS = (
 )  # W/(m2 K), of air, of still and stirred water, of what boils or condenses
 FELT = 1e3, 3e3, 1e4, 1e5  # W/(m2 K)
 LONG = np.unique(np.concatenate((np.arange(0.05, 0.5, 0.01), np.arange(0.5, 20, 0.1))))  # s
-SKINNED = thermal.SKINS["filled_silicone"].over(STACK)
 _LAYERED = MeshGridding(growth=0.2, largest=0.7e-3)
 
 
 @dataclass(frozen=True, slots=True)
 class VesselRow:
-    """Errors of a drawn place, shares of the difference with their signs, the largest over LONG, at each of FELT, bare
-    and skinned. seconds: of processor time that the network took. states: of it."""
+    """Errors of a drawn place, shares of the difference with their signs, the largest over LONG, at each of FELT.
+    seconds: of processor time that the network took. states: of it."""
 
     vessel: str
     place: tuple[float, float, float]
     film: float
-    bare: tuple[float, ...]
-    skinned: tuple[float, ...]
+    errors: tuple[float, ...]
     seconds: float
     states: int
 
@@ -328,20 +326,14 @@ def _vessel(name: str, body: Solid, patch: SurfacePatch) -> list[VesselRow]:
     for film in VESSEL_FILMS:
         inside = Film(film * one.area, one.walls)
         body_modes(body, inside)
-        errors, seconds, states = [], [], 0
-        for stack in (STACK, SKINNED):
-            tip = centred_tip(stack, AREA)
-            fine = patch_fields(body, patch, face_patterns(tip), grid, inside)
-            begin = time.process_time()
-            network = placed_network(body, [patch], stack, inside.conductance).network
-            seconds.append(time.process_time() - begin)
-            held, states = _held(network, inside.conductance), network.order
-            off = [
-                _drop((held.rates, held.ports), tip.side, h) - _drop((fine.rates, fine.ports), tip.side, h)
-                for h in FELT
-            ]
-            errors.append(tuple(float(error[np.abs(error).argmax()]) for error in off))
-        found.append(VesselRow(name, patch.centre, film, errors[0], errors[1], seconds[0], states))
+        fine = patch_fields(body, patch, face_patterns(TIP), grid, inside)
+        begin = time.process_time()
+        network = placed_network(body, [patch], STACK, inside.conductance).network
+        seconds = time.process_time() - begin
+        held = _held(network, inside.conductance)
+        errors = [_drop((held.rates, held.ports), h) - _drop((fine.rates, fine.ports), h) for h in FELT]
+        worst = tuple(float(error[np.abs(error).argmax()]) for error in errors)
+        found.append(VesselRow(name, patch.centre, film, worst, seconds, network.order))
     return found
 
 
@@ -363,8 +355,9 @@ def _drawn(body: Solid, rng: np.random.Generator) -> SurfacePatch:
     return _at(tuple(place.tolist()), tuple(outward.tolist()))
 
 
-def _drop(body: tuple[np.ndarray, np.ndarray], side: ThermalNetwork, conductance: float) -> np.ndarray:
+def _drop(body: tuple[np.ndarray, np.ndarray], conductance: float) -> np.ndarray:
     """(LONG,) of the difference, of one fingertip from time 0 on. body: rates and ports."""
+    side = TIP.side
     rates = np.concatenate((body[0], side.rates))
     ports = np.concatenate((body[1], -side.ports))
     row = np.concatenate((np.zeros(len(body[0])), side.outputs["drop"]))
@@ -448,22 +441,18 @@ def timed(name: str) -> Times:
 
 def _print_vessels(found: Sequence[VesselRow]) -> None:
     for row in found:
-        errors = "  ".join(
-            " ".join(f"{100 * share:+.2f}" for share in kind) for kind in (row.bare, row.skinned)
-        )
+        errors = " ".join(f"{100 * share:+.2f}" for share in row.errors)
         place = " ".join(f"{1e3 * x:.0f}" for x in row.place)
-        print(
-            f"{row.vessel:20}{place:12}{row.film:6g}  {errors}  %, {row.states} states in {1e3 * row.seconds:.0f} ms"
-        )
+        took = f"{row.states} states in {1e3 * row.seconds:.0f} ms"
+        print(f"{row.vessel:20}{place:12}{row.film:6g}  {errors} %, {took}")
     for film in VESSEL_FILMS:
-        for kind in ("bare", "skinned"):
-            for n, felt in enumerate(FELT):
-                shares = [100 * abs(getattr(row, kind)[n]) for row in found if row.film == film]
-                middle, ninth = np.quantile(shares, [0.5, 0.9])
-                print(
-                    f"{film:6g} W/(m2 K), {kind:8}{felt:.0e} W/(m2 K): half within {middle:.3f} %, nine of ten "
-                    f"{ninth:.3f} %, all {max(shares):.3f} %"
-                )
+        for n, felt in enumerate(FELT):
+            shares = [100 * abs(row.errors[n]) for row in found if row.film == film]
+            middle, ninth = np.quantile(shares, [0.5, 0.9])
+            print(
+                f"{film:6g} W/(m2 K) inside, {felt:.0e} W/(m2 K): half within {middle:.3f} %, nine of ten "
+                f"{ninth:.3f} %, all {max(shares):.3f} %"
+            )
 
 
 def main() -> int:

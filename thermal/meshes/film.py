@@ -18,6 +18,7 @@ from .grid import MeshGrid, snapped
 
 _LEAST = 1e-9  # singular values below that share of the largest are left out
 _ALONE = 1e-3  # of a wall's area in a cell, that others may add there
+_LEAST_FILM = 0.2  # of the film's resistance, that is left where a wall lies before its cell's node
 _ACROSS = 0.3  # cosine of an axis to a wall's normal, from which on a node is moved to the wall along it
 _STRETCHED = 0.2, 4.0  # of a link's resistance, that is left at least, and at most, where nodes are moved
 _TERMS = 12
@@ -50,8 +51,9 @@ class Film(NamedTuple):
         """A grid that is fine or as coarse as the wall is thick, with its links, and (N,) W/K of each of its cells to
         the contents: from its node to the wall, and through the film. outside: (F, 3, 3) m, the body's surface. Where a
         wall alone cuts a cell, the share that is left of it tells how far from the node that wall is; elsewhere half of
-        what is left lies between. A node that lies beyond its wall is moved to it along the axes, so that the links to
-        the next ones are as long as the way is in the body."""
+        what is left lies between. What a node that lies beyond its wall has too much of the way is left out of the
+        film's resistance; as far as that is less, the node is moved along the axes, so that the links to the next ones
+        are as long as the way is in the body."""
         vectors = _cut(grid, self.triangles)
         through = self._shared(vectors)
         wet = np.flatnonzero((vectors**2).sum(axis=1) > 0)
@@ -67,10 +69,11 @@ class Film(NamedTuple):
         beyond = np.where(normal > 0, filled - nodes[wet], filled - lengths[wet] + nodes[wet])
         alone = np.linalg.norm(whole - held, axis=1) < _ALONE * areas
         way = np.where(alone, (np.abs(normal) * beyond).sum(axis=1), grid.volume[wet] / (2 * areas))
-        resistance = np.maximum(way, 0.0) / (areas * (grid.conductivity[wet] * normal**2).sum(axis=1))
-        through[wet] = 1 / (1 / through[wet] + resistance)
+        across = areas * (grid.conductivity[wet] * normal**2).sum(axis=1)
+        least = np.maximum(way, (_LEAST_FILM - 1) * across / through[wet])
+        through[wet] = 1 / (1 / through[wet] + least / across)
         moved = np.zeros(nodes.shape)
-        moved[wet] = np.minimum(way, 0.0)[:, None] / np.where(np.abs(normal) > _ACROSS, normal, np.inf)
+        moved[wet] = (way - least)[:, None] / np.where(np.abs(normal) > _ACROSS, normal, np.inf)
         return replace(grid, links=_moved(grid, nodes, lengths - nodes, moved)), through
 
     def _shared(self, vectors: np.ndarray) -> np.ndarray:
