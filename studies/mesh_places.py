@@ -5,7 +5,7 @@ network that environments use (thermal/meshes/placed.py), and from one whose sta
 the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
 CONDUCTANCES over TIMES. Mugs with contents that are held at its first temperature behind a film of FILMS are compared
 with a grid that is finer still, whose states are fields with that film. So are drawn places of the
-library's vessels, at FELT over LONG, bare and skinned, beside the networks that touched_body makes.
+library's vessels, at FELT over LONG.
 
     python studies/mesh_places.py                  every case, some minutes
     python studies/mesh_places.py rim --json       those with "rim" in their name
@@ -32,8 +32,8 @@ import trimesh
 from thermograsp import thermal
 from thermograsp.envs.bodies.library import library_object
 from thermograsp.envs.bodies.object_solids import object_solid
-from thermograsp.thermal import Demand, SensorStack, Solid, SurfacePatch
-from thermograsp.thermal.meshes import body_network, touched_body
+from thermograsp.thermal import Solid, SurfacePatch
+from thermograsp.thermal.meshes import body_network
 from thermograsp.thermal.meshes.film import Film, film_of, held_apart
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
@@ -282,27 +282,28 @@ VESSELS = (
     "sleeved_mug",
 )
 DRAWN = 3  # places of each
-VESSEL_FILMS = 50.0, 500.0  # W/(m2 K)
+VESSEL_FILMS = (
+    50.0,
+    500.0,
+    3e3,
+    1e4,
+)  # W/(m2 K), of air, of still and stirred water, of what boils or condenses
 FELT = 1e3, 3e3, 1e4, 1e5  # W/(m2 K)
 LONG = np.unique(np.concatenate((np.arange(0.05, 0.5, 0.01), np.arange(0.5, 20, 0.1))))  # s
-SKINNED = thermal.SKINS["filled_silicone"].over(STACK)
 _LAYERED = MeshGridding(growth=0.2, largest=0.7e-3)
 
 
 @dataclass(frozen=True, slots=True)
 class VesselRow:
-    """Errors of a drawn place, shares of the difference with their signs, the largest over LONG, at each of FELT: bare
-    and skinned of the fine networks, bare of the usual and of touched_body's ones. plain: whether a box stands for the
-    body there. seconds: of processor time that fine network and touched_body's took."""
+    """Errors of a drawn place, shares of the difference with their signs, the largest over LONG, at each of FELT.
+    seconds: of processor time that the network took. states: of it."""
 
     vessel: str
     place: tuple[float, float, float]
     film: float
-    fine: tuple[float, ...]
-    skinned: tuple[float, ...]
-    usual: tuple[float, ...]
-    touched: tuple[float, ...]
-    seconds: tuple[float, float]
+    errors: tuple[float, ...]
+    seconds: float
+    states: int
 
 
 def vessel_rows(chosen: str) -> list[VesselRow]:
@@ -319,49 +320,21 @@ def vessel_rows(chosen: str) -> list[VesselRow]:
 
 
 def _vessel(name: str, body: Solid, patch: SurfacePatch) -> list[VesselRow]:
-    one, rows_ = film_of(body, 1.0), []
+    one = film_of(body, 1.0)
     assert one is not None
-    grid = _FINEST if len(body.parts) == 1 else _LAYERED
+    grid, found = _FINEST if len(body.parts) == 1 else _LAYERED, []
     for film in VESSEL_FILMS:
         inside = Film(film * one.area, one.walls)
-        expected, found, seconds = {}, {}, []
-        for stack in (STACK, SKINNED):
-            tip = centred_tip(stack, AREA)
-            held = patch_fields(body, patch, face_patterns(tip), grid, inside)
-            expected[stack] = [_drop((held.rates, held.ports), tip.side, h) for h in FELT]
         body_modes(body, inside)
-        for stack, fine in ((STACK, True), (SKINNED, True), (STACK, False)):
-            begin = time.process_time()
-            network = placed_network(body, [patch], stack, inside.conductance, fine=fine).network
-            seconds.append(time.process_time() - begin)
-            found[stack, fine] = _held(network, inside.conductance), centred_tip(stack, AREA).side
+        fine = patch_fields(body, patch, face_patterns(TIP), grid, inside)
         begin = time.process_time()
-        demand = Demand(0.05, 29.3, (1e2, 1e3, 1e4, 1e5), 20.0)
-        slow = touched_body(body, [patch], STACK, demand, fingertips=1, film=inside.conductance, cache=False)
-        seconds.append(time.process_time() - begin)
-        found["slow"] = _held(slow.object, inside.conductance), slow.sensor
-
-        def off(key: object, stack: SensorStack, found: dict = found, expected: dict = expected) -> tuple:
-            network, side = found[key]
-            errors = (
-                _drop((network.rates, network.ports), side, h) - expected[stack][n]
-                for n, h in enumerate(FELT)
-            )
-            return tuple(float(error[np.abs(error).argmax()]) for error in errors)
-
-        rows_.append(
-            VesselRow(
-                name,
-                patch.centre,
-                film,
-                off((STACK, True), STACK),
-                off((SKINNED, True), SKINNED),
-                off((STACK, False), STACK),
-                off("slow", STACK),
-                (seconds[0], seconds[-1]),
-            )
-        )
-    return rows_
+        network = placed_network(body, [patch], STACK, inside.conductance).network
+        seconds = time.process_time() - begin
+        held = _held(network, inside.conductance)
+        errors = [_drop((held.rates, held.ports), h) - _drop((fine.rates, fine.ports), h) for h in FELT]
+        worst = tuple(float(error[np.abs(error).argmax()]) for error in errors)
+        found.append(VesselRow(name, patch.centre, film, worst, seconds, network.order))
+    return found
 
 
 def _drawn(body: Solid, rng: np.random.Generator) -> SurfacePatch:
@@ -382,8 +355,9 @@ def _drawn(body: Solid, rng: np.random.Generator) -> SurfacePatch:
     return _at(tuple(place.tolist()), tuple(outward.tolist()))
 
 
-def _drop(body: tuple[np.ndarray, np.ndarray], side: ThermalNetwork, conductance: float) -> np.ndarray:
+def _drop(body: tuple[np.ndarray, np.ndarray], conductance: float) -> np.ndarray:
     """(LONG,) of the difference, of one fingertip from time 0 on. body: rates and ports."""
+    side = TIP.side
     rates = np.concatenate((body[0], side.rates))
     ports = np.concatenate((body[1], -side.ports))
     row = np.concatenate((np.zeros(len(body[0])), side.outputs["drop"]))
@@ -467,20 +441,17 @@ def timed(name: str) -> Times:
 
 def _print_vessels(found: Sequence[VesselRow]) -> None:
     for row in found:
-        errors = "  ".join(
-            " ".join(f"{100 * share:+.2f}" for share in kind)
-            for kind in (row.fine, row.skinned, row.usual, row.touched)
-        )
-        took = " ".join(f"{seconds:.2f}" for seconds in row.seconds)
+        errors = " ".join(f"{100 * share:+.2f}" for share in row.errors)
         place = " ".join(f"{1e3 * x:.0f}" for x in row.place)
-        print(f"{row.vessel:20}{place:12}{row.film:5g}  {errors}  % in {took} s")
-    for kind in ("fine", "skinned", "usual", "touched"):
+        took = f"{row.states} states in {1e3 * row.seconds:.0f} ms"
+        print(f"{row.vessel:20}{place:12}{row.film:6g}  {errors} %, {took}")
+    for film in VESSEL_FILMS:
         for n, felt in enumerate(FELT):
-            shares = [100 * abs(getattr(row, kind)[n]) for row in found]
+            shares = [100 * abs(row.errors[n]) for row in found if row.film == film]
             middle, ninth = np.quantile(shares, [0.5, 0.9])
             print(
-                f"{kind:8}{felt:.0e} W/(m2 K): half within {middle:.3f} %, nine of ten {ninth:.3f} %, "
-                f"all {max(shares):.3f} %"
+                f"{film:6g} W/(m2 K) inside, {felt:.0e} W/(m2 K): half within {middle:.3f} %, nine of ten "
+                f"{ninth:.3f} %, all {max(shares):.3f} %"
             )
 
 
@@ -493,7 +464,11 @@ def main() -> int:
     parser.add_argument("--vessels", action="store_true", help="drawn places of vessels with contents")
     chosen = parser.parse_args()
     if chosen.vessels:
-        _print_vessels(vessel_rows(chosen.case))
+        vessels = vessel_rows(chosen.case)
+        if chosen.json:
+            print(json.dumps([asdict(row) for row in vessels], indent=2))
+        else:
+            _print_vessels(vessels)
         return 0
     if chosen.times:
         taken = [timed(name) for name in ROUND]

@@ -22,7 +22,6 @@ from ...thermal import (
     SurfacePatch,
 )
 from ...thermal.meshes import (
-    PLACED_FILM,
     PLACED_SHARE,
     TouchedBody,
     field_carried,
@@ -140,20 +139,11 @@ def _body(
     film: float,
     cache: bool,
 ) -> TouchedBody:
-    loose = demand.tolerance >= PLACED_SHARE * abs(demand.difference)
-    # through a film the other way's error is larger, whatever it is asked for (studies/mesh_places.py --vessels)
-    if film <= PLACED_FILM * (wetted_area(body) or math.inf) if film else loose:
+    if (film and wetted_area(body)) or demand.tolerance >= PLACED_SHARE * abs(demand.difference):
         return placed_body(
-            body,
-            patches,
-            stack,
-            demand.difference,
-            fingertips=fingertips,
-            film=film,
-            fine=not loose,
-            cache=cache,
+            body, patches, stack, demand.difference, fingertips=fingertips, film=film, cache=cache
         )
-    return touched_body(body, patches, stack, demand, fingertips=fingertips, film=film, cache=cache)
+    return touched_body(body, patches, stack, demand, fingertips=fingertips, cache=cache)
 
 
 def _solid(grasped: GraspBody) -> Solid:

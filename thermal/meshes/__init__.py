@@ -2,12 +2,11 @@
 
 from .film import wetted_area
 from .network import body_network
-from .placed import PLACED_FILM, PLACED_SHARE, placed_body
+from .placed import PLACED_SHARE, placed_body
 from .press import press_body
 from .touched import TouchedBody, field_carried, surface_normal, touched_body
 
 __all__ = [
-    "PLACED_FILM",
     "PLACED_SHARE",
     "TouchedBody",
     "body_network",

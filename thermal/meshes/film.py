@@ -5,6 +5,7 @@ N: cells, F: triangles.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -18,6 +19,8 @@ from .grid import MeshGrid, snapped
 _LEAST = 1e-9  # singular values below that share of the largest are left out
 _ALONE = 1e-3  # of a wall's area in a cell, that others may add there
 _LEAST_FILM = 0.2  # of the film's resistance, that is left where a wall lies before its cell's node
+_ACROSS = 0.3  # cosine of an axis to a wall's normal, from which on a node is moved to the wall along it
+_STRETCHED = 0.2, 4.0  # of a link's resistance, that is left at least, and at most, where nodes are moved
 _TERMS = 12
 _EARLY = 0.02  # of the depth's square
 
@@ -42,45 +45,64 @@ class Film(NamedTuple):
 
     def spread(self, grid: MeshGrid) -> np.ndarray:
         """(N,) W/K of each cell's share, by the area of its wall, through the film alone."""
-        areas = np.linalg.norm(self._walls(grid), axis=1)
-        return self.conductance * areas / areas.sum()
+        return self._shared(_cut(grid, self.triangles))
 
-    def sink(self, grid: MeshGrid, outside: np.ndarray) -> np.ndarray:
-        """(N,) W/K of each cell of a fine grid to the contents: from its node to the wall, and through the film.
-        outside: (F, 3, 3) m, the body's surface. Where a wall alone cuts a cell, the share that is left of it tells how
-        far from the node that wall is, beyond it or before it; elsewhere half of what is left lies between."""
-        vectors, through = self._walls(grid), self.spread(grid)
+    def joined(self, grid: MeshGrid, outside: np.ndarray) -> tuple[MeshGrid, np.ndarray]:
+        """A grid that is fine or as coarse as the wall is thick, with its links, and (N,) W/K of each of its cells to
+        the contents: from its node to the wall, and through the film. outside: (F, 3, 3) m, the body's surface. Where a
+        wall alone cuts a cell, the share that is left of it tells how far from the node that wall is; elsewhere half of
+        what is left lies between. What a node that lies beyond its wall has too much of the way is left out of the
+        film's resistance; as far as that is less, the node is moved along the axes, so that the links to the next ones
+        are as long as the way is in the body."""
+        vectors = _cut(grid, self.triangles)
+        through = self._shared(vectors)
         wet = np.flatnonzero((vectors**2).sum(axis=1) > 0)
-        whole, held = self._cut(grid, outside)[wet], vectors[wet]
+        whole, held = _cut(grid, outside)[wet], vectors[wet]
         areas = np.linalg.norm(held, axis=1)
         at = np.nonzero(grid.index >= 0)
-        lengths = np.stack(
-            [np.diff(axis.edges)[n[wet]] for axis, n in zip(grid.axes, at, strict=True)], axis=1
-        )
+        lengths = np.stack([np.diff(axis.edges)[n] for axis, n in zip(grid.axes, at, strict=True)], axis=1)
         nodes = np.stack(
-            [(axis.nodes - axis.edges[:-1])[n[wet]] for axis, n in zip(grid.axes, at, strict=True)], axis=1
+            [(axis.nodes - axis.edges[:-1])[n] for axis, n in zip(grid.axes, at, strict=True)], axis=1
         )
         normal = held / areas[:, None]
-        filled = (grid.volume[wet] / lengths.prod(axis=1))[:, None] * lengths
-        beyond = np.where(normal > 0, filled - nodes, filled - lengths + nodes)
+        filled = (grid.volume[wet] / lengths[wet].prod(axis=1))[:, None] * lengths[wet]
+        beyond = np.where(normal > 0, filled - nodes[wet], filled - lengths[wet] + nodes[wet])
         alone = np.linalg.norm(whole - held, axis=1) < _ALONE * areas
         way = np.where(alone, (np.abs(normal) * beyond).sum(axis=1), grid.volume[wet] / (2 * areas))
-        resistance = way / (areas * (grid.conductivity[wet] * normal**2).sum(axis=1))
-        through[wet] = 1 / np.maximum(1 / through[wet] + resistance, _LEAST_FILM / through[wet])
-        return through
+        across = areas * (grid.conductivity[wet] * normal**2).sum(axis=1)
+        least = np.maximum(way, (_LEAST_FILM - 1) * across / through[wet])
+        through[wet] = 1 / (1 / through[wet] + least / across)
+        moved = np.zeros(nodes.shape)
+        moved[wet] = (way - least)[:, None] / np.where(np.abs(normal) > _ACROSS, normal, np.inf)
+        return replace(grid, links=_moved(grid, nodes, lengths - nodes, moved)), through
 
-    def _walls(self, grid: MeshGrid) -> np.ndarray:
-        """(N, 3) m2, area vectors of what is wet in each cell."""
-        return self._cut(grid, self.triangles)
+    def _shared(self, vectors: np.ndarray) -> np.ndarray:
+        """(N,) W/K of walls with area vectors (N, 3)."""
+        areas = np.linalg.norm(vectors, axis=1)
+        return self.conductance * areas / areas.sum()
 
-    @staticmethod
-    def _cut(grid: MeshGrid, triangles: np.ndarray) -> np.ndarray:
-        """(N, 3) m2, area vectors of triangles (F, 3, 3) m in each cell."""
-        faces = enclosed(snapped(triangles @ grid.frame.T, grid.edges), grid.edges)[1]
-        held = grid.index >= 0
-        vectors = np.zeros((len(grid.capacity), 3))
-        vectors[grid.index[held]] = faces[held]
-        return vectors
+
+def _cut(grid: MeshGrid, triangles: np.ndarray) -> np.ndarray:
+    """(N, 3) m2, area vectors of triangles (F, 3, 3) m in each cell."""
+    faces = enclosed(snapped(triangles @ grid.frame.T, grid.edges), grid.edges)[1]
+    held = grid.index >= 0
+    vectors = np.zeros((len(grid.capacity), 3))
+    vectors[grid.index[held]] = faces[held]
+    return vectors
+
+
+def _moved(grid: MeshGrid, below: np.ndarray, above: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    """(N, 6) W/K of the links where nodes are moved by (N, 3) m along the axes. below, above: (N, 3) m from each node
+    to its cell's faces."""
+    factors = np.ones(grid.links.shape)
+    for axis in range(3):
+        low = np.flatnonzero(grid.neighbours[:, 2 * axis + 1] >= 0)
+        high, along = grid.neighbours[low, 2 * axis + 1], grid.conductivity[:, axis]
+        resistance = above[low, axis] / along[low] + below[high, axis] / along[high]
+        more = moved[high, axis] / along[high] - moved[low, axis] / along[low]
+        stretched = np.clip(1 + more / resistance, *_STRETCHED)
+        factors[low, 2 * axis + 1], factors[high, 2 * axis] = stretched, stretched
+    return grid.links / factors
 
 
 def film_rows(sink: np.ndarray, fields: np.ndarray, film: float) -> dict[str, np.ndarray]:

@@ -53,8 +53,8 @@ class BodyModes:
 
     def network(self, seen: np.ndarray, even: np.ndarray, film: float) -> ThermalNetwork:
         """Of the first of them. seen: (M, K) of these by ports, and even (M,) of 1 K everywhere. film: W/K to contents,
-        which in the network are no longer held: one temperature is a state, and the modes join them by the outputs that
-        body_network's walls have."""
+        which in the network are no longer held: one temperature is a state, and the modes join them by film_rows'
+        outputs."""
         still = np.sqrt(self.capacity * self.grid.capacity.sum())
         states = _states(self, seen.shape[1], film)
         row = np.eye(len(states.rates))[0]
@@ -133,7 +133,7 @@ def _modes(
             )
         )
         grid = _uniform(checked(body))
-        sink = np.zeros(len(grid.capacity)) if film is None else _sink(grid, film, body)
+        grid, sink = (grid, np.zeros(len(grid.capacity))) if film is None else _joined(grid, film, body)
         rates, fields = _slowest(grid, sink)
         axes = {
             f"{name} {k}": getattr(axis, name)
@@ -159,12 +159,13 @@ def _modes(
 _ARRAYS = "frame", "index", "capacity", "neighbours", "links", "conductivity", "volume"
 
 
-def _sink(grid: MeshGrid, film: Film, body: Solid) -> np.ndarray:
-    """(N,) of each cell to the contents: through the cell and the film where a wall is as thick as cells are long. A
-    thinner one lies in one cell here and in two there, whose links resist as much as its depth does, or more."""
+def _joined(grid: MeshGrid, film: Film, body: Solid) -> tuple[MeshGrid, np.ndarray]:
+    """The grid with its links, and (N,) of each cell to the contents: through the cell and the film where a wall is as
+    thick as cells are long. A thinner one lies in one cell here and in two there, whose links resist as much as its
+    depth does, or more."""
     wall = sum(part.volume for part in body.parts) / film.area
     length = max(float(np.median(np.diff(edges))) for edges in grid.edges)
-    return film.sink(grid, body.outside) if wall >= length else film.spread(grid)
+    return film.joined(grid, body.outside) if wall >= length else (grid, film.spread(grid))
 
 
 def _uniform(body: Solid) -> MeshGrid:

@@ -24,7 +24,6 @@ from ..surfaces import (
     Solid,
     SurfacePatch,
     checked,
-    enclosed,
     surface_patches,
 )
 from .film import Film
@@ -34,7 +33,6 @@ from .grid import (
     grid_axes,
     grid_frame,
     mesh_grid,
-    snapped,
 )
 from .patch import PatchOnGrid, patch_on_grid
 from .patterns import PatchPatterns, uniform_pattern
@@ -43,7 +41,6 @@ from .solve import conduct, solve_shifted
 
 _SHIFTS = np.geomspace(4000, 1 / 400, 10)  # 1/s: moments from under a millisecond to minutes
 _SETTLED = 1e-3  # of the heat flow, left over when a field is good enough to span a state
-_LEAST_WALL = 1e-9  # singular values below that share of the largest are left out
 _RANK = 1e-10  # relative size of Gram eigenvalues that round-off has not spoiled
 
 
@@ -53,7 +50,6 @@ def body_network(
     *,
     patterns: PatchPatterns | None = None,
     points: Sequence[Sequence[float]] = (),
-    walls: np.ndarray | None = None,
     gridding: MeshGridding | None = None,
     cache: bool = True,
 ) -> ThermalNetwork:
@@ -67,8 +63,6 @@ def body_network(
     from 0.05 s on, any other more coarsely (glass: 5 % in 0.05 s, 1 % in 0.2 s), so the patch that matters comes last.
     points: (Q, 3) m in the object's frame, where the object's own temperature is an output, such as where it may be
     touched next.
-    walls: (F, 3, 3) m, triangles of the surface that something wets, with outputs "wet", their mean temperature, and
-    "film:0" ..., of which the sum of squares is their mean square temperature.
     Outputs: "heat" (J that the object has gained, exact: only the state of rate 0 holds any), "mean" (K, its mean
     temperature, by heat), "point:0" ... "point:Q-1" (K at the points, of the nearest cell with material). The direct
     term is 0.
@@ -83,25 +77,19 @@ def body_network(
         raise InvalidValueError("points must be finite, m in the object's frame")
     gridding = gridding or MeshGridding()
     patterns = patterns or uniform_pattern()
-    wetted = np.zeros((0, 3, 3)) if walls is None else np.asarray(walls, float).reshape(-1, 3, 3)
 
     def build() -> dict[str, np.ndarray]:
         frame = grid_frame(checked(body), patches)
         grid, placed = _gridded(body, patches, frame, gridding, patterns)
         rates, ports, basis = _reduced(grid, placed)
-        cells = _nearest(grid, where @ frame.T)
-        outputs = {"points": basis[cells], "walls": _walls(grid, basis, wetted @ frame.T)}
-        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), **outputs}
+        points = basis[_nearest(grid, where @ frame.T)]
+        return {"rates": rates, "ports": ports, "capacity": grid.capacity.sum(), "points": points}
 
-    key = {**_key(body, patches, patterns, where, gridding), "walls": wetted}
-    arrays = cached_arrays(key, build, enabled=cache)
+    arrays = cached_arrays(_key(body, patches, patterns, where, gridding), build, enabled=cache)
     rates, capacity = arrays["rates"], float(arrays["capacity"])
     still = np.eye(len(rates))[0]
     outputs = {"heat": np.sqrt(capacity) * still, "mean": still / np.sqrt(capacity)}
     outputs |= {f"point:{n}": row for n, row in enumerate(arrays["points"])}
-    if len(arrays["walls"]):
-        outputs["wet"] = arrays["walls"][0]
-        outputs |= {f"film:{n}": row for n, row in enumerate(arrays["walls"][1:])}
     count = arrays["ports"].shape[1]
     return ThermalNetwork(rates, arrays["ports"], np.zeros((count, count)), outputs)
 
@@ -137,7 +125,8 @@ def patch_fields(
     that no state has rate 0. Raises as body_network does."""
     frame = grid_frame(checked(body), (patch,))
     grid, placed = _gridded(body, (patch,), frame, gridding, patterns)
-    rates, ports, fields = _reduced(grid, placed, None if film is None else film.sink(grid, body.outside))
+    grid, sink = (grid, None) if film is None else film.joined(grid, body.outside)
+    rates, ports, fields = _reduced(grid, placed, sink)
     cells = replace(grid, neighbours=grid.neighbours[:0], links=grid.links[:0])
     return PatchFields(cells, rates, ports, fields.astype(np.float32))
 
@@ -222,21 +211,6 @@ def _nearest(grid: MeshGrid, points: np.ndarray) -> np.ndarray:
     """(Q,) cells with material nearest to points (Q, 3) in the grid's frame."""
     nodes = grid.nodes
     return np.array([int(np.argmin(np.sum((nodes - p) ** 2, axis=1))) for p in points], dtype=int)
-
-
-def _walls(grid: MeshGrid, basis: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(1 + J, K): mean of the states' fields (N, K) over triangles in the grid's frame, and J rows whose squares sum to
-    the fields' products' mean; none where there is no triangle."""
-    if not len(triangles):
-        return np.zeros((0, basis.shape[1]))
-    faces = enclosed(snapped(triangles, grid.edges), grid.edges)[1]
-    areas = np.linalg.norm(faces, axis=-1)
-    held = (areas > 0) & (grid.index >= 0)
-    shares = areas[held] / areas[held].sum()
-    fields = basis[grid.index[held]]
-    _, sizes, vectors = np.linalg.svd(np.sqrt(shares)[:, None] * fields, full_matrices=False)
-    kept = sizes > _LEAST_WALL * sizes[0]
-    return np.concatenate(((shares @ fields)[None], sizes[kept, None] * vectors[kept]))
 
 
 def conducting_parts(body: Solid) -> list[tuple[np.ndarray, np.ndarray, float, float]]:

@@ -60,15 +60,14 @@ PLACED_SHARE = 3.2e-3
 """Error of the drop of a touch, as a share of the first difference, at most: 0.034 K of 12 K in 181 touches of blocks,
 bars, sheets, cylinders, balls, cones, rings, mugs and cans of wood, ceramic, steel and aluminium, and of bodies of two
 materials, at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
-FILLED_SHARE = 3.2e-3
-"""The same of fine networks with contents: 0.32 % in 72 drawn touches of twelve vessels behind films of 50 and 500
-W/(m2 K), at 1e3 to 1e4 W/(m2 K) in the first 20 s, nine of ten within 0.16 %, with the usual skin all within 0.19 %
-(studies/mesh_places.py --vessels). At 1e5 W/(m2 K) a place over the edge of a jar's foot was 0.56 % off."""
-PLACED_FILM = 550.0
-"""W/(m2 K) between a body's walls and contents, up to which networks are made so: a tenth above what was measured."""
+FILLED_SHARE = 4.4e-3
+"""The same with contents: 0.44 % in 132 drawn touches of eleven vessels behind films of 50 to 1e4 W/(m2 K), at 1e3 to
+1e4 W/(m2 K) in the first 20 s, nine of ten within 0.2 %; behind films of up to 500 W/(m2 K) all within 0.26 %
+(studies/mesh_places.py --vessels). At 1e5 W/(m2 K) all were within 0.46 %."""
 _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
-_TOLD = 3.0  # over the last mode's rate, likewise
+_TOLD = 3.0  # over the last mode's rate above the first one's, likewise
+_TAKEN = 0.2  # the slowest rate behind a film over heat's along a cell, from which on modes tell no places
 _FELT = 6e-3  # m between patches, across which heat goes before the modes tell
 _STILL = 1e-12  # m2, diffusivity times time before which heat has gone nowhere
 _KEPT = 256  # places
@@ -76,8 +75,8 @@ _CORNER = 6e-3  # m beyond a patch, within which the wall of a hollow may go on 
 
 
 class _Fineness(NamedTuple):
-    """alone: the grid of a place where no box stands for the body, of one material, and layered: of several. pitch:
-    between rates."""
+    """alone: the grid of a place where no box stands for the body, of one material, and layered: of several, which is
+    as fine through all of the outer one where that is curved. pitch: between rates."""
 
     alone: MeshGridding
     layered: MeshGridding
@@ -86,8 +85,11 @@ class _Fineness(NamedTuple):
 
 # within 0.006 K of 12 K of the usual grid, in half of the time
 _COARSE = MeshGridding(depth=40e-6, side=0.1e-3, growth=0.8)
-_USUAL = _Fineness(_COARSE, _COARSE, 2.7)
-_FINE = _Fineness(MeshGridding(relief=24), MeshGridding(growth=0.3, largest=2e-3), 1.8)
+_EMPTY = _Fineness(_COARSE, _COARSE, 2.7)
+# within 0.1 % of the difference of grids of three times as many cells
+_FILLED = _Fineness(
+    MeshGridding(depth=30e-6, side=0.1e-3, growth=0.6, relief=16), replace(_COARSE, relief=8), 1.8
+)
 _FIELDS = 16  # grids of such places, 8 MB each
 
 
@@ -104,7 +106,7 @@ class Placed:
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedNetwork:
     """network: of a body with M ports a patch, in orthonormal patterns of the sensor's whole face. Its output "heat" is
-    the J that the body has gained, "mean" K; with contents also body_network's of walls. below: what lies beneath each
+    the J that the body has gained, "mean" K; with contents also film_rows'. below: what lies beneath each
     patch. slow: of its states, the first ones that are the body's own, whatever the patches."""
 
     network: ThermalNetwork
@@ -118,14 +120,12 @@ def placed_network(
     stack: SensorStack,
     film: float = 0.0,
     *,
-    fine: bool = False,
     cache: bool = True,
 ) -> PlacedNetwork:
-    """film: W/K between the walls of the body's hollow, if it has one, and contents. fine: of more rates, and of finer
-    grids where no box stands for the body. Raises MeshError where a patch meets no surface, or the body is no solid in
-    one piece."""
-    level = _FINE if fine else _USUAL
+    """film: W/K between the walls of the body's hollow, if it has one, and contents. Raises MeshError where a patch
+    meets no surface, or the body is no solid in one piece."""
     inside = film_of(body, film)
+    level = _EMPTY if inside is None else _FILLED
     modes = body_modes(body, inside, cache=cache)
     one = centred_tip(stack, patches[0].area)
     places = [_placed(body, patch, stack, inside, level, cache) for patch in patches]
@@ -135,7 +135,7 @@ def placed_network(
     slow = _slow(modes, seen, inside)
     kernel = _faded(seen, modes.rates, taus)
     if len(body.parts) == 1:
-        over = _over(taus, modes.rates[-1])[:, None, None]
+        over = _over(taus, modes.rates[-1] - modes.rates[0])[:, None, None]
         local = _local(below, one, taus, body.parts[0].material.conductivity, inside) / modes.capacity
         kernel = over * kernel + (1 - over) * local
     kernel -= _faded(slow.held.T, slow.fades, TIMES)
@@ -192,7 +192,7 @@ def _told(modes: BodyModes) -> int:
     """How many modes are states. Where contents take the heat before it has gone a cell along, modes tell cells apart
     and no places, and the first alone is one."""
     cell = max(float(np.median(np.diff(edges))) for edges in modes.grid.edges)
-    return 1 if modes.sink.any() and modes.rates[0] * cell**2 > 1 else _SLOW
+    return 1 if modes.sink.any() and modes.rates[0] * cell**2 > _TAKEN else _SLOW
 
 
 @lru_cache(maxsize=_KEPT)
@@ -252,8 +252,8 @@ def _pair(
 def _fields(
     body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | None, level: _Fineness
 ) -> PatchFields:
-    grid = level.alone if len(body.parts) == 1 else level.layered
-    return patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), grid, film)
+    gridding = level.alone if len(body.parts) == 1 else level.layered
+    return patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), gridding, film)
 
 
 def _faded(seen: np.ndarray, rates: np.ndarray, taus: np.ndarray) -> np.ndarray:
@@ -282,21 +282,20 @@ def placed_body(
     *,
     fingertips: int = 2,
     film: float = 0.0,
-    fine: bool = False,
     cache: bool = True,
 ) -> TouchedBody:
     """As touched_body's, in milliseconds a place once its modes are known. difference: K between sensor and body at
-    first, of which the error is PLACED_SHARE. film: W/K to contents, up to PLACED_FILM. fine: with contents, for
-    FILLED_SHARE. Raises as placed_network does."""
+    first, of which the error is PLACED_SHARE. film: W/K to contents, which it is FILLED_SHARE with. Raises as
+    placed_network does."""
     patches = tuple(patches)
-    placed = placed_network(body, patches, stack, film, fine=fine, cache=cache)
+    placed = placed_network(body, patches, stack, film, cache=cache)
     one = centred_tip(stack, patches[0].area).side
     count = one.ports.shape[1]
     sensor = ThermalNetwork(one.rates, one.ports, np.zeros((count, count)), one.outputs)
     plate = Geometry(stack, PLATE_MATERIAL, "T", patches[0].area, "square", PLATE)
     geometry = geometry_of(plate, placed.network, body, fingertips)
     centres = np.array([each.placed.centre for each in placed.below])
-    error = (FILLED_SHARE if fine and film else PLACED_SHARE) * abs(difference)
+    error = (FILLED_SHARE if film else PLACED_SHARE) * abs(difference)
     return TouchedBody(geometry, sensor, placed.network, patches, centres, error, placed.slow)
 
 

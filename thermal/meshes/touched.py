@@ -32,8 +32,7 @@ from ..network import (
     with_sensors,
 )
 from ..plates import Geometry
-from ..surfaces import Solid, SurfacePatch, wetted_faces
-from .film import held_apart
+from ..surfaces import Solid, SurfacePatch
 from .network import body_network, conducting_parts
 from .patterns import learned_patterns
 from .place import place_patch
@@ -167,12 +166,10 @@ def touched_body(
     demand: Demand,
     *,
     fingertips: int = 2,
-    film: float = 0.0,
     cache: bool = True,
 ) -> TouchedBody:
-    """An object and its patches, of one area, with as few states as keep half the demand's tolerance where the
-    fingertips are on the last of the patches; the other half is the grid's and the patterns'. film: W/K between
-    contents and the walls of its hollow, where it has one, which makes outputs of them (see body_network's walls).
+    """An object without contents and its patches, of one area, with as few states as keep half the demand's tolerance
+    where the fingertips are on the last of the patches; the other half is the grid's and the patterns'.
 
     Raises InvalidValueError for other patches and where no network keeps the tolerance, MeshError as body_network
     does."""
@@ -186,19 +183,17 @@ def touched_body(
         "stack": stack,
         "demand": demand,
         "fingertips": fingertips,
-        "film": film,
     }
 
     def build() -> dict[str, np.ndarray]:
-        walls = wetted_faces(body) if film else None
         patterns = learned_patterns(plate, modes)
-        whole = body_network(body, patches, patterns=patterns, walls=walls, cache=False)
+        whole = body_network(body, patches, patterns=patterns, cache=False)
         learned = sample_geometry(plate).networks(modes)
         basis = state_bases(learned, area)["sensor"]
         geometry = geometry_of(plate, whole, body, fingertips)
         centres = np.array([place_patch(body.outside, patch, np.eye(3)).centre for patch in patches])
         full = TouchedBody(geometry, learned["sensor"], whole, patches, centres, 0.0)
-        reduced = _smallest(full, basis.vectors, basis.weights, demand, film)
+        reduced = _smallest(full, basis.vectors, basis.weights, demand)
         shared = {"centres": centres, "error": np.array(reduced.error)}
         return {**_pack("sensor", reduced.sensor), **_pack("object", reduced.object), **shared}
 
@@ -292,22 +287,13 @@ def geometry_of(plate: Geometry, whole: ThermalNetwork, body: Solid, fingertips:
     )
 
 
-def _smallest(
-    full: TouchedBody, sensor: np.ndarray, weights: np.ndarray, demand: Demand, film: float
-) -> TouchedBody:
+def _smallest(full: TouchedBody, sensor: np.ndarray, weights: np.ndarray, demand: Demand) -> TouchedBody:
     """The first that keeps the tolerance. sensor: (states, R) basis of its field, and weights (R,)."""
-    film = film if full.hollow else 0.0
-    turn, held = _held(full.object, film)
-    basis = excited_states(held, _flows(replace(full, object=held)))
-    states = turn @ basis.vectors
-    if film:  # what is uniform is a state of its own
-        states[0] = 0.0
-        states = np.concatenate((np.eye(len(states))[:, :1], np.linalg.qr(states)[0]), axis=1)
-        basis = replace(basis, weights=np.append(np.inf, basis.weights))
+    basis = excited_states(full.object, _flows(full))
     last = range(len(full.patches) - full.geometry.fingertips, len(full.patches))
 
     def answer(body: TouchedBody) -> np.ndarray:
-        return responses(body.filled(film, 0.0).system(last) if film else body.system(last), demand)
+        return responses(body.system(last), demand)
 
     reference = answer(full)
     error = np.inf
@@ -315,7 +301,7 @@ def _smallest(
         smaller = TouchedBody(
             full.geometry,
             full.sensor.projected(sensor[:, weights > cut / 8]),
-            full.object.projected(states[:, basis.weights > cut]),
+            full.object.projected(basis.vectors[:, basis.weights > cut]),
             full.patches,
             full.centres,
             0.0,
@@ -326,14 +312,6 @@ def _smallest(
     raise InvalidValueError(
         f"no network keeps {demand.tolerance:g} K for this contact: give a tolerance of {2.1 * error:.2g} K or more"
     )
-
-
-def _held(body: ThermalNetwork, film: float) -> tuple[np.ndarray, ThermalNetwork]:
-    """The network with contents that are held behind a film of W/K in all, and the matrix from its states."""
-    if not film:
-        return np.eye(body.order), body
-    rates, turn = held_apart(body, film)
-    return turn, ThermalNetwork(rates, turn.T @ body.ports, body.direct)
 
 
 def _flows(full: TouchedBody) -> np.ndarray:

@@ -144,14 +144,15 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
     assert flows[60.0, True] < 1.1 * flows[60.0, False] < 0 < flows[0.0, True]
 
 
-def test_hot_contents_need_no_grid_of_the_whole_at_the_usual_tolerance(meshes, monkeypatch):
+@pytest.mark.parametrize("film", [2.0, 60.0])  # W/K, of still water and of what boils
+def test_hot_contents_need_no_grid_of_the_whole_at_the_usual_tolerance(film, meshes, monkeypatch):
     """Nor for a place that is new; what the network's error may be is told."""
 
     def refused(*_, **__):
         raise AssertionError("a grid of the whole mug, fine at each of its places")
 
     monkeypatch.setattr(touches, "touched_body", refused)
-    spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8, reservoir=water(0.03, 2.0))
+    spec = ObjectSpec(shape="mesh", mesh=meshes["cup"], mass=0.05, friction=0.8, reservoir=water(0.03, film))
     demand = Demand(0.05, 29.3, (1e2, 1e3, 1e4, 1e5), 20.0)
     first = first_touches(replace(grasp_body(spec, "ceramic"), temperature=60.0, ambient=24.0), demand, False)
     assert first is not None and first.fed

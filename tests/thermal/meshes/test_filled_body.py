@@ -8,7 +8,6 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.thermal import (
-    Demand,
     SurfacePatch,
     advance_heat,
     heat_tables,
@@ -18,13 +17,12 @@ from thermograsp.thermal.meshes.film import Film, film_of, held_apart
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.network import patch_fields
 from thermograsp.thermal.meshes.placed import (
-    FILLED_SHARE,
     _across,
     centred_tip,
     face_patterns,
     placed_network,
 )
-from thermograsp.thermal.meshes.touched import TouchedBody, field_carried, touched_body
+from thermograsp.thermal.meshes.touched import TouchedBody, field_carried
 from thermograsp.thermal.network import NODE
 from thermograsp.thermal.surfaces.hollow import wetted_faces
 
@@ -45,21 +43,10 @@ def patches(count: int = 1) -> list[SurfacePatch]:
     return [SurfacePatch((-SIDE / 2, y, 0), (-1, 0, 0)) for y in (0.0, 0.006)[:count]]
 
 
-def body(name: str, film: float, count: int = 1, tolerance: float = 0.1, placed: bool = False) -> TouchedBody:
-    """film: W/(m2 K). placed: by its modes, in place of a grid that is fine at the patches."""
+def body(name: str, film: float, count: int = 1) -> TouchedBody:
+    """film: W/(m2 K)."""
     inside = film * 6 * (SIDE - 2 * WALL) ** 2
-    if placed:
-        made = hollow_box(name)
-        return placed_body(made, patches(count), STACK, 12.0, fingertips=1, film=inside, cache=False)
-    return touched_body(
-        hollow_box(name),
-        patches(count),
-        STACK,
-        Demand(tolerance, 12.0),
-        fingertips=1,
-        film=inside,
-        cache=False,
-    )
+    return placed_body(hollow_box(name), patches(count), STACK, 12.0, fingertips=1, film=inside, cache=False)
 
 
 def area(triangles: np.ndarray) -> float:
@@ -79,13 +66,23 @@ def test_walls_of_hollows_are_found_and_nothing_else():
         assert not len(wetted_faces(thermal.solid(mesh.vertices, mesh.faces, glass)))
 
 
-@pytest.mark.parametrize("placed", [False, True])
-@pytest.mark.parametrize(("name", "film"), [("plastic", 500.0)])
-def test_a_thin_wall_between_finger_and_contents_is_a_resistance_with_the_area_of_a_fin(name, film, placed):
-    """At rest the patch is fed across wall and film, over an area that is wider by a fin's length sqrt(k d/h) each way
-    (Incropera et al., section 3.6), which is short here. Ever finer grids tend to 6 % above that: a wall that insulates
-    so well is no fin."""
-    made = body(name, film, tolerance=0.01, placed=placed)
+def through_a_wall(film: float, s: float) -> float:
+    """K/W of an even flow W into a square of 9 mm in the middle of a flat wall of hollow_box, of plastic, at s 1/s:
+    waves along the wall fade into it, and through a film of W/(m2 K) at its other side."""
+    of, waves = thermal.material("plastic"), np.arange(600)
+    spread = np.sinc(waves * 0.009 / SIDE) * np.where(waves > 0, 2, 1) ** 0.5
+    along = (2 * np.pi / SIDE) ** 2 * np.add.outer(waves**2, waves**2)
+    inward = np.sqrt(along + s / of.diffusivity)
+    flow, fall = of.conductivity * inward, np.tanh(inward * WALL)
+    return (
+        float(np.sum(np.outer(spread, spread) ** 2 * (flow + film * fall) / (flow * (flow * fall + film))))
+        / SIDE**2
+    )
+
+
+@pytest.mark.parametrize("film", [500.0, 1e4])
+def test_a_thin_wall_between_finger_and_contents_is_a_wall_with_a_film(film):
+    made = body("plastic", film)
     inside = film * 6 * (SIDE - 2 * WALL) ** 2
     system = made.filled(inside, 0.0).system((0,))
     states = made.object.order + 1
@@ -94,16 +91,12 @@ def test_a_thin_wall_between_finger_and_contents_is_a_resistance_with_the_area_o
     assert system.reservoir is not None
     together = float(np.sum((system.object_heat + system.reservoir) ** 2))
     impedance = float(np.sum(port**2 / (rates + slow))) - 1 / (slow * together)
-    k = thermal.material(name).conductivity
-    reach = np.sqrt(k * WALL / film)
-    expected = (WALL / k + 1 / film) / (0.009 + 2 * reach) ** 2
-    assert impedance == pytest.approx(expected, rel=0.09 if placed else 0.06)
+    assert impedance == pytest.approx(through_a_wall(film, slow), rel=5e-3)
     assert impedance < made.object.impedance(slow)[0, 0] / 2
 
 
-@pytest.mark.parametrize("placed", [False, True])
-def test_heat_goes_from_finger_to_object_air_and_contents_to_round_off(placed):
-    made = body("plastic", 500.0, placed=placed)
+def test_heat_goes_from_finger_to_object_air_and_contents_to_round_off():
+    made = body("plastic", 500.0)
     system = made.filled(500.0 * 6 * (SIDE - 2 * WALL) ** 2, 0.02).system((0,))
     tables, state = heat_tables([system], [5.0], 0.01), np.zeros((1, len(system.rates)))
     weight, difference = np.array([[0.5]]), np.array([[12.0]])
@@ -114,9 +107,8 @@ def test_heat_goes_from_finger_to_object_air_and_contents_to_round_off(placed):
     assert contents > 0.05 and heats.object_heat[0, -1] + contents == pytest.approx(passed, rel=1e-9)
 
 
-@pytest.mark.parametrize("placed", [False, True])
-def test_a_body_as_warm_as_its_contents_stays_so(placed):
-    made = body("plastic", 500.0, placed=placed)
+def test_a_body_as_warm_as_its_contents_stays_so():
+    made = body("plastic", 500.0)
     filled = made.filled(500.0 * 6 * (SIDE - 2 * WALL) ** 2, 0.0)
     even = np.append(np.eye(made.object.order)[0] * made.object.outputs["heat"][0], np.sqrt(NODE))
     flow = filled.rates * (filled.turn.T @ even)
@@ -124,10 +116,9 @@ def test_a_body_as_warm_as_its_contents_stays_so(placed):
     assert made.object.outputs["wet"][0] == pytest.approx(made.object.outputs["mean"][0], rel=1e-9)
 
 
-@pytest.mark.parametrize("placed", [False, True])
-def test_contents_are_part_of_what_an_added_patch_carries_over(placed):
+def test_contents_are_part_of_what_an_added_patch_carries_over():
     """The field on the node and its walls is the same on either side, in the body's own states."""
-    one, two = (body("plastic", 500.0, count, placed=placed) for count in (1, 2))
+    one, two = (body("plastic", 500.0, count) for count in (1, 2))
     matrix = field_carried(one, two)
     state = np.zeros(one.object.order)
     for _ in range(300):
@@ -141,10 +132,10 @@ def test_contents_are_part_of_what_an_added_patch_carries_over(placed):
 SHIFTS = np.geomspace(0.05, 5.0, 5)  # 1/s
 
 
-def held_impedance(made: thermal.Solid, patch: SurfacePatch, film: float, *, fine: bool = True) -> np.ndarray:
+def held_impedance(made: thermal.Solid, patch: SurfacePatch, film: float) -> np.ndarray:
     """(S,) K/W of the even flow, contents held: from modes and the wall's kernel. film: W/(m2 K)."""
     inside = film * film_area(made)
-    network = placed_network(made, [patch], STACK, inside, fine=fine, cache=False).network
+    network = placed_network(made, [patch], STACK, inside, cache=False).network
     rates, turn = held_apart(network, inside)
     return ((turn.T @ network.ports[:, 0]) ** 2 / (SHIFTS[:, None] + rates)).sum(axis=1)
 
@@ -171,11 +162,21 @@ def test_a_grid_s_fields_and_a_wall_s_kernel_agree_behind_a_film(film):
     assert held_impedance(made, patch, film) == pytest.approx(expected, rel=5e-3)
 
 
-def cup(wall: float) -> thermal.Solid:
+def cup(wall: float, name: str = "ceramic") -> thermal.Solid:
     inner, foot = 0.025 - wall, wall - 0.03
     profile = [(0, -0.03), (0.025, -0.03), (0.025, 0.03), (inner, 0.03), (inner, foot), (0, foot)]
     mesh = trimesh.creation.revolve(profile, sections=128)
-    return thermal.solid(mesh.vertices, mesh.faces, thermal.material("ceramic"))
+    return thermal.solid(mesh.vertices, mesh.faces, thermal.material(name))
+
+
+def test_a_round_wall_lies_where_it_is_however_coarse_its_grid():
+    """Where cells' nodes lie beyond the wall: with what is left of the film alone there it was 4 % off."""
+    made, patch = cup(0.001, "plastic"), SurfacePatch((0.025, 0.0, 0.0), (1, 0, 0), STACK.width**2)
+    found, expected = (
+        (fields.ports[:, 0] ** 2 / (SHIFTS[:, None] + fields.rates)).sum(axis=1)
+        for fields in (on_grid(made, patch, 1e4, MeshGridding(growth=growth)) for growth in (0.8, 0.3))
+    )
+    assert found == pytest.approx(expected, rel=3e-3)
 
 
 @pytest.mark.slow
@@ -186,7 +187,7 @@ def test_a_filled_cup_is_felt_within_the_stated_share(wall, height, film):
     patch = SurfacePatch((0.025, 0.0, height), (1, 0, 0), one.area)
     fields = on_grid(made, patch, film, MeshGridding(growth=0.3, largest=1e-3, relief=24))
     inside = film * film_area(made)
-    network = placed_network(made, [patch], STACK, inside, fine=True, cache=False).network
+    network = placed_network(made, [patch], STACK, inside, cache=False).network
     rates, turn = held_apart(network, inside)
     times = np.arange(0.05, 20.0, 0.05)
 
@@ -202,7 +203,7 @@ def test_a_filled_cup_is_felt_within_the_stated_share(wall, height, film):
 
     for conductance in (1e3, 1e4):
         found = drops(rates, turn.T @ network.ports, conductance)
-        assert np.abs(found - drops(fields.rates, fields.ports, conductance)).max() < FILLED_SHARE
+        assert np.abs(found - drops(fields.rates, fields.ports, conductance)).max() < 3.2e-3
 
 
 def test_a_round_wall_has_less_room_only_as_long_as_heat_goes_through_it():
