@@ -75,6 +75,7 @@ OTHERS: list[tuple[Call, Any, str]] = [
         [[0, 0, 0], [0, 0]],
         r"step takes actions of shape \(2, 3\), one for each environment; got \(2,\)",
     ),
+    (lambda value: ObjectSpec(mass=value), 1e4, "mass 10000 kg: give 0 to 1000 kg"),
     (lambda value: ObjectSpec(yaw=value), 45.0, "45 looks like degrees: give 0.785398"),
     (lambda value: ThermalBody("glass", elements=value), 3, "elements must be a list of SensorElement"),
     (lambda value: GraspBatch(thermostat=value), 36.0, "thermostat must be a thermal.Thermostat"),

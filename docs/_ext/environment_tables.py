@@ -9,7 +9,16 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from environment_words import ACTIONS, COMMANDS, INFOS, OBSERVATIONS, ON_HARDWARE, OPTIONS, SOMETIMES
+from environment_words import (
+    ACTIONS,
+    COMMANDS,
+    INFOS,
+    OBSERVATIONS,
+    ON_HARDWARE,
+    OPTIONS,
+    SIMULATED,
+    SOMETIMES,
+)
 
 from thermograsp.envs.gym import TouchEnv
 from thermograsp.plant import Command
@@ -107,7 +116,7 @@ def _observed(key: str, space: gymnasium.spaces.Dict, condition: str) -> list[tu
 def info_table(name: str, env: TouchEnv) -> str:
     """Keys in the order in which they come, with the shapes that they have in a first step."""
     values, ends = info_keys(env)
-    rows = [(f"`{key}`", _shape(value), *INFOS[key], "always") for key, value in values.items()]
+    rows = [(f"`{key}`", _shape(value), *INFOS[key], _known(key)) for key, value in values.items()]
     for keyword, other in variants(name):
         more, _ = info_keys(other)
         when = f"with `{keyword}`"
@@ -116,6 +125,11 @@ def info_table(name: str, env: TouchEnv) -> str:
     for when, keys in (("at the end", ends), ("if there is one", SOMETIMES), ("on hardware", ON_HARDWARE)):
         rows += [(f"`{key}`", "", *INFOS[key], when) for key in keys]
     return _table(("key", "shape", "what", "unit", "when"), rows)
+
+
+def _known(key: str) -> str:
+    """When info has it."""
+    return "in a simulation" if key in SIMULATED else "always"
 
 
 def info_keys(env: TouchEnv) -> tuple[Mapping[str, Any], Iterable[str]]:

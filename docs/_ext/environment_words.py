@@ -89,5 +89,6 @@ INFOS: dict[str, tuple[str, str]] = {
 SOMETIMES = ("error", "randomized")
 """In every environment's info, where there is something to tell."""
 
+SIMULATED = ("temperature_drop", "contact_area", "conductance", "rung", "events")
 ON_HARDWARE = ("unknown", "late")
 """What info tells, besides the task's own, on a serial plant."""

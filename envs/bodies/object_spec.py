@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MASS = 0.1  # kg
 DEFAULT_FRICTION = 0.8
+_MOST_MASS = 1e3  # kg: of some tonnes MuJoCo's contacts let go
 _MOST_TURN = 10.0  # rad, more than one and a half turns
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
@@ -93,6 +94,8 @@ class ObjectSpec:
         for field in ("mass", "density"):
             if getattr(self, field) is not None:
                 positive(field, getattr(self, field))
+        if self.mass is not None:
+            within("mass", self.mass, 0.0, _MOST_MASS, "kg")
         if self.friction is not None:
             non_negative("friction", self.friction)
         within("yaw", finite("yaw", self.yaw), -_MOST_TURN, _MOST_TURN, "rad")

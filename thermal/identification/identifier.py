@@ -132,6 +132,11 @@ class Identifier:
             self._found[tip] = touch
         return touch
 
+    @property
+    def saturated(self) -> bool:
+        """Whether there are samples, and all are at an end of the converter's range."""
+        return self._kelvin.size > 0 and bool(self.setup.saturated(self._kelvin).all())
+
     def _kelvins(self) -> tuple[float, float]:
         """K of a sample's noise and of the offset."""
         return self.setup.noise / self.setup.element.seebeck, self.setup.offset
@@ -192,9 +197,14 @@ def identify(
     cache: bool = True,
 ) -> Identification:
     """The posterior of one whole recording: Identifier(...).update(t, voltage), whose arguments these are. Raises
-    InvalidValueError also for a touch that comes after all samples, which could tell nothing of it."""
-    found = Identifier(setup, candidates, touch=touch, cache=cache).update(t, voltage)
-    last = max(t, default=-np.inf)
+    InvalidValueError also for a touch that comes after all samples, and for samples that are all at an end of the
+    converter's range, which could tell nothing of it."""
+    identifier = Identifier(setup, candidates, touch=touch, cache=cache)
+    found, last = identifier.update(t, voltage), max(t, default=-np.inf)
+    if identifier.saturated:
+        raise InvalidValueError(
+            "every sample is at an end of the converter's range, where voltages tell nothing: measure with less gain"
+        )
     if touch is not None and touch >= last:
         raise InvalidValueError(
             f"touch {touch:g} s is not before the last sample, at {last:g} s: give the time of the touch on the clock "
