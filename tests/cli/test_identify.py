@@ -66,7 +66,11 @@ def test_says_for_people_why_it_cannot_tell(recording: Path, capsys: pytest.Capt
         ("time_s,voltage_V\n0,0\n", "--among gold glas", "did you mean"),
         ("time_s,voltage_V\n0,0\n", "--out x.txt", "must end with"),
         ("time_s,voltage_V\n0,0\n1,0\n", f"{AMONG} --touch 99", "99 s is not before the last sample, at 1 s"),
-        ("time_s,voltage_V\n0,0.3\n1,0.3\n2,0.3\n", AMONG, "every sample is at an end of the converter's range"),
+        (
+            "time_s,voltage_V\n0,0.3\n1,0.3\n2,0.3\n",
+            AMONG,
+            "every sample is at an end of the converter's range",
+        ),
         ("time_s,voltage_V\n0,0\n", "--conductance 5 1", "conductance must be"),
     ],
 )

@@ -118,6 +118,7 @@ def _press(
                 for i in range(len(points)):
                     heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes[:counted])
+            crown = _crown(points, heights, cover, counted, law) if rigid and of_face else (0.0, 0.0, False)
             depth, soft_depth = np.inf, np.inf
             for n in range(len(loads) - 1, -1, -1):
                 depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], depth, touching)
@@ -129,20 +130,10 @@ def _press(
                     at[n, 0], at[n, 1] = area, share
                 else:
                     where, load = (areas[0], places[0, a], places[1, b], spans, face), share * forces[n]
-                    _conduct(
-                        points,
-                        heights,
-                        cover,
-                        depth,
-                        area,
-                        load,
-                        where,
-                        law,
-                        resistance,
-                        touching,
-                        other,
-                        at[n],
-                    )
+                    rows = touching, other, at[n]
+                    _conduct(points, heights, cover, depth, area, load, where, law, resistance, crown, *rows)
+                    if n + 1 < len(loads):
+                        _no_more(at[n], at[n + 1])
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -157,24 +148,25 @@ def _flat(heights, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _conduct(points, heights, cover, depth, area, load, where, law, resistance, touching, beside, row):
-    """Fills a row of `conducted`. touching: (C,) m2 of the contact at each point; beside: (C,), room. where: what `lie`
-    takes after them, without a least length. load: N on the face."""
+def _conduct(points, heights, cover, depth, area, load, where, law, resistance, crown, touching, beside, row):
+    """Fills a row of `conducted`. crown: of _crown. touching: (C,) m2 of the contact at each point; beside: (C,), room.
+    where: what `lie` takes after them, without a least length. load: N on the face."""
     face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
-    hertz, round, least = np.inf, 0.0, 0.0
+    least, round = 0.0, 0.0
     if area > 0.0:
         lie(points, touching, *where, 0.0, found)
         row[4] = found[4]
     if rigid and area > 0.0:
         long = max(row[4], area / row[4])
-        hertz, round = _hertz(points, heights, cover, touching, area, load, long, law)
-        if round == 0.0:
-            round = min(area / row[4] ** 2, row[4] ** 2 / area)
-        least = min(long, face) * (1.0 - _compact(round))
-        if hertz < np.inf:
+        if crown[0] > 0.0:
+            hertz, round = _hertz(crown, load, long, law.modulus)
+            hertz = min(hertz, cover[: len(touching)].sum() if crown[2] else area)
             for i in range(len(touching)):
                 touching[i] *= hertz / area
             area = hertz
+        else:
+            round = min(area / row[4] ** 2, row[4] ** 2 / area)
+        least = min(long, face) * (1.0 - _compact(round))
     solid = 0.0
     if area > 0.0:
         solid = conductance(law, load / area) * area
@@ -217,47 +209,60 @@ def _compact(round):
     return min(max((round - _LINE) / (_COMPACT - _LINE), 0.0), 1.0)
 
 
+@njit(cache=True, error_model="numpy")
+def _no_more(row, above):
+    """Lets a row of `conducted` conduct no more than that of the next force, however that touches."""
+    row[7] = min(row[7], above[6] + above[7])
+    row[6] = min(row[6], above[6] + above[7] - row[7])
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _hertz(points, heights, cover, touching, area, load, long, law):
-    """(m2 of Hertz's contact on a crown that is as curved as the mesh around the middle of what touches, how round it
-    is: its breadth over its length); inf and 0 where it is no crown: flat, or a shape that no paraboloid is. area: m2
-    that touches, at most, but at the face's edge, where that is a sliver. long: m, of the contact, where the crown is a
-    line."""
-    total, y, z = 0.0, 0.0, 0.0
-    for i in range(len(touching)):
-        total += touching[i]
-        y += touching[i] * points[i, 0]
-        z += touching[i] * points[i, 1]
-    if total == 0.0:
-        return np.inf, 0.0
+def _crown(points, heights, cover, counted, law):
+    """(1/m, 1/m, whether it is at the face's edge): how curved the mesh is, more and less, around what of it comes to
+    the face first; 0 and 0 where that is no crown: flat, or a shape that no paraboloid is."""
+    low, total, y, z = np.inf, 0.0, 0.0, 0.0
+    for i in range(counted):
+        if cover[i] > 0.0:
+            low = min(low, heights[i])
+    for i in range(counted):
+        if cover[i] > 0.0 and heights[i] <= low + law.roughness:
+            total += cover[i]
+            y += cover[i] * points[i, 0]
+            z += cover[i] * points[i, 1]
     y, z = y / total, z / total
-    terms, most_area = 4, area
-    if max(abs(y), abs(z)) > law.half_face - _AROUND:  # beside a crown the surface slopes, too
-        terms, most_area = 6, np.inf
+    edge = max(abs(y), abs(z)) > law.half_face - _AROUND
+    terms = 6 if edge else 4  # beside a crown the surface slopes, too
     matrix, right, square, count = np.zeros((terms, terms)), np.zeros(terms), 0.0, 0
     row = np.ones(6)
-    for i in range(len(touching)):
+    for i in range(counted):
         u, v = (points[i, 0] - y) / _AROUND, (points[i, 1] - z) / _AROUND
-        if cover[i] > 0.0 and u * u + v * v < 1.0:
+        if u * u + v * v < 1.0 and cover[i] > 0.0:
+            height = heights[i] - low
             row[1], row[2], row[3], row[4], row[5] = u * u, v * v, u * v, u, v
             for j in range(terms):
-                right[j] += row[j] * heights[i]
+                right[j] += row[j] * height
                 for k in range(terms):
                     matrix[j, k] += row[j] * row[k]
-            square += heights[i] ** 2
+            square += height**2
             count += 1
     if count < _FEWEST:
-        return np.inf, 0.0
+        return 0.0, 0.0, edge
     found = np.linalg.solve(matrix, right)
     spread = square - right[0] ** 2 / count
     left = square - (found * right).sum()
     mean, half = (found[1] + found[2]) / 2, np.hypot((found[1] - found[2]) / 2, found[3] / 2)
-    most, least = mean + half, mean - half
-    if not (most > _AROUND**2 / (2 * _FLATTEST) and left < _UNLIKE * spread):
-        return np.inf, 0.0
-    round = (max(least, 0.0) / most) ** (2 / 3)  # nearly, of Hertz's ellipse
+    most, least = 2 * (mean + half) / _AROUND**2, 2 * (mean - half) / _AROUND**2
+    if not (most > 1 / _FLATTEST and left < _UNLIKE * spread):
+        return 0.0, 0.0, edge
+    return most, max(least, 0.0), edge
+
+
+@njit(cache=True, error_model="numpy")
+def _hertz(crown, load, long, modulus):
+    """(m2 of Hertz's contact on a crown, how round it is: its breadth over its length). long: m, of the contact, where
+    the crown is a line."""
+    most, least, _ = crown
+    round = (least / most) ** (2 / 3)  # nearly, of Hertz's ellipse
     if round <= _LINE:
-        radius = _AROUND**2 / (2 * most)
-        return min(4 * np.sqrt(load * long * radius / (np.pi * law.modulus)), most_area), round
-    radius = _AROUND**2 / (2 * np.sqrt(most * least))
-    return min(np.pi * (0.75 * load * radius / law.modulus) ** (2 / 3), most_area), round
+        return 4 * np.sqrt(load * long / (most * np.pi * modulus)), round
+    return np.pi * (0.75 * load / (np.sqrt(most * least) * modulus)) ** (2 / 3), round

@@ -39,8 +39,10 @@ def lie(points, touching, square, aside, along, spans, face, least, found):
     yy, zz, yz = syy / s - (sy / s) ** 2, szz / s - (sz / s) ** 2, syz / s - sy * sz / s**2
     middle, spread = (yy + zz) / 2, math.hypot((yy - zz) / 2, yz)
     most, least_moment = middle + spread + square / 12, max(middle - spread, 0.0)
-    thin = s / math.sqrt(12 * most)  # m, its breadth if it is a strip, within a row of points too
+    reach = math.sqrt(12 * most)  # m, its length if it is a strip
+    thin = s / reach
     longer = math.sqrt(s * math.sqrt(most / (least_moment + min(square, thin * thin) / 12)))
+    longer = max(min(longer, reach, face), math.sqrt(s))
     longer = max(longer, least)
     found[4] = longer if zz >= yy else s / longer
     for axis in range(2):

@@ -8,12 +8,17 @@ import numpy as np
 import pytest
 import trimesh
 
-from thermograsp.thermal import SKINS, Pad, material
+from thermograsp.thermal import SKINS, Pad, material, materials
 from thermograsp.thermal.contact import (
     FIRST_FORCE,
     FORCE_STEP,
     FORCES,
+    Surface,
+    conduction,
     curved_contact,
+    curved_shares,
+    face_joint,
+    flat_footprint,
     skinned,
 )
 from thermograsp.thermal.pressed import PressedMesh, pressed_view
@@ -57,3 +62,47 @@ def test_between_places_it_tells_what_the_springs_do(shape: str, skin: str | Non
     assert nearby.max() < 0.06
     assert np.sqrt(np.mean(nearby**2)) < 0.006
     assert np.sqrt(np.mean(here**2)) < (0.01 if skin is None else 0.05)
+
+
+def drawn(rng: np.random.Generator) -> trimesh.Trimesh:
+    """2 mm to 20 cm large, half of them turned."""
+    size, kind = float(np.exp(rng.uniform(np.log(2e-3), np.log(0.2)))), rng.integers(5)
+    if kind == 0:
+        mesh = trimesh.creation.box(size * rng.uniform(0.2, 1.0, 3))
+    elif kind == 1:
+        mesh = trimesh.creation.cylinder(
+            size / 2, size * rng.uniform(0.2, 3.0), sections=int(rng.choice([6, 24, 96]))
+        )
+    elif kind == 2:
+        mesh = trimesh.creation.icosphere(int(rng.integers(1, 5)), size / 2)
+    elif kind == 3:
+        mesh = trimesh.convex.convex_hull(rng.normal(size=(int(rng.integers(6, 60)), 3)) * size / 3)
+    else:
+        mesh = trimesh.creation.annulus(size / 4, size / 2, size)
+    if rng.random() < 0.5:
+        mesh.apply_transform(trimesh.transformations.random_rotation_matrix(rng.random(3)))
+    return mesh
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_of_any_mesh_more_force_is_more_heat_and_nothing_is_more_than_flat(skin: str | None) -> None:
+    rng, names = np.random.default_rng(11), sorted(materials())
+    worn, forces = SKINS[skin] if skin else None, np.geomspace(0.01, 300.0, 40)
+    for _ in range(6):
+        mesh, made = drawn(rng), material(str(rng.choice(names)))
+        vertices, faces = np.ascontiguousarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
+        one = PressedMesh(PAD, worn, made, vertices.tobytes(), faces.tobytes(), AXES.tobytes())
+        table, sheet = one.table(), skinned(PAD, worn)
+        flat = flat_footprint(sheet, face_joint(worn, Surface.of(made)), (0.5, 0.5))
+        most = conduction(flat, forces[-1], np.zeros(3))[1]
+        for place in rng.uniform(0.0, pressed_view(sheet, one.vertices, one.faces, one.axes).spans, (5, 2)):
+            found = np.array([curved_contact(table, force, *place) for force in forces.tolist()])
+            conducts, area, length = found.T
+            assert (np.maximum.accumulate(conducts) - conducts <= 0.1 * conducts.max()).all(), made.name
+            assert 0 <= conducts.min() and conducts.max() < 1.5 * most
+            assert 0 <= area.min() and area.max() <= PAD.face**2 * (1 + 1e-9)
+            assert 0 <= length.min() and length.max() <= PAD.face * (1 + 1e-9)
+            shares = np.zeros(4)
+            for force in forces[::8].tolist():
+                curved_shares(table, force, *place, shares)
+                assert 0 <= shares.min() and shares.max() <= 1 + 1e-12
