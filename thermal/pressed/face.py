@@ -26,7 +26,6 @@ from ..contact import (
     conductance,
     constricted,
 )
-from ..numerics import FAST
 from .height_map import HeightMap, map_heights
 from .lying import lie
 from .springs import Ring, borne, loads, lowered, on_face, rises, springs
@@ -136,7 +135,7 @@ def _press(
                         _no_more(at[n], at[n + 1])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def _flat(heights, cover, depth, span):
     """The share that touches of what the mesh covers of the face."""
     touches, covered = 0.0, 0.0
@@ -147,7 +146,7 @@ def _flat(heights, cover, depth, span):
     return touches / covered if covered > 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def _conduct(points, heights, cover, depth, area, load, where, law, resistance, crown, touching, beside, row):
     """Fills a row of `conducted`. crown: of _crown. touching: (C,) m2 of the contact at each point; beside: (C,), room.
     where: what `lie` takes after them, without a least length. load: N on the face."""
@@ -216,7 +215,7 @@ def _no_more(row, above):
     row[6] = min(row[6], above[6] + above[7] - row[7])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def _crown(points, heights, cover, counted, law):
     """(1/m, 1/m, whether it is at the face's edge): how curved the mesh is, more and less, around what of it comes to
     the face first; 0 and 0 where that is no crown: flat, or a shape that no paraboloid is."""

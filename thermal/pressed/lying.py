@@ -9,7 +9,6 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..contact import patch_ends, patch_offset
-from ..numerics import FAST
 
 _WHOLE = 0.98  # of the face: what is longer covers it, to its points
 
@@ -25,7 +24,7 @@ def end(shares: np.ndarray, lengths: np.ndarray) -> None:
         shares[:, :, end, 1], shares[:, :, end, 3] = 1.0, 1.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def lie(points, touching, square, aside, along, spans, face, least, found):
     """Writes a contact's shares and its length m to found (5,), by the moments of what of each point touches, m2; a
     point counts as a square of that area m2. aside, along: m, the pad's place. least: m, of the longer side."""

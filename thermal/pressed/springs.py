@@ -16,7 +16,6 @@ from thermograsp.compiled import njit
 
 from ..contact import FIRST_FORCE, FORCE_STEP, FORCES, Joint, Pad, Surface, face_joint, pad_joint
 from ..matter import Material, Skin
-from ..numerics import FAST
 
 _POINTS = 40  # along the pad's side
 _FINER = 4  # times as many on the face
@@ -103,7 +102,7 @@ def lowered(heights, cover):
     heights -= least
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def rises(heights, cover, slopes):
     """Writes to slopes (C,) by how many m the surface rises over the square of each of the points, the gentler of the
     two ways along both axes: a point at the edge of a crest is on it."""
@@ -120,7 +119,7 @@ def rises(heights, cover, slopes):
                 slopes[i] += least
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def borne(heights, cover, stiffness, slopes, load, deepest, touching):
     """(m by which the springs sink in, m2 of the C points that touches, its share of the load m3). Fills touching (C,)
     m2. cover: m2 of the points that lie under the surface. slopes: (n,) of rises. deepest: of depth_under."""
@@ -144,7 +143,7 @@ def _sunk(sunk, slope):
     return ahead * ahead / (2 * slope), ahead / slope
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(cache=True, error_model="numpy")
 def depth_under(heights, cover, stiffness, slopes, load, deepest):
     """m at which springs take the load, m3; -inf where there are none. slopes: (n,) of rises. deepest: m at which they
     take at least that, inf where no such depth is known."""
