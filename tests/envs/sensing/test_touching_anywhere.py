@@ -328,8 +328,8 @@ def test_anywhere_is_off_by_default_and_boxes_and_cylinders_take_it_where_asked(
 
 
 def test_a_fingertip_may_go_anywhere_on_a_mesh_as_often_as_it_likes(meshes):
-    """Each new place tells the field anew, and it must not grow by that. Where the line between the pads is tilted far, the
-    cube's edge touches the pad beside the sensor."""
+    """Each new place tells the field anew, and it must not grow by that. Where the line between the pads is tilted far,
+    the cube's edge touches the pad beside the sensor."""
     spec = ObjectSpec(shape="mesh", mesh=meshes["cube"], mass=0.05, friction=0.8)
     heat, rng = heat_of(grasp_body(spec, "plastic"), tolerance=0.05), np.random.default_rng(7)
     told = []
