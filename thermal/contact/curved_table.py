@@ -120,8 +120,10 @@ def _power(values):
     for i in range(values.shape[1]):
         for j in range(values.shape[2]):
             at = values[:, i, j, _CONTACT]
+            if at.min() <= 0.0:
+                continue
             for k in range(1, len(at)):
-                if at.min() > 0.0 and at[k] > _LITTLE * most:
+                if at[k] > _LITTLE * most:
                     found = max(found, math.log(at[k] / at[k - 1]) / FORCE_STEP)
     return min(found, _MOST_POWER)
 

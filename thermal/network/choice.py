@@ -65,10 +65,14 @@ class UnkeptToleranceError(InvalidValueError):
     """No network keeps a tolerance of `asked` K. kept: K of one that is kept."""
 
     def __init__(self, asked: float, kept: float) -> None:
-        self.kept = kept
+        self.asked, self.kept = asked, kept
         super().__init__(
             f"no network keeps {asked:g} K for this contact: give a tolerance of {1.05 * kept:.2g} K or more"
         )
+
+    def __reduce__(self) -> tuple[type[UnkeptToleranceError], tuple[float, float]]:
+        """Between processes it goes by its numbers, not by its message."""
+        return type(self), (self.asked, self.kept)
 
 
 def choose(samples: GeometrySamples, demand: Demand) -> Choice:

@@ -140,8 +140,8 @@ def pressed_view(
         places = np.stack([_places(pad.face, float(span)) for span in high - low])
     else:
         fine = np.stack([_fine(pad, span) for span in (high - low).tolist()])
-        sheet = bared(pad) if pad.face_stiffness is None else pad
-        places = _bent(PressedView(fine, sheet, seen, low, high - low))
+        bare = pad.face_stiffness is None
+        places = _bent(PressedView(fine, bared(pad) if bare else pad, seen, low, high - low), bare)
     places.flags.writeable = False
     return PressedView(places, pad, seen, low, high - low)
 
@@ -163,7 +163,7 @@ def _fine(pad: Pad, span: float) -> np.ndarray:
     )
 
 
-def _bent(view: PressedView) -> np.ndarray:
+def _bent(view: PressedView, bare: bool) -> np.ndarray:
     """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: where the face begins and ceases to be
     wholly over a mesh that touches it there, or to touch a crown in the middle, and then where what is felt of it,
     along the middle, is furthest from what a table would tell with those that there are."""
@@ -171,7 +171,7 @@ def _bent(view: PressedView) -> np.ndarray:
     for axis in range(2):
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
         some = (every, middle) if axis == 0 else (middle, every)
-        signed = _signed(view, view.touched(some=some))
+        signed = _signed(view.touched(some=some), bare)
         felt = _felt(signed)
         face, half = view.pad.face, view.pad.face / 2
         crown = [span / 2 + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
@@ -191,11 +191,10 @@ def _bent(view: PressedView) -> np.ndarray:
     return found
 
 
-def _signed(view: PressedView, touched: np.ndarray) -> np.ndarray:
+def _signed(touched: np.ndarray, bare: bool) -> np.ndarray:
     """(usual forces, places): about what contacts conduct over _HALF_FELT, W/K, as a table has it."""
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))[:, None, None]
     values = np.zeros((*touched.shape[:3], 6))
-    bare = view.pad.face_stiffness == bared(view.pad).face_stiffness
     values[..., 0] = touched[..., 1] * forces * _BARE if bare else touched[..., 0] * _SKINNED
     begin_contacts(values)
     return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_FELT
