@@ -289,7 +289,7 @@ def test_what_springs_bear_is_the_force() -> None:
             map_heights(*seen, np.stack([middle, *axes]), points, heights, cover)
             heights -= heights[cover > 0].min()
             load = force * sheet.thickness / sheet.foundation_modulus
-            depth = depth_under(heights, cover * areas, stiffness, np.zeros(len(points)), load, np.inf)
+            depth = depth_under(heights, cover * areas * stiffness, np.full(len(points), 1e-15), load, np.inf)
             held = (cover * areas * stiffness * np.maximum(depth - heights, 0.0)).sum()
             assert held == pytest.approx(load, rel=1e-6)
 

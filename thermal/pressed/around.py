@@ -17,7 +17,18 @@ from thermograsp.compiled import njit
 from ..contact import FORCES, PLACES, Pad, bared, curved_places, skinned
 from ..matter import Material, Skin
 from .mesh_table import conducting
-from .springs import Ring, borne, loads, lowered, rises, springs, touching_joint
+from .springs import (
+    Ring,
+    borne,
+    loads,
+    lowered,
+    no_springs,
+    rises,
+    springs,
+    touched_less,
+    touching_joint,
+    under,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +50,17 @@ class RoundRing:
         touched = np.zeros((FORCES, PLACES, PLACES, 2))
         length = math.inf if self.length is None else self.length
         shape = self.radius, length, self.length is None
-        _press_round(*shape, places, *springs(sheet, self.ring), loads(sheet), touched)
+        points = springs(sheet, self.ring)
+        near = no_springs(len(points.places))
+        _press_round(*shape, places, *points, loads(sheet), near, touched)
         return conducting(sheet, touching_joint(self.skin, self.body, self.ring), places, touched)
 
 
-@njit(cache=True, error_model="numpy")
-def _press_round(radius, length, ball, places, points, areas, stiffness, counted, loads, touched):
+@njit(cache=True, error_model="numpy", nogil=True)
+def _press_round(radius, length, ball, places, points, areas, stiffness, counted, loads, near, touched):
     """Fills touched of springs at (n, 2) points m, of which the first are looked at, under a ball, or under
     a cylinder of that length m along the second axis. loads: m3, forces over the stiffness of springs around the
-    face."""
+    face. near: room."""
     heights, cover = np.zeros(len(points)), np.zeros(len(points))
     slopes, touching = np.zeros(len(points)), np.zeros(counted)
     for a in range(places.shape[1]):
@@ -56,15 +69,14 @@ def _press_round(radius, length, ball, places, points, areas, stiffness, counted
             for i in range(len(points)):
                 y, z = points[i, 0] - places[0, a], points[i, 1] - places[1, b]
                 square = y * y + (z * z if ball else 0.0)
-                under = square < radius * radius and abs(z) <= length / 2
-                heights[i] = radius - math.sqrt(radius * radius - square) if under else 0.0
-                cover[i] = areas[i] if under else 0.0
+                inside = square < radius * radius and abs(z) <= length / 2
+                heights[i] = radius - math.sqrt(radius * radius - square) if inside else 0.0
+                cover[i] = areas[i] if inside else 0.0
             if cover[:counted].max() == 0.0:
                 continue
             lowered(heights, cover)
             rises(heights, cover, slopes[:counted])
-            depth = np.inf
+            depth, count = np.inf, under(heights, cover, stiffness, slopes, near)
             for n in range(len(loads) - 1, -1, -1):
-                depth, at[n, 0], at[n, 1] = borne(
-                    heights, cover, stiffness, slopes, loads[n], depth, touching
-                )
+                depth, at[n, 0], at[n, 1] = borne(near, count, cover, loads[n], depth, touching)
+                count = touched_less(near, count, depth)

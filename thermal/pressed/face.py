@@ -12,6 +12,7 @@ what the mesh covers of the face tells how flat that is.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,8 +28,8 @@ from ..contact import (
     constricted,
 )
 from .height_map import HeightMap, map_heights
-from .lying import lie
-from .springs import Ring, borne, loads, lowered, on_face, rises, springs
+from .lying import Moments, lie, mixed
+from .springs import Ring, borne, loads, lowered, no_springs, on_face, rises, springs, touched_less, under
 
 _AROUND = 1e-3  # m, within which a crown's curvature is told
 _LINE, _COMPACT = 0.1, 0.25
@@ -76,7 +77,9 @@ def conducted(pad: Pad, law: np.void, resistance: float, where: Seen) -> np.ndar
 
 def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[Any, ...]:
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))
-    of_pad = *springs(pad, ring), np.array(on_face(pad, ring)), loads(pad), forces
+    found = springs(pad, ring)
+    room = no_springs(len(found.places)), no_springs(len(found.places))
+    of_pad = *found, np.array(on_face(pad, ring)), loads(pad), forces, *room
     return (
         *where.seen,
         where.begin,
@@ -90,17 +93,18 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def _press(
     axes, corner, height, pitch, begin, places, some, spans, face, of_face, points, areas, stiffness, counted, span,
-    loads, forces, law, resistance, found,
+    loads, forces, near, soft, law, resistance, found,
 ):  # fmt: skip
     """Fills found, of `pressed` or `conducted`. of_face: whether the face is looked at, or a ring. span: from which of
-    the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face."""
+    the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face.
+    near, soft: room."""
     frame, rigid = np.zeros((4, 3)), law.modulus > 0.0
     frame[1:] = axes
     heights, cover, even = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
-    slopes, touching, other = np.zeros(len(points)), np.zeros(counted), np.zeros(counted)
+    slopes, touching, beside = np.zeros(len(points)), np.zeros(counted), np.zeros(counted)
     first = 1 if of_face else 0  # a face touches nothing at the ends
     last = places.shape[1] - first
     for a in range(max(some[0, 0], first), min(some[0, 1], last)):
@@ -118,50 +122,56 @@ def _press(
                     heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes[:counted])
             crown = _crown(points, heights, cover, counted, law) if rigid and of_face else (0.0, 0.0, False)
+            covered = cover[span[0] : span[1]].sum()
+            count = under(heights, cover, stiffness, slopes, near)
+            evenly = under(heights, cover, even, slopes, soft) if rigid else 0
             depth, soft_depth = np.inf, np.inf
             for n in range(len(loads) - 1, -1, -1):
-                depth, area, share = borne(heights, cover, stiffness, slopes, loads[n], depth, touching)
-                flat = _flat(heights, cover, depth, span) if rigid else 0.0
+                depth, area, share = borne(near, count, cover, loads[n], depth, touching)
+                count = touched_less(near, count, depth)
+                flat = _touches(near, count, cover, depth, span) / covered if rigid and covered > 0.0 else 0.0
                 if flat > _CURVED:
-                    soft_depth, _, soft = borne(heights, cover, even, slopes, loads[n], soft_depth, other)
-                    share += flat * (soft - share)
+                    soft_depth, _, softly = borne(soft, evenly, cover, loads[n], soft_depth, beside)
+                    evenly = touched_less(soft, evenly, soft_depth)
+                    share += flat * (softly - share)
                 if found.shape[3] == 2:
                     at[n, 0], at[n, 1] = area, share
                 else:
                     where, load = (areas[0], places[0, a], places[1, b], spans, face), share * forces[n]
-                    rows = touching, other, at[n]
-                    _conduct(points, heights, cover, depth, area, load, where, law, resistance, crown, *rows)
+                    what = heights, cover, depth, touching, beside
+                    _conduct(points, near, count, what, area, load, where, law, resistance, crown, at[n])
                     if n + 1 < len(loads):
                         _no_more(at[n], at[n + 1])
 
 
 @njit(cache=True, error_model="numpy")
-def _flat(heights, cover, depth, span):
-    """The share that touches of what the mesh covers of the face."""
-    touches, covered = 0.0, 0.0
-    for i in range(span[0], span[1]):
-        covered += cover[i]
-        if heights[i] < depth:
-            touches += cover[i]
-    return touches / covered if covered > 0.0 else 0.0
+def _touches(near, count, cover, depth, span):
+    """m2 of the face, covered by springs that touch in the middle."""
+    found = 0.0
+    for j in range(count):
+        if span[0] <= near.number[j] < span[1] and near.height[j] < depth:
+            found += cover[near.number[j]]
+    return found
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(points, heights, cover, depth, area, load, where, law, resistance, crown, touching, beside, row):
-    """Fills a row of `conducted`. crown: of _crown. touching: (C,) m2 of the contact at each point; beside: (C,), room.
-    where: what `lie` takes after them, without a least length. load: N on the face."""
+def _conduct(points, near, count, what, area, load, where, law, resistance, crown, row):
+    """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m and cover m2; m, by which
+    springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
+    without a least length. load: N on the face. crown: of _crown."""
+    heights, cover, depth, touching, beside = what
     face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
-    least, round = 0.0, 0.0
+    least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
     if area > 0.0:
-        lie(points, touching, *where, 0.0, found)
+        lie(touches, *where, 0.0, found)
         row[4] = found[4]
     if rigid and area > 0.0:
         long = max(row[4], area / row[4])
         if crown[0] > 0.0:
             hertz, round = _hertz(crown, load, long, law.modulus)
             hertz = min(hertz, cover[: len(touching)].sum() if crown[2] else area)
-            for i in range(len(touching)):
-                touching[i] *= hertz / area
+            touching *= hertz / area
+            touches = mixed(touches, hertz / area, touches, 0.0)
             area = hertz
         else:
             round = min(area / row[4] ** 2, row[4] ** 2 / area)
@@ -170,37 +180,73 @@ def _conduct(points, heights, cover, depth, area, load, where, law, resistance, 
     if area > 0.0:
         solid = conductance(law, load / area) * area
         solid = constricted(law, area, solid, law.constriction * _compact(round))
-        lie(points, touching, *where, least, found)
+        lie(touches, *where, least, found)
         row[4] = found[4]
-    gas, less = 0.0, 0.0
+    gas, less, around = 0.0, 0.0, touches
     if law.mean_gap > 0.0:
-        apart, gently = law.mean_gap - depth, law.gas * resistance
-        for i in range(len(touching)):
-            gap, free = max(apart + heights[i], law.mean_gap), max(cover[i] - touching[i], 0.0)
-            beside[i] = law.gas * free / gap
-            less += free / (gap + gently)
-            gas += beside[i]
-        less *= law.gas
+        gap = law.mean_gap - depth, law.mean_gap, law.gas * resistance
+        less, around = _beside(points, heights, cover, touching, gap, beside)
+        gas, less, around = law.gas * around.s, law.gas * less, mixed(around, law.gas, around, 0.0)
     total, wide = solid + gas, area
-    around = gas
+    freely = gas
     if gas > 0.0:
         rest = max(face * face - area, 0.0)
         wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
         # what would flow under the contact without force is as wide as beside a constricted one
-        around = min(gas + law.gas / law.mean_gap * area, total)
+        freely = min(gas + law.gas / law.mean_gap * area, total)
         if not rigid:
-            wide = area + (wide - area) * gas / around
-        for i in range(len(touching)):
-            beside[i] *= wide / gas
-        lie(points, beside, *where, least, found)
+            wide = area + (wide - area) * gas / freely
+        lie(mixed(around, wide / gas, around, 0.0), *where, least, found)
         row[5] = found[4]
-    patch = ((total - around) * area + around * wide) / total if total > 0.0 else 0.0
-    for i in range(len(touching)):
-        touching[i] = patch / total * (touching[i] * (solid / area) if area > 0.0 else 0.0)
-        touching[i] += patch / total * beside[i] * (gas / wide) if gas > 0.0 else 0.0
-    lie(points, touching, *where, least, found)
+    if total > 0.0:
+        patch = ((total - freely) * area + freely * wide) / total
+        one, other = solid / area if area > 0.0 else 0.0, 1.0 if gas > 0.0 else 0.0
+        lie(mixed(touches, patch / total * one, around, patch / total * other), *where, least, found)
     row[:4] = found[:4]
-    row[6], row[7], row[8], row[9] = total - around, around, area, wide
+    row[6], row[7], row[8], row[9] = total - freely, freely, area, wide
+
+
+@njit(cache=True, error_model="numpy")
+def _contact_moments(points, near, count, touching):
+    """Moments of what touches."""
+    s, y, z, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for j in range(count):
+        i = near.number[j]
+        if i >= len(touching):
+            break
+        w, at, along = touching[i], points[i, 0], points[i, 1]
+        s, y, z = s + w, y + w * at, z + w * along
+        yy, yz, zz = yy + w * at * at, yz + w * at * along, zz + w * along * along
+    return Moments(s, y, z, yy, yz, zz)
+
+
+@njit(cache=True, error_model="numpy")
+def _beside(points, heights, cover, touching, gap, rows):
+    """(m, moments over m) of what does not touch, over its gap: of the moments' gaps m `gap` has what is above the
+    heights and the least of all, and for the first a length more. rows: (C,), room."""
+    apart, narrowest, more = gap
+    side = round(math.sqrt(len(touching)))
+    sums = rows[: 4 * side].reshape(4, side)
+    sums[:] = 0.0
+    gently, flows, along, squares = sums[0], sums[1], sums[2], sums[3]
+    for row in range(side):
+        # a row's sums do not depend on each other, so that they are made side by side
+        z = points[row * side, 1]
+        for k in range(side):
+            i = row * side + k
+            free, far = max(cover[i] - touching[i], 0.0), max(apart + heights[i], narrowest)
+            flow = free / far
+            gently[k] += free / (far + more)
+            flows[k] += flow
+            along[k] += flow * z
+            squares[k] += flow * z * z
+    less, s, y, z, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(side):
+        at = points[k, 0]
+        less += gently[k]
+        s, y, z = s + flows[k], y + flows[k] * at, z + along[k]
+        yy, yz, zz = yy + flows[k] * at * at, yz + along[k] * at, zz + squares[k]
+    return less, Moments(s, y, z, yy, yz, zz)
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -88,12 +88,15 @@ def _rasterise(vertices, faces, bulges, corner, pitch, height):
 @njit(cache=True, short_loops=True, error_model="numpy")
 def map_heights(axes, corner, mapped, pitch, frame, places, height, cover):
     """Writes heights and coverage (n,) at places (n, 2) m of the pad, from a map of pitch m."""
-    for i in range(len(places)):
-        u, v = 0.0, 0.0
+    across = np.zeros((2, 3))  # of the pad's middle and of its two axes, along the map's, in nodes
+    for axis in range(2):
         for k in range(3):
-            at = frame[0, k] + places[i, 0] * frame[2, k] + places[i, 1] * frame[3, k]
-            u, v = u + at * axes[1, k], v + at * axes[2, k]
-        u, v = (u - corner[0]) / pitch, (v - corner[1]) / pitch
+            for row, vector in enumerate((frame[0], frame[2], frame[3])):
+                across[axis, row] += vector[k] * axes[1 + axis, k] / pitch
+        across[axis, 0] -= corner[axis] / pitch
+    for i in range(len(places)):
+        u = across[0, 0] + places[i, 0] * across[0, 1] + places[i, 1] * across[0, 2]
+        v = across[1, 0] + places[i, 0] * across[1, 1] + places[i, 1] * across[1, 2]
         a, b = math.floor(u), math.floor(v)
         u, v = u - a, v - b
         total, seen = 0.0, 0.0

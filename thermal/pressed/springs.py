@@ -19,6 +19,8 @@ from ..matter import Material, Skin
 
 _POINTS = 40  # along the pad's side
 _FINER = 4  # times as many on the face
+_LANES = 64
+_LEAST_RISE = 1e-15  # m, of a flat surface over a point
 _STEPS = 50
 _TOLERANCE = 1e-12  # of the force
 
@@ -119,49 +121,98 @@ def rises(heights, cover, slopes):
                 slopes[i] += least
 
 
+class Near(NamedTuple):
+    """Springs that may come to touch, the first of so many rows: their numbers, heights m, spring m2 (cover times
+    stiffness) and slopes m, of rises."""
+
+    number: np.ndarray
+    height: np.ndarray
+    spring: np.ndarray
+    slope: np.ndarray
+
+
+def no_springs(count: int) -> Near:
+    """Room for so many."""
+    return Near(np.zeros(count, np.int64), np.zeros(count), np.zeros(count), np.zeros(count))
+
+
 @njit(cache=True, error_model="numpy")
-def borne(heights, cover, stiffness, slopes, load, deepest, touching):
+def under(heights, cover, stiffness, slopes, near):
+    """Fills near with the springs that lie under the surface; their count. cover: m2 of each point."""
+    count = 0
+    for i in range(len(heights)):
+        if cover[i] > 0.0:
+            near.number[count], near.height[count] = i, heights[i]
+            near.spring[count], near.slope[count] = cover[i] * stiffness[i], max(slopes[i], _LEAST_RISE)
+            count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def touched_less(near, count, depth):
+    """The count of springs that touch at that depth m, or a lesser one: near is left with them."""
+    left = 0
+    for j in range(count):
+        if near.height[j] - near.slope[j] / 2 < depth:
+            near.number[left], near.height[left] = near.number[j], near.height[j]
+            near.spring[left], near.slope[left] = near.spring[j], near.slope[j]
+            left += 1
+    return left
+
+
+@njit(cache=True, error_model="numpy")
+def borne(near, count, cover, load, deepest, touching):
     """(m by which the springs sink in, m2 of the C points that touches, its share of the load m3). Fills touching (C,)
-    m2. cover: m2 of the points that lie under the surface. slopes: (n,) of rises. deepest: of depth_under."""
-    depth, held = depth_under(heights, cover, stiffness, slopes, load, deepest), 0.0
-    for i in range(len(touching)):
-        sunk, part = _sunk(depth - heights[i], slopes[i])
+    m2. near, count: of `under`. deepest: of depth_under."""
+    depth = depth_under(near.height[:count], near.spring[:count], near.slope[:count], load, deepest)
+    area, held = 0.0, 0.0
+    touching[:] = 0.0
+    for j in range(count):
+        i = near.number[j]
+        if i >= len(touching):
+            break
+        sunk, part = _sunk(depth - near.height[j], near.slope[j])
         touching[i] = cover[i] * part
-        held += cover[i] * stiffness[i] * sunk
-    return depth, touching.sum(), held / load
+        area += touching[i]
+        held += near.spring[j] * sunk
+    return depth, area, held / load
 
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _sunk(sunk, slope):
     """(m by which a point's square has sunk in on the mean, the part of it that touches), where its middle has by so
-    many m and the surface rises by `slope` over it."""
+    many m and the surface rises by `slope` over it, more than 0."""
     ahead = sunk + slope / 2
-    if ahead <= 0.0:
-        return 0.0, 0.0
-    if ahead >= slope:
-        return sunk, 1.0
-    return ahead * ahead / (2 * slope), ahead / slope
+    part = ahead / slope
+    part = part if part > 0.0 else 0.0
+    part = part if part < 1.0 else 1.0
+    more = ahead - slope
+    return slope * part * part / 2 + (more if more > 0.0 else 0.0), part
 
 
 @njit(cache=True, error_model="numpy")
-def depth_under(heights, cover, stiffness, slopes, load, deepest):
-    """m at which springs take the load, m3; -inf where there are none. slopes: (n,) of rises. deepest: m at which they
-    take at least that, inf where no such depth is known."""
-    depth, whole = load, 0.0
+def depth_under(heights, springs, slopes, load, deepest):
+    """m at which springs m2 take the load, m3; -inf where there are none. slopes: (n,) of rises, more than 0. deepest:
+    m at which they take at least that, inf where no such depth is known."""
+    depth, whole, most = load, 0.0, 0.0
     for i in range(len(heights)):
-        depth += cover[i] * stiffness[i] * heights[i]
-        whole += cover[i] * stiffness[i]
+        depth += springs[i] * heights[i]
+        whole += springs[i]
+        most = max(most, slopes[i])
     if whole == 0.0:
         return -np.inf
-    depth = min(depth / whole + slopes.max() / 2, deepest)  # if all pushed: at least as deep as it will be
+    depth = min(depth / whole + most / 2, deepest)  # if all pushed: at least as deep as it will be
+    loads, rates = np.empty(_LANES), np.empty(_LANES)
     for _ in range(_STEPS):
-        held, rate = 0.0, 0.0
-        for i in range(len(heights)):
-            sunk, part = _sunk(depth - heights[i], slopes[i])
-            spring = cover[i] * stiffness[i]
-            held += spring * sunk
-            rate += spring * part
-        wrong = held - load
+        loads[:], rates[:] = 0.0, 0.0
+        for first in range(0, len(heights), _LANES):
+            at = slice(first, first + _LANES)
+            height, spring, slope = heights[at], springs[at], slopes[at]
+            for i in range(len(height)):  # sums that do not depend on each other are made side by side
+                sunk, part = _sunk(depth - height[i], slope[i])
+                loads[i] += spring[i] * sunk
+                rates[i] += spring[i] * part
+        wrong, rate = loads.sum() - load, rates.sum()
         if rate == 0.0 or abs(wrong) <= _TOLERANCE * load:
             break
         depth -= wrong / rate

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -61,7 +62,8 @@ class PairLaws(NamedTuple):
     @property
     def all_tables(self) -> np.ndarray:
         """(K + pressed, CURVED_TABLE), one of zeros where there are none."""
-        return stacked([*self.tables, *(each.table() for each in self.pressed)])
+        with ThreadPoolExecutor() as threads:
+            return stacked([*self.tables, *threads.map(lambda each: each.table(), self.pressed)])
 
 
 def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> PairLaws:
