@@ -61,7 +61,11 @@ OTHERS: list[tuple[Call, Any, str]] = [
     (lambda value: SimulationConfig(solver=value), 3, "solver must be SolverSettings"),
     (lambda value: GraspBatch(plant=value), 3, "unknown plant '3'; known: "),
     (lambda value: GraspVectorEnv(plant=value), None, "unknown plant 'None'; known: "),
-    (lambda value: SimulationConfig(anywhere=value), "yes", "anywhere must be True or False, got 'yes'"),
+    (
+        lambda value: SimulationConfig(anywhere=value),
+        "yes",
+        "anywhere must be True, False or 'auto', got 'yes'",
+    ),
     (lambda value: SimulationConfig(cache=value), 0.5, "cache must be True or False, got 0.5"),
     (lambda value: SimulationConfig(objects=value).shapes, [], "objects is an empty list"),
     (lambda value: ObjectSpec(position=value), 3, "position must be 2 finite numbers, got 3"),

@@ -222,6 +222,13 @@ class GraspBody:
         return 0.0 if self.mode == "O" else self.spec.grasp_height - self.spec.size[2] / 2
 
     @property
+    def edge_room(self) -> float:
+        """m from the sensor's face, where the fingers close, to the nearest end of the face that they meet; below 0
+        where that ends under it."""
+        first, second = self._face
+        return min(first, second - 2 * abs(self._up)) / 2 - self.stack.width / 2
+
+    @property
     def _face(self) -> tuple[float, float]:
         """m, the flat face that the pads meet; of a mesh that they miss, as wide as its bounding box."""
         return (self.stack.width, self.stack.width) if self.mode == "O" else self._sides

@@ -59,7 +59,8 @@ if TYPE_CHECKING:
     from ..readout import FaceTemperature
 
 AUTO = "auto"
-"""A skin where one is needed; see SimulationConfig."""
+"""A skin where one is needed, heat that knows where it enters where that matters; see SimulationConfig."""
+_ROOM = 0.002  # m between a sensor's face and a box's edge, from which on the edge is not felt
 
 
 @dataclass(frozen=True)
@@ -76,15 +77,16 @@ class SimulationConfig:
     (its setpoint is sensor_temperature, its ambient the room where that is given), None for an ideal one. placement: m
     and degree; the object lies within +- these of its own place, drawn per episode. randomize: what else differs from
     episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one). anywhere:
-    heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; without, each patch
-    is the middle of a face. gripper: an MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None
-    for the shipped one. solver: MuJoCo's time step and settings. substeps: of MuJoCo in a control step, which must be a
-    whole number of 10 ms samples. threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the
-    fingertips, a name of thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose
-    material is `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n,
-    m) of the map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each
-    sensor's face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to
-    boxes: the name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for a
+    heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; False: each patch is
+    the middle of a face; "auto": it knows on boxes whose edges may come within 2 mm of a sensor's face. gripper: an
+    MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None for the shipped one. solver: MuJoCo's
+    time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10 ms samples.
+    threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a name of
+    thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose material is
+    `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n, m) of the
+    map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each sensor's
+    face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to boxes: the
+    name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for a
     sensor by itself. It conducts as well as the sensor's contact, and heat flows, heat and surfaces' temperatures that
     an environment tells are then those of element and pad together."""
 
@@ -103,7 +105,7 @@ class SimulationConfig:
     placement: tuple[float, float] = (0.002, 2.0)
     randomize: Sequence[Cause] = ()
     fingertips: Literal[1, 2] = 2
-    anywhere: bool = False
+    anywhere: bool | Literal["auto"] = AUTO
     gripper: Any = None
     solver: SolverSettings = SHIPPED
     substeps: int = SUBSTEPS
@@ -155,9 +157,12 @@ class SimulationConfig:
             )
         if not isinstance(self.solver, SolverSettings):
             raise InvalidValueError(f"solver must be SolverSettings, got {self.solver!r}")
-        for name in ("anywhere", "cache"):
-            if not isinstance(getattr(self, name), bool | np.bool_):
-                raise InvalidValueError(f"{name} must be True or False, got {getattr(self, name)!r}")
+        if not isinstance(self.cache, bool | np.bool_):
+            raise InvalidValueError(f"cache must be True or False, got {self.cache!r}")
+        if isinstance(self.anywhere, bool | np.bool_):
+            object.__setattr__(self, "anywhere", bool(self.anywhere))
+        elif self.anywhere != AUTO:
+            raise InvalidValueError(f"anywhere must be True, False or 'auto', got {self.anywhere!r}")
         whole_number("threads", self.threads)
         period = whole_number("substeps", self.substeps, 1) * self.solver.timestep
         if self.samples < 1 or abs(period - self.samples * SAMPLE_PERIOD) > 1e-9:
@@ -207,7 +212,10 @@ class SimulationConfig:
         _ = self.around  # checks it
         for given, why in (
             (self.thermostat is not None, "a thermostat of finite power: leave thermostat out"),
-            (self.anywhere, "anywhere=True: its networks are those of flat plates; leave anywhere out"),
+            (
+                self.anywhere is True,
+                "anywhere=True: its networks are those of flat plates; leave anywhere out",
+            ),
             (self.face_temperature is not None, "a map of face_temperature: leave it out"),
         ):
             if given:
@@ -414,7 +422,7 @@ class SimulationConfig:
             self.fingertips,
             drawn["roughness_factor"],
             usual if room is None else room,
-            self.anywhere,
+            self._anywhere(spec),
             self.any_size,
             self.worn,
             self.around,
@@ -485,27 +493,38 @@ class SimulationConfig:
         drawn = next((cause for cause in self.randomize if isinstance(cause, Size)), None)
         if drawn is None or self.mode == "O" or self.surround is not None:
             return False
-        if self.anywhere:
-            return self.by_kernels
-        from ..sensing import served_in_the_middle
-
-        return all(
-            served_in_the_middle(
-                scaled(shape, min(drawn.extremes)), self.stack, self.tolerance, self._most_difference(shape)
-            )
-            for shape in self.shapes
-        )
+        return all(self._by_kernels(scaled(shape, min(drawn.extremes))) for shape in self.shapes)
 
     @cached_property
     def by_kernels(self) -> bool:
         """Whether the networks of all objects come from heat kernels."""
-        if not self.anywhere or self.mode == "O":
-            return self.any_size
-        from ..sensing import served_anywhere
+        places = self.mode == "T" and all(map(self._anywhere, self.shapes))
+        return self.any_size or places and all(map(self._by_kernels, self.shapes))
 
-        return all(
-            served_anywhere(shape, self.tolerance, self._most_difference(shape)) for shape in self.shapes
-        )
+    def _anywhere(self, spec: ObjectSpec) -> bool:
+        """Whether heat knows where it enters that object."""
+        if self.anywhere != AUTO:
+            return bool(self.anywhere)
+        plain = spec.shape == "box" and not spec.parts and spec.reservoir is None
+        if self.mode == "O" or self.surround is not None or not plain:
+            return False
+        body = GraspBody(spec, self.choices[0], self.object_temperature, self.mode, self.stack)
+        if body.edge_room < self.placement[0] + _ROOM:
+            return True
+        drawn = any(isinstance(cause, Size) for cause in self.randomize)
+        return drawn and self._served(spec, anywhere=True) and not self._served(spec, anywhere=False)
+
+    def _by_kernels(self, spec: ObjectSpec) -> bool:
+        return self._served(spec, anywhere=self._anywhere(spec))
+
+    def _served(self, spec: ObjectSpec, *, anywhere: bool) -> bool:
+        """Whether heat kernels keep the tolerance of that object."""
+        from ..sensing import served_anywhere, served_in_the_middle
+
+        difference = self._most_difference(spec)
+        if anywhere:
+            return served_anywhere(spec, self.tolerance, difference)
+        return served_in_the_middle(spec, self.stack, self.tolerance, difference)
 
     def _most_difference(self, shape: ObjectSpec) -> float:
         """K between a sensor and the object or the air, at most."""

@@ -68,7 +68,7 @@ def test_a_cause_is_drawn_within_its_range_and_told(cause):
     "keywords",
     [
         {"objects": ObjectSpec(shape="cylinder", size=(0.05, 0.05, 0.06))},
-        {"objects": ObjectSpec(size=(0.009, 0.04, 0.04))},
+        {"objects": ObjectSpec(size=(0.009, 0.04, 0.04)), "anywhere": False},
         {"tolerance": 0.03},
         {"object_temperature": 10.0},
         {"mode": "O"},

@@ -16,6 +16,7 @@ from thermograsp.envs import (
     GraspBody,
     GraspTask,
     ObjectSpec,
+    SimulationConfig,
     action_of,
     ice,
     water,
@@ -42,6 +43,8 @@ SETTINGS = {
     "samples": 2,
     "sensor_temperature": 36.0,
 }
+FACTORS = dict.fromkeys(("size_factor", "mass_factor", "friction_factor", "roughness_factor"), 1.0)
+FACTORS["object_temperature_shift"] = 0.0
 BAR = ObjectSpec(size=(0.01, 0.07, 0.024), mass=0.1, friction=0.8)
 LEFT = np.array([-0.005, 0.0, 0.0])
 
@@ -315,7 +318,7 @@ def test_solids_of_the_plain_shapes_have_their_volume():
         assert solid.bounds == pytest.approx(np.outer([-0.5, 0.5], spec.size), rel=2e-3)
 
 
-def test_anywhere_is_off_by_default_and_boxes_and_cylinders_take_it_where_asked():
+def test_cubes_and_cylinders_are_touched_anywhere_where_that_is_asked():
     round_one = ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05))
     box = GraspBatch(1, material="glass", task=ENDLESS)
     plain = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one)
@@ -325,6 +328,44 @@ def test_anywhere_is_off_by_default_and_boxes_and_cylinders_take_it_where_asked(
         batch.reset([0], [np.random.default_rng(0)])
         step = batch.step(action_of(0.085, 10.0, 0.0)[None])
         assert step.info(0)["rung"].startswith(rung)
+
+
+@pytest.mark.parametrize(
+    ("spec", "placement", "places"),
+    [
+        (ObjectSpec(), (0.002, 2.0), False),
+        (ObjectSpec(size=(0.04, 0.014, 0.04)), (0.002, 2.0), True),
+        (ObjectSpec(size=(0.04, 0.018, 0.04)), (0.002, 2.0), False),
+        (ObjectSpec(size=(0.04, 0.018, 0.04)), (0.006, 2.0), True),
+        (ObjectSpec(size=(0.04, 0.005, 0.04)), (0.0, 0.0), True),
+        (ObjectSpec(size=(0.04, 0.04, 0.012)), (0.0, 0.0), True),
+        (ObjectSpec(size=(0.005, 0.04, 0.04), yaw=np.pi / 2), (0.0, 0.0), True),
+        (ObjectSpec(shape="cylinder", size=(0.014, 0.014, 0.04)), (0.002, 2.0), False),
+    ],
+)
+def test_heat_knows_where_it_enters_a_box_whose_edge_may_be_near(spec, placement, places):
+    for tolerance in (0.05, 0.02):
+        config = SimulationConfig(objects=spec, placement=placement, tolerance=tolerance)
+        body = config.body(config.stack, thermal.material("glass"), spec, FACTORS)
+        assert body.anywhere is places
+    if not spec.yaw:
+        config = SimulationConfig(objects=spec, placement=placement, mode="O", material="glass")
+        assert not config.body(config.stack, thermal.material("glass"), spec, FACTORS).anywhere
+
+
+@pytest.mark.parametrize(("size", "off"), [((0.04, 0.005, 0.04), 0.2), ((0.04, 0.04, 0.012), 1.5)])
+def test_what_a_face_reaches_beyond_is_felt_by_default(size, off):
+    """A bar narrower than the sensor's face, and an object lower than where the faces end."""
+    drops = []
+    for more in ({}, {"anywhere": True}, {"anywhere": False}):
+        batch = GraspBatch(
+            1, material="glass", task=ENDLESS, objects=ObjectSpec(size=size), placement=(0.0, 0.0), **more
+        )
+        batch.reset([0], [np.random.default_rng(0)])
+        for _ in range(100):
+            step = batch.step(action_of(0.0, 8.0, 0.0)[None])
+        drops.append(step.info(0)["temperature_drop"][0])
+    assert drops[0] == drops[1] and drops[2] - drops[0] > off
 
 
 def test_a_fingertip_may_go_anywhere_on_a_mesh_as_often_as_it_likes(meshes):
