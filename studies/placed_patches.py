@@ -1,10 +1,10 @@
 """Contacts at the edge of a face under ThermalTouch beside finite volumes in three dimensions.
 
-A fingertip with the usual skin touches a block by a rectangle of even conductance: a part of the sensor's face that the
-block covers, or a narrow patch such as a rod or a ball leaves, in the middle, at the face's edge or at the block's. The
-heat of ThermalTouch takes the rectangle as its columns tell it; the volumes (cells of touch_volumes.py) conduct from
-each cell of the fingertip's face that lies on the rectangle into the block's cell below it, and nowhere else. Compared
-is the temperature drop after TIMES s; two grids tell what the volumes are good to.
+A fingertip, most with the usual skin, touches a block by a rectangle of even conductance: a part of the sensor's face
+that the block covers, or a narrow patch such as a rod or a ball leaves, in the middle, at the face's edge or at the
+block's. The heat of ThermalTouch takes the rectangle as its columns tell it; the volumes (cells of touch_volumes.py)
+conduct from each cell of the fingertip's face that lies on the rectangle into the block's cell below it, and nowhere
+else. Compared is the temperature drop after TIMES s; two grids tell what the volumes are good to.
 
     python studies/placed_patches.py               every case, some minutes
     python studies/placed_patches.py half --json
@@ -63,12 +63,13 @@ Span = tuple[float, float]
 @dataclass(frozen=True, slots=True)
 class Case:
     """A rectangle on the sensor's face: y and z m from its middle, W/(m2 K), and the y m of the block's middle; along z
-    all is symmetric."""
+    all is symmetric. skin: of the fingertip."""
 
     y: Span
     half_z: float
     conductance: float
     block: float
+    skin: str | None = "filled_silicone"
 
 
 _H = 0.0045
@@ -77,6 +78,7 @@ CASES = {
     "half": Case((-_H, 0.0), _H, 2.5e5, -SIDE / 2),
     "three quarters": Case((-_H, _H / 2), _H, 2.1e5, _H / 2 - SIDE / 2),
     "rod in the middle": Case((-0.0008, 0.0008), _H, 5e5, 0.0),
+    "line of a bare rod": Case((-0.00015, 0.00015), _H, 1.4e5, 0.0, None),
     "rod off the middle": Case((0.0022, 0.0038), _H, 5e5, 0.0),
     "rod at the face's edge": Case((0.0029, _H), _H, 5e5, 0.0),
     "rod that ends": Case((-_H, 0.0), 0.0008, 5e5, -SIDE / 2),
@@ -88,14 +90,14 @@ CASES = {
 
 
 @lru_cache
-def touch_on(made_of: str) -> ThermalTouch:
+def touch_on(made_of: str, skin: str | None) -> ThermalTouch:
     """Of a fingertip above a block that looks down."""
     model = mujoco.MjModel.from_xml_string(f"""
       <mujoco><worldbody>
         <body name="block"><geom name="block" type="box" size="{SIDE / 2} {SIDE / 2} {SIDE / 2}"/></body>
         <body name="tip" pos="0 0 .1"><geom name="tip" type="box" size=".01 .01 .004"/></body>
       </worldbody></mujoco>""")
-    tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), temperature=WARM, skin="filled_silicone")
+    tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), temperature=WARM, skin=skin)
     return ThermalTouch(
         model, fingertips={"tip": tip}, objects={"block": made_of}, air=0.0, ambient=COOL, chain="ideal"
     )
@@ -103,7 +105,7 @@ def touch_on(made_of: str) -> ThermalTouch:
 
 def by_network(case: Case, made_of: str) -> tuple[float, ...]:
     """K of drop after TIMES."""
-    touch = touch_on(made_of)
+    touch = touch_on(made_of, case.skin)
     width = touch._pads[0].stack.width
     heat = JoinedHeat(
         touch._pads, (), touch._shapes, worlds=1, dt=0.01, tolerance=0.05, film=0.0, ambient=COOL
@@ -146,7 +148,7 @@ def _lines_of(low: float, high: float, patch: Span, refine: float) -> tuple[np.n
 
 def by_volumes(case: Case, made_of: str, refine: float) -> tuple[float, ...]:
     """K of drop after TIMES in half of both bodies."""
-    stack, matter = touch_on(made_of)._pads[0].stack, material(made_of)
+    stack, matter = touch_on(made_of, case.skin)._pads[0].stack, material(made_of)
     half = stack.width / 2
     first = min(1.2e-4, case.half_z / 6) / refine
     patch_z = case.half_z - lines(0.0, case.half_z, round(5 * refine), first)[::-1]

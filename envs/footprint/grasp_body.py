@@ -157,8 +157,9 @@ class GraspBody:
 
     @cached_property
     def face_area(self) -> float:
-        """m2 that touch the sensor's face; a curved object's patch is that of NOMINAL_FORCE, its middle before the
-        pad's. On a bare face it is wider than what touches: see even_patch."""
+        """m2 of the patch on the sensor's face; a curved object's is that of NOMINAL_FORCE, its middle before the
+        pad's. On a bare face it is wider than what touches: see even_patch. Under a cylinder it is the square that
+        impedes heat as the strip does that touches."""
         nominal = self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, 0.0))
         area = float(nominal.face)
         if self._on_bare_face:
@@ -171,6 +172,11 @@ class GraspBody:
             raise InvalidValueError(
                 f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face"
             )
+        if self.contact_shape == "cylinder" and self.mode == "T":
+            from ...thermal.curves import equal_square
+
+            length = min(self.stack.width, self.spec.size[2])
+            return equal_square(self.stack, self.skin is not None, self.touched, area, length)
         return min(area, self.stack.face_area)
 
     def check_felt(self) -> None:

@@ -59,7 +59,7 @@ enum {
   MOMENTS = 16,   /* at which networks are fitted */
   POLES = 3,      /* pairs, of a step */
   SERIES = 13,    /* terms of the separation of rough faces */
-  WIDTHS = 9,     /* widths in a table of narrow contacts */
+  WIDTHS = 13,    /* widths in a table of narrow contacts */
   SPREAD = 4 * WIDTHS * WIDTHS, /* and contacts of which it tells */
   AFTERWARDS = 15 /* times over which a field is followed to a new place */
 };

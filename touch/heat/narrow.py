@@ -1,8 +1,8 @@
 """Contacts narrower than the sensor's face: what heat has still to spread there.
 
 The networks of fields.py know patches of the sensor's whole face. Under a contact of p by q that is narrower the two
-bodies have more impedance, Z(p, q) - Z(width, width), which builds up as heat spreads. It is taken from the heat
-kernels of the element (thermal/kernels/element.py) and of a half-space and put on the networks' rates: Z = sum b_k^2 /
+bodies have more impedance, Z(p, q) - Z(width, width), which builds up as heat spreads. It is taken from heat
+kernels (thermal/curves/narrow.py) and put on the networks' rates: Z = sum b_k^2 /
 (s + rate_k). Its states, c_k' = -rate_k c_k + b_k q with q W through the contact, put the difference sum b_k c_k
 between its faces. They hold no heat, they tell where it is. As the same b_k send and receive, they are passive whatever
 the widths do.
@@ -21,38 +21,20 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.special import erf
 
 from thermograsp.compiled import njit
 
 from ...thermal import Material, SensorStack
 from ...thermal.contact import NARROW
-from ...thermal.kernels import (
-    GRAM,
-    GRASP,
-    OF_GRASP,
-    TIMES,
-    TO_MOMENTS,
-    Resolution,
-    before,
-    element_samples,
-    residues,
-)
+from ...thermal.curves import CONFORMING, LAPPED, half_space_impedance, stack_impedance
+from ...thermal.kernels import Resolution, residues
 from ..scene import PadPlace
 
-STEPS = 9
+STEPS = 13
 """Widths of a table: the sensor's, and each the last one's over the root of 2; narrower ones count as the last."""
 _ROOT = 2.0**0.5
 _FINEST = 3e4
 """W/(m2 K) of the contact beside which errors of the impedance are weighed."""
-
-_CONFORMING, _LAPPED = 1e5, 1e4
-"""W/(m2 K) of contacts with a skin and without, roughly: the more, the less even is the flow through a narrow one."""
-
-_EVEN_TEMPERATURE = 0.08
-"""By which a square source of even temperature has less resistance than one of even flow has on the mean: .433 and .473
-over k times its side (Yovanovich & Marotta, Thermal spreading and contact resistances, in Bejan & Kraus, Heat Transfer
-Handbook, 2003)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +59,7 @@ def narrow_sides(pad: PadPlace, target: Material | PadPlace) -> tuple[Side, Side
 
 
 def _side(pad: PadPlace) -> Side:
-    return (None if pad.bare else pad.stack, _LAPPED if pad.skin is None else _CONFORMING)
+    return (None if pad.bare else pad.stack, LAPPED if pad.skin is None else CONFORMING)
 
 
 @lru_cache(maxsize=4096)
@@ -92,9 +74,9 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
     if isinstance(matter, Beside):
         known = _of_part(np.array(matter.impedance), width**2 / np.outer(widths, widths))
     elif isinstance(matter, SensorStack):
-        known = _of_stack(matter, conducts, widths)
+        known = stack_impedance(matter, conducts, widths)
     else:
-        known = _of_half_space(matter, conducts, widths)
+        known = half_space_impedance(matter, conducts, widths)
     area = np.outer(widths, widths)
     for first, second, i, j in np.ndindex(table.shape[:-1]):
         each, whole = known[first, second, i, j], known[first, second, 0, 0]
@@ -115,47 +97,9 @@ def narrow_tables(
     return tables, np.array([numbers[key] for key in keys]).reshape(-1, 2)
 
 
-def _of_stack(stack: SensorStack, conducts: float, widths: np.ndarray) -> np.ndarray:
-    """(2, 2, J, J, S) K/W at GRASP: mean temperature of contacts of these widths m on the element's face, per flow
-    through them, beside a contact that conducts so many W/(m2 K)."""
-    whole, count = stack.width, len(widths)
-    ends = [[((whole - p) / 2, (whole + p) / 2), (0.0, p)] for p in np.minimum(widths, whole).tolist()]
-    known = np.empty((2, 2, count, count, len(range(*OF_GRASP.indices(len(TO_MOMENTS))))))
-    for first, second, i, j in np.ndindex(known.shape[:-1]):
-        if (first, i) <= (second, j):  # the face is square
-            value = element_samples(stack, (ends[i][first], ends[j][second])).value[OF_GRASP]
-            # of all flows the one that loses the least power in the element and the contact
-            loose = 1 / (conducts * widths[i] * widths[j])
-            flow = np.linalg.solve(value + loose * GRAM, GRAM[0])
-            value = 1 / (flow @ GRAM[0]) - loose
-            known[first, second, i, j] = known[second, first, j, i] = value
-    return known
-
-
 def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:
     """(2, 2, J, J, S) K/W, of which all has an impedance (S,), of parts that are a ratio-th (J, J) of it."""
     return np.broadcast_to(ratio[..., None] * impedance, (2, 2, *ratio.shape, len(impedance)))
-
-
-def _of_half_space(material: Material, conducts: float, widths: np.ndarray) -> np.ndarray:
-    """As _of_stack, on a half-space, or beside where it ends. It is known of even flow; under an even temperature it
-    ends lower."""
-    capacity = material.volumetric_heat_capacity
-    diffusivity = material.conductivity / capacity
-    reached = np.sqrt(np.pi * diffusivity * TIMES)
-    shared = np.stack([_shared(factor * widths[:, None], diffusivity) for factor in (1, 2)])
-    kernel = shared[:, None, :, None] * shared[None, :, None, :] / reached
-    area = np.outer(widths, widths)[..., None]
-    even = (kernel @ TO_MOMENTS[OF_GRASP].T + before(diffusivity)) / (capacity * area)
-    deep = 1 / (material.effusivity * np.sqrt(GRASP) * area)  # before heat has spread at all
-    loose = material.conductivity / (conducts * np.sqrt(area))
-    return even * (1 - _EVEN_TEMPERATURE / (1 + loose) * (1 - even / deep))
-
-
-def _shared(length: np.ndarray, diffusivity: float) -> np.ndarray:
-    """Share of the heat on a line of that length m that is still on it at TIMES (Carslaw & Jaeger, section 10.3)."""
-    u = length / (2 * np.sqrt(diffusivity * TIMES))
-    return erf(u) + np.expm1(-(u**2)) / (u * np.sqrt(np.pi))
 
 
 @njit(cache=True, error_model="numpy")
