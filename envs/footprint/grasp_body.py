@@ -158,8 +158,8 @@ class GraspBody:
     @cached_property
     def face_area(self) -> float:
         """m2 of the patch on the sensor's face; a curved object's is that of NOMINAL_FORCE, its middle before the
-        pad's. On a bare face it is wider than what touches: see even_patch. Under a cylinder it is the square that
-        impedes heat as the strip does that touches."""
+        pad's. On a bare face it is wider than what touches: see even_patch. It is the square that impedes heat as the
+        strip does that a cylinder touches, or the rectangle that stands for what a mesh does."""
         nominal = self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, 0.0))
         area = float(nominal.face)
         if self._on_bare_face:
@@ -172,12 +172,21 @@ class GraspBody:
             raise InvalidValueError(
                 f"object {self.spec.name!r} of size {self.spec.size} does not reach the sensor's face"
             )
-        if self.contact_shape == "cylinder" and self.mode == "T":
-            from ...thermal.curves import equal_square
+        length = self._patch_length
+        if length == 0.0:
+            return min(area, self.stack.face_area)
+        from ...thermal.curves import equal_square
 
-            length = min(self.stack.width, self.spec.size[2])
-            return equal_square(self.stack, self.skin is not None, self.touched, area, length)
-        return min(area, self.stack.face_area)
+        return equal_square(self.stack, self.skin is not None, self.touched, area, length)
+
+    @property
+    def _patch_length(self) -> float:
+        """m, of the rectangle that touches the face; 0 where that is as long as it is wide."""
+        if self.contact_shape == "cylinder":
+            return min(self.stack.width, self.spec.size[2])
+        if self.closed_mesh is None:
+            return 0.0
+        return self.closed_mesh.patch_length(self.skin, self.touched, NOMINAL_FORCE)
 
     def check_felt(self) -> None:
         """Raises InvalidValueError for an object on the table that fingers close on below the sensors' faces: forces

@@ -15,7 +15,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...thermal import ContactArea, Material, Pad
+from ...thermal import ContactArea, Material, Pad, Skin
 from ...thermal.contact import FIRST_FORCE, FORCE_STEP, FORCES, TABLE_FORCES
 from ...thermal.pressed import PressedView, pressed_view
 from ..bodies import MeshShape, ObjectSpec
@@ -54,9 +54,15 @@ class ClosedMesh:
     def bare_at(self, step: tuple[int, ...], body: Material) -> tuple[np.ndarray, np.ndarray]:
         """(W/K, m2 of the patch that stands for what conducts), at TABLE_FORCES, (9,) each, of a rigid face that wears
         no skin on a mesh of that material; the mean of both sides that touch. step: as contact_at's."""
-        mean = self._of_views(step, body)
+        mean = self._of_views(step, (None, body))[:, :2]
         through, area = (np.exp(np.interp(*_LOADS, np.log(np.maximum(column, _LEAST)))) for column in mean.T)
         return np.where(through > 2 * _LEAST, through, 0.0), np.where(area > 2 * _LEAST, area, 0.0)
+
+    def patch_length(self, skin: Skin | None, body: Material, force: float) -> float:
+        """m, one side of the rectangle that stands for what conducts where the pads closed on a mesh of that material,
+        at a force N on the pad; 0 where none touches."""
+        lengths = self._of_views((0, 0, 0, 0, 0), (skin, body))[:, 2]
+        return float(np.interp(math.log(force), _LOADS[1], lengths))
 
     @property
     def _share(self) -> np.ndarray:
@@ -68,16 +74,17 @@ class ClosedMesh:
         area, share = (np.interp(*_LOADS, column) for column in mean.T)
         return area, share
 
-    def _of_views(self, step: tuple[int, ...], bare: Material | None) -> np.ndarray:
-        """(FORCES, 2), what `_between` tells, the mean of both sides that touch."""
+    def _of_views(self, step: tuple[int, ...], joint: tuple[Skin | None, Material] | None) -> np.ndarray:
+        """(FORCES, 2 or 3), what `_between` tells, the mean of both sides that touch."""
         azimuth, elevation = self.azimuth + step[3] * _TURN, step[4] * _TURN
         place = np.array(self.place) + GRID * np.array(step[:3])
         found = []
         for side in (1, -1):
-            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side, bare is not None)
-            found.append(_between(view, across @ place - begin, bare))
+            bare = joint is not None and joint[0] is None
+            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side, bare)
+            found.append(_between(view, across @ place - begin, joint))
         both = [each for each in found if each.any()]
-        return np.mean(both, axis=0) if both else np.zeros((FORCES, 2))
+        return np.mean(both, axis=0) if both else np.zeros_like(found[0])
 
 
 def closed_mesh(pad: Pad, spec: ObjectSpec, contact: ContactArea) -> ClosedMesh:
@@ -123,16 +130,16 @@ def _view(
     return view, axes[1:], (corners @ axes[1:].T).min(axis=0) - pad.face / 2
 
 
-def _between(view: PressedView, at: np.ndarray, bare: Material | None) -> np.ndarray:
-    """(forces, 2): area and share of the force at a place (2,) m among the view's; beyond them none. bare: W/K and m2
-    in their place, of a rigid face on that material."""
+def _between(view: PressedView, at: np.ndarray, joint: tuple[Skin | None, Material] | None) -> np.ndarray:
+    """(forces, 2): area and share of the force at a place (2,) m among the view's; beyond them none. joint: (forces, 3)
+    W/K, m2 and m of the patch in their place, of a face with that skin, or a rigid one, on that material."""
     places = view.places
     if not all(places[axis, 0] < at[axis] < places[axis, -1] for axis in range(2)):
-        return np.zeros((FORCES, 2))
+        return np.zeros((FORCES, 2 if joint is None else 3))
     i, j = (
         int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, 0, places.shape[1] - 2)) for axis in range(2)
     )
-    values = _around(view, i, j, bare)
+    values = _around(view, i, j, joint)
     for axis, k in enumerate((i, j)):
         share = (at[axis] - places[axis, k]) / (places[axis, k + 1] - places[axis, k])
         values = (1 - share) * values[:, 0] + share * values[:, 1]
@@ -140,11 +147,18 @@ def _between(view: PressedView, at: np.ndarray, bare: Material | None) -> np.nda
 
 
 @lru_cache(maxsize=1024)
-def _around(view: PressedView, i: int, j: int, bare: Material | None) -> np.ndarray:
-    """(forces, 2, 2, 2): what `_between` tells at the places round one of the view's cells."""
+def _around(view: PressedView, i: int, j: int, joint: tuple[Skin | None, Material] | None) -> np.ndarray:
+    """(forces, 2, 2, 2 or 3): what `_between` tells at the places round one of the view's cells."""
     cell = (i, i + 2), (j, j + 2)
-    if bare is None:
+    if joint is None:
         return view.touched(some=cell)
-    contact, gas, area, wide = np.moveaxis(view.conducted(None, bare, cell)[..., 6:], -1, 0)
+    found = np.moveaxis(view.conducted(*joint, cell)[..., 4:], -1, 0)
+    long, longer, contact, gas, area, wide = found
     through = contact + gas
-    return np.stack((through, (contact * area + gas * wide) / np.maximum(through, _LEAST)), axis=-1)
+    return np.stack(
+        (through, *(_mean(contact, a, gas, b) for a, b in ((area, wide), (long, longer)))), axis=-1
+    )
+
+
+def _mean(contact: np.ndarray, one: np.ndarray, gas: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return (contact * one + gas * other) / np.maximum(contact + gas, _LEAST)

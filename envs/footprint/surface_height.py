@@ -15,7 +15,7 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ...thermal.pressed import HeightMap, height_map
+from ...thermal.pressed import HeightMap, corner_normals, height_map
 from ..bodies import MeshShape
 
 BOX, CYLINDER, SPHERE = range(3)
@@ -40,7 +40,8 @@ def _mapped(shape: MeshShape, azimuth: int, elevation: int) -> HeightMap:
     along = np.array([math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)])
     across = np.array([-math.sin(a), math.cos(a), 0.0])
     axes = np.stack([along, across, np.cross(along, across)])
-    return height_map(*shape.surface, axes)
+    vertices, faces = np.ascontiguousarray(shape.surface[0], float), shape.surface[1].astype(np.int64)
+    return height_map(vertices, faces, axes, corner_normals(vertices.tobytes(), faces.tobytes()))
 
 
 @njit(cache=True, error_model="numpy")

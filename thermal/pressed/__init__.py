@@ -4,6 +4,7 @@ from .around import RoundRing
 from .foundation import face_springs, pressure_map
 from .height_map import HeightMap, height_map, map_heights
 from .mesh_table import PressedMesh, PressedView, pressed_view
+from .rounded import corner_normals
 from .springs import Ring, square_middles
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "PressedView",
     "Ring",
     "RoundRing",
+    "corner_normals",
     "face_springs",
     "height_map",
     "map_heights",
