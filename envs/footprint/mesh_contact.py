@@ -12,6 +12,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from thermograsp.compiled import njit
+
 from ...thermal import ContactArea, Pad
 from ...thermal.pressed import HeightMap, face_springs, map_heights, pressure_map, square_middles
 from ..bodies import MeshShape, ObjectSpec
@@ -68,12 +70,23 @@ def _side(
         depth, tilt, other = pressure_map(
             *(surface, springs, places, area, stiffness, pad.thickness, force, centre, pressure)
         )
-        sunk = depth + tilt * fine[:, 0] + other * fine[:, 1] - heights
-        touched = np.where(sunk > 0, covered, 0.0)
-        pressed = touched * sunk * stiffer
-        share = (touched * sunk * pad.face_ratio) @ within / pressed.sum()
-        contacts.append([touched.sum() * pitch**2, touched @ within * pitch**2, share * force])
+        found = _touched(fine, heights, covered, within, stiffer, pad.face_ratio, depth, tilt, other)
+        contacts.append([found[0] * pitch**2, found[1] * pitch**2, found[2] * force])
     return np.array(contacts).T
+
+
+@njit(cache=True, error_model="numpy")
+def _touched(places, heights, cover, within, stiffer, face_ratio, depth, tilt, other):
+    """(points that touch, those on the face, the share of the force on it) of a surface sunk and tilted by so much."""
+    whole, face, total, on_face = 0.0, 0.0, 0.0, 0.0
+    for i in range(len(heights)):
+        sunk = depth + tilt * places[i, 0] + other * places[i, 1] - heights[i]
+        if sunk > 0.0:
+            whole += cover[i]
+            face += cover[i] * within[i]
+            total += cover[i] * sunk * stiffer[i]
+            on_face += cover[i] * sunk * face_ratio * within[i]
+    return whole, face, on_face / total
 
 
 def _sampled(

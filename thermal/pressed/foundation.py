@@ -23,7 +23,8 @@ from ..contact import Pad
 
 _STEPS = 50
 _SECANTS = 20
-_TOLERANCE = 1e-11  # of the force, which must balance to that
+_TOLERANCE = 1e-11  # of the force, which must balance to that, or
+_ROUND_OFF = 1e-15  # of what all springs would bear that are as deep as the surface is high
 _NEARER = (1.0, 0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.0)
 _RIDGE = 1e-3  # springs, added where those that push can't resist a tilt
 
@@ -56,10 +57,11 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
         out[i] = 0.0
     if force <= 0.0:
         return 0.0, 0.0, 0.0
-    least, covered = np.inf, 0.0
+    least, most, covered = np.inf, -np.inf, 0.0
     for i in range(len(height)):
         if cover[i] > 0.0:
-            least, covered = min(least, height[i]), covered + cover[i]
+            least, most = min(least, height[i]), max(most, height[i])
+            covered += cover[i]
     if covered == 0.0:
         nearest, away = 0, np.inf
         for i in range(len(height)):
@@ -68,8 +70,10 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
                 nearest, away = i, distance
         out[nearest] = force / area
         return 0.0, 0.0, 0.0
+    height = height - least  # a light force's depth is little beside them
     spring = stiffness * area
-    middle_y, middle_z = _untilted(height, cover, places, spring, force, least, solution)
+    enough = max(_TOLERANCE * force, _ROUND_OFF * spring * covered * (most - least))
+    middle_y, middle_z = _untilted(height, cover, places, spring, force, enough, solution)
     flat = solution[0]
     furthest = _furthest(cover, places, middle_y, middle_z, centre)
     for share in _NEARER:
@@ -78,7 +82,7 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
         y = (middle_y + share * (centre[0] - middle_y)) / scale
         z = (middle_z + share * (centre[1] - middle_z)) / scale
         solution[0], solution[1], solution[2] = flat, 0.0, 0.0
-        balanced = _balance(height, cover, places, scale, spring, force, y, z, solution)
+        balanced = _balance(height, cover, places, scale, spring, force, enough, y, z, solution)
         if balanced and _depth(height, cover, places, scale, solution) <= deepest:
             break
         if share == 0.0:
@@ -92,12 +96,13 @@ def pressure_map(height, cover, places, area, stiffness, deepest, force, centre,
     exact = force / (total * area)
     for i in range(len(height)):
         out[i] *= exact
-    return solution[0], solution[1] / scale, solution[2] / scale
+    return solution[0] + least, solution[1] / scale, solution[2] / scale
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _untilted(height, cover, places, spring, force, least, solution):
-    """Writes the depth at which the untilted surface takes the force; the centre of that contact, m."""
+def _untilted(height, cover, places, spring, force, enough, solution):
+    """Writes the depth at which the untilted surface takes the force, to `enough` N; the centre of that contact, m.
+    height: m from the lowest."""
     depth, covered = 0.0, 0.0
     for i in range(len(height)):
         if cover[i] > 0.0:
@@ -111,9 +116,9 @@ def _untilted(height, cover, places, spring, force, least, solution):
                 load += cover[i] * (depth - height[i])
                 rate += cover[i]
         wrong = load - force / spring
-        if rate == 0.0 or abs(wrong) <= _TOLERANCE * force / spring:
+        if rate == 0.0 or abs(wrong) <= enough / spring:
             break
-        depth = max(depth - wrong / rate, least)
+        depth = max(depth - wrong / rate, 0.0)
     y, z, load = 0.0, 0.0, 0.0
     for i in range(len(height)):
         if cover[i] > 0.0 and height[i] < depth:
@@ -138,7 +143,7 @@ def _furthest(cover, places, y, z, centre):
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _balance(height, cover, places, scale, spring, force, y, z, solution):
+def _balance(height, cover, places, scale, spring, force, enough, y, z, solution):
     """Newton's steps to depth and tilts (times scale) in solution (3,) under a force at y, z (in units of scale), with
     an exact search along each. Returns whether force and moments balance."""
     gradient, hessian = np.zeros(3), np.zeros((3, 3))
@@ -146,7 +151,7 @@ def _balance(height, cover, places, scale, spring, force, y, z, solution):
     _sums(height, cover, places, scale, spring, force, y, z, solution, gradient, hessian)
     for _ in range(_STEPS):
         wrong = max(abs(gradient[0]), abs(gradient[1]), abs(gradient[2]))
-        if wrong <= _TOLERANCE * force:
+        if wrong <= enough:
             return True
         if not _solve(hessian, gradient, step):
             for k in range(3):
