@@ -3,7 +3,7 @@
 A body of one material has the modes of its shape, as if of 1 W/(m K) and 1 J/(m3 K): a material only scales time, by
 its diffusivity, and temperatures, by its heat capacity. Several materials have modes of their own, and so has a body
 with contents behind a film: what fades while the contents are held at one temperature. The slowest are found by
-Lanczos' method on the inverse (ARPACK, through SciPy).
+Lanczos' method on the inverse.
 
 N: cells, R: modes.
 """
@@ -16,12 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, diags_array
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import splu
 
 from thermograsp.files import cached_arrays
 
 from ..matter import Material
 from ..network import ThermalNetwork
+from ..numerics import largest_eigenvalues
 from ..surfaces import Solid, SolidPart, checked
 from .film import Film, film_rows
 from .grid import GridAxis, MeshGrid, distinct, flat_places, mesh_grid
@@ -30,7 +31,7 @@ from .network import conducting_parts
 _CELLS = 8000
 _OVER = 1.1  # of them, at most
 _MODES = 256
-_ACCURACY = 1e-3  # relative, of the rates
+_ACCURACY = 1e-3  # relative, of the shifted rates' residuals
 _SHIFT = 0.1  # of about the slowest rate
 _EVEN = 1e-10  # of a mode's square, what is not even, at least
 _KEPT = 8  # shapes
@@ -201,17 +202,8 @@ def _slowest(grid: MeshGrid, sink: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     factors = splu(
         shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
-    rates, fields = eigsh(
-        operator,
-        k=modes,
-        sigma=-_SHIFT * slow,
-        OPinv=LinearOperator((count, count), factors.solve),
-        ncv=min(count, modes + modes // 2),
-        tol=_ACCURACY,  # pyright: ignore[reportArgumentType]  (any number)
-        v0=np.random.default_rng(0).standard_normal(count),  # the same bits each time
-    )
-    order = np.argsort(rates)
-    rates, fields = np.maximum(rates[order], 0.0), fields[:, order] / root[:, None]
+    inverse, fields = largest_eigenvalues(factors.solve, count, modes, _ACCURACY)
+    rates, fields = np.maximum(1 / inverse - _SHIFT * slow, 0.0), fields / root[:, None]
     if not sink.any():
         rates[0], fields[:, 0] = 0.0, 1 / np.sqrt(grid.capacity.sum())  # all at one temperature does not fade
     return rates, fields

@@ -1,10 +1,11 @@
 """Numerical tools that know nothing of sensors: Laplace inversion, passive networks from samples, finite volumes,
-arrays of other libraries."""
+eigenvalues, arrays of other libraries."""
 
 from .erfc_inverse import FARTHEST, HIGH, LOW, NEAREST, SERIES, erfc_inverse
 from .fastmath import FAST
 from .finite_volume import Axis, Body, graded_cells, radial_axis, single_cell, symmetric_axis
 from .grid_contact import BOTTOM, OBJECT, SENSOR, TOP, Grid, Interface, Stage, rates
+from .lanczos import largest_eigenvalues
 from .laplace import invert
 from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
@@ -41,6 +42,7 @@ __all__ = [
     "interpolate",
     "invert",
     "invert_many",
+    "largest_eigenvalues",
     "namespace_of",
     "output_row",
     "passive_residues",
