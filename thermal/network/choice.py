@@ -109,18 +109,23 @@ def choose(samples: GeometrySamples, demand: Demand) -> Choice:
 
 def candidates(bases: dict[int, dict[str, StateBasis]]) -> list[Orders]:
     """Orders worth trying, cheapest first. bases: of the bodies, by the number of patch modes."""
-    found = set()
+    found, cuts = set(), np.repeat(_CUTS, 2)
+    finer = np.where(np.arange(len(cuts)) % 2, cuts / 8, cuts)  # of the sensor, for every other one
     for modes, bodies in bases.items():
-        for cut in _CUTS:
-            for sensor_cut in (cut, cut / 8):
-                orders = {
-                    name: max(
-                        int(np.sum(basis.weights > (sensor_cut if name == "sensor" else cut))),
-                        basis.still + 1,
-                    )
-                    for name, basis in bodies.items()
-                }
-                found.add(Orders(modes, orders.get("sensor", 0), orders["even"], orders.get("odd")))
+        counts = {
+            name: np.maximum(
+                np.sum(basis.weights > (finer if name == "sensor" else cuts)[:, None], axis=1),
+                basis.still + 1,
+            ).tolist()
+            for name, basis in bodies.items()
+        }
+        none = [None] * len(cuts)
+        found |= {
+            Orders(modes, sensor or 0, even, odd)
+            for sensor, even, odd in zip(
+                counts.get("sensor", none), counts["even"], counts.get("odd", none), strict=True
+            )
+        }
     return sorted(found, key=lambda orders: (orders.multiply_adds, str(orders)))
 
 

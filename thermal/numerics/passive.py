@@ -44,8 +44,10 @@ class ThermalNetwork:
             raise InvalidValueError("rates, ports and direct must be finite")
         if np.any(rates < 0):
             raise InvalidValueError(f"rates must be >= 0 for a passive network, got {rates.min():g} 1/s")
-        least = np.linalg.eigvalsh(direct).min() if direct.any() else 0.0
-        if not np.allclose(direct, direct.T) or least < -1e-12 * np.abs(direct).max(initial=0.0):
+        if direct.any() and not (
+            np.allclose(direct, direct.T)
+            and np.linalg.eigvalsh(direct).min() >= -1e-12 * np.abs(direct).max()
+        ):
             raise InvalidValueError("direct must be symmetric and non-negative for a passive network")
         outputs = {name: np.asarray(row, float) for name, row in self.outputs.items()}
         for name, row in outputs.items():

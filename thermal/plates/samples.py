@@ -204,14 +204,11 @@ def _bonded(geometry: Geometry, parity: str, s: np.ndarray, element: ElementSamp
     bond_flow = np.linalg.solve(
         at_bond.value, across.value
     )  # flux patterns over the bond per pattern over the contact
-    value = at_top.value - np.einsum("sbc,sbd->scd", across.value, bond_flow)
-    cross = np.einsum("sbc,sbd->scd", across.slope, bond_flow)
-    slope = (
-        at_top.slope
-        - cross
-        - cross.transpose(0, 2, 1)
-        + np.einsum("sbc,sbe,sed->scd", bond_flow, at_bond.slope, bond_flow, optimize=True)
-    )
+    value = at_top.value - across.value.transpose(0, 2, 1) @ bond_flow
+    cross = across.slope.transpose(0, 2, 1) @ bond_flow
+    flow_back = bond_flow.transpose(0, 2, 1)
+    slope = at_top.slope - cross - cross.transpose(0, 2, 1) + flow_back @ (at_bond.slope @ bond_flow)
+
     impedance = Sampled((value + value.transpose(0, 2, 1)) / 2, (slope + slope.transpose(0, 2, 1)) / 2)
 
     # One-dimensional outputs follow from the two total heat flows, into the element's top and out of its bond.

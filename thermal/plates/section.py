@@ -18,7 +18,8 @@ from scipy.special import erf, j0, j1, jn_zeros
 
 from .patch import Patch, RoundPatch, SquarePatch
 
-_IMAGES = np.arange(-2, 3)
+_DIRECT, _MIRRORED = np.arange(-1, 2), np.arange(-2, 2)
+"""Images nearer than heat goes in tau up to _COSINES_FROM W^2, in widths 2 W; there it is below round-off beyond 2.7 W."""
 _COSINES_FROM = 0.05  # tau / W^2 above which the cosine series is the shorter one
 
 
@@ -55,15 +56,10 @@ class Rectangle:
         """(J, C, C): lateral heat kernel between the patterns at the diffusion lengths squared tau (J,) m2."""
         assert isinstance(patch, SquarePatch)
         shapes = patch.shapes
-        x = shapes.T @ _strip_kernel(patch.edges, self.half_x, tau) @ shapes
-        y = (
-            x
-            if self.half_x == self.half_y
-            else shapes.T @ _strip_kernel(patch.edges, self.half_y, tau) @ shapes
-        )
-        n = x.shape[1]
-        product = np.einsum("tik,tjl->tijkl", x, y).reshape(len(tau), n * n, n * n)
-        return patch.symmetrize.T @ product @ patch.symmetrize
+        x = y = shapes.T @ _strip_kernel(patch.edges, self.half_x, tau) @ shapes
+        if self.half_y != self.half_x:
+            y = shapes.T @ _strip_kernel(patch.edges, self.half_y, tau) @ shapes
+        return _symmetric_products(x, y) if patch.square else _products(x, y)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +118,25 @@ class Disc:
 Section = Rectangle | Disc
 
 
+def _products(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """(J, L L, L L) of (J, L, L) along each axis."""
+    patterns = x.shape[1] ** 2
+    return (x[:, :, None, :, None] * y[:, None, :, None, :]).reshape(len(x), patterns, patterns)
+
+
+def _symmetric_products(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """(J, C, C): the same between SquarePatch.symmetrize's patterns."""
+    i, j = np.tril_indices(x.shape[1])
+    weight = np.where(i == j, 0.5, np.sqrt(0.5))
+    straight, crossed = np.ix_(i, i), np.ix_(i, j)
+
+    def product(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        return one[:, *straight] * other[:, *np.ix_(j, j)] + one[:, *crossed] * other[:, *np.ix_(j, i)]
+
+    summed = 2 * product(x, y) if x is y else product(x, y) + product(y, x)
+    return summed * np.outer(weight, weight)
+
+
 @cache
 def _bessel_zeros(count: int) -> np.ndarray:
     zeros = np.empty(count)
@@ -154,13 +169,15 @@ def _strip_kernel(edges: np.ndarray, half_width: float, tau: np.ndarray) -> np.n
         kernel[late] = np.einsum("tm,mi,mk->tik", decay, overlaps, overlaps)
     early = ~late
     if early.any():
-        lengths = 2 * np.sqrt(tau[early])[:, None, None, None]
-        shifts = 2 * half_width * _IMAGES
-        direct = edges[:, None, None] - edges[None, :, None] + shifts
-        mirror = edges[:, None, None] + edges[None, :, None] + shifts
-        # Second antiderivative of twice the free heat kernel; its second differences are integrals over two strips.
-        primitive = _primitive(mirror, lengths) - _primitive(direct, lengths)
-        summed = primitive.sum(axis=-1) / 2
+        # Second antiderivative of twice the free heat kernel; its second differences are integrals over two strips. It is
+        # symmetric in the strips, and linear, so that these are 0, where an image is far away.
+        lengths = 2 * np.sqrt(tau[early])[:, None, None]
+        i, j = np.tril_indices(len(edges))
+        direct, mirror = edges[i] - edges[j], edges[i] + edges[j]
+        primitive = _primitive(mirror[:, None] + 2 * half_width * _MIRRORED, lengths).sum(axis=-1)
+        primitive -= _primitive(direct[:, None] + 2 * half_width * _DIRECT, lengths).sum(axis=-1)
+        summed = np.empty((len(lengths), len(edges), len(edges)))
+        summed[:, i, j] = summed[:, j, i] = primitive / 2
         double = np.diff(np.diff(summed, axis=1), axis=2)
         widths = np.diff(edges)
         kernel[early] = double / np.sqrt(np.outer(widths, widths))
