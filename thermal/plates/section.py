@@ -19,7 +19,7 @@ from scipy.special import erf, j0, j1, jn_zeros
 from .patch import Patch, RoundPatch, SquarePatch
 
 _DIRECT, _MIRRORED = np.arange(-1, 2), np.arange(-2, 2)
-"""Images nearer than heat goes in tau up to _COSINES_FROM W^2, in widths 2 W; there it is below round-off beyond 2.7 W."""
+"""Images nearer than heat goes in tau up to _COSINES_FROM W^2, in widths 2 W: beyond 2.7 W it is below round-off."""
 _COSINES_FROM = 0.05  # tau / W^2 above which the cosine series is the shorter one
 
 
@@ -169,8 +169,8 @@ def _strip_kernel(edges: np.ndarray, half_width: float, tau: np.ndarray) -> np.n
         kernel[late] = np.einsum("tm,mi,mk->tik", decay, overlaps, overlaps)
     early = ~late
     if early.any():
-        # Second antiderivative of twice the free heat kernel; its second differences are integrals over two strips. It is
-        # symmetric in the strips, and linear, so that these are 0, where an image is far away.
+        # Second antiderivative of twice the free heat kernel; its second differences are integrals over two strips. It
+        # is symmetric in the strips, and linear, so that these are 0, where an image is far away.
         lengths = 2 * np.sqrt(tau[early])[:, None, None]
         i, j = np.tril_indices(len(edges))
         direct, mirror = edges[i] - edges[j], edges[i] + edges[j]
