@@ -45,7 +45,7 @@ def stack_impedance(
     for layer in reversed(layers):
         k = layer.conductivity
         g = np.sqrt(s / layer.diffusivity + kappa2)
-        t = np.tanh(g * layer.thickness)
+        t = _tanh(g * layer.thickness)
         if impedance is None:
             impedance = 1 / (k * g * t) if far == "adiabatic" else t / (k * g)
         else:
@@ -144,7 +144,7 @@ def stack_profile(
         sech = 2 * decay / (1 + decay**2)
         if i + 1 < len(layers) or isinstance(far, np.ndarray):
             beyond = stack_impedance(layers[i + 1 :], far, s, kappa2)
-            flow = flow * sech / (1 + beyond * k * g * np.tanh(g * layer.thickness))
+            flow = flow * sech / (1 + beyond * k * g * _tanh(g * layer.thickness))
             temperature = beyond * flow
         elif far == "adiabatic":
             flow, temperature = np.zeros_like(flow), temperature * sech
@@ -185,6 +185,14 @@ def transfer_impedance(
     return _sum_modes(
         lambda at: stack_profile(layers, "adiabatic", at, kappa2)[0][-1], s, far_overlaps, near_overlaps
     )
+
+
+def _tanh(x: np.ndarray) -> np.ndarray:
+    """Which is 1 to round-off for most wave numbers, and slow to compute of complex numbers."""
+    found = np.ones_like(x)
+    small = np.real(x) < _NEGLIGIBLE_DEPTH
+    found[small] = np.tanh(x[small])
+    return found
 
 
 def _sum_modes(
