@@ -107,9 +107,17 @@ def test_the_arm_goes_where_a_simulation_alone_has_it(twin: gymnasium.Env) -> No
     alone.close()
 
 
-@pytest.mark.parametrize("forces", [[], ["--force-range", "1", "40"]])
 @pytest.mark.parametrize(
-    ("task", "policy"), [("sort", "trained"), ("hotter", "trained"), ("hotter", "scripted")]
+    ("task", "policy", "forces"),
+    [
+        pytest.param(task, policy, forces, marks=() if quick else pytest.mark.slow)
+        for (task, policy), weak_is_quick in {
+            ("sort", "trained"): False,
+            ("hotter", "trained"): True,
+            ("hotter", "scripted"): False,
+        }.items()
+        for forces, quick in (([], not weak_is_quick), (["--force-range", "1", "40"], weak_is_quick))
+    ],
 )
 def test_objects_are_sorted_and_judged_through_the_line(
     task: str, policy: str, forces: list[str], capsys: Any

@@ -59,8 +59,14 @@ TIPS: dict[str, tuple[str, str, dict[str, str | Fingertip]]] = {
 }
 
 
-@pytest.mark.parametrize("tip", TIPS)
-@pytest.mark.parametrize("shape", OBJECTS)
+@pytest.mark.parametrize(
+    ("shape", "tip"),
+    [
+        pytest.param(shape, tip, marks=pytest.mark.slow if (shape, tip) == ("mesh", "flat") else ())
+        for shape in OBJECTS
+        for tip in TIPS
+    ],
+)
 def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
     if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
         pytest.skip("this MuJoCo has no contact sensors")

@@ -416,12 +416,24 @@ EDGE = """
     <geom name="tip" type="box" size=".01 .01 .004" mass=".1"/>
   </body></worldbody>
   <actuator><position joint="over" kp="2000" kv="60"/><motor joint="down"/></actuator></mujoco>"""
+WAYS, SKINS = ("1 0 0", "0 -1 0", "0.8 0.6 0"), (None, "filled_silicone")
+QUICK = ("0.8 0.6 0", None), ("0 -1 0", "filled_silicone")  # of the mesh
 
 
 @NEEDS_SPECS
-@pytest.mark.parametrize("skin", [None, "filled_silicone"])
-@pytest.mark.parametrize("way", ["1 0 0", "0 -1 0", "0.8 0.6 0"])
-@pytest.mark.parametrize("geom", ['type="box" size=".02 .02 .02"', 'type="mesh" mesh="block"'])
+@pytest.mark.parametrize(
+    ("geom", "way", "skin"),
+    [
+        *(('type="box" size=".02 .02 .02"', way, skin) for way in WAYS for skin in SKINS),
+        *(
+            pytest.param(
+                'type="mesh" mesh="block"', way, skin, marks=() if (way, skin) in QUICK else pytest.mark.slow
+            )
+            for way in WAYS
+            for skin in SKINS
+        ),
+    ],
+)
 def test_over_an_edge_its_voltages_are_those_of_thermal_touch(geom: str, way: str, skin: str | None) -> None:
     tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), skin=skin)
     words: dict = {"fingertips": {"tip": tip}, "objects": {"block": "steel"}}

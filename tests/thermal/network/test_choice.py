@@ -1,7 +1,11 @@
 """The choice of a network: monotone in the demand, honest about its error."""
 
+import copy
+import pickle
 import re
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -10,7 +14,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import Demand, network_for
 from thermograsp.thermal.matter.materials import materials
 from thermograsp.thermal.matter.sensors import sensor
-from thermograsp.thermal.network.choice import FIRST, choose
+from thermograsp.thermal.network.choice import FIRST, UnkeptToleranceError, choose
 from thermograsp.thermal.network.states import Orders
 from thermograsp.thermal.network.system import sample_geometry
 from thermograsp.thermal.plates.samples import Geometry
@@ -42,6 +46,19 @@ def test_impossible_demand_says_what_is_possible(air: float) -> None:
     (least,) = re.findall(r"give a tolerance of ([\d.e-]+) K or more", str(refused.value))
     kept = network_for(geometry(), replace(demand, tolerance=float(least)), air=air, cache=False)
     assert kept.error <= float(least)
+
+
+def refuse(asked: float, kept: float) -> None:
+    raise UnkeptToleranceError(asked, kept)
+
+
+def test_a_refusal_goes_between_processes_and_stays_the_same() -> None:
+    refusal = UnkeptToleranceError(1e-9, 3.21e-4)
+    with ProcessPoolExecutor(1, get_context("spawn")) as processes:
+        raised = processes.submit(refuse, refusal.asked, refusal.kept).exception()
+    for same in (copy.copy(refusal), copy.deepcopy(refusal), pickle.loads(pickle.dumps(refusal)), raised):
+        assert isinstance(same, UnkeptToleranceError)
+        assert (same.asked, same.kept, str(same)) == (1e-9, 3.21e-4, str(refusal))
 
 
 @pytest.mark.parametrize("fingertips", [1, 2])
