@@ -47,10 +47,10 @@ class SortEnv(TouchEnv):
     Keywords: goal ("material", "hotter"), material (a list, or None for the ten seed materials; an episode draws two
     of them, or one for "hotter"), object_temperature (°C; for "hotter" a pair, the cooler one first, 20 and 28 by
     default), hold_seconds and seconds (s), objects (an ObjectSpec, or a list to draw from; it applies to both
-    objects, with .1 kg and friction .8 by default), plant ("simulated", "twin" or a URL), render_mode, and others as
-    GraspEnv's, in T mode. A real gripper needs its arm's axis along y, lateral, and is told what is asked:
-    reset(options={"asked": name}), and with "right": 0 or 1 also where that is, so that success can be judged by what
-    the arm lifts.
+    objects, with .1 kg and friction .8 by default, and its position is where on them the fingers close), plant
+    ("simulated", "twin" or a URL), render_mode, and others as GraspEnv's, in T mode. A real gripper needs its arm's
+    axis along y, lateral, and is told what is asked: reset(options={"asked": name}), and with "right": 0 or 1 also
+    where that is, so that success can be judged by what the arm lifts.
     """
 
     def __init__(

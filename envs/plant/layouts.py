@@ -64,8 +64,8 @@ class Layout(Protocol):
         """One episode. Raises InvalidValueError for options that are none."""
         ...
 
-    def labels(self, scene: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
-        """The labels of one scene, each object's heat computed by one of `rungs`."""
+    def labels(self, scene: Scene, centred: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
+        """The labels of one scene, each object's heat computed by one of `rungs`. centred: as in Episode."""
         ...
 
     def extend(self, truth: Truth, task: np.ndarray, lift: np.ndarray, force: np.ndarray) -> None:
@@ -113,7 +113,7 @@ class SceneLayout:
         others = self._others(config, choices, drawn, rng)
         return Episode((first, *others), (centred, *others), drawn)
 
-    def labels(self, scene: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
+    def labels(self, scene: Scene, centred: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
         """See Layout; of the object that is to be grasped."""
         return EpisodeLabels(scene[0].material.name, rungs[0], scene[0].crushing_force)
 

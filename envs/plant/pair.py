@@ -1,6 +1,7 @@
 """Two objects beside each other, under a gripper that also moves along the table, and what is asked of them.
 
-The objects lie along y, object 0 at y < 0 and object 1 at y > 0, alike in shape, colour, mass and friction.
+The gripper grasps along y, object 0 at y < 0 and object 1 at y > 0, alike in shape, colour, mass and friction; where on
+them its fingers close is their spec's `position`, as of a single object.
 
 B: environments, O = 2 objects, F = 2 fingertips, G: what can be asked.
 """
@@ -116,7 +117,7 @@ class PairLayout:
 
     @property
     def places(self) -> tuple[float, float]:
-        """m along y of the two objects' middles, before what placement draws; of the first shape."""
+        """m along y, where the gripper is over the two objects, before what placement draws; of the first shape."""
         middle = (_depth(self._shapes[0]) + GAP) / 2
         return -middle, middle
 
@@ -148,13 +149,15 @@ class PairLayout:
             pair.append(body)
         specs = self._placed(pair[0].spec, places)
         scene = tuple(replace(t, spec=spec) for t, spec in zip(pair, specs, strict=True))
-        middle = tuple(replace(t, spec=replace(t.spec, position=(0.0, 0.0), yaw=shape.yaw)) for t in scene)
-        return Episode(scene, middle, drawn, (right, goal if self.pair.goal == "material" else 0))
+        centred = tuple(
+            replace(t, spec=replace(t.spec, position=shape.position, yaw=shape.yaw)) for t in scene
+        )
+        return Episode(scene, centred, drawn, (right, goal if self.pair.goal == "material" else 0))
 
-    def labels(self, scene: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
-        """See Layout; of both objects."""
+    def labels(self, scene: Scene, centred: Scene, rungs: tuple[str, ...]) -> EpisodeLabels:
+        """See Layout; of both objects, under a gripper that is over each."""
         return EpisodeLabels(
-            tuple(body.material.name for body in scene), rungs, [body.crushing_force for body in scene]
+            tuple(body.material.name for body in scene), rungs, [body.crushing_force for body in centred]
         )
 
     def extend(self, truth: Truth, task: np.ndarray, lift: np.ndarray, force: np.ndarray) -> None:
@@ -167,13 +170,13 @@ class PairLayout:
 
     def _placed(self, spec: ObjectSpec, places: np.ndarray) -> tuple[ObjectSpec, ...]:
         """Both objects on the table. places: (O, 3) of x, y and angle in -1 .. 1 of what the config allows."""
-        reach, turn = self.config.placement
+        (reach, turn), (ahead, aside) = self.config.placement, spec.position
         middle = (_depth(spec) + GAP) / 2
         return tuple(
             replace(
                 spec,
                 name=f"{spec.name}_{number}",
-                position=(x * reach, side * middle + y * reach),
+                position=(ahead + x * reach, side * middle + aside + y * reach),
                 yaw=spec.yaw + np.deg2rad(angle * turn),
             )
             for number, (side, (x, y, angle)) in enumerate(zip((-1, 1), places.tolist(), strict=True))

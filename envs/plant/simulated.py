@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PlantState:
-    """Everything that decides the future of some environments of a simulated plant; picklable. rest: (n, O) m, heights
-    at which the objects lay. task: what the layout keeps of each episode. of: what it goes on with nowhere else, by
-    keyword."""
+    """Everything that decides the future of some environments of a simulated plant; picklable. centred: as in Episode.
+    rest: (n, O) m, heights at which the objects lay. task: what the layout keeps of each episode. of: what it goes on
+    with nowhere else, by keyword."""
 
     mechanics: MechanicsState
     heat: HeatState | SceneHeatState
@@ -47,6 +47,7 @@ class PlantState:
     generators: tuple[np.random.Generator, ...]
     drawn: tuple[dict[str, float], ...]
     scenes: tuple[Scene, ...]
+    centred: tuple[Scene, ...]
     rest: np.ndarray
     task: np.ndarray
     of: Mapping[str, Any]
@@ -77,6 +78,7 @@ class SimulatedPlant:
         self.dt = config.substeps * config.solver.timestep
         self.sample_rate = 1 / SAMPLE_PERIOD
         self.scenes: list[Scene] = [(possible[0],) * objects] * num_envs
+        self._centred = list(self.scenes)
         self._taxels, self._faces = config.tactile, config.face_maps(num_envs, self._stack)
         heated, starts = config.heated, config.sensor_temperatures
         per_kelvin = self._stack.seebeck if heated is None else 1.0  # a divider's voltage comes as it is
@@ -105,7 +107,9 @@ class SimulatedPlant:
         self._rest = np.zeros((num_envs, objects))
         self._task = np.zeros((num_envs, self.layout.task_size), int)
         # Replaced, never written to: readings keep them.
-        crushing = np.asarray(self.layout.labels(self.scenes[0], ("",) * objects).crushing_force)
+        crushing = np.asarray(
+            self.layout.labels(self.scenes[0], self._centred[0], ("",) * objects).crushing_force
+        )
         self._labels = EpisodeLabels(
             np.full(num_envs, "", object),
             np.full(num_envs, "", object),
@@ -133,15 +137,15 @@ class SimulatedPlant:
         self, rows: Sequence[int], rngs: Sequence[np.random.Generator], options: Mapping[str, Any]
     ) -> Reading:
         """Starts the rows anew: draws objects and placement, opens the gripper. options: see the layout."""
-        chosen, centred = list(rows), []
+        chosen = list(rows)
         for row, rng in zip(chosen, rngs, strict=True):
             episode = self.layout.draw(rng, options)
             self._rngs[row], self._drawn[row] = rng, episode.drawn
             self._electronics.reset(row, episode.drawn, self._rest_voltage)
-            self.scenes[row], self._task[row] = episode.scene, episode.task
-            centred.append(episode.centred)
+            self.scenes[row], self._centred[row] = episode.scene, episode.centred
+            self._task[row] = episode.task
         with busy(f"preparing {len(rows)} scene{'s' * (len(rows) > 1)}: shapes and thermal networks"):
-            self._place(chosen, centred)
+            self._place(chosen)
         self._rest[chosen] = self.mechanics.object_pose[chosen, :, 2]
         self._relabel(chosen)
         rest, scene = self.heat.rest(), None
@@ -216,6 +220,7 @@ class SimulatedPlant:
             generators=tuple(copy.deepcopy(self._rngs[row]) for row in chosen),
             drawn=tuple(self._drawn[row] for row in chosen),
             scenes=tuple(self.scenes[row] for row in chosen),
+            centred=tuple(self._centred[row] for row in chosen),
             rest=self._rest[chosen],
             task=self._task[chosen],
             of=self._of,
@@ -239,7 +244,8 @@ class SimulatedPlant:
         self._thermostats.set_state(chosen, state.thermostats)
         rngs = tuple(copy.deepcopy(rng) for rng in state.generators)
         for k, row in enumerate(chosen):
-            self.scenes[row], self._rngs[row], self._drawn[row] = state.scenes[k], rngs[k], state.drawn[k]
+            self.scenes[row], self._centred[row] = state.scenes[k], state.centred[k]
+            self._rngs[row], self._drawn[row] = rngs[k], state.drawn[k]
         if self._faces is not None and state.faces is not None:
             self._faces.set_state(chosen, state.faces, state.scenes)
         self._rest[chosen], self._task[chosen] = state.rest, state.task
@@ -269,9 +275,9 @@ class SimulatedPlant:
             return mechanics.slide(*arm, sideways, substeps)
         return (mechanics.advance(*arm, substeps),) if self._alone else mechanics.advance_all(*arm, substeps)
 
-    def _place(self, rows: list[int], centred: Sequence[Scene]) -> None:
-        """Puts the rows' scenes on the table, all at its first temperature. centred: as in Episode."""
-        scenes = [self.scenes[row] for row in rows]
+    def _place(self, rows: list[int]) -> None:
+        """Puts the rows' scenes on the table, all at its first temperature."""
+        scenes, centred = [self.scenes[row] for row in rows], [self._centred[row] for row in rows]
         self.mechanics.reset(rows, [tuple(body.spec for body in scene) for scene in scenes])
         errors = np.array([[self._drawn[row]["thermostat_error"]] for row in rows])
         setpoints = self._thermostats.setpoints[rows] + errors
@@ -305,7 +311,8 @@ class SimulatedPlant:
         labels = EpisodeLabels(*(values.copy() for values in self._labels))
         for row in rows:
             rung = self.heat.rung(row)
-            found = self.layout.labels(self.scenes[row], (rung,) if self._alone else rung)
+            rungs = (rung,) if self._alone else rung
+            found = self.layout.labels(self.scenes[row], self._centred[row], rungs)
             for values, value in zip(labels, found, strict=True):
                 values[row] = value
         self._labels = labels
