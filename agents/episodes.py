@@ -17,7 +17,7 @@ import numpy as np
 from thermograsp.agents.checks import Violation, violations
 from thermograsp.agents.policies import Policy
 from thermograsp.agents.policies import policy as named_policy
-from thermograsp.errors import whole_number
+from thermograsp.errors import InvalidValueError, whole_number
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +50,11 @@ def rollout(
     whole_number("seed", seed)
     if max_steps is not None:
         whole_number("max_steps", max_steps, 1)
+    if not isinstance(env, gymnasium.vector.VectorEnv):
+        raise InvalidValueError(
+            f"env must be a vector environment, got {env!r}: make one by gymnasium.make_vec('thermograsp/Grasp-v0', 4, "
+            "vectorization_mode='vector_entry_point')"
+        )
     acting = named_policy(env, policy) if isinstance(policy, str) else policy
     digests, found, returns = [], [], []
     steps = successes = 0

@@ -75,6 +75,10 @@ class Plan:
             raise InvalidValueError(
                 f"keywords must be a dictionary, such as {{'tolerance': 0.02}}, got {self.keywords!r}"
             )
+        if not isinstance(self.env_id, str) or not self.env_id:
+            raise InvalidValueError(
+                f"env_id must be the name of an environment, such as 'thermograsp/Grasp-v0', got {self.env_id!r}"
+            )
         if isinstance(self.materials, str) or not isinstance(self.materials, Sequence):
             raise InvalidValueError(f"materials must be a list of materials, got {self.materials!r}")
         object.__setattr__(self, "materials", tuple(map(material, self.materials)))

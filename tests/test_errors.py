@@ -20,6 +20,7 @@ from thermograsp.errors import (
     non_negative,
     numbers,
     positive,
+    told_apart,
     unknown_name,
     whole_number,
     within,
@@ -134,3 +135,19 @@ def test_where_nothing_is_near_all_names_are_listed() -> None:
     assert str(unknown_name("mode", "xyz", ["T", "O"])) == "unknown mode 'xyz'; known: O, T"
     assert str(unknown_name("mode", 3, ["T", "O"])) == "unknown mode 3; known: O, T"
     assert str(unknown_name("mode", "x", [])) == "unknown mode 'x'; none is known"
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "told"),
+    [
+        (90.0, 83.0, "90.0"),
+        (83.04, 83.0, "83.04"),
+        (82.96, 83.0, "82.96"),
+        (83.00000001, 83.0, "83.00000001"),
+        (84.68, 84.66, "84.7"),
+        (0.1 + 0.2, 0.3, "0.30000000000000004"),
+    ],
+)
+def test_what_is_beyond_a_limit_reads_so(value: float, limit: float, told: str) -> None:
+    assert told_apart(value, limit) == told
+    assert (float(told) > limit) == (value > limit)

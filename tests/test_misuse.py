@@ -81,6 +81,18 @@ OTHERS: list[tuple[Call, Any, str]] = [
     ),
     (lambda value: ObjectSpec(mass=value), 1e4, "mass 10000 kg: give 0 to 1000 kg"),
     (lambda value: ObjectSpec(yaw=value), 45.0, "45 looks like degrees: give 0.785398"),
+    (lambda value: Plan(env_id=value), 3, "env_id must be the name of an environment, such as .* got 3"),
+    (lambda value: Plan(env_id=value), "", "env_id must be the name of an environment"),
+    (
+        lambda value: agents.rollout(value, 1, 0),
+        None,
+        "env must be a vector environment, got None: make one by",
+    ),
+    (
+        lambda value: agents.rollout(value, 1, 0),
+        "thermograsp/Grasp-v0",
+        "env must be a vector environment, got 'th",
+    ),
     (lambda value: ThermalBody("glass", elements=value), 3, "elements must be a list of SensorElement"),
     (lambda value: GraspBatch(thermostat=value), 36.0, "thermostat must be a thermal.Thermostat"),
     (lambda value: GraspTask(seconds=value), "10", "seconds must be a number, got '10'"),

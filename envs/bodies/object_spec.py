@@ -17,6 +17,7 @@ from thermograsp.errors import (
     non_negative,
     numbers,
     positive,
+    told_apart,
     unknown_name,
     within,
 )
@@ -126,10 +127,11 @@ class ObjectSpec:
             _ = self.assembly  # checks them
         for value in self.elements or ():
             positive("elements (side, thickness)", value)
-        if self.width > MAX_OPENING - CLEARANCE:
+        room = MAX_OPENING - CLEARANCE
+        if self.width > room:
             raise InvalidValueError(
-                f"object {self.name!r} is {1e3 * self.width:.1f} mm wide along x, the gripper opens "
-                f"{1e3 * MAX_OPENING:.0f} mm: make it at most {1e3 * (MAX_OPENING - CLEARANCE):.0f} mm or turn it (yaw)"
+                f"object {self.name!r} is {told_apart(1e3 * self.width, 1e3 * room)} mm wide along x, the gripper opens "
+                f"{1e3 * MAX_OPENING:.0f} mm: make it at most {1e3 * room:.0f} mm or turn it (yaw)"
             )
 
     @property

@@ -76,6 +76,7 @@ def test_the_pads_meet_the_middle_of_the_side_faces():
     ("wrong", "message"),
     [
         ({"size": (0.084, 0.04, 0.04)}, "84.0 mm wide"),
+        ({"size": (0.08302, 0.04, 0.04)}, "83.02 mm wide .* at most 83 mm"),
         ({"size": (0.08, 0.08, 0.04), "yaw": 0.3}, "turn it"),
         ({"size": (0.04, -0.04, 0.04)}, "size"),
         ({"elements": (0.009, 0.003), "yaw": 1.5}, "which no pad meets"),
