@@ -130,8 +130,8 @@ class ObjectSpec:
         room = MAX_OPENING - CLEARANCE
         if self.width > room:
             raise InvalidValueError(
-                f"object {self.name!r} is {told_apart(1e3 * self.width, 1e3 * room)} mm wide along x, the gripper opens "
-                f"{1e3 * MAX_OPENING:.0f} mm: make it at most {1e3 * room:.0f} mm or turn it (yaw)"
+                f"object {self.name!r} is {told_apart(1e3 * self.width, 1e3 * room)} mm wide along x, the gripper "
+                f"opens {1e3 * MAX_OPENING:.0f} mm: make it at most {1e3 * room:.0f} mm or turn it (yaw)"
             )
 
     @property

@@ -55,15 +55,15 @@ class Gripper(FoundGripper):
         room = self.widest - CLEARANCE
         if item.width > room:
             raise InvalidValueError(
-                f"object {item.name!r} is {told_apart(1e3 * item.width, 1e3 * room)} mm wide along x, {self.name} opens "
-                f"{1e3 * self.widest:.1f} mm: make it at most {math.floor(1e4 * room + 1e-6) / 10:.1f} mm or turn it "
-                "(yaw)"
+                f"object {item.name!r} is {told_apart(1e3 * item.width, 1e3 * room)} mm wide along x, {self.name} "
+                f"opens {1e3 * self.widest:.1f} mm: make it at most {math.floor(1e4 * room + 1e-6) / 10:.1f} mm or turn "
+                "it (yaw)"
             )
         if item.width < self.narrowest:
             raise InvalidValueError(
                 f"object {item.name!r} is {told_apart(1e3 * item.width, 1e3 * self.narrowest)} mm thin along x, "
-                f"{self.name} closes to {1e3 * self.narrowest:.1f} mm: its pads would never meet it; make it thicker or "
-                "turn it (yaw)"
+                f"{self.name} closes to {1e3 * self.narrowest:.1f} mm: its pads would never meet it; make it thicker "
+                "or turn it (yaw)"
             )
         height = max(item.grasp_height, item.size[2] + CLEARANCE - self.reach)
         if item.elements and height != item.grasp_height:

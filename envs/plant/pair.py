@@ -186,8 +186,8 @@ class PairLayout:
         most = 2 * (LATERAL_REACH - self.config.placement[0]) - GAP
         if _depth(spec) > most:
             raise InvalidValueError(
-                f"objects are {told_apart(1e3 * _depth(spec), 1e3 * most)} mm deep along y: two beside each other are in "
-                f"the gripper's reach up to {1e3 * most:.1f} mm"
+                f"objects are {told_apart(1e3 * _depth(spec), 1e3 * most)} mm deep along y: two beside each other are "
+                f"in the gripper's reach up to {1e3 * most:.1f} mm"
             )
 
 
