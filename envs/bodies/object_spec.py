@@ -125,8 +125,8 @@ class ObjectSpec:
                     f"{self.elements}: give the material that is around them, no density, and no elements"
                 )
             _ = self.assembly  # checks them
-        for value in self.elements or ():
-            positive("elements (side, thickness)", value)
+        if self.elements:
+            self._check_elements()
         room = MAX_OPENING - CLEARANCE
         if self.width > room:
             raise InvalidValueError(
@@ -243,6 +243,20 @@ class ObjectSpec:
         """
         lowest = PAD_SIDE / 2 + CLEARANCE
         return max(self.size[2] / 2, lowest, self.size[2] + CLEARANCE - REACH)
+
+    def _check_elements(self) -> None:
+        """Raises InvalidValueError where they would stick out over the object's edge: only what lies on it conducts."""
+        side, _ = (positive("elements (side, thickness)", value) for value in self.elements or ())
+        for name, given, least in (
+            ("high", self.size[2], self.grasp_height + side / 2),
+            ("deep along y", self.size[1], side),
+        ):
+            if given < least * (1 - 1e-9):
+                raise InvalidValueError(
+                    f"object {self.name!r} is {told_apart(1e3 * given, 1e3 * least)} mm {name}: in mode O elements of "
+                    f"{1e3 * side:g} mm are glued to its sides, their middles {1e3 * self.grasp_height:g} mm above the "
+                    f"table, and would stick out; make it {1e3 * least:g} mm at least, or use mode T"
+                )
 
 
 def scaled(spec: ObjectSpec, size: float = 1.0, *, mass: float = 1.0, friction: float = 1.0) -> ObjectSpec:

@@ -56,8 +56,8 @@ class Gripper(FoundGripper):
         if item.width > room:
             raise InvalidValueError(
                 f"object {item.name!r} is {told_apart(1e3 * item.width, 1e3 * room)} mm wide along x, {self.name} "
-                f"opens {1e3 * self.widest:.1f} mm: make it at most {math.floor(1e4 * room + 1e-6) / 10:.1f} mm or turn "
-                "it (yaw)"
+                f"opens {1e3 * self.widest:.1f} mm: make it at most {math.floor(1e4 * room + 1e-6) / 10:.1f} mm or "
+                "turn it (yaw)"
             )
         if item.width < self.narrowest:
             raise InvalidValueError(

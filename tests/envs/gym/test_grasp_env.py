@@ -179,14 +179,17 @@ def test_bad_keywords_say_what_to_do():
         env.reset(options="glass")  # pyright: ignore[reportArgumentType]
 
 
-@pytest.mark.parametrize("mode", ["T", "O"])
-def test_objects_lower_than_the_sensors_faces_are_refused(mode: str) -> None:
+@pytest.mark.parametrize(
+    ("mode", "message"), [("T", "faces begin 7.5 mm above"), ("O", "make it 16.5 mm at least")]
+)
+def test_objects_lower_than_the_sensors_faces_are_refused(mode: str, message: str) -> None:
     """Forces would tell of a touch of which heat knows nothing: the pads stay off the table."""
     for shape, size in (("box", (0.03, 0.03, 0.006)), ("cylinder", (0.03, 0.03, 0.007))):
-        with pytest.raises(InvalidValueError, match=r"[67]\.0 mm high.* faces begin 7\.5 mm above"):
+        with pytest.raises(InvalidValueError, match=rf"[67]\.0 mm high.* {message}"):
             GraspEnv(objects=ObjectSpec(shape=shape, size=size), mode=mode)  # pyright: ignore[reportArgumentType]
-    with pytest.raises(InvalidValueError, match="faces begin 7.5 mm"):  # one of the sizes that may be drawn
-        GraspEnv(objects=ObjectSpec(size=(0.03, 0.03, 0.008)), mode=mode, randomize=[Size((0.8, 1.2))])
+    drawn = ObjectSpec(size=(0.03, 0.03, 0.008 if mode == "T" else 0.018))
+    with pytest.raises(InvalidValueError, match=message):  # one of the sizes that may be drawn
+        GraspEnv(objects=drawn, mode=mode, randomize=[Size((0.8, 1.2))])
     if mode == "T":
         with pytest.raises(InvalidValueError, match="a sphere 10.0 mm high"):  # met 2.5 mm below the faces
             GraspEnv(objects=ObjectSpec(shape="sphere", size=(0.01, 0.01, 0.01)), mode=mode)
