@@ -1,4 +1,5 @@
-"""A three-fingered hand over a can and a ball, as somebody else would write it; and how it grasps."""
+"""Scenes as somebody else would write them: a three-fingered hand over a can and a ball, and how it grasps; a fingertip
+over a block."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -6,6 +7,8 @@
 import math
 
 import mujoco
+
+from thermograsp.touch import ThermalTouch
 
 RADIUS = 0.03
 SOFT_LOAD = 7.0  # N
@@ -16,6 +19,20 @@ SOFT = """
     <geom name="pad" type="box" size=".01 .01 .004" mass=".1" solref="-400 -40"/></body>
 </worldbody></mujoco>"""
 """A light pad that is pulled into a ball by that force, many millimetres deep."""
+
+ONE_PRESS = """
+<mujoco>
+  <option timestep=".002" gravity="0 0 0" cone="{cone}"/>
+  <worldbody>
+    <body name="block"><geom name="block" type="box" size=".02 .02 .02"/></body>
+    <body name="tip" pos="0 0 .0241">
+      <joint name="tip" type="slide" axis="0 0 -1" damping="20"/>
+      <geom name="tip" type="box" size=".01 .01 .004" mass=".1"/>
+    </body>
+  </worldbody>
+  <actuator><motor joint="tip"/></actuator>
+</mujoco>"""
+"""A fingertip over a block."""
 
 
 def _finger(number: int, name: str) -> tuple[str, str]:
@@ -32,6 +49,7 @@ def _finger(number: int, name: str) -> tuple[str, str]:
 
 
 FINGERS = ("thumb", "index", "middle")
+PADS = {name: f"{name}_pad" for name in FINGERS}
 
 
 def scene(objects: str = "", custom: str = "", options: str = "") -> str:
@@ -75,3 +93,14 @@ def press(data: mujoco.MjData, force: float, *fingers: str) -> None:
     """Sets the fingers' forces, N, towards the middle; the others draw back."""
     for name in FINGERS:
         data.actuator(name).ctrl[0] = force if name in (fingers or FINGERS) else -5.0
+
+
+def make(model: mujoco.MjModel, objects: dict | None = None, **words: object) -> ThermalTouch:
+    words = {"chain": "ideal", **words}
+    return ThermalTouch(model, fingertips=PADS, objects=objects or {"can": "aluminium"}, **words)  # pyright: ignore
+
+
+def run(model: mujoco.MjModel, data: mujoco.MjData, touch: ThermalTouch, seconds: float) -> None:
+    for _ in range(round(seconds / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+        touch.update(data)
