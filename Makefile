@@ -49,7 +49,7 @@ test-grippers: build/.grippers
 
 # Heat inside MuJoCo's step: the sanitizers, and a million random steps.
 test-engine: build/.test
-	THERMOGRASP_ENGINE=1 $(PY) -m pytest -rs $(TEST_FLAGS) tests/touch/test_engine.py
+	THERMOGRASP_ENGINE=1 $(PY) -m pytest -rs $(TEST_FLAGS) tests/touch/test_engine*.py
 
 # Environments of other packages, in an environment of their own with the MuJoCo that all of them run on. A package that
 # cannot be installed says so, and its tests are skipped. Of robosuite what it needs comes by hand: its list holds numpy back.
