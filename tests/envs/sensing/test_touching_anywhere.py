@@ -86,7 +86,7 @@ def meshes(tmp_path_factory) -> dict[str, str]:
     return paths
 
 
-@pytest.mark.parametrize("name", ["plastic", "glass", "aluminium"])
+@pytest.mark.parametrize("name", ["plastic", pytest.param("glass", marks=pytest.mark.slow), "aluminium"])
 def test_a_cube_s_mesh_is_felt_as_the_box_is(name, meshes):
     """To the shipped tolerance of .05 K."""
     box = ObjectSpec(mass=0.1, friction=0.8)

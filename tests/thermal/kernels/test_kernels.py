@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -79,14 +80,21 @@ def test_with_a_film_they_agree_to_what_two_ends_do_to_each_other() -> None:
     np.testing.assert_allclose(early, late, rtol=1e-3)
 
 
-@pytest.mark.parametrize("film", [0.0, 3.0, 40.0])
-@pytest.mark.parametrize("tau", [1e-4, 2e-3, 0.2])
-def test_an_axis_is_a_fine_grid(film: float, tau: float) -> None:
+@lru_cache(maxsize=3)
+def fine_grid(film: float) -> tuple[float, np.ndarray, np.ndarray]:
+    """Length of its cells, rates and fields."""
     cells = 3000
     step = 1 / cells
     diagonal = np.full(cells, 2 / step**2)
     diagonal[[0, -1]] = 1 / step**2 + film / (1 + film * step / 2) / step
-    decay, fields = eigh_tridiagonal(diagonal, np.full(cells - 1, -1 / step**2))
+    return step, *eigh_tridiagonal(diagonal, np.full(cells - 1, -1 / step**2))
+
+
+@pytest.mark.parametrize("tau", [1e-4, 2e-3, 0.2])
+@pytest.mark.parametrize("film", [0.0, 3.0, 40.0])
+def test_an_axis_is_a_fine_grid(film: float, tau: float) -> None:
+    step, decay, fields = fine_grid(film)
+    cells = len(decay)
     edges = np.arange(cells + 1) * step
     inside = np.diff(np.clip(edges, 0.1, 0.4))
     grid = (inside @ fields) ** 2 @ np.exp(-decay * tau) / step
