@@ -29,7 +29,6 @@ _LOG_STEP = 0.3  # trapezoidal rule in ln(tau): relative error exp(-pi^2 / step)
 _NODES = 16  # of the rule, in whole numbers of which a section's kernel is computed
 _NEGLIGIBLE_DEPTH = 20.0  # wave numbers times depth beyond which the far side is not seen, exp(-2 * 20)
 _MOST_MODES = 5e3  # of a rectangle, summed one by one; more are interpolated, which is quicker then
-_TOGETHER = 256  # eigenfunctions whose products of overlaps are held at once
 _DECAYED = 45.0  # exponent of a kernel that is below round-off
 
 
@@ -202,17 +201,13 @@ def _sum_modes(
     tiny = 1e-30
     values = function((s * (1 + 1j * tiny))[:, None])
     both = np.concatenate((np.real(values), np.imag(values) / (tiny * s[:, None])))
-    i, j = (each.ravel() for each in np.indices((left.shape[1], right.shape[1])))
-    if left is right:  # a symmetric sum
-        i, j = np.tril_indices(left.shape[1])
-    summed = np.zeros((len(both), len(i)))
-    for first in range(0, len(left), _TOGETHER):
-        some = slice(first, first + _TOGETHER)
-        summed += both[:, some] @ (left[some, i] * right[some, j])
+    symmetric = left is right
     whole = np.empty((len(both), left.shape[1], right.shape[1]))
-    whole[:, i, j] = summed
-    if left is right:
-        whole[:, j, i] = summed
+    for i in range(left.shape[1]):
+        end = i + 1 if symmetric else right.shape[1]
+        whole[:, i, :end] = both @ (left[:, i, None] * right[:, :end])
+        if symmetric:
+            whole[:, :end, i] = whole[:, i, :end]
     return Sampled(whole[: len(s)], whole[len(s) :])
 
 
