@@ -46,8 +46,8 @@ def over_forces(law: np.void, place: tuple[float, float]) -> np.ndarray:
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("skin", [None, SKIN], ids=["bare", "skinned"])
 def test_more_force_is_more_heat(skin: Skin | None, body: str, every: int) -> None:
-    """Of every material, or every fifth, from 1 mm to 100 m, wherever the body is. Where its crown or its rim is off the
-    face, the sum of the gas over angles is good to 1e-3 of what is felt in the middle."""
+    """Of every material, or every fifth, from 1 mm to 100 m, wherever the body is. Where its crown or its rim is off
+    the face, the sum of the gas over angles is good to 1e-3 of what is felt in the middle."""
     rng = np.random.default_rng(3)
     for name in list(materials())[::every]:
         made = material(name)
