@@ -87,7 +87,8 @@ def fine_grid(film: float) -> tuple[float, np.ndarray, np.ndarray]:
     step = 1 / cells
     diagonal = np.full(cells, 2 / step**2)
     diagonal[[0, -1]] = 1 / step**2 + film / (1 + film * step / 2) / step
-    return step, *eigh_tridiagonal(diagonal, np.full(cells - 1, -1 / step**2))
+    rates, fields = eigh_tridiagonal(diagonal, np.full(cells - 1, -1 / step**2))
+    return step, rates, fields
 
 
 @pytest.mark.parametrize("tau", [1e-4, 2e-3, 0.2])
