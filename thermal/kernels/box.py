@@ -21,7 +21,7 @@ from .axis import MODES, SWITCH, add_images, add_met, ends_felt, free_kernels, i
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
-_FADED = 1e-17  # of an eigenfunction, from which on it counts for nothing
+_FADED = 1e-12  # of an eigenfunction, from which on it counts for nothing
 _UNSEEN = 160.0  # squared distance over diffusion length squared: exp(-40)
 
 
@@ -230,7 +230,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                         images(a, order[n], b, order[m], n == m, length, film, taus[t], table)
                     add_met(by, table, beside, half_done[: len(b)], between[axis, n, :, m], t)
                 for f in range(axis_functions):
-                    for g in range(others):
+                    for g in range(f + 1 if n == m else others):
                         along = between[axis, n, f, m, g]
                         for w in range(seen if last > begun else 0):
                             both = overlap[axis, n, f, w] * overlap[axis, m, g, w]
@@ -244,6 +244,10 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                             known = between[axis, alike[m], g, alike[n], f]
                         for t in range(last, len(taus)):
                             along[t] = known[t]
+                for f in range(axis_functions if n == m else 0):
+                    for g in range(f):
+                        for t in range(len(taus)):
+                            between[axis, n, g, n, f, t] = between[axis, n, f, n, g, t]
             for f in range(axis_functions if film > 0.0 else 0):
                 along = everywhere[axis, n, f]
                 if alike[n] < n:

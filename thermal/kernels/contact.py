@@ -14,13 +14,15 @@ from functools import lru_cache
 
 import numpy as np
 
+from thermograsp.compiled import njit
+
 from ..matter import Material, SensorStack
-from ..numerics import ThermalNetwork, output_row
+from ..numerics import ThermalNetwork, least_row, output_row
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
-from .element import POLES, Element, element, element_samples
-from .exponentials import residues, states
-from .patterns import GRAM
+from .element import POLES, element, face_impedance
+from .exponentials import fades, rate_states, states
+from .patterns import basis_shares, basis_terms
 from .samples import GRASP, OF_GRASP
 
 _WEIGHED = 3e4  # W/(m2 K) of the contact beside which errors of impedances are weighed
@@ -94,16 +96,63 @@ def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle
 
 
 def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
-    known = element(stack)
-    (x0, x1), (y0, y1) = covered
-    impedance = basis.T @ element_samples(stack, covered).value[OF_GRASP] @ basis
-    even = GRAM[0] @ basis
-    even[1:] = 0.0
-    area = (x1 - x0) * (y1 - y0)
-    weight = contact_weight(impedance[:, 0, 0], area)
-    return Tip(
-        area, basis, even, impedance[:, 0, 0].copy(), _element_side(known, impedance, even, weight, level)
+    known, kept = element(stack), basis.shape[1]
+    impedance = face_impedance(
+        stack, covered, basis_shares(basis), basis_terms(kept), np.eye(kept), shown=False
     )
+    even = np.zeros(kept)
+    even[0] = 1.0
+    (x0, x1), (y0, y1) = covered
+    area = (x1 - x0) * (y1 - y0)
+    rates, ports, drop, heat = _element_states(
+        impedance,
+        even,
+        GRASP,
+        fades(level.decay),
+        level.decay,
+        level.least,
+        1 / (_WEIGHED * area),
+        known.rates,
+        known.ports,
+        known.drop,
+        known.heat,
+        known.drop_rest[OF_GRASP],
+        known.heat_rest[OF_GRASP],
+    )
+    side = ThermalNetwork(rates, ports, outputs={"drop": drop, "element": heat})
+    return Tip(area, basis, even, impedance[:, 0, 0].copy(), side)
+
+
+@njit(cache=True, error_model="numpy")
+def _element_states(
+    impedance, even, moments, columns, decay, least, joint, slow, seen, drops, heats, drop_rest, heat_rest
+):
+    """Rates, ports, drop and heat of an element's states of impedance (S, M, M) K/W at moments (S,), the slow ones of
+    rates slow (K,), ports seen (K,), drops and heats first. joint: K/W, see contact_weight. columns: fades's. The rest
+    as in Resolution and Element."""
+    count, kept, samples = len(slow), len(even), len(moments)
+    weight, wanted = np.empty(samples), np.zeros((2, samples, kept))
+    for s in range(samples):
+        weight[s] = 1 / (impedance[s, 0, 0] + joint)
+        wanted[0, s, 0], wanted[1, s, 0] = drop_rest[s], heat_rest[s]
+    rest = impedance.copy()
+    # neither output jumps with heat at the face, but all heat that goes in is in
+    jumps = np.zeros((2, kept))
+    jumps[1, 0] = 1.0
+    for k in range(count):
+        jumps[0, 0] -= drops[k] * seen[k]
+        jumps[1, 0] -= heats[k] * seen[k]
+        for s in range(samples):
+            rest[s, 0, 0] -= seen[k] * seen[k] / (moments[s] + slow[k])
+    fast, fast_ports = rate_states(columns, rest, weight, decay, least / weight[-1])
+    states = count + len(fast)
+    rates, ports = np.empty(states), np.zeros((states, kept))
+    drop, heat = np.empty(states), np.empty(states)
+    rates[:count], rates[count:], ports[:count, 0], ports[count:] = slow, fast, seen, fast_ports
+    drop[:count], heat[:count] = drops, heats
+    drop[count:] = least_row(moments, wanted[0], fast, fast_ports, weight, jumps[0], True)
+    heat[count:] = least_row(moments, wanted[1], fast, fast_ports, moments, jumps[1], True)
+    return rates, ports, drop, heat
 
 
 def box_side(
@@ -146,8 +195,7 @@ def box_side(
 def at_rates(impedance: np.ndarray, level: Resolution, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
     at GRASP. weight: (S,) W/K of its errors."""
-    found = residues(impedance, level.decay, weight)
-    return states(found, level.decay, level.least / weight[-1])
+    return states(impedance, level.decay, weight, level.least / weight[-1])
 
 
 def _shielded(
@@ -169,23 +217,3 @@ def _shielded(
     slow = 1 / (GRASP + rate)
     whole = (whole + whole.transpose(0, 2, 1)) / 2
     return rate, whole - slow[:, None, None] * np.outer(port, port), heat - slow[:, None] * box.held * port
-
-
-def _element_side(
-    known: Element, impedance: np.ndarray, even: np.ndarray, weight: np.ndarray, level: Resolution
-) -> ThermalNetwork:
-    slow = (1 / (GRASP[:, None] + known.rates)) @ known.ports**2
-    rest = impedance - slow[:, None, None] * np.outer(even, even)
-    fast, ports = at_rates(rest, level, weight)
-    # neither output jumps with heat at the face, but all heat that goes in is in
-    transfers = (np.outer(rest[OF_GRASP], even) for rest in (known.drop_rest, known.heat_rest))
-    jumps = (-(known.drop @ known.ports) * even, (1 - known.heat @ known.ports) * even)
-    drop, heat = (
-        output_row(GRASP, transfer, fast, ports, weight, jump)
-        for transfer, jump in zip(transfers, jumps, strict=True)
-    )
-    return ThermalNetwork(
-        np.concatenate((known.rates, fast)),
-        np.concatenate((known.ports[:, None] * even, ports)),
-        outputs={"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
-    )

@@ -10,9 +10,13 @@ S: moments, K: rates, N: ports.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from ..numerics import passive_residues
+from thermograsp.compiled import njit
+
+from ..numerics import passive_residues, port_residues, turn_diagonal
 from .samples import GRASP
 
 
@@ -26,11 +30,34 @@ def fades(rates: np.ndarray) -> np.ndarray:
     return 1 / (GRASP[:, None] + rates)
 
 
-def states(found: np.ndarray, rates: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the sum's states. least: K/W, resistance of a state that is left
-    out. Larger ones fade as they come near it, so that round-off decides nothing."""
-    values, vectors = np.linalg.eigh(found)
-    kept = values > least * rates[:, None]
-    left = np.where(kept, values - (least * rates[:, None]) ** 2 / np.where(kept, values, 1.0), 0.0)
-    ports = (vectors * np.sqrt(left)[:, None, :]).transpose(0, 2, 1)
-    return np.broadcast_to(rates[:, None], values.shape)[kept], ports[kept]
+def states(
+    impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray, least: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the states of such a network. least: K/W, resistance of a state that
+    is left out. Larger ones fade as they come near it, so that round-off decides nothing."""
+    return rate_states(fades(rates), np.ascontiguousarray(impedance), weight, rates, least)
+
+
+@njit(cache=True, error_model="numpy")
+def rate_states(columns, impedance, weight, rates, least):
+    """The same for compiled callers. columns: fades's."""
+    found = port_residues(columns, impedance, weight)
+    count, all_rates = len(found), len(rates)
+    turn, room = np.zeros_like(found), np.empty((4, all_rates))
+    fading, ports = np.empty(count * all_rates), np.empty((count * all_rates, count))
+    for i in range(count):
+        turn[i, i] = 1.0
+    turn_diagonal(found, turn, room)
+    kept = 0
+    for k in range(all_rates):
+        share = least * rates[k]
+        for i in range(count):
+            value = found[i, i, k]
+            if value <= share:
+                continue
+            size = math.sqrt(value - share * share / value)
+            fading[kept] = rates[k]
+            for j in range(count):
+                ports[kept, j] = size * turn[i, j, k]
+            kept += 1
+    return fading[:kept], ports[:kept]

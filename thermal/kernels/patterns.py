@@ -39,6 +39,8 @@ NODES = _nodes()
 """(E,) of the strips, from -1 to 1 over the patch."""
 FUNCTIONS = _functions(NODES)
 """(F, E - 1) over the strips."""
+EACH_FUNCTION = np.tile(np.eye(len(FUNCTIONS)), (2, 1, 1))
+"""(2, F, F): the functions themselves, as combinations along two axes."""
 JUMPS = -np.diff(np.pad(FUNCTIONS, ((0, 0), (1, 1))), axis=1)
 """(F, E): the integral of a function f times phi is the sum of JUMPS times phi's antiderivative at the nodes."""
 ALONG = np.array(
@@ -70,10 +72,17 @@ def along_axes(bases: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 def basis_jumps(basis: np.ndarray) -> np.ndarray:
     """(2, M, E) of one patch's combinations."""
-    shares, count = basis.T, len(FUNCTIONS)
-    jumps = np.array((shares[:, :count] @ JUMPS, shares[:, count:] @ JUMPS[1:]))
-    jumps[:, 0] = JUMPS[0]
-    return jumps
+    return basis_shares(basis) @ JUMPS
+
+
+def basis_shares(basis: np.ndarray) -> np.ndarray:
+    """(2, M, F) of FUNCTIONS in one patch's combinations' functions along its two axes, the even one first."""
+    count = len(FUNCTIONS)
+    shares = np.zeros((2, basis.shape[1], count))
+    shares[0], shares[1, :, 1:] = basis[:count].T, basis[count:].T
+    shares[:, 0] = 0.0
+    shares[:, 0, 0] = 1.0
+    return shares
 
 
 @lru_cache(maxsize=16)

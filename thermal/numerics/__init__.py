@@ -8,10 +8,11 @@ from .grid_contact import BOTTOM, OBJECT, SENSOR, TOP, Grid, Interface, Stage, r
 from .laplace import invert
 from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
-from .outputs import output_row
+from .outputs import least_row, output_row
 from .passive import ThermalNetwork
 from .passive_residues import free_residues, passive_residues, port_residues
 from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
+from .symmetric import dot, factor, solve_factored, turn_diagonal
 
 __all__ = [
     "BOTTOM",
@@ -34,13 +35,16 @@ __all__ = [
     "ThermalNetwork",
     "as_integers",
     "as_like",
+    "dot",
     "erfc_inverse",
+    "factor",
     "free_residues",
     "graded_cells",
     "hankel_values",
     "interpolate",
     "invert",
     "invert_many",
+    "least_row",
     "namespace_of",
     "output_row",
     "passive_residues",
@@ -48,8 +52,10 @@ __all__ = [
     "radial_axis",
     "rates",
     "sampled_fields",
+    "solve_factored",
     "single_cell",
     "symmetric_axis",
     "truncate",
+    "turn_diagonal",
     "windows",
 ]

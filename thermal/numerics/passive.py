@@ -36,16 +36,16 @@ class ThermalNetwork:
             raise InvalidValueError(
                 f"rates (K,) and ports (K, P) do not fit: got {rates.shape} and {ports.shape}"
             )
-        if not direct.size:
+        given = direct.size > 0
+        if not given:
             direct = np.zeros((ports.shape[1],) * 2)
         if direct.shape != (ports.shape[1],) * 2:
             raise InvalidValueError(f"direct must be (P, P) = {(ports.shape[1],) * 2}, got {direct.shape}")
-        if not (np.all(np.isfinite(rates)) and np.all(np.isfinite(ports)) and np.all(np.isfinite(direct))):
+        if not (np.isfinite(rates).all() and np.isfinite(ports).all() and np.isfinite(direct).all()):
             raise InvalidValueError("rates, ports and direct must be finite")
-        if np.any(rates < 0):
+        if (rates < 0).any():
             raise InvalidValueError(f"rates must be >= 0 for a passive network, got {rates.min():g} 1/s")
-        least = np.linalg.eigvalsh(direct).min() if direct.any() else 0.0
-        if not np.allclose(direct, direct.T) or least < -1e-12 * np.abs(direct).max(initial=0.0):
+        if given and not _passive(direct):
             raise InvalidValueError("direct must be symmetric and non-negative for a passive network")
         outputs = {name: np.asarray(row, float) for name, row in self.outputs.items()}
         for name, row in outputs.items():
@@ -114,3 +114,9 @@ class ThermalNetwork:
             self.direct,
             {n: np.concatenate((self.outputs[n][still], outputs[n])) for n in self.outputs},
         )
+
+
+def _passive(direct: np.ndarray) -> bool:
+    """Whether it is symmetric and nowhere negative."""
+    least = np.linalg.eigvalsh(direct).min() if direct.any() else 0.0
+    return np.allclose(direct, direct.T) and least >= -1e-12 * np.abs(direct).max(initial=0.0)

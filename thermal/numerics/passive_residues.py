@@ -6,11 +6,11 @@ Under that constraint the least squares are solved by alternating directions (Bo
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from thermograsp.compiled import njit
+
+from .symmetric import turn_diagonal
 
 _STEPS = 20  # at most
 _SETTLED = (
@@ -20,10 +20,6 @@ _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _FREE_RIDGE = 1e-6  # of residues without constraint
 _RELAXED = 1.6
-_ROUND_OFF = 1e-24
-"""Of squares off the diagonal beside those on it, in every step. With more left on the way, round-off decided how much:
-of 1e-15 in what is wanted came 9e-6 in what is found."""
-_TINY = 1e-300  # beside a zero
 
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -151,7 +147,7 @@ def _in_cone(solve, seen, inside):
                 for m in range(ports):
                     for k in range(rates):
                         moved[i, j, k] += turn[i, m, k] * half[j, m, k]
-        _turn_diagonal(moved, turn, room)
+        turn_diagonal(moved, turn, room)
         for m in range(ports):
             for i in range(ports):
                 for k in range(rates):
@@ -188,63 +184,3 @@ def _product(first, second, out):
             for r in range(ports):
                 for k in range(rates):
                     out[m, i, k] += first[i, r, k] * second[m, r, k]
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _turn_diagonal(matrix, turn, room):
-    """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
-    which it adds to turn's rows. room: (4, K)."""
-    ports, rates = matrix.shape[1], matrix.shape[2]
-    cosine, sine, off, on = room[0], room[1], room[2], room[3]
-    for _ in range(30):
-        for k in range(rates):
-            off[k] = on[k] = 0.0
-        for i in range(ports):
-            for k in range(rates):
-                on[k] += matrix[i, i, k] * matrix[i, i, k]
-            for j in range(i):
-                for k in range(rates):
-                    off[k] += matrix[i, j, k] * matrix[i, j, k]
-        done = True
-        for k in range(rates):
-            done &= off[k] <= _ROUND_OFF * on[k]
-            on[k] *= _ROUND_OFF / (ports * ports)
-        if done:
-            return
-        for q in range(1, ports):
-            for p in range(q):
-                small = True
-                for k in range(rates):
-                    small &= matrix[q, p, k] * matrix[q, p, k] <= on[k]
-                if small:
-                    continue
-                _angle(matrix[p, p], matrix[q, q], matrix[q, p], cosine, sine)
-                for m in range(p):
-                    _rotate(matrix, p, m, q, m, cosine, sine)
-                for m in range(p + 1, q):
-                    _rotate(matrix, m, p, q, m, cosine, sine)
-                for m in range(q + 1, ports):
-                    _rotate(matrix, m, p, m, q, cosine, sine)
-                for m in range(ports):
-                    _rotate(turn, p, m, q, m, cosine, sine)
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _angle(first, second, between, cosine, sine):
-    """Cosines and sines of the rotations that make between (K,) 0, and the diagonal after them; all in place."""
-    for k in range(len(between)):
-        twice, gap = 2 * between[k], second[k] - first[k]
-        size = abs(gap) + np.sqrt(gap * gap + twice * twice) + _TINY
-        tangent = math.copysign(twice / size, gap * twice)
-        cosine[k] = 1 / np.sqrt(tangent * tangent + 1)
-        sine[k] = tangent * cosine[k]
-        first[k] -= tangent * between[k]
-        second[k] += tangent * between[k]
-        between[k] = 0.0
-
-
-@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
-def _rotate(matrix, i, j, m, n, cosine, sine):
-    for k in range(len(cosine)):
-        a, b = matrix[i, j, k], matrix[m, n, k]
-        matrix[i, j, k], matrix[m, n, k] = cosine[k] * a - sine[k] * b, sine[k] * a + cosine[k] * b
