@@ -17,7 +17,7 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from .axis import MODES, SWITCH, add_images, add_met, ends_felt, free_kernels, images, overlaps, wave_numbers
+from .axis import MODES, SWITCH, add_images, add_met, ends_felt, free_kernels, images, left_inside, overlaps, wave_numbers
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
@@ -261,16 +261,14 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                     for t in range(begun, faded[w]):
                         along[t] += both * fading[w, t]
             for t in range(begun if film > 0.0 and alike[n] == n else 0):
-                low_end, high_end = ends_felt(a, ends, length, taus[t])
-                if across and not low_end and not high_end:
+                if across:
+                    left_inside(a, length, film, taus[t], half_done)
                     for f in range(functions):
                         for k in range(len(a)):
-                            everywhere[axis, n, f, t] += by[f, k] * a[k]
+                            everywhere[axis, n, f, t] += by[f, k] * half_done[k]
                     continue
                 images(a, order[n], ends, 1, False, length, film, taus[t], table)
-                for f in range(axis_functions):
-                    for k in range(len(a)):
-                        everywhere[axis, n, f, t] += by[f, k] * (table[k, 1] - table[k, 0])
+                everywhere[axis, n, 0, t] = table[0, 1] - table[0, 0]
     rows, told = wanted * patterns, total - start * patterns
     kernel, whole, port = np.zeros((len(taus), rows, told)), np.zeros((len(taus), told)), np.zeros(total)
     sums = np.empty(len(taus))
