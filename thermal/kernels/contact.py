@@ -108,7 +108,7 @@ def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.nd
         impedance,
         even,
         GRASP,
-        fades(level.decay),
+        _fades(level),
         level.decay,
         level.least,
         1 / (_WEIGHED * area),
@@ -121,6 +121,11 @@ def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.nd
     )
     side = ThermalNetwork(rates, ports, outputs={"drop": drop, "element": heat})
     return Tip(area, basis, even, impedance[:, 0, 0].copy(), side)
+
+
+@lru_cache(maxsize=64)
+def _fades(level: Resolution) -> np.ndarray:
+    return fades(level.decay)
 
 
 @njit(cache=True, error_model="numpy")

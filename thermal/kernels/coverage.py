@@ -29,12 +29,13 @@ from .axis import SWITCH
 from .box import Patches, box_kernel, box_samples
 from .element import Rectangle, element_samples, face_impedance
 from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
-from .samples import MOMENTS, SHOWN, at_moments, shown_rule
+from .samples import MOMENTS, SHOWN, at_moments, rough_rule
 
 STEPS = 16  # places along a face's side between which a contact's edges are told apart
 CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
 _CONDUCTANCES = np.array(CONDUCTANCES)
 _ORTHONORMAL = np.ascontiguousarray(np.linalg.inv(EVENNESS.T))
+_EACH_JUMPS, _EACH_TERM = np.tile(JUMPS, (2, 2, 1, 1)), ALONG[:, None].copy()
 _DOUBLED = 6  # powers of a matrix, to the 64th
 _LEAST_UNEVEN = 1e-24  # beside flows of size 1
 _BLOCK = (0.04, 0.04, 0.01)  # m, a box on which they are found, narrower where the contact ends at its edges
@@ -227,12 +228,9 @@ def _patterns_of(
     """Of one or of two on opposite faces. made: W/(m K) and J/(m3 K)."""
     centre, half = (np.array([getattr(each, name) for each in touched]) for name in ("centre", "half"))
     patches = Patches(np.array([5, 4][: len(touched)]), centre, half)
-    elements = [
-        face_impedance(stack, each.covered, EACH_FUNCTION, ALONG[:, None], GRAM, shown=True) for each in touched
-    ]
     found = excited(
         _shown_box(size, *made, patches),
-        np.array(elements),
+        np.array([_shown_element(stack, each.covered) for each in touched]),
         patches.areas,
         _CONDUCTANCES,
         GRAM,
@@ -244,26 +242,33 @@ def _patterns_of(
     return list(found)
 
 
+@lru_cache(maxsize=1024)
+def _shown_element(stack: SensorStack, covered: Rectangle) -> np.ndarray:
+    """(S, P, P) K/W of an element at SHOWN."""
+    return face_impedance(stack, covered, EACH_FUNCTION, _EACH_TERM, GRAM, shown=True)
+
+
 def _shown_box(
     size: tuple[float, float, float], conductivity: float, heat_capacity: float, patches: Patches
 ) -> np.ndarray:
     """(S, N P, N P) K/W of a box at SHOWN. What the air takes changes no pattern to speak of."""
-    rule, count, diffusivity = shown_rule(conductivity / heat_capacity), len(patches.face), conductivity / heat_capacity
+    diffusivity, count = conductivity / heat_capacity, len(patches.face)
+    rule = rough_rule(diffusivity)
     taus = diffusivity * rule.times
-    early = taus[: max(int(np.count_nonzero(taus <= SWITCH * max(size) ** 2)), 1)]
+    early = taus[: max(int(taus.searchsorted(SWITCH * max(size) ** 2, "right")), 1)]
     kernel, rate, port, _, heat = box_kernel(
         size,
         conductivity,
         heat_capacity,
         0.0,
         patches,
-        np.broadcast_to(JUMPS, (count, 2, *JUMPS.shape)).copy(),
-        ALONG[:, None],
+        _EACH_JUMPS[:count],
+        _EACH_TERM,
         count,
         rule.times,
         free=np.array([alone(half, EACH_FUNCTION, early) for half in patches.half]),
     )
-    begun = 1 / (heat_capacity * np.sqrt(np.pi * taus[0]) * patches.areas)
+    begun = 1 / (heat_capacity * math.sqrt(math.pi * taus[0]) * patches.areas)
     return shown_impedance(kernel, port, begun, GRAM, rule.to_moments, rule.early, MOMENTS[SHOWN], rate)
 
 

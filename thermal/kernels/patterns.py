@@ -49,6 +49,12 @@ ALONG = np.array(
 """(P, 2): the functions along the two axes whose product a pattern is; the even pattern comes first."""
 
 
+_OF_AXIS = np.zeros((2, len(FUNCTIONS), len(ALONG)))
+_OF_AXIS[0, :, : len(FUNCTIONS)] = _OF_AXIS[1, :, -len(FUNCTIONS) :] = np.eye(len(FUNCTIONS))
+_OF_AXIS[1, 0] = 0.0  # the even pattern is along the first
+_EVEN = np.eye(len(FUNCTIONS))[0]
+
+
 def _gram() -> np.ndarray:
     means = np.einsum("fs,gs,s->fg", FUNCTIONS, FUNCTIONS, np.diff(NODES) / 2)
     first, second = ALONG.T
@@ -77,11 +83,8 @@ def basis_jumps(basis: np.ndarray) -> np.ndarray:
 
 def basis_shares(basis: np.ndarray) -> np.ndarray:
     """(2, M, F) of FUNCTIONS in one patch's combinations' functions along its two axes, the even one first."""
-    count = len(FUNCTIONS)
-    shares = np.zeros((2, basis.shape[1], count))
-    shares[0], shares[1, :, 1:] = basis[:count].T, basis[count:].T
-    shares[:, 0] = 0.0
-    shares[:, 0, 0] = 1.0
+    shares = (_OF_AXIS @ basis).transpose(0, 2, 1)
+    shares[:, 0] = _EVEN
     return shares
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -41,9 +42,9 @@ class ThermalNetwork:
             direct = np.zeros((ports.shape[1],) * 2)
         if direct.shape != (ports.shape[1],) * 2:
             raise InvalidValueError(f"direct must be (P, P) = {(ports.shape[1],) * 2}, got {direct.shape}")
-        if not (np.isfinite(rates).all() and np.isfinite(ports).all() and np.isfinite(direct).all()):
+        if not math.isfinite(rates.sum() + ports.sum() + direct.sum()):
             raise InvalidValueError("rates, ports and direct must be finite")
-        if (rates < 0).any():
+        if rates.size and rates.min() < 0:
             raise InvalidValueError(f"rates must be >= 0 for a passive network, got {rates.min():g} 1/s")
         if given and not _passive(direct):
             raise InvalidValueError("direct must be symmetric and non-negative for a passive network")
