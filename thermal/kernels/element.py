@@ -39,7 +39,7 @@ _SPACING = 0.15  # of the nodes beyond, in ln of the wave number: cubic interpol
 _REACH = 25.0  # wave number times a contact's finest strip beyond which no eigenfunction is summed
 _LEFT_OUT = 1e-9  # of the largest, singular values of the correction that tell nothing
 _SCAN = 4000  # places where the characteristic function is looked at for its first roots
-_FADED = 1e-17  # of an eigenfunction, from which on it counts for nothing
+_FADED = 1e-12  # of an eigenfunction, from which on it counts for nothing
 _FINEST = float(np.diff(NODES).min())
 
 
@@ -133,17 +133,15 @@ def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
     known, diffusivity = element(stack), stack.layers[-1].diffusivity
     (x0, x1), (y0, y1) = covered
     centre, half = np.array([(x0 + x1) / 2, (y0 + y1) / 2]), np.array([(x1 - x0) / 2, (y1 - y0) / 2])
-    rule = grasp_rule(diffusivity)
-    taus, finest = diffusivity * rule.times, float(half.min()) * _FINEST
-    early = int(np.count_nonzero(taus <= SWITCH * stack.width * stack.width))
-    count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / np.pi) + 1)
-    within = np.zeros((2, len(JUMPS), len(JUMPS), len(taus)))
+    taus, finest = diffusivity * grasp_rule(diffusivity).times, float(half.min()) * _FINEST
+    early = int(taus.searchsorted(SWITCH * stack.width * stack.width, "right"))
+    count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / math.pi) + 1)
+    within, functions = np.zeros((2, len(JUMPS), len(JUMPS), len(taus))), len(JUMPS)
     within[..., :early] = alone(half, EACH_FUNCTION, taus[:early])
-    overlap = np.empty((2, len(JUMPS), count))
-    _within(stack.width, taus, early, centre, half, NODES, JUMPS, within, overlap)
-    pairs = overlap[:, :, None] * overlap[:, None]
     sums = known.sums if count == len(known.sums) else _between_nodes(known, count) @ known.sums
-    return SeenFace(half, within, pairs @ sums)
+    below = np.zeros((2, functions, functions, sums.shape[1]))
+    _within(stack.width, taus, early, centre, half, NODES, JUMPS, sums, within, below)
+    return SeenFace(half, within, below)
 
 
 def face_impedance(
@@ -304,23 +302,42 @@ def _along_sides(width, taus, early, centre, half, nodes, jumps, count):
 
 
 @njit(cache=True, error_model="numpy")
-def _within(width, taus, early, centre, half, nodes, jumps, within, overlap):
+def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below):
     """Adds to within (2, F, F, T) what comes by way of the face's ends at the first `early` taus (T,) m2, and fills it
-    at the others by eigenfunctions, whose products with the functions are overlap (2, F, count)."""
+    at the others by eigenfunctions; fills below (2, F, F, R) with these eigenfunctions' sums (count, R)."""
     functions, ends = len(jumps), len(nodes)
     table, places, done, seen = np.empty((ends, ends)), np.empty(ends), np.empty(ends), np.empty(ends)
+    overlap, decay = np.empty((functions, len(sums))), np.empty(len(taus))
     for axis in range(2):
         for k in range(ends):
             places[k] = centre[axis] + half[axis] * nodes[k]
-        for w in range(overlap.shape[2]):
+        for w in range(len(sums)):
             wave, norm = w * math.pi / width, math.sqrt(width if w == 0 else width / 2)
+            last = early
+            while last < len(taus):
+                decay[last] = math.exp(-wave * wave * taus[last])
+                if decay[last] < _FADED:
+                    break
+                last += 1
             for k in range(ends):
                 seen[k] = places[k] if w == 0 else math.sin(wave * places[k]) / wave
             for f in range(functions):
                 total = 0.0
                 for k in range(ends):
                     total += jumps[f, k] * seen[k]
-                overlap[axis, f, w] = total / norm
+                overlap[f, w] = total / norm
+                for g in range(f + 1):
+                    both = overlap[f, w] * overlap[g, w]
+                    for t in range(early, last):
+                        within[axis, f, g, t] += both * decay[t]
+                    for r in range(sums.shape[1]):
+                        below[axis, f, g, r] += both * sums[w, r]
+        for f in range(functions):
+            for g in range(f):
+                for t in range(early, len(taus)):
+                    within[axis, g, f, t] = within[axis, f, g, t]
+                for r in range(sums.shape[1]):
+                    below[axis, g, f, r] = below[axis, f, g, r]
         for t in range(early):
             low_end, high_end = ends_felt(places, places, width, taus[t])
             if not low_end and not high_end:
@@ -328,15 +345,6 @@ def _within(width, taus, early, centre, half, nodes, jumps, within, overlap):
             table[:] = 0.0
             add_images(places, 1, places, 1, True, width, 0.0, taus[t], table)
             add_met(jumps, table, jumps, done, within[axis], t)
-        for t in range(early, len(taus)):
-            for w in range(min(overlap.shape[2], MODES)):
-                wave = w * math.pi / width
-                decay = math.exp(-wave * wave * taus[t])
-                if decay < _FADED:
-                    break
-                for f in range(functions):
-                    for g in range(functions):
-                        within[axis, f, g, t] += decay * overlap[axis, f, w] * overlap[axis, g, w]
 
 
 @njit(cache=True, error_model="numpy")
