@@ -176,12 +176,14 @@ def tip_residues(side: ThermalNetwork) -> np.ndarray:
     """(P P + 2 P + 2, K) of an element at FIXED_LEVEL's rates: a row of FixedTables.tips. Raises ValueError for one of
     other rates."""
     found = np.zeros((side.ports.shape[1] ** 2 + 2 * side.ports.shape[1] + 2, RATES))
-    if not _tip_residues(side.rates, side.ports, side.outputs["drop"], side.outputs["element"], SHARED, found):
+    if not _tip_residues(
+        side.rates, side.ports, side.outputs["drop"], side.outputs["element"], SHARED, found
+    ):
         raise ValueError(f"rates {side.rates} 1/s are not among the shared ones, {SHARED}")
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def _tip_residues(rates, ports, drop, heat, shared, found):
     """Fills found, the sums over the states that fade at each of the shared rates. Whether each does."""
     patterns, first = ports.shape[1], 0

@@ -39,7 +39,7 @@ def alone(half: np.ndarray, shares: np.ndarray, taus: np.ndarray) -> np.ndarray:
     return free_kernels(half[None], (shares @ JUMPS)[None], NODES, taus)[0]  # of no usual sensor
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def _between(table, half, shares, taus, found):
     """Fills found by interpolation. Whether all is in the table."""
     functions, kept = shares.shape[2], shares.shape[1]

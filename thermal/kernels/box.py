@@ -17,7 +17,18 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from .axis import MODES, SWITCH, add_images, add_met, ends_felt, free_kernels, images, left_inside, overlaps, wave_numbers
+from .axis import (
+    MODES,
+    SWITCH,
+    add_images,
+    add_met,
+    ends_felt,
+    free_kernels,
+    images,
+    left_inside,
+    overlaps,
+    wave_numbers,
+)
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 

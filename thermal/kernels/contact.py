@@ -17,7 +17,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material, SensorStack
-from ..numerics import ThermalNetwork, least_row, output_row
+from ..numerics import ThermalNetwork, least_row, output_row, port_residues
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
 from .element import POLES, element, face_impedance
@@ -96,7 +96,7 @@ def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle
 
 
 def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
-    known, kept = element(stack), basis.shape[1]
+    known, kept, columns = element(stack), basis.shape[1], _fades(level)
     impedance = face_impedance(
         stack, covered, basis_shares(basis), basis_terms(kept), np.eye(kept), shown=False
     )
@@ -104,14 +104,15 @@ def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.nd
     even[0] = 1.0
     (x0, x1), (y0, y1) = covered
     area = (x1 - x0) * (y1 - y0)
+    rest, alone = impedance.copy(), impedance[:, 0, 0].copy()
+    rest[:, 0, 0] -= known.slow
+    weight = contact_weight(alone, area)
     rates, ports, drop, heat = _element_states(
-        impedance,
-        even,
+        port_residues(columns, rest, weight),
+        weight,
         GRASP,
-        _fades(level),
         level.decay,
         level.least,
-        1 / (_WEIGHED * area),
         known.rates,
         known.ports,
         known.drop,
@@ -120,7 +121,7 @@ def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.nd
         known.heat_rest[OF_GRASP],
     )
     side = ThermalNetwork(rates, ports, outputs={"drop": drop, "element": heat})
-    return Tip(area, basis, even, impedance[:, 0, 0].copy(), side)
+    return Tip(area, basis, even, alone, side)
 
 
 @lru_cache(maxsize=64)
@@ -128,28 +129,21 @@ def _fades(level: Resolution) -> np.ndarray:
     return fades(level.decay)
 
 
-@njit(cache=True, error_model="numpy")
-def _element_states(
-    impedance, even, moments, columns, decay, least, joint, slow, seen, drops, heats, drop_rest, heat_rest
-):
-    """Rates, ports, drop and heat of an element's states of impedance (S, M, M) K/W at moments (S,), the slow ones of
-    rates slow (K,), ports seen (K,), drops and heats first. joint: K/W, see contact_weight. columns: fades's. The rest
-    as in Resolution and Element."""
-    count, kept, samples = len(slow), len(even), len(moments)
-    weight, wanted = np.empty(samples), np.zeros((2, samples, kept))
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _element_states(found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest):
+    """Rates, ports, drop and heat of an element's states: the slow ones of rates slow (K,), ports seen (K,), drops and
+    heats, then those of residues found (M, M, rates). The rest as in Resolution and Element."""
+    count, kept, samples = len(slow), len(found), len(moments)
+    wanted = np.zeros((2, samples, kept))
     for s in range(samples):
-        weight[s] = 1 / (impedance[s, 0, 0] + joint)
         wanted[0, s, 0], wanted[1, s, 0] = drop_rest[s], heat_rest[s]
-    rest = impedance.copy()
     # neither output jumps with heat at the face, but all heat that goes in is in
     jumps = np.zeros((2, kept))
     jumps[1, 0] = 1.0
     for k in range(count):
         jumps[0, 0] -= drops[k] * seen[k]
         jumps[1, 0] -= heats[k] * seen[k]
-        for s in range(samples):
-            rest[s, 0, 0] -= seen[k] * seen[k] / (moments[s] + slow[k])
-    fast, fast_ports = rate_states(columns, rest, weight, decay, least / weight[-1])
+    fast, fast_ports = rate_states(found, decay, least / weight[-1])
     states = count + len(fast)
     rates, ports = np.empty(states), np.zeros((states, kept))
     drop, heat = np.empty(states), np.empty(states)

@@ -26,8 +26,8 @@ from ..matter import SensorStack
 from ..numerics import factor, solve_factored
 from .alone import alone
 from .axis import SWITCH
-from .box import Patches, box_kernel, box_samples
-from .element import Rectangle, element_samples, face_impedance
+from .box import Patches, box_kernel
+from .element import Rectangle, face_impedance
 from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
 from .samples import MOMENTS, SHOWN, at_moments, rough_rule
 
@@ -283,7 +283,7 @@ def shown_impedance(kernel, port, begun, gram, to_moments, early, moments, rate)
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, short_loops=True, error_model="numpy")
 def excited(box, elements, areas, conductances, gram, evenness, orthonormal, kept):
     """touch_patterns (N, P, M) of contacts each of which has its own, at SHOWN. box: (S, N P, N P) K/W. elements:
     (N, S, P, P) K/W. orthonormal: (P, P), from orthonormal patterns' coefficients to those of the patterns."""
@@ -295,7 +295,6 @@ def excited(box, elements, areas, conductances, gram, evenness, orthonormal, kep
     for s in range(moments):
         for h in conductances:
             for n in range(count):
-                first = n * known
                 _joined(both[:known, :known], box[s], elements[:, s], n, 1, h * areas, gram)
                 for i in range(known):
                     flow[i] = gram[0, i]
@@ -415,7 +414,7 @@ def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]]
     width = stack.width
     half = np.array([(last - first) / STEPS * width / 2 for first, last in steps])
     (x0, x1), (y0, y1) = (((first / STEPS) * width, (last / STEPS) * width) for first, last in steps)
-    across = element_samples(stack, ((x0, x1), (y0, y1))).value
+    across = _shown_element(stack, ((x0, x1), (y0, y1)))
     area = float(4 * half[0] * half[1])
     size, middle = list(_BLOCK), np.zeros(2)
     for axis, (first, last) in enumerate(steps):
@@ -437,8 +436,8 @@ def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]]
     for conductivity, heat_capacity in _MATERIALS:
         for thickness, centre in places:
             patch = Patches(np.array([5]), centre[None], half[None])
-            box = box_samples((size[0], size[1], thickness), conductivity, heat_capacity, 0.0, patch)
-            flows += _flows((across + box.whole())[SHOWN], area)
+            box = _shown_box((size[0], size[1], thickness), conductivity, heat_capacity, patch)
+            flows += _flows(across + box, area)
     found = _leading(np.concatenate(flows), kept)
     found.setflags(write=False)
     return found

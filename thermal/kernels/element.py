@@ -24,10 +24,21 @@ from thermograsp.compiled import njit
 from ..matter import SensorStack
 from ..numerics import Sampled, dot
 from ..plates import from_nodes, log_nodes, stack_impedance, stack_profile
-from .axis import MODES, SWITCH, add_images, add_met, ends_felt, images
 from .alone import alone
+from .axis import MODES, SWITCH, add_images, add_met, ends_felt, images
 from .patterns import ALONG, EACH_FUNCTION, GRAM, JUMPS, NODES
-from .samples import MOMENTS, OF_GRASP, SHOWN, TIMES, TO_MOMENTS, TO_SLOPES, before, grasp_rule, shown_rule
+from .samples import (
+    GRASP,
+    MOMENTS,
+    OF_GRASP,
+    SHOWN,
+    TIMES,
+    TO_MOMENTS,
+    TO_SLOPES,
+    before,
+    grasp_rule,
+    shown_rule,
+)
 
 Rectangle = tuple[tuple[float, float], tuple[float, float]]
 """(low, high) in m along a face's two axes."""
@@ -51,7 +62,8 @@ class Element:
     (K,) sqrt(J K). drop_rest: (S,) K/W and heat_rest: (S,) J/W of the even part's transform at MOMENTS beyond them.
     nodes: (L,) lateral eigenfunctions of an axis, by half waves over the width. correction: (2, S, L, L) m2 K/W to add
     to the first layer's half-space there, and its derivative by the moment; less its small singular values it is
-    (S, R, R) between few sums (L, R) of the eigenfunctions, `few` and `sums`."""
+    (S, R, R) between few sums (L, R) of the eigenfunctions, `few` and `sums`. slow: K/W of
+    the slowest even poles at GRASP."""
 
     stack: SensorStack
     rates: np.ndarray
@@ -64,6 +76,7 @@ class Element:
     correction: np.ndarray
     sums: np.ndarray
     few: np.ndarray
+    slow: np.ndarray
 
 
 @lru_cache(maxsize=64)
@@ -114,6 +127,7 @@ def element(stack: SensorStack) -> Element:
         correction,
         sums,
         few,
+        (1 / (GRASP[:, None] + rates)) @ ports**2,
     )
 
 
@@ -145,16 +159,30 @@ def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
 
 
 def face_impedance(
-    stack: SensorStack, covered: Rectangle, shares: np.ndarray, terms: np.ndarray, gram: np.ndarray, shown: bool
+    stack: SensorStack,
+    covered: Rectangle,
+    shares: np.ndarray,
+    terms: np.ndarray,
+    gram: np.ndarray,
+    shown: bool,
 ) -> np.ndarray:
     """(S, M, M) K/W between combinations of the patterns on a rectangle of the face, m from its corner: functions of
-    shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M), means
-    of their products. At SHOWN, or at GRASP."""
+    shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
+    their products' means. At SHOWN, or at GRASP."""
     layer, seen = stack.layers[-1], seen_face(stack, covered)
     rule = (shown_rule if shown else grasp_rule)(layer.diffusivity)
     few = element(stack).few[SHOWN if shown else OF_GRASP]
     return _impedance(
-        seen.half, seen.within, seen.below, few, shares, terms, gram, *rule, layer.conductivity, layer.diffusivity
+        seen.half,
+        seen.within,
+        seen.below,
+        few,
+        shares,
+        terms,
+        gram,
+        *rule,
+        layer.conductivity,
+        layer.diffusivity,
     )
 
 
@@ -347,10 +375,12 @@ def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below)
             add_met(jumps, table, jumps, done, within[axis], t)
 
 
-@njit(cache=True, error_model="numpy")
-def _impedance(half, within, below, few, shares, terms, gram, times, to_moments, early, conductivity, diffusivity):
-    """face_impedance of a SeenFace. few: (S, R, R) of the element. shares (2, F', F) of functions along both axes, whose products add up as terms (M, X, 2) say: along_axes's.
-    conductivity, diffusivity: W/(m K) and m2/s of the first layer. The rest as in face_impedance and Rule."""
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _impedance(
+    half, within, below, few, shares, terms, gram, times, to_moments, early, conductivity, diffusivity
+):
+    """face_impedance of a SeenFace. few: (S, R, R) of the element. conductivity, diffusivity: W/(m K) and m2/s of the
+    first layer. The rest as in face_impedance and Rule."""
     moments, sums, kept = len(early), few.shape[1], len(terms)
     functions, known = shares.shape[1], shares.shape[2]
     own = np.zeros((2, functions, functions, len(times)))

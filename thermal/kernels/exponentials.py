@@ -35,13 +35,12 @@ def states(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the states of such a network. least: K/W, resistance of a state that
     is left out. Larger ones fade as they come near it, so that round-off decides nothing."""
-    return rate_states(fades(rates), np.ascontiguousarray(impedance), weight, rates, least)
+    return rate_states(port_residues(fades(rates), np.ascontiguousarray(impedance), weight), rates, least)
 
 
-@njit(cache=True, error_model="numpy")
-def rate_states(columns, impedance, weight, rates, least):
-    """The same for compiled callers. columns: fades's."""
-    found = port_residues(columns, impedance, weight)
+@njit(cache=True, short_loops=True, error_model="numpy")
+def rate_states(found, rates, least):
+    """The same of residues found (N, N, K), which it writes over."""
     count, all_rates = len(found), len(rates)
     turn, room = np.zeros_like(found), np.empty((4, all_rates))
     fading, ports = np.empty(count * all_rates), np.empty((count * all_rates, count))

@@ -46,7 +46,8 @@ _BEFORE = 40  # times before the first that count
 
 class Rule(NamedTuple):
     """Times (T,) s, equally spaced in ln t, at which a kernel is needed; (S, T) its transform at some moments by the
-    trapezoidal rule, as if it had its first value before; (S,) s of what it has more then if it falls as 1 / sqrt(t)."""
+    trapezoidal rule, as if it had its first value before; (S,) s of what it has more then if it falls as
+    1 / sqrt(t)."""
 
     times: np.ndarray
     to_moments: np.ndarray

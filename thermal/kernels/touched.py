@@ -200,7 +200,9 @@ def _samples(kernel, heat, port, to_grasp, early, moments, alone, half, rate, he
     areas = np.empty(len(half))
     for n in range(len(half)):
         areas[n] = 4 * half[n, 0] * half[n, 1]
-    rest, warmth = at_moments(kernel, heat, port, alone / areas, np.eye(len(port) // len(half)), to_grasp, early)
+    rest, warmth = at_moments(
+        kernel, heat, port, alone / areas, np.eye(len(port) // len(half)), to_grasp, early
+    )
     counts, lasting, opened, returned = _shielded(
         moments, rest, warmth, rate, port, held, film * areas, weight
     )

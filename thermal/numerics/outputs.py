@@ -24,7 +24,9 @@ def output_row(
     little by its size; such that its jump with a unit heat at each port is exactly total (N,), where given."""
     exact = total is not None
     jump = total if exact else np.zeros(ports.shape[1])
-    return least_row(moments, np.ascontiguousarray(transfer), rates, np.ascontiguousarray(ports), weight, jump, exact)
+    return least_row(
+        moments, np.ascontiguousarray(transfer), rates, np.ascontiguousarray(ports), weight, jump, exact
+    )
 
 
 @njit(cache=True, error_model="numpy")
