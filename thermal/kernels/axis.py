@@ -236,8 +236,8 @@ def _strip_images(one, other, same, end, side, film, scale, out):
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)
 def _soon(place, more):
     """At place _FINE y / scale, y from an end: the integral of erfc from y / scale on, and _lost of order 2 over the
-    scale while more, film times scale, is at most 2 _FEW. That one is a series of the repeated integrals of erfc, which follow from the first two
-    (Carslaw & Jaeger, appendix II)."""
+    scale while more, film times scale, is at most 2 _FEW. That one is a series of the repeated integrals of erfc, which
+    follow from the first two (Carslaw & Jaeger, appendix II)."""
     place = min(place, _REACH * _FINE)
     k = int(place)
     u = place - k

@@ -36,8 +36,7 @@ from .samples import (
     TO_MOMENTS,
     TO_SLOPES,
     before,
-    grasp_rule,
-    shown_rule,
+    element_rule,
 )
 
 Rectangle = tuple[tuple[float, float], tuple[float, float]]
@@ -133,7 +132,7 @@ def element(stack: SensorStack) -> Element:
 
 class SeenFace(NamedTuple):
     """A rectangle of the face, of half widths half (2,) m, as the functions along its two axes see it. within:
-    (2, F, F, T) m of the first layer's half-space at grasp_rule's times and below: (2, F, F, R) m of the lateral
+    (2, F, F, T) m of the first layer's half-space at element_rule's times and below: (2, F, F, R) m of the lateral
     eigenfunctions' sums."""
 
     half: np.ndarray
@@ -147,7 +146,7 @@ def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
     known, diffusivity = element(stack), stack.layers[-1].diffusivity
     (x0, x1), (y0, y1) = covered
     centre, half = np.array([(x0 + x1) / 2, (y0 + y1) / 2]), np.array([(x1 - x0) / 2, (y1 - y0) / 2])
-    taus, finest = diffusivity * grasp_rule(diffusivity).times, float(half.min()) * _FINEST
+    taus, finest = diffusivity * element_rule(diffusivity, shown=False).times, float(half.min()) * _FINEST
     early = int(taus.searchsorted(SWITCH * stack.width * stack.width, "right"))
     count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / math.pi) + 1)
     within, functions = np.zeros((2, len(JUMPS), len(JUMPS), len(taus))), len(JUMPS)
@@ -170,7 +169,7 @@ def face_impedance(
     shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
     their products' means. At SHOWN, or at GRASP."""
     layer, seen = stack.layers[-1], seen_face(stack, covered)
-    rule = (shown_rule if shown else grasp_rule)(layer.diffusivity)
+    rule = element_rule(layer.diffusivity, shown)
     few = element(stack).few[SHOWN if shown else OF_GRASP]
     return _impedance(
         seen.half,
