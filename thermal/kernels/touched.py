@@ -20,7 +20,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material
-from ..numerics import free_residues, port_residues
+from ..numerics import free_residues, mirrored_residues, port_residues
 from .alone import alone
 from .axis import SWITCH
 from .box import Patches, box_kernel
@@ -146,7 +146,7 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
         box.film,
         np.array([_weight(one) for one in box.tips]),
     )
-    found = port_residues(fit.fades, rest, weight)
+    found = (mirrored_residues if _mirrored(box) else port_residues)(fit.fades, rest, weight)
     heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
     if box.film > 0:
         even = np.concatenate([one.even for one in box.tips])
@@ -154,6 +154,13 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
         heat, still = _warmed(found, warmth, even, port, held, whole, fit.seen, fit.share)
     own = BodyResidues(rate, port, held, found, heat, still)
     return UnderTips(own, opened, returned, known.rate, free_residues(fit.fades, weight))
+
+
+def _mirrored(box: TouchedBox) -> bool:
+    """Whether two like fingertips are exactly over each other on opposite faces."""
+    face, centre, half = (each.tolist() for each in box.patches)
+    opposite = len(face) == 2 and face[0] == face[1] ^ 1 and box.tips[0] is box.tips[1]
+    return opposite and centre[0] == centre[1] and half[0] == half[1]
 
 
 def _kernel_of(box: TouchedBox, first: int) -> _Kernel:

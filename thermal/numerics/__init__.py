@@ -10,7 +10,7 @@ from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
 from .outputs import least_row, output_row
 from .passive import ThermalNetwork
-from .passive_residues import free_residues, passive_residues, port_residues
+from .passive_residues import free_residues, mirrored_residues, passive_residues, port_residues
 from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
 from .symmetric import dot, factor, solve_factored, turn_diagonal
 
@@ -45,6 +45,7 @@ __all__ = [
     "invert",
     "invert_many",
     "least_row",
+    "mirrored_residues",
     "namespace_of",
     "output_row",
     "passive_residues",

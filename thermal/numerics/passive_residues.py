@@ -29,31 +29,46 @@ def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray
     )
 
 
-@njit(cache=True, error_model="numpy")
-def port_residues(columns, wanted, weight):
+def port_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(N, N, K) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N) where
     errors count by weight (S,)."""
+    return _residues(columns, wanted[None], weight)
+
+
+def mirrored_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """The same, to round-off, of what is wanted between ports whose two halves could change places: what both see of
+    flows that are alike and of opposite flows are two problems of half the size."""
+    half = wanted.shape[1] // 2
+    own = (wanted[:, :half, :half] + wanted[:, half:, half:]) / 2
+    across = (wanted[:, :half, half:] + wanted[:, half:, :half]) / 2
+    alike, opposite = np.split(_residues(columns, np.stack((own + across, own - across)), weight), 2, axis=2)
+    own, across = (alike + opposite) / 2, (alike - opposite) / 2
+    return np.concatenate((np.concatenate((own, across), axis=1), np.concatenate((across, own), axis=1)))
+
+
+@njit(cache=True, error_model="numpy")
+def _residues(columns, wanted, weight):
+    """port_residues (N, N, G K) of one or two wanted (G, S, N, N), which end together."""
     samples, rates = columns.shape
-    ports = wanted.shape[1]
+    groups, ports = len(wanted), wanted.shape[2]
     scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((2, rates, rates))
     _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
-    seen, inside = np.zeros((ports, ports, rates)), np.zeros((ports, ports, rates))
-    for s in range(samples):
+    shape = ports, ports, groups * rates
+    seen, inside = np.zeros(shape), np.zeros(shape)
+    for group in range(groups):
         for i in range(ports):
             for j in range(ports):
-                value = weight[s] * wanted[s, i, j]
-                for k in range(rates):
-                    seen[i, j, k] += value * scaled[s, k]
-    for i in range(ports):
-        for j in range(ports):
-            for m in range(rates):
-                for k in range(rates):
-                    inside[i, j, k] += seen[i, j, m] * inverse[0, m, k]
+                its_seen = seen[i, j, group * rates : (group + 1) * rates]
+                for s in range(samples):
+                    value = weight[s] * wanted[group, s, i, j]
+                    for k in range(rates):
+                        its_seen[k] += value * scaled[s, k]
+                _added(inverse[0], its_seen, inside[i, j, group * rates : (group + 1) * rates])
     _in_cone(inverse[1], seen, inside)
     for i in range(ports):
         for j in range(ports):
-            for k in range(rates):
-                inside[i, j, k] /= size[k]
+            for k in range(groups * rates):
+                inside[i, j, k] /= size[k % rates]
     return inside
 
 
@@ -119,8 +134,8 @@ def _inverse(matrix, ridge, out):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _in_cone(solve, seen, inside):
-    """Turns the first guess inside (N, N, K) into the answer. solve: (K, K) symmetric. seen: (N, N, K)."""
-    ports, rates = seen.shape[1], seen.shape[2]
+    """Turns the first guess inside (N, N, G K) into the answer. solve: (K, K) symmetric. seen: (N, N, G K)."""
+    ports, rates, each = seen.shape[1], seen.shape[2], len(solve)
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
     turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
     pulled, free, room = np.empty(rates), np.empty(rates), np.empty((4, rates))
@@ -132,9 +147,9 @@ def _in_cone(solve, seen, inside):
                 for k in range(rates):
                     pulled[k] = seen[i, j, k] + _PENALTY * (inside[i, j, k] - dual[i, j, k])
                     free[k] = 0.0
-                for m in range(rates):
-                    for k in range(rates):
-                        free[k] += solve[m, k] * pulled[m]
+                _added(solve, pulled[:each], free[:each])
+                if each < rates:
+                    _added(solve, pulled[each:], free[each:])
                 for k in range(rates):
                     value = _RELAXED * free[k] + (1 - _RELAXED) * inside[i, j, k] + dual[i, j, k]
                     dual[i, j, k] = dual[j, i, k] = value
@@ -161,16 +176,29 @@ def _in_cone(solve, seen, inside):
                     for k in range(rates):
                         free[k] += turn[m, i, k] * half[m, j, k]
                 for k in range(rates):
-                    moving = max(moving, abs(free[k] - inside[i, j, k]))
+                    pulled[k] = abs(free[k] - inside[i, j, k])
                     inside[i, j, k] = free[k]
                     dual[i, j, k] -= free[k]
                     dual[j, i, k] = dual[i, j, k]
+                if each < rates:  # of mirrored ports, what one half's changes by
+                    for k in range(each):
+                        pulled[k] = (pulled[k] + pulled[each + k]) / 2
+                for k in range(each):
+                    moving = max(moving, pulled[k])
         if moving < _SETTLED:
             break
     for i in range(ports):
         for j in range(i):
             for k in range(rates):
                 inside[j, i, k] = inside[i, j, k]
+
+
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+def _added(solve, pulled, free):
+    """Adds a symmetric matrix' (K, K) product with pulled (K,) to free (K,)."""
+    for m in range(len(pulled)):
+        for k in range(len(free)):
+            free[k] += solve[m, k] * pulled[m]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
