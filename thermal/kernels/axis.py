@@ -159,7 +159,7 @@ def add_images(one, order, other, other_order, same, length, film, tau, out):
                 out[j, i] = out[i, j]
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def left_inside(places, length, film, tau, out):
     """Fills out (E,) with the antiderivative along the axis of what of heat that starts there is in it at tau m2, at a
     time at which eigenfunctions need not serve."""

@@ -146,7 +146,8 @@ def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
     known, diffusivity = element(stack), stack.layers[-1].diffusivity
     (x0, x1), (y0, y1) = covered
     centre, half = np.array([(x0 + x1) / 2, (y0 + y1) / 2]), np.array([(x1 - x0) / 2, (y1 - y0) / 2])
-    taus, finest = diffusivity * element_rule(diffusivity, shown=False).times, float(half.min()) * _FINEST
+    narrow = float(half.min())
+    taus, finest = diffusivity * element_rule(diffusivity, narrow, shown=False).times, narrow * _FINEST
     early = int(taus.searchsorted(SWITCH * stack.width * stack.width, "right"))
     count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / math.pi) + 1)
     within, functions = np.zeros((2, len(JUMPS), len(JUMPS), len(taus))), len(JUMPS)
@@ -169,7 +170,7 @@ def face_impedance(
     shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
     their products' means. At SHOWN, or at GRASP."""
     layer, seen = stack.layers[-1], seen_face(stack, covered)
-    rule = element_rule(layer.diffusivity, shown)
+    rule = element_rule(layer.diffusivity, float(seen.half.min()), shown)
     few = element(stack).few[SHOWN if shown else OF_GRASP]
     return _impedance(
         seen.half,

@@ -37,6 +37,7 @@ _ELEMENT_SPACING, _ROUGH_SPACING = 0.85, 1.4  # the same to 9e-6 and 9e-4
 _UNFELT = (
     2.5e-10  # m2, diffusivity times time up to which every strip of a contact is a half-space of its own
 )
+_WIDE = 0.0045  # m, half width of a contact of which that is so; of others the strips are narrower
 _FIRST, _LAST = (
     3e-6,
     40.0,
@@ -57,24 +58,29 @@ class Rule(NamedTuple):
 @lru_cache(maxsize=512)
 def grasp_rule(diffusivity: float) -> Rule:
     """Of kernels of m2/s, at GRASP."""
-    return _rule(diffusivity, GRASP, FEW_SPACING)
+    return _rule(diffusivity, GRASP, FEW_SPACING, _UNFELT)
 
 
-@lru_cache(maxsize=64)
-def element_rule(diffusivity: float, shown: bool) -> Rule:
-    """The same of an element, closer, since all that it touches is told beside it; at SHOWN its times are the first
-    ones of those at GRASP."""
-    return _rule(diffusivity, MOMENTS[SHOWN] if shown else GRASP, _ELEMENT_SPACING)
+def element_rule(diffusivity: float, half: float, shown: bool) -> Rule:
+    """The same of an element, closer, since all that it touches is told beside it, under a patch of half width m along
+    its shorter side; at SHOWN its times are the first ones of those at GRASP."""
+    return _element_rule(diffusivity, max(math.ceil(2 * math.log(_WIDE / half)), 0), shown)
+
+
+@lru_cache(maxsize=512)
+def _element_rule(diffusivity: float, sooner: int, shown: bool) -> Rule:
+    moments = MOMENTS[SHOWN] if shown else GRASP
+    return _rule(diffusivity, moments, _ELEMENT_SPACING, _UNFELT * math.exp(-sooner))
 
 
 @lru_cache(maxsize=512)
 def rough_rule(diffusivity: float) -> Rule:
     """The same at SHOWN, of what only decides on patterns of flow, at fewer times."""
-    return _rule(diffusivity, MOMENTS[SHOWN], _ROUGH_SPACING)
+    return _rule(diffusivity, MOMENTS[SHOWN], _ROUGH_SPACING, _UNFELT)
 
 
-def _rule(diffusivity: float, moments: np.ndarray, spacing: float) -> Rule:
-    first = max(_FIRST, _UNFELT / diffusivity)
+def _rule(diffusivity: float, moments: np.ndarray, spacing: float, unfelt: float) -> Rule:
+    first = max(_FIRST, unfelt / diffusivity)
     count = math.ceil(math.log(_LAST / moments[0] / first) / spacing) + 1
     times = first * np.exp(spacing * np.arange(-_BEFORE, count))
     rule = spacing * times * np.exp(-moments[:, None] * times)
