@@ -1,14 +1,18 @@
 """Fingertips on a box, anywhere on its faces, as passive networks of fixed rates: a field's states are how its flows
 have faded at these, whatever the body, so that it stays where a place, a size or an object changes.
 
-Each contact keeps the few patterns of flow that it excites (coverage.py); box and elements become networks on them
-(exponentials.py). The film of air on the box does not cover what lies under a fingertip.
+Z(s) of a conducting body is a sum of R_k / (s + rate_k) with positive semidefinite residues. Put on rates that are the
+same for every body, equally spaced in the logarithm, it is found by least squares under that constraint
+(numerics/passive_residues.py), in the same few steps whatever the body: no search and no eigenproblem of its size, and
+what comes out is passive by construction. Each contact keeps the few patterns of flow that it excites (coverage.py).
+The film of air on the box does not cover what lies under a fingertip.
 
 F: fingertips, P: patterns known (patterns.py), M: kept of each, S: moments, n: states.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,11 +21,10 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material, SensorStack
-from ..numerics import ThermalNetwork, least_row, output_row, port_residues
+from ..numerics import ThermalNetwork, least_row, output_row, passive_residues, port_residues, turn_diagonal
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
 from .element import POLES, element, face_impedance
-from .exponentials import fades, rate_states, states
 from .patterns import basis_shares, basis_terms
 from .samples import GRASP, OF_GRASP
 
@@ -216,3 +219,45 @@ def _shielded(
     slow = 1 / (GRASP + rate)
     whole = (whole + whole.transpose(0, 2, 1)) / 2
     return rate, whole - slow[:, None, None] * np.outer(port, port), heat - slow[:, None] * box.held * port
+
+
+def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(K, N, N) positive semidefinite. impedance: (S, N, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
+    return passive_residues(fades(rates), impedance, weight)
+
+
+def fades(rates: np.ndarray) -> np.ndarray:
+    """(S, K) s of a unit residue at each rate, at GRASP."""
+    return 1 / (GRASP[:, None] + rates)
+
+
+def states(
+    impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray, least: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the states of such a network. least: K/W, resistance of a state that
+    is left out. Larger ones fade as they come near it, so that round-off decides nothing."""
+    return rate_states(port_residues(fades(rates), np.ascontiguousarray(impedance), weight), rates, least)
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def rate_states(found, rates, least):
+    """The same of residues found (N, N, K), which it writes over."""
+    count, all_rates = len(found), len(rates)
+    turn, room = np.zeros_like(found), np.empty((4, all_rates))
+    fading, ports = np.empty(count * all_rates), np.empty((count * all_rates, count))
+    for i in range(count):
+        turn[i, i] = 1.0
+    turn_diagonal(found, turn, room)
+    kept = 0
+    for k in range(all_rates):
+        share = least * rates[k]
+        for i in range(count):
+            value = found[i, i, k]
+            if value <= share:
+                continue
+            size = math.sqrt(value - share * share / value)
+            fading[kept] = rates[k]
+            for j in range(count):
+                ports[kept, j] = size * turn[i, j, k]
+            kept += 1
+    return fading[:kept], ports[:kept]

@@ -20,24 +20,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thermograsp.compiled import njit
-
 from ..matter import SensorStack
-from ..numerics import factor, solve_factored
-from .alone import alone
-from .axis import SWITCH
-from .box import Patches, box_kernel
-from .element import Rectangle, face_impedance
-from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
-from .samples import MOMENTS, SHOWN, at_moments, rough_rule
+from .box import Patches
+from .element import Rectangle
+from .excited import CONDUCTANCES, excited, shown_box, shown_element
+from .patterns import EVENNESS, GRAM
+from .samples import SHOWN
 
 STEPS = 16  # places along a face's side between which a contact's edges are told apart
-CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
-_CONDUCTANCES = np.array(CONDUCTANCES)
-_ORTHONORMAL = np.ascontiguousarray(np.linalg.inv(EVENNESS.T))
-_EACH_JUMPS, _EACH_TERM = np.tile(JUMPS, (2, 2, 1, 1)), ALONG[:, None].copy()
-_DOUBLED = 6  # powers of a matrix, to the 64th
-_LEAST_UNEVEN = 1e-24  # beside flows of size 1
 _BLOCK = (0.04, 0.04, 0.01)  # m, a box on which they are found, narrower where the contact ends at its edges
 _SHEET = 5e-4  # m, thickness of another
 THIN = 0.5
@@ -228,185 +218,10 @@ def _patterns_of(
     """Of one or of two on opposite faces. made: W/(m K) and J/(m3 K)."""
     centre, half = (np.array([getattr(each, name) for each in touched]) for name in ("centre", "half"))
     patches = Patches(np.array([5, 4][: len(touched)]), centre, half)
-    found = excited(
-        _shown_box(size, *made, patches),
-        np.array([_shown_element(stack, each.covered) for each in touched]),
-        patches.areas,
-        _CONDUCTANCES,
-        GRAM,
-        EVENNESS,
-        _ORTHONORMAL,
-        kept,
-    )
+    elements = np.array([shown_element(stack, each.covered) for each in touched])
+    found = excited(shown_box(size, *made, patches), elements, patches.areas, kept)
     found.setflags(write=False)
     return list(found)
-
-
-@lru_cache(maxsize=1024)
-def _shown_element(stack: SensorStack, covered: Rectangle) -> np.ndarray:
-    """(S, P, P) K/W of an element at SHOWN."""
-    return face_impedance(stack, covered, EACH_FUNCTION, _EACH_TERM, GRAM, shown=True)
-
-
-def _shown_box(
-    size: tuple[float, float, float], conductivity: float, heat_capacity: float, patches: Patches
-) -> np.ndarray:
-    """(S, N P, N P) K/W of a box at SHOWN. What the air takes changes no pattern to speak of."""
-    diffusivity, count = conductivity / heat_capacity, len(patches.face)
-    rule = rough_rule(diffusivity)
-    taus = diffusivity * rule.times
-    early = taus[: max(int(taus.searchsorted(SWITCH * max(size) ** 2, "right")), 1)]
-    kernel, rate, port, _, heat = box_kernel(
-        size,
-        conductivity,
-        heat_capacity,
-        0.0,
-        patches,
-        _EACH_JUMPS[:count],
-        _EACH_TERM,
-        count,
-        rule.times,
-        free=np.array([alone(half, EACH_FUNCTION, early) for half in patches.half]),
-    )
-    begun = 1 / (heat_capacity * math.sqrt(math.pi * taus[0]) * patches.areas)
-    return shown_impedance(kernel, port, begun, GRAM, rule.to_moments, rule.early, MOMENTS[SHOWN], rate)
-
-
-@njit(cache=True, error_model="numpy")
-def shown_impedance(kernel, port, begun, gram, to_moments, early, moments, rate):
-    """at_moments with the slowest eigenfunction's part, whose rate 1/s and port (N P,) these are."""
-    found, _ = at_moments(kernel, kernel[:, 0], port, begun, gram, to_moments, early)
-    for s in range(len(moments)):
-        for i in range(len(port)):
-            for j in range(len(port)):
-                found[s, i, j] += port[i] * port[j] / (moments[s] + rate)
-    return found
-
-
-@njit(cache=True, short_loops=True, error_model="numpy")
-def excited(box, elements, areas, conductances, gram, evenness, orthonormal, kept):
-    """touch_patterns (N, P, M) of contacts each of which has its own, at SHOWN. box: (S, N P, N P) K/W. elements:
-    (N, S, P, P) K/W. orthonormal: (P, P), from orthonormal patterns' coefficients to those of the patterns."""
-    count, moments, known = elements.shape[:3]
-    cases = moments * len(conductances)
-    flows = np.zeros((count, cases * (2 if count > 1 else 1), known))
-    both, flow = np.empty((count * known, count * known)), np.empty(count * known)
-    at = 0
-    for s in range(moments):
-        for h in conductances:
-            for n in range(count):
-                _joined(both[:known, :known], box[s], elements[:, s], n, 1, h * areas, gram)
-                for i in range(known):
-                    flow[i] = gram[0, i]
-                factor(both[:known, :known])
-                solve_factored(both[:known, :known], flow[:known])
-                for i in range(known):
-                    flows[n, at, i] = flow[i]
-            if count > 1:
-                _joined(both, box[s], elements[:, s], 0, count, h * areas, gram)
-                for i in range(count * known):
-                    flow[i] = gram[0, i % known]
-                factor(both)
-                solve_factored(both, flow)
-                for i in range(count * known):
-                    flows[i // known, cases + at, i % known] = flow[i]
-            at += 1
-    found = np.zeros((count, known, kept))
-    for n in range(count):
-        _most_of(flows[n], evenness, orthonormal, found[n])
-    return found
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _joined(both, box, elements, first, count, conducts, gram):
-    """Fills both with the impedance K/W that contacts first .. first + count - 1 see, of W/K each."""
-    known = len(gram)
-    for i in range(count * known):
-        n = first + i // known
-        for j in range(count * known):
-            both[i, j] = box[first * known + i, first * known + j]
-            if first + j // known == n:
-                both[i, j] += elements[n, i % known, j % known] + gram[i % known, j % known] / conducts[n]
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _most_of(flows, evenness, orthonormal, out):
-    """Fills out (P, M) with _leading's of flows (n, P)."""
-    known, kept = out.shape
-    shown, matrix = np.empty(known), np.zeros((known - 1, known - 1))
-    power, square = np.empty((known - 1, known - 1)), np.empty((known - 1, known - 1))
-    vectors = np.zeros((kept - 1, known - 1))
-    for flow in flows:
-        size = 0.0
-        for j in range(known):
-            shown[j] = 0.0
-            for i in range(j, known):
-                shown[j] += flow[i] * evenness[i, j]
-            size += shown[j] * shown[j]
-        for i in range(known - 1):
-            for j in range(known - 1):
-                matrix[i, j] += shown[1 + i] * shown[1 + j] / size
-    # what has no uneven flow at all has some patterns all the same
-    for i in range(known - 1):
-        matrix[i, i] += _LEAST_UNEVEN * (1 + i)
-    for m in range(kept - 1):
-        _leading_vector(matrix, power, square, vectors, m)
-        for i in range(known):
-            for j in range(known - 1):
-                out[i, 1 + m] += orthonormal[i, 1 + j] * vectors[m, j]
-    out[0, 0] = 1.0
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _leading_vector(matrix, power, square, vectors, m):
-    """Fills vectors[m] with the leading eigenvector of a symmetric matrix, by its 2^_DOUBLED-th power, orthonormal to
-    the m before, which are taken from the matrix."""
-    count = len(matrix)
-    for i in range(count):
-        for j in range(count):
-            power[i, j] = matrix[i, j]
-    for _ in range(_DOUBLED):
-        largest = 0.0
-        for i in range(count):
-            largest = max(largest, power[i, i])
-        for i in range(count):
-            for j in range(count):
-                square[i, j] = 0.0
-            for k in range(count):
-                share = power[i, k] / (largest * largest)
-                for j in range(count):
-                    square[i, j] += share * power[k, j]
-        for i in range(count):
-            for j in range(count):
-                power[i, j] = square[i, j]
-    best = 0
-    for i in range(count):
-        if power[i, i] > power[best, best]:
-            best = i
-    vector = vectors[m]
-    for j in range(count):
-        vector[j] = power[best, j]
-    for _ in range(2):  # the second time from what rounding has left
-        for before in range(m):
-            along = 0.0
-            for j in range(count):
-                along += vectors[before, j] * vector[j]
-            for j in range(count):
-                vector[j] -= along * vectors[before, j]
-        size, total = 0.0, 0.0
-        for j in range(count):
-            size += vector[j] * vector[j]
-            total += vector[j]
-        scale = (-1.0 if total < 0 else 1.0) / math.sqrt(size)
-        for j in range(count):
-            vector[j] *= scale
-    value = 0.0
-    for i in range(count):
-        for j in range(count):
-            value += vector[i] * matrix[i, j] * vector[j]
-    for i in range(count):
-        for j in range(count):
-            matrix[i, j] -= value * vector[i] * vector[j]
 
 
 @lru_cache(maxsize=4096)
@@ -414,7 +229,7 @@ def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]]
     width = stack.width
     half = np.array([(last - first) / STEPS * width / 2 for first, last in steps])
     (x0, x1), (y0, y1) = (((first / STEPS) * width, (last / STEPS) * width) for first, last in steps)
-    across = _shown_element(stack, ((x0, x1), (y0, y1)))
+    across = shown_element(stack, ((x0, x1), (y0, y1)))
     area = float(4 * half[0] * half[1])
     size, middle = list(_BLOCK), np.zeros(2)
     for axis, (first, last) in enumerate(steps):
@@ -436,7 +251,7 @@ def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]]
     for conductivity, heat_capacity in _MATERIALS:
         for thickness, centre in places:
             patch = Patches(np.array([5]), centre[None], half[None])
-            box = _shown_box((size[0], size[1], thickness), conductivity, heat_capacity, patch)
+            box = shown_box((size[0], size[1], thickness), conductivity, heat_capacity, patch)
             flows += _flows(across + box, area)
     found = _leading(np.concatenate(flows), kept)
     found.setflags(write=False)

@@ -24,8 +24,7 @@ from ..numerics import free_residues, mirrored_residues, port_residues
 from .alone import alone
 from .axis import SWITCH
 from .box import Patches, box_kernel
-from .contact import Resolution, Tip
-from .exponentials import fades
+from .contact import Resolution, Tip, fades
 from .patterns import basis_jumps, basis_shares, basis_terms
 from .samples import FEW_SPACING, GRASP, at_moments, grasp_rule
 
