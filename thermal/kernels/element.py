@@ -152,7 +152,7 @@ def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
     count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / math.pi) + 1)
     within, functions = np.zeros((2, len(JUMPS), len(JUMPS), len(taus))), len(JUMPS)
     within[..., :early] = alone(half, EACH_FUNCTION, taus[:early])
-    sums = known.sums if count == len(known.sums) else _between_nodes(known, count) @ known.sums
+    sums = _sums(known, count)
     below = np.zeros((2, functions, functions, sums.shape[1]))
     _within(stack.width, taus, early, centre, half, NODES, JUMPS, sums, within, below)
     return SeenFace(half, within, below)
@@ -186,13 +186,12 @@ def face_impedance(
     )
 
 
-def _between_nodes(known: Element, count: int) -> np.ndarray:
-    """(count, L) from the nodes to the first eigenfunctions."""
-    found = np.zeros((count, len(known.nodes)))
-    found[: min(count, _EACH), :_EACH] = np.eye(min(count, _EACH), min(len(known.nodes), _EACH))
-    if count > _EACH:
-        found[_EACH:, _EACH:] = from_nodes(known.nodes[_EACH:], np.arange(_EACH, count)).toarray()
-    return found
+def _sums(known: Element, count: int) -> np.ndarray:
+    """(count, R) of the first eigenfunctions, those beyond the first nodes by interpolation."""
+    if count <= _EACH:
+        return known.sums[:count]
+    beyond = from_nodes(known.nodes[_EACH:], np.arange(_EACH, count)) @ known.sums[_EACH:]
+    return np.concatenate((known.sums[:_EACH], beyond))
 
 
 @lru_cache(maxsize=1024)
