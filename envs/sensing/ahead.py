@@ -25,6 +25,7 @@ from ...thermal.batch import (
     no_fixed_tables,
     set_body,
     set_gram,
+    tip_residues,
 )
 from ...thermal.contact import (
     CONTACT_LAW,
@@ -34,7 +35,7 @@ from ...thermal.contact import (
     gas_conduction,
     solid_conduction,
 )
-from ...thermal.kernels import Patches, TouchedBox, tip, touched_box
+from ...thermal.kernels import Footprint, Patches, Spot, TouchedBox, tip, tip_at, touched_box
 from ...thermal.network import workspace
 from ...thermal.numerics import port_residues
 from ...thermal.readout import CHAIN_NUMBERS, measure_rows
@@ -75,7 +76,10 @@ def compile_boxes_ahead() -> None:
         np.zeros(1, BOX_ROW), np.zeros((1, 1, 2)), np.zeros((1, 2, 3)), 1, _SIDE, np.zeros((1, 2), np.int64)
     )
     stack, middle = sensor("seed"), np.full((1, 2), _SIDE / 2)
-    worn = tip(stack, ((0.0, stack.width), (0.0, stack.width)), FIXED_LEVEL)
+    face, half = ((0.0, stack.width), (0.0, stack.width)), stack.width / 2
+    worn = tip(stack, face, FIXED_LEVEL)
+    spot = Spot(1.0, 2e6, (_SIDE, _SIDE), _SIDE, Footprint(face, (_SIDE / 2, _SIDE / 2), (half, half)))
+    tip_residues(tip_at(stack, spot, FIXED_LEVEL).side)
     patches = Patches(np.array([0, 1]), np.tile(middle, (2, 1)), np.full((2, 2), stack.width / 2))
     box = TouchedBox(material("glass"), (_SIDE, _SIDE, _SIDE), 5.0, patches, (worn, worn), 1)
     tables = fixed_tables(1, 1, 2, FIXED_LEVEL.patterns, worn.side, 0.01)

@@ -15,7 +15,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from ...thermal import Material, SensorStack
 from ...thermal.batch import (
@@ -70,8 +69,6 @@ _DEPTHS, _OFFS = (1.0, 2.0), (0.0, 1 / 18, 2 / 9)
 so far from it; and those of the two fingertips beside each other. What flows under a fingertip at such a place differs
 by .15 % at most, of any material, and half as much as a rule."""
 _KEPT = 1024  # networks of what is under fingertips
-
-_BLAS = ThreadpoolController()
 
 
 class BoxHeat:
@@ -382,8 +379,7 @@ def _print(
 
 @lru_cache(maxsize=1024)
 def _tip(stack: SensorStack, covered: Rectangle, spot: Spot) -> Tip:
-    with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-        return tip_at(stack, spot, FIXED_LEVEL, covered)
+    return tip_at(stack, spot, FIXED_LEVEL, covered)
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:

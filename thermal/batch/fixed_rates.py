@@ -25,7 +25,6 @@ from ..kernels import BodyResidues, Resolution
 from ..network import POLES, WEIGHTS
 from ..numerics import FAST, ThermalNetwork
 from .carry import TipRows
-from .residues import summed
 
 FIXED_LEVEL = Resolution(12, 3, slowest=3e-3)
 """Of all networks; slower ones than a touch lasts, since in sheets of poor conductors heat stays where it is. With
@@ -174,13 +173,45 @@ def _rate_table(rates: np.ndarray, dt: float) -> np.ndarray:
 
 
 def tip_residues(side: ThermalNetwork) -> np.ndarray:
-    """(P P + 2 P + 2, K) of an element at FIXED_LEVEL's rates: a row of FixedTables.tips."""
-    slow, patterns = _slow(side), side.ports.shape[1]
-    rates, ports = side.rates[slow:], side.ports[slow:]
-    drop, heat = side.outputs["drop"][slow:, None], side.outputs["element"][slow:, None]
-    squares = (ports[:, :, None] * ports[:, None]).reshape(-1, patterns**2)
-    columns = np.concatenate((squares, ports * drop, ports * heat, drop * heat, heat * heat), axis=1)
-    return summed(rates, columns, SHARED).T
+    """(P P + 2 P + 2, K) of an element at FIXED_LEVEL's rates: a row of FixedTables.tips. Raises ValueError for one of
+    other rates."""
+    found = np.zeros((side.ports.shape[1] ** 2 + 2 * side.ports.shape[1] + 2, RATES))
+    if not _tip_residues(
+        side.rates, side.ports, side.outputs["drop"], side.outputs["element"], SHARED, found
+    ):
+        raise ValueError(f"rates {side.rates} 1/s are not among the shared ones, {SHARED}")
+    return found
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _tip_residues(rates, ports, drop, heat, shared, found):
+    """Fills found, the sums over the states that fade at each of the shared rates. Whether each does."""
+    patterns, first = ports.shape[1], 0
+    while first < len(rates) and _even_alone(ports, first):
+        first += 1
+    for n in range(first, len(rates)):
+        k = 0
+        while k < len(shared) and shared[k] != rates[n]:
+            k += 1
+        if k == len(shared):
+            return False
+        for p in range(patterns):
+            for r in range(patterns):
+                found[p * patterns + r, k] += ports[n, p] * ports[n, r]
+            found[patterns * patterns + p, k] += ports[n, p] * drop[n]
+            found[patterns * patterns + patterns + p, k] += ports[n, p] * heat[n]
+        found[len(found) - 2, k] += drop[n] * heat[n]
+        found[len(found) - 1, k] += heat[n] * heat[n]
+    return True
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _even_alone(ports, n):
+    """Whether only the even pattern sees that state."""
+    for p in range(1, ports.shape[1]):
+        if ports[n, p] != 0.0:
+            return False
+    return True
 
 
 def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[int]) -> None:

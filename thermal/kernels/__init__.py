@@ -28,15 +28,13 @@ and meshes are still in plates/, network/ and meshes/.
 """
 
 from .box import BoxSamples, Patches, box_kernel, box_samples
-from .contact import Resolution, Tip, at_rates, box_side, contact_weight, tip, tip_at
+from .contact import Resolution, Tip, at_rates, box_side, contact_weight, residues, tip, tip_at
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
-from .exponentials import residues
 from .glued import GluedElement, glued_element
 from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES, basis_jumps, basis_terms
-from .projection import states
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
-from .touch import Detail, touch_box, touch_sides
+from .touch import Detail, states, touch_box, touch_sides
 from .touched import BodyResidues, TouchedBox, UnderTips, touched_box, under_tips
 
 __all__ = [

@@ -137,6 +137,12 @@ def add_images(one, order, other, other_order, same, length, film, tau, out):
     low_end, high_end = ends_felt(one, other, length, tau)
     if not low_end and not high_end:
         return
+    if total == 2 and film * scale / 2 <= _FEW:
+        if low_end:
+            _strip_images(one, other, same, 0.0, 1.0, film, scale, out)
+        if high_end:
+            _strip_images(one, other, same, 2 * length, -1.0, film, scale, out)
+        return
     for i in range(len(one)):
         for j in range(i + 1 if same else len(other)):
             far, value = one[i] + other[j], 0.0
@@ -151,6 +157,20 @@ def add_images(one, order, other, other_order, same, length, film, tau, out):
             out[i, j] += value
             if same:
                 out[j, i] = out[i, j]
+
+
+@njit(cache=True, error_model="numpy")
+def left_inside(places, length, film, tau, out):
+    """Fills out (E,) with the antiderivative along the axis of what of heat that starts there is in it at tau m2, at a
+    time at which eigenfunctions need not serve."""
+    scale = 2 * math.sqrt(tau)
+    for k in range(len(places)):
+        low, high = places[k], length - places[k]
+        if film * scale / 2 <= _FEW:
+            fine, more = _FINE / scale, film * scale
+            out[k] = low + scale * (_soon(low * fine, more)[1] - _soon(high * fine, more)[1])
+        else:
+            out[k] = low + _lost(low, scale, film, 2) - _lost(high, scale, film, 2)
 
 
 @njit(cache=True, error_model="numpy")
@@ -198,6 +218,39 @@ def _free_strips(one, other, scale, out):
         for j in range(len(other)):
             d = abs(one[i] - other[j])
             out[i, j] = -0.5 * (d + scale * _between(_TABLE, min(d * fine, _REACH * _FINE)))
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _strip_images(one, other, same, end, side, film, scale, out):
+    """Adds to out what comes to strips by way of one end, at distances end + side (x + x')."""
+    fine = _FINE / scale
+    for i in range(len(one)):
+        start = end + side * one[i]
+        for j in range(i + 1 if same else len(other)):
+            first, lost = _soon((start + side * other[j]) * fine, film * scale)
+            out[i, j] += scale * (first / 2 - lost)
+        for j in range(i if same else 0):
+            out[j, i] = out[i, j]
+
+
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+def _soon(place, more):
+    """At place _FINE y / scale, y from an end: the integral of erfc from y / scale on, and _lost of order 2 over the
+    scale while more, film times scale, is at most 2 _FEW. That one is a series of the repeated integrals of erfc, which
+    follow from the first two (Carslaw & Jaeger, appendix II)."""
+    place = min(place, _REACH * _FINE)
+    k = int(place)
+    u = place - k
+    v = 1 - u
+    low, high, falls, falling = _TABLE[k, 0], _TABLE[k + 1, 0], _TABLE[k, 1], _TABLE[k + 1, 1]
+    first = (low * (1 + 2 * u) + falls * u) * v * v + (high * (1 + 2 * v) - falling * v) * u * u
+    slope = 6 * u * v * (high - low) + falls * v * (1 - 3 * u) + falling * u * (1 - 3 * v)
+    r = place / _FINE
+    second = (-slope * _FINE - 2 * r * first) / 4
+    third = (first - 2 * r * second) / 6
+    fourth = (second - 2 * r * third) / 8
+    fifth = (third - 2 * r * fourth) / 10
+    return first, more * (second - more * (third - more * (fourth - more * fifth)))
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -17,11 +17,22 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from .axis import MODES, SWITCH, add_images, add_met, ends_felt, free_kernels, images, overlaps, wave_numbers
+from .axis import (
+    MODES,
+    SWITCH,
+    add_images,
+    add_met,
+    ends_felt,
+    free_kernels,
+    images,
+    left_inside,
+    overlaps,
+    wave_numbers,
+)
 from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
-_FADED = 1e-17  # of an eigenfunction, from which on it counts for nothing
+_FADED = 1e-12  # of an eigenfunction, from which on it counts for nothing
 _UNSEEN = 160.0  # squared distance over diffusion length squared: exp(-40)
 
 
@@ -230,7 +241,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                         images(a, order[n], b, order[m], n == m, length, film, taus[t], table)
                     add_met(by, table, beside, half_done[: len(b)], between[axis, n, :, m], t)
                 for f in range(axis_functions):
-                    for g in range(others):
+                    for g in range(f + 1 if n == m else others):
                         along = between[axis, n, f, m, g]
                         for w in range(seen if last > begun else 0):
                             both = overlap[axis, n, f, w] * overlap[axis, m, g, w]
@@ -244,6 +255,10 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                             known = between[axis, alike[m], g, alike[n], f]
                         for t in range(last, len(taus)):
                             along[t] = known[t]
+                for f in range(axis_functions if n == m else 0):
+                    for g in range(f):
+                        for t in range(len(taus)):
+                            between[axis, n, g, n, f, t] = between[axis, n, f, n, g, t]
             for f in range(axis_functions if film > 0.0 else 0):
                 along = everywhere[axis, n, f]
                 if alike[n] < n:
@@ -257,16 +272,14 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                     for t in range(begun, faded[w]):
                         along[t] += both * fading[w, t]
             for t in range(begun if film > 0.0 and alike[n] == n else 0):
-                low_end, high_end = ends_felt(a, ends, length, taus[t])
-                if across and not low_end and not high_end:
+                if across:
+                    left_inside(a, length, film, taus[t], half_done)
                     for f in range(functions):
                         for k in range(len(a)):
-                            everywhere[axis, n, f, t] += by[f, k] * a[k]
+                            everywhere[axis, n, f, t] += by[f, k] * half_done[k]
                     continue
                 images(a, order[n], ends, 1, False, length, film, taus[t], table)
-                for f in range(axis_functions):
-                    for k in range(len(a)):
-                        everywhere[axis, n, f, t] += by[f, k] * (table[k, 1] - table[k, 0])
+                everywhere[axis, n, 0, t] = table[0, 1] - table[0, 0]
     rows, told = wanted * patterns, total - start * patterns
     kernel, whole, port = np.zeros((len(taus), rows, told)), np.zeros((len(taus), told)), np.zeros(total)
     sums = np.empty(len(taus))

@@ -1,26 +1,31 @@
 """Fingertips on a box, anywhere on its faces, as passive networks of fixed rates: a field's states are how its flows
 have faded at these, whatever the body, so that it stays where a place, a size or an object changes.
 
-Each contact keeps the few patterns of flow that it excites (coverage.py); box and elements become networks on them
-(exponentials.py). The film of air on the box does not cover what lies under a fingertip.
+Z(s) of a conducting body is a sum of R_k / (s + rate_k) with positive semidefinite residues. Put on rates that are the
+same for every body, equally spaced in the logarithm, it is found by least squares under that constraint
+(numerics/passive_residues.py), in the same few steps whatever the body: no search and no eigenproblem of its size, and
+what comes out is passive by construction. Each contact keeps the few patterns of flow that it excites (coverage.py).
+The film of air on the box does not cover what lies under a fingertip.
 
 F: fingertips, P: patterns known (patterns.py), M: kept of each, S: moments, n: states.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from thermograsp.compiled import njit
+
 from ..matter import Material, SensorStack
-from ..numerics import ThermalNetwork, output_row
+from ..numerics import ThermalNetwork, least_row, output_row, passive_residues, port_residues, turn_diagonal
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
-from .element import POLES, Element, element, element_samples
-from .exponentials import residues, states
-from .patterns import GRAM
+from .element import POLES, element, face_impedance
+from .patterns import basis_shares, basis_terms
 from .samples import GRASP, OF_GRASP
 
 _WEIGHED = 3e4  # W/(m2 K) of the contact beside which errors of impedances are weighed
@@ -94,16 +99,62 @@ def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle
 
 
 def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
-    known = element(stack)
-    (x0, x1), (y0, y1) = covered
-    impedance = basis.T @ element_samples(stack, covered).value[OF_GRASP] @ basis
-    even = GRAM[0] @ basis
-    even[1:] = 0.0
-    area = (x1 - x0) * (y1 - y0)
-    weight = contact_weight(impedance[:, 0, 0], area)
-    return Tip(
-        area, basis, even, impedance[:, 0, 0].copy(), _element_side(known, impedance, even, weight, level)
+    known, kept, columns = element(stack), basis.shape[1], _fades(level)
+    impedance = face_impedance(
+        stack, covered, basis_shares(basis), basis_terms(kept), np.eye(kept), shown=False
     )
+    even = np.zeros(kept)
+    even[0] = 1.0
+    (x0, x1), (y0, y1) = covered
+    area = (x1 - x0) * (y1 - y0)
+    rest, alone = impedance.copy(), impedance[:, 0, 0].copy()
+    rest[:, 0, 0] -= known.slow
+    weight = contact_weight(alone, area)
+    rates, ports, drop, heat = _element_states(
+        port_residues(columns, rest, weight),
+        weight,
+        GRASP,
+        level.decay,
+        level.least,
+        known.rates,
+        known.ports,
+        known.drop,
+        known.heat,
+        known.drop_rest[OF_GRASP],
+        known.heat_rest[OF_GRASP],
+    )
+    side = ThermalNetwork(rates, ports, outputs={"drop": drop, "element": heat})
+    return Tip(area, basis, even, alone, side)
+
+
+@lru_cache(maxsize=64)
+def _fades(level: Resolution) -> np.ndarray:
+    return fades(level.decay)
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _element_states(found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest):
+    """Rates, ports, drop and heat of an element's states: the slow ones of rates slow (K,), ports seen (K,), drops and
+    heats, then those of residues found (M, M, rates). The rest as in Resolution and Element."""
+    count, kept, samples = len(slow), len(found), len(moments)
+    wanted = np.zeros((2, samples, kept))
+    for s in range(samples):
+        wanted[0, s, 0], wanted[1, s, 0] = drop_rest[s], heat_rest[s]
+    # neither output jumps with heat at the face, but all heat that goes in is in
+    jumps = np.zeros((2, kept))
+    jumps[1, 0] = 1.0
+    for k in range(count):
+        jumps[0, 0] -= drops[k] * seen[k]
+        jumps[1, 0] -= heats[k] * seen[k]
+    fast, fast_ports = rate_states(found, decay, least / weight[-1])
+    states = count + len(fast)
+    rates, ports = np.empty(states), np.zeros((states, kept))
+    drop, heat = np.empty(states), np.empty(states)
+    rates[:count], rates[count:], ports[:count, 0], ports[count:] = slow, fast, seen, fast_ports
+    drop[:count], heat[:count] = drops, heats
+    drop[count:] = least_row(moments, wanted[0], fast, fast_ports, weight, jumps[0], True)
+    heat[count:] = least_row(moments, wanted[1], fast, fast_ports, moments, jumps[1], True)
+    return rates, ports, drop, heat
 
 
 def box_side(
@@ -146,8 +197,7 @@ def box_side(
 def at_rates(impedance: np.ndarray, level: Resolution, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
     at GRASP. weight: (S,) W/K of its errors."""
-    found = residues(impedance, level.decay, weight)
-    return states(found, level.decay, level.least / weight[-1])
+    return states(impedance, level.decay, weight, level.least / weight[-1])
 
 
 def _shielded(
@@ -171,21 +221,43 @@ def _shielded(
     return rate, whole - slow[:, None, None] * np.outer(port, port), heat - slow[:, None] * box.held * port
 
 
-def _element_side(
-    known: Element, impedance: np.ndarray, even: np.ndarray, weight: np.ndarray, level: Resolution
-) -> ThermalNetwork:
-    slow = (1 / (GRASP[:, None] + known.rates)) @ known.ports**2
-    rest = impedance - slow[:, None, None] * np.outer(even, even)
-    fast, ports = at_rates(rest, level, weight)
-    # neither output jumps with heat at the face, but all heat that goes in is in
-    transfers = (np.outer(rest[OF_GRASP], even) for rest in (known.drop_rest, known.heat_rest))
-    jumps = (-(known.drop @ known.ports) * even, (1 - known.heat @ known.ports) * even)
-    drop, heat = (
-        output_row(GRASP, transfer, fast, ports, weight, jump)
-        for transfer, jump in zip(transfers, jumps, strict=True)
-    )
-    return ThermalNetwork(
-        np.concatenate((known.rates, fast)),
-        np.concatenate((known.ports[:, None] * even, ports)),
-        outputs={"drop": np.concatenate((known.drop, drop)), "element": np.concatenate((known.heat, heat))},
-    )
+def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(K, N, N) positive semidefinite. impedance: (S, N, N) K/W at GRASP. weight: (S,) of its errors, W/K."""
+    return passive_residues(fades(rates), impedance, weight)
+
+
+def fades(rates: np.ndarray) -> np.ndarray:
+    """(S, K) s of a unit residue at each rate, at GRASP."""
+    return 1 / (GRASP[:, None] + rates)
+
+
+def states(
+    impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray, least: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the states of such a network. least: K/W, resistance of a state that
+    is left out. Larger ones fade as they come near it, so that round-off decides nothing."""
+    return rate_states(port_residues(fades(rates), np.ascontiguousarray(impedance), weight), rates, least)
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def rate_states(found, rates, least):
+    """The same of residues found (N, N, K), which it writes over."""
+    count, all_rates = len(found), len(rates)
+    turn, room = np.zeros_like(found), np.empty((4, all_rates))
+    fading, ports = np.empty(count * all_rates), np.empty((count * all_rates, count))
+    for i in range(count):
+        turn[i, i] = 1.0
+    turn_diagonal(found, turn, room)
+    kept = 0
+    for k in range(all_rates):
+        share = least * rates[k]
+        for i in range(count):
+            value = found[i, i, k]
+            if value <= share:
+                continue
+            size = math.sqrt(value - share * share / value)
+            fading[kept] = rates[k]
+            for j in range(count):
+                ports[kept, j] = size * turn[i, j, k]
+            kept += 1
+    return fading[:kept], ports[:kept]

@@ -21,13 +21,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..matter import SensorStack
-from .box import Patches, box_samples
-from .element import Rectangle, element_samples
+from .box import Patches
+from .element import Rectangle
+from .excited import CONDUCTANCES, excited, shown_box, shown_element
 from .patterns import EVENNESS, GRAM
+from .samples import SHOWN
 
 STEPS = 16  # places along a face's side between which a contact's edges are told apart
-CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
-_SHOWN = slice(6, 20, 3)  # of MOMENTS
 _BLOCK = (0.04, 0.04, 0.01)  # m, a box on which they are found, narrower where the contact ends at its edges
 _SHEET = 5e-4  # m, thickness of another
 THIN = 0.5
@@ -150,13 +150,13 @@ def touch_patterns(
     flows_of: list[list[np.ndarray]] = [[] for _ in elements]
     for n, (across, area) in enumerate(zip(elements, areas, strict=True)):
         pattern_rows = slice(n * known, (n + 1) * known)
-        flows_of[n] += _flows(box[_SHOWN, pattern_rows, pattern_rows] + across[_SHOWN], area)
+        flows_of[n] += _flows(box[SHOWN, pattern_rows, pattern_rows] + across[SHOWN], area)
     if count > 1:
         for conductance in CONDUCTANCES:
-            both = box[_SHOWN].copy()
+            both = box[SHOWN].copy()
             for n, (across, area) in enumerate(zip(elements, areas, strict=True)):
                 pattern_rows = slice(n * known, (n + 1) * known)
-                both[:, pattern_rows, pattern_rows] += across[_SHOWN] + GRAM / (conductance * area)
+                both[:, pattern_rows, pattern_rows] += across[SHOWN] + GRAM / (conductance * area)
             flow = np.linalg.solve(both, np.tile(GRAM[0], count)[:, None])[..., 0]
             for n in range(count):
                 flows_of[n].append(flow[:, n * known : (n + 1) * known])
@@ -218,13 +218,10 @@ def _patterns_of(
     """Of one or of two on opposite faces. made: W/(m K) and J/(m3 K)."""
     centre, half = (np.array([getattr(each, name) for each in touched]) for name in ("centre", "half"))
     patches = Patches(np.array([5, 4][: len(touched)]), centre, half)
-    # what the air takes changes no pattern to speak of
-    box = box_samples(size, *made, 0.0, patches)
-    elements = [element_samples(stack, each.covered).value for each in touched]
-    found = touch_patterns(box.whole(), elements, patches.areas, kept, shared=False)
-    for each in found:
-        each.setflags(write=False)
-    return found
+    elements = np.array([shown_element(stack, each.covered) for each in touched])
+    found = excited(shown_box(size, *made, patches), elements, patches.areas, kept)
+    found.setflags(write=False)
+    return list(found)
 
 
 @lru_cache(maxsize=4096)
@@ -232,7 +229,7 @@ def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]]
     width = stack.width
     half = np.array([(last - first) / STEPS * width / 2 for first, last in steps])
     (x0, x1), (y0, y1) = (((first / STEPS) * width, (last / STEPS) * width) for first, last in steps)
-    across = element_samples(stack, ((x0, x1), (y0, y1))).value
+    across = shown_element(stack, ((x0, x1), (y0, y1)))
     area = float(4 * half[0] * half[1])
     size, middle = list(_BLOCK), np.zeros(2)
     for axis, (first, last) in enumerate(steps):
@@ -254,8 +251,8 @@ def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]]
     for conductivity, heat_capacity in _MATERIALS:
         for thickness, centre in places:
             patch = Patches(np.array([5]), centre[None], half[None])
-            box = box_samples((size[0], size[1], thickness), conductivity, heat_capacity, 0.0, patch)
-            flows += _flows((across + box.whole())[_SHOWN], area)
+            box = shown_box((size[0], size[1], thickness), conductivity, heat_capacity, patch)
+            flows += _flows(across + box, area)
     found = _leading(np.concatenate(flows), kept)
     found.setflags(write=False)
     return found

@@ -14,17 +14,30 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from thermograsp.compiled import njit
 
 from ..matter import SensorStack
-from ..numerics import Sampled
+from ..numerics import Sampled, dot
 from ..plates import from_nodes, log_nodes, stack_impedance, stack_profile
-from .axis import MODES, SWITCH, images
-from .patterns import ALONG, GRAM, JUMPS, NODES
-from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
+from .alone import alone
+from .axis import MODES, SWITCH, add_images, add_met, ends_felt, images
+from .patterns import ALONG, EACH_FUNCTION, GRAM, JUMPS, NODES
+from .samples import (
+    GRASP,
+    MOMENTS,
+    OF_GRASP,
+    SHOWN,
+    TIMES,
+    TO_MOMENTS,
+    TO_SLOPES,
+    before,
+    element_rule,
+)
 
 Rectangle = tuple[tuple[float, float], tuple[float, float]]
 """(low, high) in m along a face's two axes."""
@@ -34,7 +47,10 @@ _DEPTHS = 6.0  # wave number times the first layer's thickness beyond which noth
 _EACH = 40  # eigenfunctions of an axis that are nodes, one by one
 _SPACING = 0.15  # of the nodes beyond, in ln of the wave number: cubic interpolation leaves 1e-5
 _REACH = 25.0  # wave number times a contact's finest strip beyond which no eigenfunction is summed
+_LEFT_OUT = 1e-9  # of the largest, singular values of the correction that tell nothing
 _SCAN = 4000  # places where the characteristic function is looked at for its first roots
+_FADED = 1e-12  # of an eigenfunction, from which on it counts for nothing
+_FINEST = float(np.diff(NODES).min())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +60,9 @@ class Element:
     rates: (K,) 1/s and ports: (K,) sqrt(K/J) of its slowest even poles; their outputs drop: (K,) K/sqrt(J) and heat:
     (K,) sqrt(J K). drop_rest: (S,) K/W and heat_rest: (S,) J/W of the even part's transform at MOMENTS beyond them.
     nodes: (L,) lateral eigenfunctions of an axis, by half waves over the width. correction: (2, S, L, L) m2 K/W to add
-    to the first layer's half-space there, and its derivative by the moment."""
+    to the first layer's half-space there, and its derivative by the moment; less its small singular values it is
+    (S, R, R) between few sums (L, R) of the eigenfunctions, `few` and `sums`. slow: K/W of
+    the slowest even poles at GRASP."""
 
     stack: SensorStack
     rates: np.ndarray
@@ -55,6 +73,9 @@ class Element:
     heat_rest: np.ndarray
     nodes: np.ndarray
     correction: np.ndarray
+    sums: np.ndarray
+    few: np.ndarray
+    slow: np.ndarray
 
 
 @lru_cache(maxsize=64)
@@ -86,6 +107,13 @@ def element(stack: SensorStack) -> Element:
     half_space = 1 / (near.conductivity * np.sqrt(turned / near.diffusivity + kappa2))
     correction = stack_impedance(layers, "isothermal", turned, kappa2) - half_space
     correction = np.stack((correction.real, correction.imag / (s * tiny)))
+    correction = correction.reshape(2, len(MOMENTS), len(nodes), len(nodes))
+    with threadpool_limits(1, "blas"):  # or the number of threads would decide last bits
+        left, values, _ = np.linalg.svd(
+            correction[0].transpose(1, 0, 2).reshape(len(nodes), -1), full_matrices=False
+        )
+        sums = np.ascontiguousarray(left[:, values > _LEFT_OUT * values[0]])
+        few = np.ascontiguousarray(sums.T @ correction[0] @ sums)
     return Element(
         stack,
         rates,
@@ -95,8 +123,75 @@ def element(stack: SensorStack) -> Element:
         even_drop - weights @ drop,
         even_heat - weights @ heat,
         nodes,
-        correction.reshape(2, len(MOMENTS), len(nodes), len(nodes)),
+        correction,
+        sums,
+        few,
+        (1 / (GRASP[:, None] + rates)) @ ports**2,
     )
+
+
+class SeenFace(NamedTuple):
+    """A rectangle of the face, of half widths half (2,) m, as the functions along its two axes see it. within:
+    (2, F, F, T) m of the first layer's half-space at element_rule's times and below: (2, F, F, R) m of the lateral
+    eigenfunctions' sums."""
+
+    half: np.ndarray
+    within: np.ndarray
+    below: np.ndarray
+
+
+@lru_cache(maxsize=1024)
+def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
+    """covered: m from the face's corner."""
+    known, diffusivity = element(stack), stack.layers[-1].diffusivity
+    (x0, x1), (y0, y1) = covered
+    centre, half = np.array([(x0 + x1) / 2, (y0 + y1) / 2]), np.array([(x1 - x0) / 2, (y1 - y0) / 2])
+    narrow = float(half.min())
+    taus, finest = diffusivity * element_rule(diffusivity, narrow, shown=False).times, narrow * _FINEST
+    early = int(taus.searchsorted(SWITCH * stack.width * stack.width, "right"))
+    count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / math.pi) + 1)
+    within, functions = np.zeros((2, len(JUMPS), len(JUMPS), len(taus))), len(JUMPS)
+    within[..., :early] = alone(half, EACH_FUNCTION, taus[:early])
+    sums = _sums(known, count)
+    below = np.zeros((2, functions, functions, sums.shape[1]))
+    _within(stack.width, taus, early, centre, half, NODES, JUMPS, sums, within, below)
+    return SeenFace(half, within, below)
+
+
+def face_impedance(
+    stack: SensorStack,
+    covered: Rectangle,
+    shares: np.ndarray,
+    terms: np.ndarray,
+    gram: np.ndarray,
+    shown: bool,
+) -> np.ndarray:
+    """(S, M, M) K/W between combinations of the patterns on a rectangle of the face, m from its corner: functions of
+    shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
+    their products' means. At SHOWN, or at GRASP."""
+    layer, seen = stack.layers[-1], seen_face(stack, covered)
+    rule = element_rule(layer.diffusivity, float(seen.half.min()), shown)
+    few = element(stack).few[SHOWN if shown else OF_GRASP]
+    return _impedance(
+        seen.half,
+        seen.within,
+        seen.below,
+        few,
+        shares,
+        terms,
+        gram,
+        *rule,
+        layer.conductivity,
+        layer.diffusivity,
+    )
+
+
+def _sums(known: Element, count: int) -> np.ndarray:
+    """(count, R) of the first eigenfunctions, those beyond the first nodes by interpolation."""
+    if count <= _EACH:
+        return known.sums[:count]
+    beyond = from_nodes(known.nodes[_EACH:], np.arange(_EACH, count)) @ known.sums[_EACH:]
+    return np.concatenate((known.sums[:_EACH], beyond))
 
 
 @lru_cache(maxsize=1024)
@@ -231,3 +326,110 @@ def _along_sides(width, taus, early, centre, half, nodes, jumps, count):
                     for g in range(functions):
                         late[axis, t - early, f, g] += decay * overlap[axis, f, w] * overlap[axis, g, w]
     return tables, late, overlap
+
+
+@njit(cache=True, error_model="numpy")
+def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below):
+    """Adds to within (2, F, F, T) what comes by way of the face's ends at the first `early` taus (T,) m2, and fills it
+    at the others by eigenfunctions; fills below (2, F, F, R) with these eigenfunctions' sums (count, R)."""
+    functions, ends = len(jumps), len(nodes)
+    table, places, done, seen = np.empty((ends, ends)), np.empty(ends), np.empty(ends), np.empty(ends)
+    overlap, decay = np.empty((functions, len(sums))), np.empty(len(taus))
+    for axis in range(2):
+        for k in range(ends):
+            places[k] = centre[axis] + half[axis] * nodes[k]
+        for w in range(len(sums)):
+            wave, norm = w * math.pi / width, math.sqrt(width if w == 0 else width / 2)
+            last = early
+            while last < len(taus):
+                decay[last] = math.exp(-wave * wave * taus[last])
+                if decay[last] < _FADED:
+                    break
+                last += 1
+            for k in range(ends):
+                seen[k] = places[k] if w == 0 else math.sin(wave * places[k]) / wave
+            for f in range(functions):
+                total = 0.0
+                for k in range(ends):
+                    total += jumps[f, k] * seen[k]
+                overlap[f, w] = total / norm
+                for g in range(f + 1):
+                    both = overlap[f, w] * overlap[g, w]
+                    for t in range(early, last):
+                        within[axis, f, g, t] += both * decay[t]
+                    for r in range(sums.shape[1]):
+                        below[axis, f, g, r] += both * sums[w, r]
+        for f in range(functions):
+            for g in range(f):
+                for t in range(early, len(taus)):
+                    within[axis, g, f, t] = within[axis, f, g, t]
+                for r in range(sums.shape[1]):
+                    below[axis, g, f, r] = below[axis, f, g, r]
+        for t in range(early):
+            low_end, high_end = ends_felt(places, places, width, taus[t])
+            if not low_end and not high_end:
+                continue
+            table[:] = 0.0
+            add_images(places, 1, places, 1, True, width, 0.0, taus[t], table)
+            add_met(jumps, table, jumps, done, within[axis], t)
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _impedance(
+    half, within, below, few, shares, terms, gram, times, to_moments, early, conductivity, diffusivity
+):
+    """face_impedance of a SeenFace. few: (S, R, R) of the element. conductivity, diffusivity: W/(m K) and m2/s of the
+    first layer. The rest as in face_impedance and Rule."""
+    moments, sums, kept = len(early), few.shape[1], len(terms)
+    functions, known = shares.shape[1], shares.shape[2]
+    own = np.zeros((2, functions, functions, len(times)))
+    lower = np.zeros((2, functions, functions, sums))
+    for axis in range(2):
+        for f in range(functions):
+            for g in range(f + 1):
+                for i in range(known):
+                    for j in range(known):
+                        share = shares[axis, f, i] * shares[axis, g, j]
+                        if share == 0.0:
+                            continue
+                        for t in range(len(times)):
+                            own[axis, f, g, t] += share * within[axis, i, j, t]
+                        for r in range(sums):
+                            lower[axis, f, g, r] += share * below[axis, i, j, r]
+                for t in range(len(times)):
+                    own[axis, g, f, t] = own[axis, f, g, t]
+                for r in range(sums):
+                    lower[axis, g, f, r] = lower[axis, f, g, r]
+    area = 4 * half[0] * half[1]
+    capacity = conductivity / diffusivity
+    depth = np.empty(len(times))
+    for t in range(len(times)):
+        depth[t] = 1 / (math.sqrt(math.pi * diffusivity * times[t]) * capacity * area * area)
+    # before the first time it is on a half-space
+    begun = 1 / (math.sqrt(math.pi * diffusivity * times[0]) * capacity * area)
+    crossed = np.empty((moments, functions, functions, sums))
+    for s in range(moments):
+        for f in range(functions):
+            for g in range(f + 1):
+                for r in range(sums):
+                    crossed[s, f, g, r] = crossed[s, g, f, r] = dot(lower[0, f, g], few[s, r])
+    found, kernel = np.zeros((moments, kept, kept)), np.empty(len(times))
+    for i in range(kept):
+        for j in range(i + 1):
+            for t in range(len(times)):
+                kernel[t] = 0.0
+            for x in range(terms.shape[1]):
+                for y in range(terms.shape[1]):
+                    if terms[i, x, 0] < 0 or terms[j, y, 0] < 0:
+                        continue
+                    f, g, v, w = terms[i, x, 0], terms[j, y, 0], terms[i, x, 1], terms[j, y, 1]
+                    for t in range(len(times)):
+                        kernel[t] += own[0, f, g, t] * own[1, v, w, t]
+                    for s in range(moments):
+                        found[s, i, j] += dot(crossed[s, f, g], lower[1, v, w]) / (area * area)
+            for t in range(len(times)):
+                kernel[t] *= depth[t]
+            for s in range(moments):
+                found[s, i, j] += early[s] * begun * gram[i, j] + dot(to_moments[s], kernel)
+                found[s, j, i] = found[s, i, j]
+    return found

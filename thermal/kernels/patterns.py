@@ -39,12 +39,20 @@ NODES = _nodes()
 """(E,) of the strips, from -1 to 1 over the patch."""
 FUNCTIONS = _functions(NODES)
 """(F, E - 1) over the strips."""
+EACH_FUNCTION = np.tile(np.eye(len(FUNCTIONS)), (2, 1, 1))
+"""(2, F, F): the functions themselves, as combinations along two axes."""
 JUMPS = -np.diff(np.pad(FUNCTIONS, ((0, 0), (1, 1))), axis=1)
 """(F, E): the integral of a function f times phi is the sum of JUMPS times phi's antiderivative at the nodes."""
 ALONG = np.array(
     [(0, 0), *((f, 0) for f in range(1, len(FUNCTIONS))), *((0, f) for f in range(1, len(FUNCTIONS)))]
 )
 """(P, 2): the functions along the two axes whose product a pattern is; the even pattern comes first."""
+
+
+_OF_AXIS = np.zeros((2, len(FUNCTIONS), len(ALONG)))
+_OF_AXIS[0, :, : len(FUNCTIONS)] = _OF_AXIS[1, :, -len(FUNCTIONS) :] = np.eye(len(FUNCTIONS))
+_OF_AXIS[1, 0] = 0.0  # the even pattern is along the first
+_EVEN = np.eye(len(FUNCTIONS))[0]
 
 
 def _gram() -> np.ndarray:
@@ -70,10 +78,14 @@ def along_axes(bases: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 def basis_jumps(basis: np.ndarray) -> np.ndarray:
     """(2, M, E) of one patch's combinations."""
-    shares, count = basis.T, len(FUNCTIONS)
-    jumps = np.array((shares[:, :count] @ JUMPS, shares[:, count:] @ JUMPS[1:]))
-    jumps[:, 0] = JUMPS[0]
-    return jumps
+    return basis_shares(basis) @ JUMPS
+
+
+def basis_shares(basis: np.ndarray) -> np.ndarray:
+    """(2, M, F) of FUNCTIONS in one patch's combinations' functions along its two axes, the even one first."""
+    shares = (_OF_AXIS @ basis).transpose(0, 2, 1)
+    shares[:, 0] = _EVEN
+    return shares
 
 
 @lru_cache(maxsize=16)

@@ -6,7 +6,13 @@ exponentially; what comes before the first is a geometric sum, since every strip
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
 import numpy as np
+
+from thermograsp.compiled import njit
 
 _SPACING = 0.7  # relative error exp(-pi^2 / spacing), 8e-7
 
@@ -23,9 +29,96 @@ TO_SLOPES = -TIMES * TO_MOMENTS
 """(S, T): its derivative by the Laplace variable; what comes before the first has none to speak of."""
 
 
+SHOWN = slice(6, 20, 3)
+"""Of MOMENTS, at which it is told what flows a contact excites."""
+
+FEW_SPACING = 1.0  # of times in ln t: the transforms are known to exp(-pi^2 / spacing), 5e-5
+_ELEMENT_SPACING, _ROUGH_SPACING = 0.85, 1.4  # the same to 9e-6 and 9e-4
+_UNFELT = (
+    2.5e-10  # m2, diffusivity times time up to which every strip of a contact is a half-space of its own
+)
+_WIDE = 0.0045  # m, half width of a contact of which that is so; of others the strips are narrower
+_FIRST, _LAST = (
+    3e-6,
+    40.0,
+)  # s; and its product with the slowest moment, after which kernels count for nothing
+_BEFORE = 40  # times before the first that count
+
+
+class Rule(NamedTuple):
+    """Times (T,) s, equally spaced in ln t, at which a kernel is needed; (S, T) its transform at some moments by the
+    trapezoidal rule, as if it had its first value before; (S,) s of what it has more then if it falls as
+    1 / sqrt(t)."""
+
+    times: np.ndarray
+    to_moments: np.ndarray
+    early: np.ndarray
+
+
+@lru_cache(maxsize=512)
+def grasp_rule(diffusivity: float) -> Rule:
+    """Of kernels of m2/s, at GRASP."""
+    return _rule(diffusivity, GRASP, FEW_SPACING, _UNFELT)
+
+
+def element_rule(diffusivity: float, half: float, shown: bool) -> Rule:
+    """The same of an element, closer, since all that it touches is told beside it, under a patch of half width m along
+    its shorter side; at SHOWN its times are the first ones of those at GRASP."""
+    return _element_rule(diffusivity, max(math.ceil(2 * math.log(_WIDE / half)), 0), shown)
+
+
+@lru_cache(maxsize=512)
+def _element_rule(diffusivity: float, sooner: int, shown: bool) -> Rule:
+    moments = MOMENTS[SHOWN] if shown else GRASP
+    return _rule(diffusivity, moments, _ELEMENT_SPACING, _UNFELT * math.exp(-sooner))
+
+
+@lru_cache(maxsize=512)
+def rough_rule(diffusivity: float) -> Rule:
+    """The same at SHOWN, of what only decides on patterns of flow, at fewer times."""
+    return _rule(diffusivity, MOMENTS[SHOWN], _ROUGH_SPACING, _UNFELT)
+
+
+def _rule(diffusivity: float, moments: np.ndarray, spacing: float, unfelt: float) -> Rule:
+    first = max(_FIRST, unfelt / diffusivity)
+    count = math.ceil(math.log(_LAST / moments[0] / first) / spacing) + 1
+    times = first * np.exp(spacing * np.arange(-_BEFORE, count))
+    rule = spacing * times * np.exp(-moments[:, None] * times)
+    sooner, to_moments = rule[:, :_BEFORE], np.ascontiguousarray(rule[:, _BEFORE:])
+    flat = sooner.sum(axis=1)
+    to_moments[:, 0] += flat
+    early = (sooner * np.sqrt(first / times[:_BEFORE])).sum(axis=1) - flat
+    return Rule(times[_BEFORE:], to_moments, early)
+
+
 def before(diffusivity: float) -> float:
     """Integral to the first time of 1 / sqrt(pi diffusivity t), as the rule has it. diffusivity: m2/s."""
     return float(_SPACING * np.sqrt(TIMES[0] / (np.pi * diffusivity)) / np.expm1(_SPACING / 2))
+
+
+@njit(cache=True, error_model="numpy")
+def at_moments(kernel, heat, port, alone, gram, to_moments, early):
+    """Impedance (S, A M, A M) K/W of a kernel (T, A M, A M) K/J that falls as 1 / sqrt(t) before the first time: of a
+    patch by itself as alone (A,) K/J says, of one that it overlaps all of it; and (S, A M) J/W of heat (T, A M) J/J.
+    port (A M,): of the slowest eigenfunction, left out of the kernel. gram: (M, M), means of patterns' products.
+    to_moments, early: a Rule's."""
+    count, rows, ports = kernel.shape
+    patterns = rows // len(alone)
+    found, warmed = np.zeros((len(early), rows, ports)), np.zeros((len(early), ports))
+    flat, summed = kernel.reshape(count, rows * ports), found.reshape(len(early), rows * ports)
+    for s in range(len(early)):
+        for t in range(count):
+            for i in range(rows * ports):  # one long loop, of which vectors are made
+                summed[s, i] += to_moments[s, t] * flat[t, i]
+            for j in range(ports):
+                warmed[s, j] += to_moments[s, t] * heat[t, j]
+        for i in range(rows):
+            for j in range(ports):
+                falling = kernel[0, i, j] + port[i] * port[j]
+                if i // patterns == j // patterns:
+                    falling = alone[i // patterns] * gram[i % patterns, j % patterns]
+                found[s, i, j] += early[s] * falling
+    return found, warmed
 
 
 for _table in (TIMES, MOMENTS, TO_MOMENTS, TO_SLOPES):

@@ -20,23 +20,15 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material
-from ..numerics import free_residues, port_residues
-from .axis import free_kernels
+from ..numerics import free_residues, mirrored_residues, port_residues
+from .alone import alone
+from .axis import SWITCH
 from .box import Patches, box_kernel
-from .contact import Resolution, Tip
-from .exponentials import fades
-from .patterns import NODES, basis_jumps, basis_terms
-from .samples import GRASP
+from .contact import Resolution, Tip, fades
+from .patterns import basis_jumps, basis_shares, basis_terms
+from .samples import FEW_SPACING, GRASP, at_moments, grasp_rule
 
-_SPACING = 1.0  # of times in ln t: the transforms at GRASP are known to exp(-pi^2 / spacing), 5e-5
-_UNFELT = (
-    2.5e-10  # m2, diffusivity times time up to which every strip of a contact is a half-space of its own
-)
-_FIRST, _LAST = (
-    3e-6,
-    40.0,
-)  # s; and its product with the slowest of GRASP, after which kernels count for nothing
-_BEFORE = 40  # times before the first that count
+_AT_ONCE = 6  # steps in which a patch's kernel by itself is told for few times or many
 _HEAT_RIDGE = 1e-8  # of the heat's residues, beside columns of about unit length
 _SEEN_LEAST = 1e-3  # of the largest resistance, beside one that a port hardly sees
 
@@ -80,7 +72,7 @@ class UnderTips(NamedTuple):
 
 class _Kernel(NamedTuple):
     """kernel (T, A M, L M) K/J of what is touched and heat (T, L M) J/J, both less the slowest eigenfunction's part;
-    that one's rate, port (N M,) and held. times (T,) s; to_grasp, early: _transform's."""
+    that one's rate, port (N M,) and held. times (T,) s; to_grasp, early: grasp_rule's."""
 
     kernel: np.ndarray
     heat: np.ndarray
@@ -153,7 +145,7 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
         box.film,
         np.array([_weight(one) for one in box.tips]),
     )
-    found = port_residues(fit.fades, rest, weight)
+    found = (mirrored_residues if _mirrored(box) else port_residues)(fit.fades, rest, weight)
     heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
     if box.film > 0:
         even = np.concatenate([one.even for one in box.tips])
@@ -163,16 +155,26 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
     return UnderTips(own, opened, returned, known.rate, free_residues(fit.fades, weight))
 
 
+def _mirrored(box: TouchedBox) -> bool:
+    """Whether two like fingertips are exactly over each other on opposite faces."""
+    face, centre, half = (each.tolist() for each in box.patches)
+    opposite = len(face) == 2 and face[0] == face[1] ^ 1 and box.tips[0] is box.tips[1]
+    return opposite and centre[0] == centre[1] and half[0] == half[1]
+
+
 def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
     """Of a box with its film on the patches too, by those from number `first` on."""
     material, size, film, patches, tips, touched = box
     capacity = material.volumetric_heat_capacity
     jumps, terms = np.array([_jumps(one) for one in tips]), basis_terms(tips[0].basis.shape[1])
     diffusivity, free = material.conductivity / capacity, None
-    times, to_grasp, early = _transform(diffusivity)
+    times, to_grasp, early = grasp_rule(diffusivity)
     if first == 0:
-        begun, halves = max(_FIRST * diffusivity, _UNFELT), patches.half.tolist()
-        free = np.array([_free(one, *half, begun) for one, half in zip(tips, halves, strict=True)])
+        begun = diffusivity * float(times[0])
+        images = math.log(SWITCH * max(size) ** 2 / begun) / FEW_SPACING  # times at which these serve, about
+        count = _AT_ONCE * (max(int(images) + 2, 0) // _AT_ONCE + 1)
+        halves = zip(tips, patches.half.tolist(), strict=True)
+        free = np.array([_free(one, (x, y), begun, count) for one, (x, y) in halves])
     kernel, rate, port, held, heat = box_kernel(
         size, material.conductivity, capacity, film, patches, jumps, terms, touched, times, first, free
     )
@@ -191,67 +193,26 @@ def _weight(one: Tip) -> np.ndarray:
 
 
 @lru_cache(maxsize=1024)
-def _free(one: Tip, first_half: float, second_half: float, begun: float) -> np.ndarray:
-    """free_kernels's of one patch at all times that any box is asked for, from begun m2 on."""
-    taus = begun * np.exp(_SPACING * np.arange(_count(_FIRST)))
-    return free_kernels(np.array([[first_half, second_half]]), _jumps(one)[None], NODES, taus)[0]
-
-
-@lru_cache(maxsize=256)
-def _transform(diffusivity: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times (T,) s at which kernels of m2/s are needed; (S, T) their transform at GRASP by the trapezoidal rule in
-    ln t, as if they had their first value before; (S,) s of what they have more then if they fall as 1 / sqrt(t)."""
-    first = max(_FIRST, _UNFELT / diffusivity)
-    count = _count(first)
-    times = first * np.exp(_SPACING * np.arange(-_BEFORE, count))
-    rule = _SPACING * times * np.exp(-GRASP[:, None] * times)
-    sooner, to_grasp = rule[:, :_BEFORE], np.ascontiguousarray(rule[:, _BEFORE:])
-    flat = sooner.sum(axis=1)
-    to_grasp[:, 0] += flat
-    return times[_BEFORE:], to_grasp, (sooner * np.sqrt(first / times[:_BEFORE])).sum(axis=1) - flat
-
-
-def _count(first: float) -> int:
-    """Of times from that on, s."""
-    return math.ceil(math.log(_LAST / GRASP[0] / first) / _SPACING) + 1
+def _free(one: Tip, half: tuple[float, float], begun: float, count: int) -> np.ndarray:
+    """What box_kernel takes of one patch, at so many times from begun m2 on."""
+    taus = begun * np.exp(FEW_SPACING * np.arange(count))
+    return alone(np.array(half), basis_shares(one.basis), taus)
 
 
 @njit(cache=True, error_model="numpy")
 def _samples(kernel, heat, port, to_grasp, early, moments, alone, half, rate, held, film, weight):
-    """What _at_moments and _shielded tell of patches of half widths (A, 2) m under a film of W/(m2 K). alone: K m2/J.
+    """What at_moments and _shielded tell of patches of half widths (A, 2) m under a film of W/(m2 K). alone: K m2/J.
     weight: (A, S)."""
     areas = np.empty(len(half))
     for n in range(len(half)):
         areas[n] = 4 * half[n, 0] * half[n, 1]
-    rest, warmth = _at_moments(kernel, heat, port, alone / areas, to_grasp, early)
+    rest, warmth = at_moments(
+        kernel, heat, port, alone / areas, np.eye(len(port) // len(half)), to_grasp, early
+    )
     counts, lasting, opened, returned = _shielded(
         moments, rest, warmth, rate, port, held, film * areas, weight
     )
     return rest, warmth, counts, lasting, opened, returned
-
-
-@njit(cache=True, error_model="numpy")
-def _at_moments(kernel, heat, port, alone, to_grasp, early):
-    """Impedance (S, A M, A M) K/W of a kernel (T, A M, A M) K/J that falls as 1 / sqrt(t) before the first time: of a
-    patch by itself as alone (A,) K/J says, of one that it overlaps all of it; and (S, A M) J/W of heat (T, A M) J/J.
-    port (A M,): of the slowest eigenfunction, left out of the kernel. to_grasp, early: _transform's."""
-    count, rows, ports = kernel.shape
-    patterns = rows // len(alone)
-    found, warmed = np.zeros((len(early), rows, ports)), np.zeros((len(early), ports))
-    flat, summed = kernel.reshape(count, rows * ports), found.reshape(len(early), rows * ports)
-    for s in range(len(early)):
-        for t in range(count):
-            for i in range(rows * ports):  # one long loop, of which vectors are made
-                summed[s, i] += to_grasp[s, t] * flat[t, i]
-            for j in range(ports):
-                warmed[s, j] += to_grasp[s, t] * heat[t, j]
-        for i in range(rows):
-            for j in range(ports):
-                falling = kernel[0, i, j] + port[i] * port[j]
-                if i // patterns == j // patterns:
-                    falling = alone[i // patterns] if i == j else 0.0
-                found[s, i, j] += early[s] * falling
-    return found, warmed
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -9,10 +9,11 @@ from .lanczos import largest_eigenvalues
 from .laplace import invert
 from .laplace_window import invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
-from .outputs import output_row
+from .outputs import least_row, output_row
 from .passive import ThermalNetwork
-from .passive_residues import free_residues, passive_residues, port_residues
+from .passive_residues import free_residues, mirrored_residues, passive_residues, port_residues
 from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
+from .symmetric import dot, factor, solve_factored, turn_diagonal
 
 __all__ = [
     "BOTTOM",
@@ -35,7 +36,9 @@ __all__ = [
     "ThermalNetwork",
     "as_integers",
     "as_like",
+    "dot",
     "erfc_inverse",
+    "factor",
     "free_residues",
     "graded_cells",
     "hankel_values",
@@ -43,6 +46,8 @@ __all__ = [
     "invert",
     "invert_many",
     "largest_eigenvalues",
+    "least_row",
+    "mirrored_residues",
     "namespace_of",
     "output_row",
     "passive_residues",
@@ -50,8 +55,10 @@ __all__ = [
     "radial_axis",
     "rates",
     "sampled_fields",
+    "solve_factored",
     "single_cell",
     "symmetric_axis",
     "truncate",
+    "turn_diagonal",
     "windows",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -36,18 +37,16 @@ class ThermalNetwork:
             raise InvalidValueError(
                 f"rates (K,) and ports (K, P) do not fit: got {rates.shape} and {ports.shape}"
             )
-        if not direct.size:
+        given = direct.size > 0
+        if not given:
             direct = np.zeros((ports.shape[1],) * 2)
         if direct.shape != (ports.shape[1],) * 2:
             raise InvalidValueError(f"direct must be (P, P) = {(ports.shape[1],) * 2}, got {direct.shape}")
-        if not (np.all(np.isfinite(rates)) and np.all(np.isfinite(ports)) and np.all(np.isfinite(direct))):
+        if not math.isfinite(rates.sum() + ports.sum() + direct.sum()):
             raise InvalidValueError("rates, ports and direct must be finite")
-        if np.any(rates < 0):
+        if rates.size and rates.min() < 0:
             raise InvalidValueError(f"rates must be >= 0 for a passive network, got {rates.min():g} 1/s")
-        if direct.any() and not (
-            np.allclose(direct, direct.T)
-            and np.linalg.eigvalsh(direct).min() >= -1e-12 * np.abs(direct).max()
-        ):
+        if given and not _passive(direct):
             raise InvalidValueError("direct must be symmetric and non-negative for a passive network")
         outputs = {name: np.asarray(row, float) for name, row in self.outputs.items()}
         for name, row in outputs.items():
@@ -116,3 +115,9 @@ class ThermalNetwork:
             self.direct,
             {n: np.concatenate((self.outputs[n][still], outputs[n])) for n in self.outputs},
         )
+
+
+def _passive(direct: np.ndarray) -> bool:
+    """Whether it is symmetric and nowhere negative."""
+    least = np.linalg.eigvalsh(direct).min() if direct.any() else 0.0
+    return np.allclose(direct, direct.T) and least >= -1e-12 * np.abs(direct).max(initial=0.0)

@@ -6,11 +6,11 @@ Under that constraint the least squares are solved by alternating directions (Bo
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from thermograsp.compiled import njit
+
+from .symmetric import turn_diagonal
 
 _STEPS = 20  # at most
 _SETTLED = (
@@ -20,10 +20,6 @@ _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _FREE_RIDGE = 1e-6  # of residues without constraint
 _RELAXED = 1.6
-_ROUND_OFF = 1e-24
-"""Of squares off the diagonal beside those on it, in every step. With more left on the way, round-off decided how much:
-of 1e-15 in what is wanted came 9e-6 in what is found."""
-_TINY = 1e-300  # beside a zero
 
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -33,31 +29,46 @@ def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray
     )
 
 
-@njit(cache=True, error_model="numpy")
-def port_residues(columns, wanted, weight):
+def port_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(N, N, K) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N) where
     errors count by weight (S,)."""
+    return _residues(columns, wanted[None], weight)
+
+
+def mirrored_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """The same, to round-off, of what is wanted between ports whose two halves could change places: what both see of
+    flows that are alike and of opposite flows are two problems of half the size."""
+    half = wanted.shape[1] // 2
+    own = (wanted[:, :half, :half] + wanted[:, half:, half:]) / 2
+    across = (wanted[:, :half, half:] + wanted[:, half:, :half]) / 2
+    alike, opposite = np.split(_residues(columns, np.stack((own + across, own - across)), weight), 2, axis=2)
+    own, across = (alike + opposite) / 2, (alike - opposite) / 2
+    return np.concatenate((np.concatenate((own, across), axis=1), np.concatenate((across, own), axis=1)))
+
+
+@njit(cache=True, error_model="numpy")
+def _residues(columns, wanted, weight):
+    """port_residues (N, N, G K) of one or two wanted (G, S, N, N), which end together."""
     samples, rates = columns.shape
-    ports = wanted.shape[1]
+    groups, ports = len(wanted), wanted.shape[2]
     scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((2, rates, rates))
     _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
-    seen, inside = np.zeros((ports, ports, rates)), np.zeros((ports, ports, rates))
-    for s in range(samples):
+    shape = ports, ports, groups * rates
+    seen, inside = np.zeros(shape), np.zeros(shape)
+    for group in range(groups):
         for i in range(ports):
             for j in range(ports):
-                value = weight[s] * wanted[s, i, j]
-                for k in range(rates):
-                    seen[i, j, k] += value * scaled[s, k]
-    for i in range(ports):
-        for j in range(ports):
-            for m in range(rates):
-                for k in range(rates):
-                    inside[i, j, k] += seen[i, j, m] * inverse[0, m, k]
+                its_seen = seen[i, j, group * rates : (group + 1) * rates]
+                for s in range(samples):
+                    value = weight[s] * wanted[group, s, i, j]
+                    for k in range(rates):
+                        its_seen[k] += value * scaled[s, k]
+                _added(inverse[0], its_seen, inside[i, j, group * rates : (group + 1) * rates])
     _in_cone(inverse[1], seen, inside)
     for i in range(ports):
         for j in range(ports):
-            for k in range(rates):
-                inside[i, j, k] /= size[k]
+            for k in range(groups * rates):
+                inside[i, j, k] /= size[k % rates]
     return inside
 
 
@@ -123,8 +134,8 @@ def _inverse(matrix, ridge, out):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _in_cone(solve, seen, inside):
-    """Turns the first guess inside (N, N, K) into the answer. solve: (K, K) symmetric. seen: (N, N, K)."""
-    ports, rates = seen.shape[1], seen.shape[2]
+    """Turns the first guess inside (N, N, G K) into the answer. solve: (K, K) symmetric. seen: (N, N, G K)."""
+    ports, rates, each = seen.shape[1], seen.shape[2], len(solve)
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
     turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
     pulled, free, room = np.empty(rates), np.empty(rates), np.empty((4, rates))
@@ -136,9 +147,9 @@ def _in_cone(solve, seen, inside):
                 for k in range(rates):
                     pulled[k] = seen[i, j, k] + _PENALTY * (inside[i, j, k] - dual[i, j, k])
                     free[k] = 0.0
-                for m in range(rates):
-                    for k in range(rates):
-                        free[k] += solve[m, k] * pulled[m]
+                _added(solve, pulled[:each], free[:each])
+                if each < rates:
+                    _added(solve, pulled[each:], free[each:])
                 for k in range(rates):
                     value = _RELAXED * free[k] + (1 - _RELAXED) * inside[i, j, k] + dual[i, j, k]
                     dual[i, j, k] = dual[j, i, k] = value
@@ -151,7 +162,7 @@ def _in_cone(solve, seen, inside):
                 for m in range(ports):
                     for k in range(rates):
                         moved[i, j, k] += turn[i, m, k] * half[j, m, k]
-        _turn_diagonal(moved, turn, room)
+        turn_diagonal(moved, turn, room)
         for m in range(ports):
             for i in range(ports):
                 for k in range(rates):
@@ -165,16 +176,29 @@ def _in_cone(solve, seen, inside):
                     for k in range(rates):
                         free[k] += turn[m, i, k] * half[m, j, k]
                 for k in range(rates):
-                    moving = max(moving, abs(free[k] - inside[i, j, k]))
+                    pulled[k] = abs(free[k] - inside[i, j, k])
                     inside[i, j, k] = free[k]
                     dual[i, j, k] -= free[k]
                     dual[j, i, k] = dual[i, j, k]
+                if each < rates:  # of mirrored ports, what one half's changes by
+                    for k in range(each):
+                        pulled[k] = (pulled[k] + pulled[each + k]) / 2
+                for k in range(each):
+                    moving = max(moving, pulled[k])
         if moving < _SETTLED:
             break
     for i in range(ports):
         for j in range(i):
             for k in range(rates):
                 inside[j, i, k] = inside[i, j, k]
+
+
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+def _added(solve, pulled, free):
+    """Adds a symmetric matrix' (K, K) product with pulled (K,) to free (K,)."""
+    for m in range(len(pulled)):
+        for k in range(len(free)):
+            free[k] += solve[m, k] * pulled[m]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -188,63 +212,3 @@ def _product(first, second, out):
             for r in range(ports):
                 for k in range(rates):
                     out[m, i, k] += first[i, r, k] * second[m, r, k]
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _turn_diagonal(matrix, turn, room):
-    """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
-    which it adds to turn's rows. room: (4, K)."""
-    ports, rates = matrix.shape[1], matrix.shape[2]
-    cosine, sine, off, on = room[0], room[1], room[2], room[3]
-    for _ in range(30):
-        for k in range(rates):
-            off[k] = on[k] = 0.0
-        for i in range(ports):
-            for k in range(rates):
-                on[k] += matrix[i, i, k] * matrix[i, i, k]
-            for j in range(i):
-                for k in range(rates):
-                    off[k] += matrix[i, j, k] * matrix[i, j, k]
-        done = True
-        for k in range(rates):
-            done &= off[k] <= _ROUND_OFF * on[k]
-            on[k] *= _ROUND_OFF / (ports * ports)
-        if done:
-            return
-        for q in range(1, ports):
-            for p in range(q):
-                small = True
-                for k in range(rates):
-                    small &= matrix[q, p, k] * matrix[q, p, k] <= on[k]
-                if small:
-                    continue
-                _angle(matrix[p, p], matrix[q, q], matrix[q, p], cosine, sine)
-                for m in range(p):
-                    _rotate(matrix, p, m, q, m, cosine, sine)
-                for m in range(p + 1, q):
-                    _rotate(matrix, m, p, q, m, cosine, sine)
-                for m in range(q + 1, ports):
-                    _rotate(matrix, m, p, m, q, cosine, sine)
-                for m in range(ports):
-                    _rotate(turn, p, m, q, m, cosine, sine)
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _angle(first, second, between, cosine, sine):
-    """Cosines and sines of the rotations that make between (K,) 0, and the diagonal after them; all in place."""
-    for k in range(len(between)):
-        twice, gap = 2 * between[k], second[k] - first[k]
-        size = abs(gap) + np.sqrt(gap * gap + twice * twice) + _TINY
-        tangent = math.copysign(twice / size, gap * twice)
-        cosine[k] = 1 / np.sqrt(tangent * tangent + 1)
-        sine[k] = tangent * cosine[k]
-        first[k] -= tangent * between[k]
-        second[k] += tangent * between[k]
-        between[k] = 0.0
-
-
-@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
-def _rotate(matrix, i, j, m, n, cosine, sine):
-    for k in range(len(cosine)):
-        a, b = matrix[i, j, k], matrix[m, n, k]
-        matrix[i, j, k], matrix[m, n, k] = cosine[k] * a - sine[k] * b, sine[k] * a + cosine[k] * b

@@ -17,6 +17,7 @@ from thermograsp.thermal.kernels import (
     touched_box,
     under_tips,
 )
+from thermograsp.thermal.kernels import samples as samples_module
 from thermograsp.thermal.kernels import touched as touched_module
 
 SEED = sensor("seed")
@@ -63,12 +64,13 @@ def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
     """Of patches by themselves and of those that they overlap, which feel each other at once, beside many times from
     very early on."""
     few, few_beside = impedances(name)
-    touched_module._transform.cache_clear()
-    monkeypatch.setattr(touched_module, "_SPACING", 0.6)
-    monkeypatch.setattr(touched_module, "_UNFELT", 1e-14)
-    monkeypatch.setattr(touched_module, "_FIRST", 1e-9)
+    samples_module.grasp_rule.cache_clear()
+    monkeypatch.setattr(samples_module, "FEW_SPACING", 0.6)
+    monkeypatch.setattr(touched_module, "FEW_SPACING", 0.6)
+    monkeypatch.setattr(samples_module, "_UNFELT", 1e-14)
+    monkeypatch.setattr(samples_module, "_FIRST", 1e-9)
     many, many_beside = impedances(name)
-    touched_module._transform.cache_clear()
+    samples_module.grasp_rule.cache_clear()
     rate, port = many_beside.rate, many_beside.port
     whole = np.abs(many[0][:, 0, 0] + port[0] ** 2 / (GRASP + rate) + TIP.impedance)[:, None, None]
     assert (np.abs(few[0] - many[0]) / whole).max() < 5e-4
@@ -83,7 +85,9 @@ def impedances(name: str):
     under, areas = touched_module._kernel_of(box, 0), box.patches.areas
     capacity, conductivity = box.material.volumetric_heat_capacity, box.material.conductivity
     alone = 1 / (areas * np.sqrt(np.pi * conductivity * capacity * under.times[0]))
-    own = touched_module._at_moments(under.kernel, under.heat, under.port, alone, under.to_grasp, under.early)
+    own = samples_module.at_moments(
+        under.kernel, under.heat, under.port, alone, np.eye(3), under.to_grasp, under.early
+    )
     return own, touched_module._kernel_of(touched(name, 15.0), 2)
 
 

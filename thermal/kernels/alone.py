@@ -1,0 +1,86 @@
+"""The kernel along an axis between the functions of one patch (patterns.py) where no end is near, of any patch: a
+function of the diffusion length over the patch's half width alone, from a table.
+
+F: functions, E: nodes, M: combinations, T: times.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from .axis import free_kernels
+from .patterns import JUMPS, NODES
+
+_FIRST, _LAST = -18, 14  # ln of diffusivity times time over the half width squared
+_FINE = 16  # nodes a unit of it
+_NEAR = 6  # nodes of an interpolation: what it leaves is 1e-8 of the value
+_APART = tuple(1 / math.prod(a - b for b in range(_NEAR) if b != a) for a in range(_NEAR))
+
+
+@lru_cache(maxsize=1)
+def _table() -> np.ndarray:
+    """(nodes, F (F + 1) / 2) of a patch of half width 1, one of a pair of functions."""
+    taus = np.exp(_FIRST + np.arange((_LAST - _FIRST) * _FINE + 1) / _FINE)
+    found = free_kernels(np.ones((1, 2)), np.tile(JUMPS, (1, 2, 1, 1)), NODES, taus)[0, 0]
+    return np.ascontiguousarray(found[np.tril_indices(len(JUMPS))].T)
+
+
+def alone(half: np.ndarray, shares: np.ndarray, taus: np.ndarray) -> np.ndarray:
+    """(2, M, M, T) m of a patch of half widths (2,) m between combinations, of shares (2, M, F) along its two axes, at
+    taus (T,) m2, ascending."""
+    found = np.empty((2, shares.shape[1], shares.shape[1], len(taus)))
+    if _between(_table(), half, shares, taus, found):
+        return found
+    return free_kernels(half[None], (shares @ JUMPS)[None], NODES, taus)[0]  # of no usual sensor
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _between(table, half, shares, taus, found):
+    """Fills found by interpolation. Whether all is in the table."""
+    functions, kept = shares.shape[2], shares.shape[1]
+    weights, pairs, part = np.empty(_NEAR), np.empty(table.shape[1]), np.empty(functions)
+    whole = np.empty((functions, functions))
+    for w in range(2):
+        plain = kept == functions  # or they are the functions themselves
+        for m in range(kept):
+            for f in range(functions):
+                plain &= shares[w, m, f] == (1.0 if m == f else 0.0)
+        for t in range(len(taus)):
+            place = (math.log(taus[t] / (half[w] * half[w])) - _FIRST) * _FINE
+            if not _NEAR <= place < len(table) - _NEAR:
+                return False
+            first = int(place) - _NEAR // 2 + 1
+            for a in range(_NEAR):
+                weight = half[w] * _APART[a]
+                for b in range(_NEAR):
+                    weight *= 1.0 if b == a else place - first - b
+                weights[a] = weight
+            for i in range(len(pairs)):
+                pairs[i] = 0.0
+            for a in range(_NEAR):
+                for i in range(len(pairs)):
+                    pairs[i] += weights[a] * table[first + a, i]
+            i = 0
+            for f in range(functions):
+                for g in range(f + 1):
+                    whole[f, g] = whole[g, f] = pairs[i]
+                    if plain:
+                        found[w, f, g, t] = found[w, g, f, t] = pairs[i]
+                    i += 1
+            for m in range(0 if plain else kept):
+                for g in range(functions):
+                    part[g] = 0.0
+                for f in range(functions):
+                    for g in range(functions):
+                        part[g] += shares[w, m, f] * whole[f, g]
+                for n in range(m + 1):
+                    value = 0.0
+                    for g in range(functions):
+                        value += part[g] * shares[w, n, g]
+                    found[w, m, n, t] = found[w, n, m, t] = value
+    return True

@@ -1,0 +1,201 @@
+"""The patterns of flow that contacts excite, from the bodies on their sides at a few moments and conductances.
+
+P: patterns known (patterns.py), M: kept, N: contacts, S: moments.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ..matter import SensorStack
+from ..numerics import factor, solve_factored
+from .alone import alone
+from .axis import SWITCH
+from .box import Patches, box_kernel
+from .element import Rectangle, face_impedance
+from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
+from .samples import MOMENTS, SHOWN, at_moments, rough_rule
+
+CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
+_CONDUCTANCES = np.array(CONDUCTANCES)
+_ORTHONORMAL = np.ascontiguousarray(np.linalg.inv(EVENNESS.T))
+_EACH_JUMPS, _EACH_TERM = np.tile(JUMPS, (2, 2, 1, 1)), ALONG[:, None].copy()
+_DOUBLED = 6  # powers of a matrix, to the 64th
+_LEAST_UNEVEN = 1e-12  # beside flows of size 1, what counts as none, squared
+
+
+def excited(box: np.ndarray, elements: np.ndarray, areas: np.ndarray, kept: int) -> np.ndarray:
+    """(N, P, M) orthonormal combinations of the patterns, the even one first, of each of the contacts, that hold most
+    of what flows. box: (S, N P, N P) K/W and elements: (N, S, P, P) K/W at SHOWN. areas: (N,) m2."""
+    return _excited(box, elements, areas, _CONDUCTANCES, GRAM, EVENNESS, _ORTHONORMAL, kept)
+
+
+@lru_cache(maxsize=1024)
+def shown_element(stack: SensorStack, covered: Rectangle) -> np.ndarray:
+    """(S, P, P) K/W of an element at SHOWN."""
+    return face_impedance(stack, covered, EACH_FUNCTION, _EACH_TERM, GRAM, shown=True)
+
+
+def shown_box(
+    size: tuple[float, float, float], conductivity: float, heat_capacity: float, patches: Patches
+) -> np.ndarray:
+    """(S, N P, N P) K/W of a box at SHOWN. What the air takes changes no pattern to speak of."""
+    diffusivity, count = conductivity / heat_capacity, len(patches.face)
+    rule = rough_rule(diffusivity)
+    taus = diffusivity * rule.times
+    early = taus[: max(int(taus.searchsorted(SWITCH * max(size) ** 2, "right")), 1)]
+    kernel, rate, port, _, heat = box_kernel(
+        size,
+        conductivity,
+        heat_capacity,
+        0.0,
+        patches,
+        _EACH_JUMPS[:count],
+        _EACH_TERM,
+        count,
+        rule.times,
+        free=np.array([alone(half, EACH_FUNCTION, early) for half in patches.half]),
+    )
+    begun = 1 / (heat_capacity * math.sqrt(math.pi * taus[0]) * patches.areas)
+    return _with_slowest(kernel, port, begun, GRAM, rule.to_moments, rule.early, MOMENTS[SHOWN], rate)
+
+
+@njit(cache=True, error_model="numpy")
+def _with_slowest(kernel, port, begun, gram, to_moments, early, moments, rate):
+    """at_moments with the slowest eigenfunction's part, whose rate 1/s and port (N P,) these are."""
+    found, _ = at_moments(kernel, kernel[:, 0], port, begun, gram, to_moments, early)
+    for s in range(len(moments)):
+        for i in range(len(port)):
+            for j in range(len(port)):
+                found[s, i, j] += port[i] * port[j] / (moments[s] + rate)
+    return found
+
+
+@njit(cache=True, short_loops=True, error_model="numpy")
+def _excited(box, elements, areas, conductances, gram, evenness, orthonormal, kept):
+    """The same. orthonormal: (P, P), from orthonormal patterns' coefficients to those of the patterns."""
+    count, moments, known = elements.shape[:3]
+    cases = moments * len(conductances)
+    flows = np.zeros((count, cases * (2 if count > 1 else 1), known))
+    both, flow = np.empty((count * known, count * known)), np.empty(count * known)
+    at = 0
+    for s in range(moments):
+        for h in conductances:
+            for n in range(count):
+                _joined(both[:known, :known], box[s], elements[:, s], n, 1, h * areas, gram)
+                for i in range(known):
+                    flow[i] = gram[0, i]
+                factor(both[:known, :known])
+                solve_factored(both[:known, :known], flow[:known])
+                for i in range(known):
+                    flows[n, at, i] = flow[i]
+            if count > 1:
+                _joined(both, box[s], elements[:, s], 0, count, h * areas, gram)
+                for i in range(count * known):
+                    flow[i] = gram[0, i % known]
+                factor(both)
+                solve_factored(both, flow)
+                for i in range(count * known):
+                    flows[i // known, cases + at, i % known] = flow[i]
+            at += 1
+    found = np.zeros((count, known, kept))
+    for n in range(count):
+        _most_of(flows[n], evenness, orthonormal, found[n])
+    return found
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _joined(both, box, elements, first, count, conducts, gram):
+    """Fills both with the impedance K/W that contacts first .. first + count - 1 see, of W/K each."""
+    known = len(gram)
+    for i in range(count * known):
+        n = first + i // known
+        for j in range(count * known):
+            both[i, j] = box[first * known + i, first * known + j]
+            if first + j // known == n:
+                both[i, j] += elements[n, i % known, j % known] + gram[i % known, j % known] / conducts[n]
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _most_of(flows, evenness, orthonormal, out):
+    """Fills out (P, M) with what says most of flows (n, P), whatever their size."""
+    known, kept = out.shape
+    shown, matrix = np.empty(known), np.zeros((known - 1, known - 1))
+    power, square = np.empty((known - 1, known - 1)), np.empty((known - 1, known - 1))
+    vectors = np.zeros((kept - 1, known - 1))
+    for flow in flows:
+        size = 0.0
+        for j in range(known):
+            shown[j] = 0.0
+            for i in range(j, known):
+                shown[j] += flow[i] * evenness[i, j]
+            size += shown[j] * shown[j]
+        for i in range(known - 1):
+            for j in range(known - 1):
+                matrix[i, j] += shown[1 + i] * shown[1 + j] / size
+    # what has no uneven flow at all has some patterns all the same
+    for i in range(known - 1):
+        matrix[i, i] += _LEAST_UNEVEN * (1 + i)
+    for m in range(kept - 1):
+        _leading_vector(matrix, power, square, vectors, m)
+        for i in range(known):
+            for j in range(known - 1):
+                out[i, 1 + m] += orthonormal[i, 1 + j] * vectors[m, j]
+    out[0, 0] = 1.0
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _leading_vector(matrix, power, square, vectors, m):
+    """Fills vectors[m] with the leading eigenvector of a symmetric matrix, by its 2^_DOUBLED-th power, orthonormal to
+    the m before, which are taken from the matrix."""
+    count = len(matrix)
+    for i in range(count):
+        for j in range(count):
+            power[i, j] = matrix[i, j]
+    for _ in range(_DOUBLED):
+        largest = 0.0
+        for i in range(count):
+            largest = max(largest, power[i, i])
+        for i in range(count):
+            for j in range(count):
+                square[i, j] = 0.0
+            for k in range(count):
+                share = power[i, k] / (largest * largest)
+                for j in range(count):
+                    square[i, j] += share * power[k, j]
+        for i in range(count):
+            for j in range(count):
+                power[i, j] = square[i, j]
+    best = 0
+    for i in range(count):
+        if power[i, i] > power[best, best]:
+            best = i
+    vector = vectors[m]
+    for j in range(count):
+        vector[j] = power[best, j]
+    for _ in range(2):  # the second time from what rounding has left
+        for before in range(m):
+            along = 0.0
+            for j in range(count):
+                along += vectors[before, j] * vector[j]
+            for j in range(count):
+                vector[j] -= along * vectors[before, j]
+        size, total = 0.0, 0.0
+        for j in range(count):
+            size += vector[j] * vector[j]
+            total += vector[j]
+        scale = (-1.0 if total < 0 else 1.0) / math.sqrt(size)
+        for j in range(count):
+            vector[j] *= scale
+    value = 0.0
+    for i in range(count):
+        for j in range(count):
+            value += vector[i] * matrix[i, j] * vector[j]
+    for i in range(count):
+        for j in range(count):
+            matrix[i, j] -= value * vector[i] * vector[j]
