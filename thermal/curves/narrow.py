@@ -37,6 +37,8 @@ def equal_square(stack: SensorStack, skinned: bool, body: Material, area: float,
     skin."""
     conducts, felt = CONFORMING if skinned else LAPPED, int(np.argmin(np.abs(np.log(GRASP / _FELT))))
     whole, long = stack.width, min(length, stack.width)
+    if area >= stack.face_area:
+        return stack.face_area
 
     def impedance(first: float, second: float) -> float:
         spans = tuple(((whole - side) / 2, (whole + side) / 2) for side in (first, second))
@@ -45,16 +47,19 @@ def equal_square(stack: SensorStack, skinned: bool, body: Material, area: float,
             (own + half_space_impedance(body, conducts, np.array([first, second]))[0, 0, 0, 1])[felt]
         )
 
-    strip = impedance(area / long, long)
+    strip = impedance(min(area / long, whole), long)
 
     def more(side: float) -> float:
         """Of a square, over the strip's, by its logarithm."""
         return float(np.log(impedance(side, side) / strip))
 
     least = area**0.5
-    if least >= whole or more(least) <= 0.0:
-        return min(area, stack.face_area)
-    return stack.face_area if more(whole) >= 0.0 else brentq(more, least, whole, xtol=_ALIKE * least) ** 2
+    if more(least) <= 0.0:
+        return area
+    if more(whole) >= 0.0:
+        return stack.face_area
+    side = float(brentq(more, least, whole, xtol=_ALIKE * least))  # pyright: ignore[reportArgumentType]
+    return side**2
 
 
 def stack_impedance(stack: SensorStack, conducts: float, widths: np.ndarray) -> np.ndarray:

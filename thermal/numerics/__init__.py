@@ -6,8 +6,7 @@ from .fastmath import FAST
 from .finite_volume import Axis, Body, graded_cells, radial_axis, single_cell, symmetric_axis
 from .grid_contact import BOTTOM, OBJECT, SENSOR, TOP, Grid, Interface, Stage, rates
 from .lanczos import largest_eigenvalues
-from .laplace import invert
-from .laplace_window import invert_many, windows
+from .laplace import invert, invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
 from .outputs import least_row, output_row
 from .passive import ThermalNetwork

@@ -36,7 +36,7 @@ def test_every_cache_of_functions_has_a_limit_or_few_arguments() -> None:
         "envs.bodies.library.",
     )
     of_shape = {
-        "thermal.numerics.laplace_window._hyperbola",
+        "thermal.numerics.laplace._hyperbola",
         "thermal.plates.section._bessel_zeros",
         "envs.grippers.shipped._parsed",
         "envs.grippers.fingertip._shipped",

@@ -1,5 +1,8 @@
 """Rods and balls between the fingers of an environment beside ThermalTouch on the same bodies."""
 
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from typing import Any

@@ -43,8 +43,10 @@ SETTINGS = {
     "samples": 2,
     "sensor_temperature": 36.0,
 }
-FACTORS = dict.fromkeys(("size_factor", "mass_factor", "friction_factor", "roughness_factor"), 1.0)
-FACTORS["object_temperature_shift"] = 0.0
+FACTORS: dict[str, float] = {
+    "object_temperature_shift": 0.0,
+    **dict.fromkeys(("size_factor", "mass_factor", "friction_factor", "roughness_factor"), 1.0),
+}
 BAR = ObjectSpec(size=(0.01, 0.07, 0.024), mass=0.1, friction=0.8)
 LEFT = np.array([-0.005, 0.0, 0.0])
 
@@ -357,14 +359,12 @@ def test_heat_knows_where_it_enters_a_box_whose_edge_may_be_near(spec, placement
 def test_what_a_face_reaches_beyond_is_felt_by_default(size, off):
     """A bar narrower than the sensor's face, and an object lower than where the faces end."""
     drops = []
-    for more in ({}, {"anywhere": True}, {"anywhere": False}):
-        batch = GraspBatch(
-            1, material="glass", task=ENDLESS, objects=ObjectSpec(size=size), placement=(0.0, 0.0), **more
-        )
+    for anywhere in ("auto", True, False):
+        words = {"objects": ObjectSpec(size=size), "placement": (0.0, 0.0), "anywhere": anywhere}
+        batch = GraspBatch(1, material="glass", task=ENDLESS, **words)
         batch.reset([0], [np.random.default_rng(0)])
-        for _ in range(100):
-            step = batch.step(action_of(0.0, 8.0, 0.0)[None])
-        drops.append(step.info(0)["temperature_drop"][0])
+        steps = [batch.step(action_of(0.0, 8.0, 0.0)[None]) for _ in range(100)]
+        drops.append(steps[-1].info(0)["temperature_drop"][0])
     assert drops[0] == drops[1] and drops[2] - drops[0] > off
 
 

@@ -27,6 +27,16 @@ def test_the_whole_face_is_itself_and_nothing_is_larger() -> None:
         assert equal_square(STACK, True, material("glass"), area, STACK.width) == FACE
 
 
+def test_a_strip_along_either_axis_is_alike() -> None:
+    broad = 0.0015
+    areas = [
+        equal_square(STACK, True, material("glass"), broad * STACK.width, side)
+        for side in (broad, STACK.width)
+    ]
+    assert areas[0] == pytest.approx(areas[1], rel=1e-3)
+    assert equal_square(STACK, True, material("glass"), broad * STACK.width, broad * (1 - 1e-6)) > 0
+
+
 def spreading(aspect: float) -> float:
     """sqrt(area) k R of an even flow over a rectangle of a half-space (Yovanovich & Marotta, Thermal spreading and
     contact resistances, in Bejan & Kraus, Heat Transfer Handbook, 2003)."""

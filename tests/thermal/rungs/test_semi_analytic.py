@@ -11,8 +11,7 @@ from thermograsp.thermal import press
 from thermograsp.thermal.matter.materials import material
 from thermograsp.thermal.matter.mounting import Mode, Shape
 from thermograsp.thermal.matter.sensors import sensor
-from thermograsp.thermal.numerics.laplace import invert
-from thermograsp.thermal.numerics.laplace_window import invert_many
+from thermograsp.thermal.numerics.laplace import invert, invert_many
 from thermograsp.thermal.rungs import layered, semi_analytic
 from thermograsp.thermal.rungs.problem import Conductance, PressProblem
 
