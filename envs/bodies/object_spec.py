@@ -198,6 +198,20 @@ class ObjectSpec:
         return x * y * z * {"box": 1.0, "cylinder": math.pi / 4, "sphere": math.pi / 6}[self.shape]
 
     @property
+    def surface(self) -> float:
+        """m2 of its surface, of a mesh with its cavities'."""
+        x, y, z = self.size
+        if self.shape == "mesh":
+            vertices, faces = self.geometry.surface
+            a, b, c = (vertices[faces[:, i]] for i in range(3))
+            return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
+        return {
+            "box": 2 * (x * y + y * z + x * z),
+            "cylinder": math.pi * x * (x / 2 + z),
+            "sphere": math.pi * x * x,
+        }[self.shape]
+
+    @property
     def weight(self) -> float:
         """kg, the mass given or that of the density, given or the materials'; else 0.1."""
         if self.mass is not None:

@@ -40,6 +40,7 @@ from ...thermal.contact import (
     face_joint,
     flat_footprint,
     footprint,
+    pad_joint,
     pad_law,
     skinned,
     solid_conduction,
@@ -49,7 +50,10 @@ from ...thermal.contact import (
 from ..bodies import ObjectSpec
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...thermal import Solid, TouchSetup
+    from ...thermal.pressed import Ring
     from .slipped_mesh import ClosedMesh
 
 PAD = Pad()
@@ -292,16 +296,20 @@ class GraspBody:
 
     def _table_law(self, contact: ContactArea, step: tuple[int, ...]) -> np.void:
         """Of a mesh's contact at TABLE_FORCES after a step of slipped_mesh.py."""
+        return self._soft_or_rigid(contact, step)[0]
+
+    def _soft_or_rigid(self, contact: ContactArea, step: tuple[int, ...]) -> tuple[np.void, bool]:
+        """A mesh's law, and whether it meets the bare face as one that does not yield."""
         soft = table_footprint(self.pad, self.joint, contact)
         if not self._bare_mesh or self.closed_mesh is None:
-            return soft
+            return soft, False
         conducts, area = self.closed_mesh.bare_at(step, self.touched)
         rigid = table_footprint(self.pad, self.joint, replace(contact, face=area), conducts)
         of_soft, of_rigid = (
             solid_conduction(law, *footprint(law, NOMINAL_FORCE, np.zeros(3))) for law in (soft, rigid)
         )
         # a flat face meets the rigid one flush with the pad, whose areas and forces tell more exactly what conducts
-        return rigid if of_rigid < _FLAT * of_soft else soft
+        return (rigid, True) if of_rigid < _FLAT * of_soft else (soft, False)
 
     @cached_property
     def closed_mesh(self) -> ClosedMesh | None:
@@ -334,6 +342,31 @@ class GraspBody:
         """`law` of a mesh that has slipped and turned by a step of slipped_mesh.py."""
         assert self.closed_mesh is not None
         return self._table_law(self.closed_mesh.contact_at(step), step)
+
+    def around_face(self, step: tuple[int, ...], rings: Sequence[Ring]) -> tuple[list[np.void], np.ndarray]:
+        """By which laws rings of the pad around the sensor conduct to a mesh that has slipped and turned by a step, and
+        (9, 5) where the face's contact lies at TABLE_FORCES; AroundFace has its columns."""
+        from .mesh_contact import around_face
+
+        mesh = self.closed_mesh
+        assert mesh is not None
+        bare = self.touched if self._soft_or_rigid(mesh.contact_at(step), step)[1] else None
+        sides = tuple(ring.outer for ring in rings)
+        closed = around_face(self.pad, self.spec, tuple(TABLE_FORCES.tolist()), sides)
+        laws = [
+            table_footprint(
+                self.pad,
+                pad_joint(self.skin, ring.made, self._surface),
+                mesh.ring_at(step, ring, each, bare),
+            )
+            for ring, each in zip(rings, closed.rings, strict=True)
+        ]
+        lying = closed.lying
+        if any(step):
+            lies, lay = (mesh.lying_at(each, self.skin, self.touched) for each in (step, (0, 0, 0, 0, 0)))
+            lying = lying + lies - lay
+            lying[:, 1:] = np.clip(lying[:, 1:], 0.0, 1.0)
+        return laws, lying
 
     @cached_property
     def heat_capacity(self) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...thermal import ContactArea, Material, Pad, Skin
 from ...thermal.contact import FIRST_FORCE, FORCE_STEP, FORCES, TABLE_FORCES
-from ...thermal.pressed import PressedView, pressed_view
+from ...thermal.pressed import PressedView, Ring, pressed_view
 from ..bodies import MeshShape, ObjectSpec
 
 GRID = 5e-4
@@ -26,6 +26,33 @@ _TURN = math.radians(15)
 """Between directions."""
 _LEAST = 1e-12  # W/K or m2: less is none
 _LOADS = np.log(TABLE_FORCES), FIRST_FORCE + FORCE_STEP * np.arange(FORCES)
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What of a view is asked: m2 that touch of the face, or of a ring, and their share of the force, the face rigid if
+    the mesh's material is told; or of a face with a skin, or a rigid one, on a mesh of that material W/K, m2 and m of
+    the patch that conducts; or where that lies, as ClosedMesh.lying_at tells it."""
+
+    body: Material | None
+    skin: Skin | None = None
+    ring: Ring | None = None
+    conducts: bool = False
+    lies: bool = False
+
+    @property
+    def rounded(self) -> bool:
+        """Whether the surface is taken as smooth: a rigid face would lie on one of its triangles."""
+        return self.body is not None and self.skin is None
+
+    @property
+    def width(self) -> int:
+        """k, of the numbers that are told."""
+        return 5 if self.lies else 3 if self.conducts else 2
+
+
+_TOUCHED = _Asked(None)
+_CLOSED = (0, 0, 0, 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +70,7 @@ class ClosedMesh:
         """The contact at TABLE_FORCES, (9,) each; the pad's area is that of closing. step: of `mesh_steps`, (5,)."""
         if not any(step):
             return self.contact
-        here, first = self._area_and_share(step), self._area_and_share((0, 0, 0, 0, 0))
+        here, first = self._area_and_share(step, _TOUCHED), self._area_and_share(_CLOSED, _TOUCHED)
         face, load = (
             np.where(was > 0, known * now / np.where(was > 0, was, 1.0), now)
             for known, now, was in zip((self.contact.face, self._share), here, first, strict=True)
@@ -54,35 +81,55 @@ class ClosedMesh:
     def bare_at(self, step: tuple[int, ...], body: Material) -> tuple[np.ndarray, np.ndarray]:
         """(W/K, m2 of the patch that stands for what conducts), at TABLE_FORCES, (9,) each, of a rigid face that wears
         no skin on a mesh of that material; the mean of both sides that touch. step: as contact_at's."""
-        mean = self._of_views(step, (None, body))[:, :2]
+        mean = self._of_views(step, _Asked(body, conducts=True))[:, :2]
         through, area = (np.exp(np.interp(*_LOADS, np.log(np.maximum(column, _LEAST)))) for column in mean.T)
         return np.where(through > 2 * _LEAST, through, 0.0), np.where(area > 2 * _LEAST, area, 0.0)
 
     def patch_length(self, skin: Skin | None, body: Material, force: float) -> float:
         """m, one side of the rectangle that stands for what conducts where the pads closed on a mesh of that material,
         at a force N on the pad; 0 where none touches."""
-        lengths = self._of_views((0, 0, 0, 0, 0), (skin, body))[:, 2]
+        lengths = self._of_views(_CLOSED, _Asked(body, skin, conducts=True))[:, 2]
         return float(np.interp(math.log(force), _LOADS[1], lengths))
+
+    def ring_at(
+        self, step: tuple[int, ...], ring: Ring, closed: np.ndarray, rigid: Material | None
+    ) -> ContactArea:
+        """What touches of a ring of the pad at TABLE_FORCES, by what did as the pads closed: (2, 9) m2 and N. rigid:
+        the mesh's material where a rigid face is in the ring."""
+        here = self._area_and_share(step, _Asked(rigid, ring=ring))
+        first = self._area_and_share(_CLOSED, _Asked(None, ring=ring))
+        face, load = (
+            np.where(was > 0, known * now / np.where(was > 0, was, 1.0), now)
+            for known, now, was in zip((closed[0], closed[1] / TABLE_FORCES), here, first, strict=True)
+        )
+        face = np.minimum(face, ring.outer**2 - ring.inner**2)
+        return ContactArea(face, face, np.minimum(load, 1.0) * TABLE_FORCES)
+
+    def lying_at(self, step: tuple[int, ...], skin: Skin | None, body: Material) -> np.ndarray:
+        """(9, 5) at TABLE_FORCES, the mean of both sides that touch: how long the face's contact is over the root of
+        its area, and the shares by which it lies at an end, of pads without a tilt."""
+        mean = self._of_views(step, _Asked(body, skin, conducts=True, lies=True))
+        return np.stack([np.interp(*_LOADS, column) for column in mean.T], axis=1)
 
     @property
     def _share(self) -> np.ndarray:
         return self.contact.face_force / TABLE_FORCES
 
-    def _area_and_share(self, step: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """m2 on the face and its share of the force, (9,) each, of pads without a tilt; the mean of both."""
-        mean = self._of_views(step, None)
+    def _area_and_share(self, step: tuple[int, ...], asked: _Asked) -> tuple[np.ndarray, np.ndarray]:
+        """m2 on the face, or on a ring, and its share of the force, (9,) each, of pads without a tilt; the mean of
+        both."""
+        mean = self._of_views(step, asked)
         area, share = (np.interp(*_LOADS, column) for column in mean.T)
         return area, share
 
-    def _of_views(self, step: tuple[int, ...], joint: tuple[Skin | None, Material] | None) -> np.ndarray:
-        """(FORCES, 2 or 3), what `_between` tells, the mean of both sides that touch."""
+    def _of_views(self, step: tuple[int, ...], asked: _Asked) -> np.ndarray:
+        """(FORCES, k), what is asked, the mean of both sides that touch."""
         azimuth, elevation = self.azimuth + step[3] * _TURN, step[4] * _TURN
         place = np.array(self.place) + GRID * np.array(step[:3])
         found = []
         for side in (1, -1):
-            bare = joint is not None and joint[0] is None
-            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side, bare)
-            found.append(_between(view, across @ place - begin, joint))
+            view, across, begin = _view(self.pad, self.shape, azimuth, elevation, side, asked.rounded)
+            found.append(_between(view, across @ place - begin, asked))
         both = [each for each in found if each.any()]
         return np.mean(both, axis=0) if both else np.zeros_like(found[0])
 
@@ -130,34 +177,38 @@ def _view(
     return view, axes[1:], (corners @ axes[1:].T).min(axis=0) - pad.face / 2
 
 
-def _between(view: PressedView, at: np.ndarray, joint: tuple[Skin | None, Material] | None) -> np.ndarray:
-    """(forces, 2): area and share of the force at a place (2,) m among the view's; beyond them none. joint: (forces, 3)
-    W/K, m2 and m of the patch in their place, of a face with that skin, or a rigid one, on that material."""
+def _between(view: PressedView, at: np.ndarray, asked: _Asked) -> np.ndarray:
+    """(forces, k): what is asked, at a place (2,) m among the view's; beyond them none."""
     places = view.places
     if not all(places[axis, 0] < at[axis] < places[axis, -1] for axis in range(2)):
-        return np.zeros((FORCES, 2 if joint is None else 3))
+        return np.zeros((FORCES, asked.width))
+    ends = 1 if asked.lies else 0  # where nothing touches, nothing lies
     i, j = (
-        int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, 0, places.shape[1] - 2)) for axis in range(2)
+        int(np.clip(np.searchsorted(places[axis], at[axis]) - 1, ends, places.shape[1] - 2 - ends))
+        for axis in range(2)
     )
-    values = _around(view, i, j, joint)
+    values = _around(view, i, j, asked)
     for axis, k in enumerate((i, j)):
         share = (at[axis] - places[axis, k]) / (places[axis, k + 1] - places[axis, k])
+        share = min(max(share, 0.0), 1.0) if asked.lies else share
         values = (1 - share) * values[:, 0] + share * values[:, 1]
     return values
 
 
-@lru_cache(maxsize=1024)
-def _around(view: PressedView, i: int, j: int, joint: tuple[Skin | None, Material] | None) -> np.ndarray:
-    """(forces, 2, 2, 2 or 3): what `_between` tells at the places round one of the view's cells."""
+@lru_cache(maxsize=2048)
+def _around(view: PressedView, i: int, j: int, asked: _Asked) -> np.ndarray:
+    """(forces, 2, 2, k): what is asked, at the places round one of the view's cells."""
     cell = (i, i + 2), (j, j + 2)
-    if joint is None:
-        return view.touched(some=cell)
-    found = np.moveaxis(view.conducted(*joint, cell)[..., 4:], -1, 0)
-    long, longer, contact, gas, area, wide = found
-    through = contact + gas
-    return np.stack(
-        (through, *(_mean(contact, a, gas, b) for a, b in ((area, wide), (long, longer)))), axis=-1
-    )
+    if not asked.conducts:
+        return view.touched(asked.ring, cell, bare=asked.body)
+    assert asked.body is not None
+    every = view.conducted(asked.skin, asked.body, cell)
+    long, longer, contact, gas, area, wide = np.moveaxis(every[..., 4:], -1, 0)
+    patch, length = (_mean(contact, a, gas, b) for a, b in ((area, wide), (long, longer)))
+    if not asked.lies:
+        return np.stack((contact + gas, patch, length), axis=-1)
+    over = np.where(patch > _LEAST, length / np.sqrt(np.maximum(patch, _LEAST)), 1.0)
+    return np.concatenate((over[..., None], every[..., :4]), axis=-1)
 
 
 def _mean(contact: np.ndarray, one: np.ndarray, gas: np.ndarray, other: np.ndarray) -> np.ndarray:

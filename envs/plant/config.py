@@ -85,10 +85,10 @@ class SimulationConfig:
     thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose material is
     `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n, m) of the
     map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each sensor's
-    face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to boxes: the
-    name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for a
-    sensor by itself. It conducts as well as the sensor's contact, and heat flows, heat and surfaces' temperatures that
-    an environment tells are then those of element and pad together."""
+    face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to
+    objects: the name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for
+    a sensor by itself. Heat flows and heat that an environment tells are then those of element and pad together; with
+    it heat knows where it enters all but boxes, whatever `anywhere` says."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -212,21 +212,28 @@ class SimulationConfig:
         _ = self.around  # checks it
         for given, why in (
             (self.thermostat is not None, "a thermostat of finite power: leave thermostat out"),
-            (
-                self.anywhere is True,
-                "anywhere=True: its networks are those of flat plates; leave anywhere out",
-            ),
             (self.face_temperature is not None, "a map of face_temperature: leave it out"),
         ):
             if given:
                 raise InvalidValueError(f"surround {self.surround!r} does not go with {why}")
         for shape in (*self.shapes, *self.others):
-            if shape.shape != "box" or shape.parts or shape.reservoir is not None:
-                what = f"is a {shape.shape}" if shape.shape != "box" else "has parts or contents"
+            if shape.parts or shape.reservoir is not None:
+                what = "parts" if shape.parts else "contents"
                 raise InvalidValueError(
-                    f"surround {self.surround!r}: object {shape.name!r} {what}, and the heat of a pad around the "
-                    "sensor is known on boxes of one material: leave surround out, or give boxes"
+                    f"surround {self.surround!r}: object {shape.name!r} has {what}, and the heat of a pad around the "
+                    "sensor is known on objects of one material: leave surround out, or give these"
                 )
+
+    @cached_property
+    def padded(self) -> bool:
+        """Whether sensors have a pad around them which may touch more than the middle of boxes' faces, so that heat has
+        fields of its own for it."""
+        sizes = (cause.extremes for cause in self.causes if isinstance(cause, Size))
+        least = min((1.0, *(factor for some in sizes for factor in some)))
+        every = (*(scaled(shape, least) for shape in self.shapes), *self.others)
+        return self.surround is not None and any(
+            shape.shape != "box" or self._anywhere(shape) for shape in every
+        )
 
     @property
     def _sensor(self) -> SensorStack | HeatedStack:
@@ -422,7 +429,7 @@ class SimulationConfig:
             self.fingertips,
             drawn["roughness_factor"],
             usual if room is None else room,
-            self._anywhere(spec),
+            self._anywhere(spec) and (self.surround is None or self.padded),
             self.any_size,
             self.worn,
             self.around,
@@ -503,15 +510,15 @@ class SimulationConfig:
 
     def _anywhere(self, spec: ObjectSpec) -> bool:
         """Whether heat knows where it enters that object."""
-        if self.anywhere != AUTO:
-            return bool(self.anywhere)
+        if isinstance(self.anywhere, bool):
+            return self.anywhere
         plain = spec.shape == "box" and not spec.parts and spec.reservoir is None
-        if self.mode == "O" or self.surround is not None or not plain:
+        if self.mode == "O" or not plain:
             return False
         body = GraspBody(spec, self.choices[0], self.object_temperature, self.mode, self.stack)
         if body.edge_room < self.placement[0] + _ROOM:
             return True
-        drawn = any(isinstance(cause, Size) for cause in self.randomize)
+        drawn = any(isinstance(cause, Size) for cause in self.randomize) and self.surround is None
         return drawn and self._served(spec, anywhere=True) and not self._served(spec, anywhere=False)
 
     def _by_kernels(self, spec: ObjectSpec) -> bool:

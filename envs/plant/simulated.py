@@ -30,7 +30,7 @@ from .truth import INFO, Truth
 
 if TYPE_CHECKING:
     from ..readout import FaceTemperatureState
-    from ..sensing import SceneHeatState, SceneHeatStep
+    from ..sensing import PaddedHeatState, SceneHeatState, SceneHeatStep
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class PlantState:
     with nowhere else, by keyword."""
 
     mechanics: MechanicsState
-    heat: HeatState | SceneHeatState
+    heat: HeatState | SceneHeatState | PaddedHeatState
     electronics: ElectronicsState
     thermostats: tuple[np.ndarray, ...]
     faces: FaceTemperatureState | None
@@ -58,11 +58,12 @@ class SimulatedPlant:
     scenes; None for the config's objects or scene. scenes: each environment's objects."""
 
     def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
-        start_compiling(boxes=config.by_kernels)
+        if not config.padded:
+            start_compiling(boxes=config.by_kernels)
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = whole_number("num_envs", num_envs, 1), config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)
-        self.heat: Any = GraspHeat(num_envs, **config.heat) if self._alone else self._scene_heat()
+        self.heat: Any = self._heat()
         self.mechanics = Mechanics(
             self.layout.specs,
             num_envs,
@@ -261,10 +262,18 @@ class SimulatedPlant:
     def _lateral(self) -> np.ndarray | None:
         return self.mechanics.lateral if self.layout.lateral else None
 
-    def _scene_heat(self) -> Any:
-        from ..sensing import SceneHeat  # nothing that several objects need is loaded without them
+    def _heat(self) -> Any:
+        """What computes it; nothing that pads or several objects need is loaded without them."""
+        rows, objects, settings = self.num_envs, len(self.layout.specs), self.config.heat
+        if self.config.padded:
+            from ..sensing import PaddedHeat, PaddedScenes
 
-        return SceneHeat(self.num_envs, len(self.layout.specs), **self.config.heat)
+            return PaddedHeat(rows, **settings) if self._alone else PaddedScenes(rows, objects, **settings)
+        if self._alone:
+            return GraspHeat(rows, **settings)
+        from ..sensing import SceneHeat
+
+        return SceneHeat(rows, objects, **settings)
 
     def _move(self, command: Command) -> tuple[Motion, ...]:
         """One control step of the mechanics, with its results for each object."""

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from .ahead import start_compiling
     from .boxes import served_anywhere, served_in_the_middle
     from .heat import GraspHeat, HeatState, HeatStep
+    from .padded_heat import PaddedHeat, PaddedHeatState, PaddedScenes
     from .rows import EVENTS, NEW_PATCH, OVER_TEMPERATURE
     from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
 
@@ -18,6 +19,9 @@ __all__ = [
     "GraspHeat",
     "HeatState",
     "HeatStep",
+    "PaddedHeat",
+    "PaddedHeatState",
+    "PaddedScenes",
     "SceneHeat",
     "SceneHeatState",
     "SceneHeatStep",

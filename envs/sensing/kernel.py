@@ -138,6 +138,20 @@ def advance_boxes(laws, rows, state, normal, place, drop, info, first, last, *nu
         _book(row, step, tables.dt * samples)
 
 
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def meet_rows(laws, rows, normal, place, info):
+    """Fills conductance, area and events of info (B, O) HEAT_INFO by what fingertips press on each of a row's objects:
+    laws (B, O) FOOTPRINT_LAW, rows (B, O) HEAT_ROW, whose touches and anchors follow, normal (B, O, S, F) N and place
+    (B, O, F, 3) m, in the objects' frames."""
+    at, conducts = np.empty(3), np.empty((1, 2))
+    for b in range(rows.shape[0]):
+        for o in range(rows.shape[1]):
+            for f in range(2):
+                _along_pad(laws[b, o], place[b, o], f, at)
+                touching = _mean_contacts(laws[b, o], normal[b, o, :, f], info[b, o], f, at, conducts)
+                _follow(rows[b, o], info[b, o], f, touching, place[b, o, f])
+
+
 @njit(cache=True, inner=True, error_model="numpy")
 def _reading(samples, tips):
     """Room for the HeatReading of one row."""

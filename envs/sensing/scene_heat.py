@@ -134,30 +134,37 @@ class SceneHeat:
     def _joined_step(self, step: HeatStep, owners: np.ndarray) -> SceneHeatStep:
         """owners: (B, N or 1, F) of each sample."""
         objects = step.info.reshape(-1, self._objects)
-        info = np.zeros(len(objects), HEAT_INFO)
-        for name in _OF_FINGERTIPS:
-            info[name] = self._picked(objects[name])
-        # What flowed into an object that the fingertip left within the step.
-        left = objects["flow"].sum(axis=1) - info["flow"]
-        info["flow"] += left
-        info["drawn"] += left
-        info["heat"][:, :2] = self._picked(objects["heat"][:, :, :2])
-        for number in range(self._objects):
-            info["heat"][:, 2] += objects["heat"][:, number, 2]
-            for name in _SUMMED:
-                info[name] += objects[name][:, number]
-            info["events"] |= objects["events"][:, number]
-        for name in _OF_OBJECT:
-            info[name] = self._picked(np.repeat(objects[name][..., None], 2, axis=2))[:, 0]
+        info = of_fingertips(objects, self._owner)
         drop = step.drop.reshape(len(objects), self._objects, *step.drop.shape[1:])
         chosen = np.broadcast_to(owners[:, None], (len(objects), 1, *drop.shape[2:]))
         return SceneHeatStep(
             HeatStep(np.take_along_axis(drop, chosen, axis=1)[:, 0], info), objects, self._owner
         )
 
-    def _picked(self, values: np.ndarray) -> np.ndarray:
-        """(B, F) of each fingertip's own object from (B, O, F)."""
-        return np.take_along_axis(values, self._owner[:, None], axis=1)[:, 0]
-
     def _of(self, rows: Sequence[int]) -> list[int]:
         return [self._objects * row + number for row in rows for number in range(self._objects)]
+
+
+def of_fingertips(objects: np.ndarray, owner: np.ndarray) -> np.ndarray:
+    """(B,) HEAT_INFO of the fingertips, from that of each object (B, O) and each fingertip's own, (B, F) numbers."""
+
+    def picked(values: np.ndarray) -> np.ndarray:
+        """(B, F) of each fingertip's own object from (B, O, F)."""
+        return np.take_along_axis(values, owner[:, None], axis=1)[:, 0]
+
+    info = np.zeros(len(objects), HEAT_INFO)
+    for name in _OF_FINGERTIPS:
+        info[name] = picked(objects[name])
+    # What flowed into an object that is not the fingertip's own, such as one that it left within the step.
+    left = objects["flow"].sum(axis=1) - info["flow"]
+    info["flow"] += left
+    info["drawn"] += left
+    info["heat"][:, :2] = picked(objects["heat"][:, :, :2])
+    for number in range(objects.shape[1]):
+        info["heat"][:, 2] += objects["heat"][:, number, 2]
+        for name in _SUMMED:
+            info[name] += objects[name][:, number]
+        info["events"] |= objects["events"][:, number]
+    for name in _OF_OBJECT:
+        info[name] = picked(np.repeat(objects[name][..., None], 2, axis=2))[:, 0]
+    return info

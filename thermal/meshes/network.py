@@ -34,8 +34,7 @@ from .grid import (
     grid_frame,
     mesh_grid,
 )
-from .patch import PatchOnGrid, patch_on_grid
-from .patterns import PatchPatterns, uniform_pattern
+from .patch import PatchOnGrid, PatchPatterns, patch_on_grid, uniform_pattern
 from .place import layer_beneath, place_patch
 from .solve import conduct, solve_shifted
 

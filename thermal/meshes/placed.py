@@ -50,8 +50,7 @@ from .film import Film, film_of, filmed, held_apart
 from .grid import MeshGridding
 from .modes import BodyModes, body_modes
 from .network import PatchFields, patch_fields
-from .patch import patch_on_grid
-from .patterns import PatchPatterns
+from .patch import PatchPatterns, patch_on_grid
 from .place import PlacedPatch
 from .touched import PLATE, PLATE_MATERIAL, TouchedBody, geometry_of
 
@@ -125,6 +124,31 @@ def placed_network(
     """film: W/K between the walls of the body's hollow, if it has one, and contents. Raises MeshError where a patch
     meets no surface, or the body is no solid in one piece."""
     inside = film_of(body, film)
+    found = face_impedance(body, patches, stack, inside, cache)
+    seen = np.concatenate([place.seen for place in found.places])
+    slow = _slow(found.modes, seen, inside)
+    level = _EMPTY if inside is None else _FILLED
+    return PlacedNetwork(
+        _fitted(found, slow, found.impedance, level),
+        [place.below for place in found.places],
+        len(slow.fades),
+    )
+
+
+class FaceImpedance(NamedTuple):
+    """Of sensors' faces on a body. modes: the body's. one: the sensor's element under its contact. places: where the
+    patches are. impedance: (S, P M, P M) K/W at GRASP, less that of the slow modes."""
+
+    modes: BodyModes
+    one: Tip
+    places: list[Placed]
+    impedance: np.ndarray
+
+
+def face_impedance(
+    body: Solid, patches: Sequence[SurfacePatch], stack: SensorStack, inside: Film | None, cache: bool
+) -> FaceImpedance:
+    """Raises as placed_network does."""
     level = _EMPTY if inside is None else _FILLED
     modes = body_modes(body, inside, cache=cache)
     one = centred_tip(stack, patches[0].area)
@@ -152,19 +176,45 @@ def placed_network(
         if _close(places[n], places[m]):
             pair = _pair(body, patches[n], patches[m], stack, inside, level, cache)
             impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
-    alone = impedance[:, ::count, ::count] + _impedance(slow.held.T[::count], slow.fades)
-    weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(below))], axis=0)
+    return FaceImpedance(modes, one, places, impedance)
+
+
+def ringed_network(
+    found: FaceImpedance, seen: np.ndarray, kernel: np.ndarray, early: np.ndarray
+) -> ThermalNetwork:
+    """Of an empty body's faces and of J other ports behind them, of even flows. seen: (J, R) of the modes by these.
+    kernel: (T, P M + J, P M + J) 1/J K of the boxes beneath, at TIMES, before the modes tell; that of faces is known
+    better. early: (J,) K/W of these before then."""
+    modes, faces = found.modes, found.impedance.shape[1]
+    every = np.concatenate((*(place.seen for place in found.places), seen))
+    slow = _slow(modes, every, None, len(seen))
+    taus = modes.diffusivity * TIMES
+    over = _over(taus, modes.rates[-1] - modes.rates[0])[:, None, None]
+    kernel = over * _faded(every, modes.rates, taus) + (1 - over) * kernel
+    kernel -= _faded(slow.held.T, slow.fades, TIMES)
+    impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
+    others = np.arange(faces, len(every))
+    impedance[:, others, others] += early
+    impedance[:, :faces, :faces] = found.impedance
+    return _fitted(found, slow, impedance, _EMPTY)
+
+
+def _fitted(found: FaceImpedance, slow: _Slow, impedance: np.ndarray, level: _Fineness) -> ThermalNetwork:
+    """The slow states and what fades sooner, of an impedance less that of the former: of the faces, then of others."""
+    modes, one, count = found.modes, found.one, LEVEL.patterns
+    faces = slice(0, len(found.places) * count, count)
+    alone = impedance[:, faces, faces] + _impedance(slow.held.T[faces], slow.fades)
+    weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(found.places))], axis=0)
     slowest = max(modes.diffusivity * modes.rates[: _told(modes)][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(level.pitch)) + 1)
     fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
     none = np.zeros(len(fading))
-    network = ThermalNetwork(
+    return ThermalNetwork(
         np.concatenate((slow.network.rates, fading)),
         np.concatenate((slow.network.ports, ports)),
         slow.network.direct,
         {name: np.concatenate((row, none)) for name, row in slow.network.outputs.items()},
     )
-    return PlacedNetwork(network, below, len(slow.fades))
 
 
 class _Slow(NamedTuple):
@@ -176,11 +226,12 @@ class _Slow(NamedTuple):
     held: np.ndarray
 
 
-def _slow(modes: BodyModes, seen: np.ndarray, film: Film | None) -> _Slow:
-    """seen: (M, R) of the modes by the ports."""
+def _slow(modes: BodyModes, seen: np.ndarray, film: Film | None, others: int = 0) -> _Slow:
+    """seen: (M, R) of the modes by the ports, of which the last `others` have one pattern."""
     even = np.tile(
-        np.eye(LEVEL.patterns)[0], len(seen) // LEVEL.patterns
+        np.eye(LEVEL.patterns)[0], (len(seen) - others) // LEVEL.patterns
     )  # the mean of the first pattern alone is not 0
+    even = np.concatenate((even, np.ones(others)))
     network = modes.network(seen[:, : _told(modes)], even, 0.0 if film is None else film.conductance)
     if film is None:
         return _Slow(network, network.rates, network.ports)
@@ -311,12 +362,16 @@ def _seen(
 ) -> np.ndarray:
     """(M, R) of the modes by a patch's patterns, at the surface: a field that is level at the wall is a parabola from
     there to the first two nodes."""
+    return seen_on_grid(modes, patch_on_grid(modes.grid, triangles, placed, patterns).shares, placed.normal)
+
+
+def seen_on_grid(modes: BodyModes, shares: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """(M, R) of the modes by flows across that normal, spread over the cells of their grid by shares (N, M)."""
     grid = modes.grid
-    shares = patch_on_grid(grid, triangles, placed, patterns).shares
     cells = np.flatnonzero(shares.any(axis=1))
     each = shares[cells]
     seen = each.T @ modes.fields[cells]
-    for axis, along in enumerate(placed.normal):
+    for axis, along in enumerate(normal):
         inward = grid.neighbours[cells, 2 * axis + (0 if along > 0 else 1)]
         met = inward >= 0
         rise = modes.fields[cells[met]] - modes.fields[inward[met]]
@@ -348,24 +403,24 @@ def _local(
     for n, each in enumerate(below):
         if not each.plain:
             continue
-        bent, on = _bent(each, taus), each.on_box(each.placed)
+        bent, on = bent_room(each, taus), each.on_box(each.placed)
         if each.wet and film is not None:
             through = film.conductance / film.area / conductivity
             round_ = each.depth * each.curvature.sum()
             through *= (1 - round_) / (1 - round_ / 2)  # what is wet of a round wall, by its middle
             bent = bent * filmed(taus, each.depth, through)[:, None, None]
         assert on is not None
-        kernel[:, at[n], at[n]] = bent * _box(each, [on], one, taus)
+        kernel[:, at[n], at[n]] = bent * box_beneath(each, [on], one, taus)
         for m, other in enumerate(below):
             far = each.on_box(other.placed)
             if m == n or far is None or (other.plain and m > n):
                 continue
-            pair = bent * _box(each, [on, far], one, taus)[:, :count, count:]
+            pair = bent * box_beneath(each, [on, far], one, taus)[:, :count, count:]
             kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     return kernel
 
 
-def _box(
+def box_beneath(
     each: Beneath, others: Sequence[tuple[int, np.ndarray, np.ndarray]], one: Tip, taus: np.ndarray
 ) -> np.ndarray:
     """(T, M N, M N) 1/m3 between N patches of the box beneath one of them: a face, middle and half widths of each."""
@@ -377,7 +432,7 @@ def _box(
     return kernel + np.outer(port, port)
 
 
-def _bent(each: Beneath, taus: np.ndarray) -> np.ndarray:
+def bent_room(each: Beneath, taus: np.ndarray) -> np.ndarray:
     """(T, 1, 1) of a flat body's kernel, by the surface's curvature: heat has less room under a round one. Through a
     wall's thickness, no further."""
     first, second = each.curvature

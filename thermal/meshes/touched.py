@@ -34,7 +34,7 @@ from ..network import (
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
 from .network import body_network, conducting_parts
-from .patterns import learned_patterns
+from .patch import learned_patterns
 from .place import place_patch
 
 PLATE = (0.04, 0.04, 0.01)  # m, on which a sensor's states and flux patterns are learned

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from ...thermal import Material
 from ...thermal.kernels import Patches, Resolution, Tip, box_side, glued_element, tip
@@ -39,12 +40,18 @@ _LEAST = 7e-4  # singular values below that share of the largest are left out
 _GROWTH = 1.1  # times the norm of a field's states, the root of what they store: a new network has no more
 
 
-def resolution(tolerance: float, padded: bool = False) -> Resolution:
+def resolution(tolerance: float, padded: bool = False, solid: bool = False) -> Resolution:
     """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K. padded:
-    whether a fingertip has a pad around its element."""
+    whether a fingertip has a pad around its element. solid: whether an object is no box, which has one level."""
+    if solid:
+        from ...thermal.meshes import PLACED_LEVEL  # nothing that meshes need is loaded without them
+
+        return PLACED_LEVEL
     levels = _PADDED_LEVELS if padded else _LEVELS
     return next(level for least, level in levels if tolerance >= least)
 
+
+_BLAS = ThreadpoolController()
 
 Rings = tuple[float, ...]
 """m, the outer sides of the rings of a pad."""
@@ -137,23 +144,54 @@ def touched(
     shape: BodyShape,
     film: float,
     places: tuple[Place, ...],
+    pads: tuple[PadPlace, ...],
     tips: tuple[Tip, ...],
-    rings: tuple[Rings | None, ...],
     level: Resolution,
+    cache: bool,
 ) -> BodyField:
-    """An object and its places. tips: of all fingertips, by number. rings: of their pads, None for those without one.
-    The air takes heat from the object's mean temperature."""
-    x, y, z = shape.size.tolist()
-    at = tuple((place.face, place.middle) for place in places)
-    seen = tuple(tips[place.fingertip] for place in places)
-    around = tuple(rings[place.fingertip] for place in places)
-    side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
+    """An object and its places. pads, tips: of all fingertips, by number. cache: keep on disk what takes long. The air
+    takes heat from the object's mean temperature."""
     bare = untouched(shape, film)
+    if shape.solid is not None:
+        side, beside = _solid_side(shape, places, pads, cache)
+        # the body's mean, by its own heat capacity
+        side.ports[0] *= side.outputs["heat"][0] / bare.heat[0]
+        beside[0] *= side.outputs["heat"][0] / bare.heat[0]
+    else:
+        x, y, z = shape.size.tolist()
+        at = tuple((place.face, place.middle) for place in places)
+        seen = tuple(tips[place.fingertip] for place in places)
+        around = tuple(rings_of(pads[place.fingertip]) for place in places)
+        side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
     rates = side.rates.copy()
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
     heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
     return BodyField(places, rates, side.ports, heat, loss, beside)
+
+
+def _solid_side(
+    shape: BodyShape, places: tuple[Place, ...], pads: tuple[PadPlace, ...], cache: bool
+) -> tuple[ThermalNetwork, np.ndarray]:
+    """As _side's, of a body of any shape. Its places are told as those of the box around it."""
+    from ...thermal.meshes import body_in_pads, surface_patch
+
+    assert shape.solid is not None
+    patches = []
+    for place in places:
+        outward, centre = np.zeros(3), np.zeros(3)
+        axis, far = divmod(place.face, 2)
+        others = [i for i in range(3) if i != axis]
+        outward[axis] = 1.0 if far else -1.0
+        centre[others], centre[axis] = (
+            np.array(place.middle) - shape.size[others] / 2,
+            outward[axis] * shape.size[axis] / 2,
+        )
+        area = pads[place.fingertip].stack.face_area
+        patches.append(surface_patch(shape.solid, centre, outward, area))
+    pad = pads[places[0].fingertip]
+    with _BLAS.limit(limits=1, user_api="blas"):
+        return body_in_pads(shape.solid, patches, pad.stack, rings_of(pad) or (), cache=cache)
 
 
 @lru_cache(maxsize=2048)
@@ -191,7 +229,8 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     if not common:
         return matrix
     source, target = (_future(field, common, patterns) for field in (before, after))
-    left, values, right = np.linalg.svd(target, full_matrices=False)
+    with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+        left, values, right = np.linalg.svd(target, full_matrices=False)
     kept = values > _LEAST * values[0]
     share = (1 - (_LEAST * values[0] / values[kept]) ** 2) / values[kept]
     matrix[1:, 1:] = (right[kept].T * share) @ (left[:, kept].T @ source)

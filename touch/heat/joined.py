@@ -84,7 +84,7 @@ class HeatState:
 class JoinedHeat:
     """Heat of pads, objects and the elements that are glued on them, in steps of dt s. Elements count as fingertips
     behind the others, S = F + E sensors in all, and are always on their objects. tolerance: K. film: W/(m2 K) of the
-    air at `ambient` °C."""
+    air at `ambient` °C. cache: keep on disk what takes long of bodies that are no boxes."""
 
     def __init__(
         self,
@@ -97,19 +97,20 @@ class JoinedHeat:
         tolerance: float,
         film: float,
         ambient: float,
+        cache: bool = True,
     ) -> None:
-        pads = (*fingertips, *glued)
+        pads, self._cache = (*fingertips, *glued), cache
         self._pads, self._shapes = pads, tuple(shapes)
         self._glued = GluedContacts(fingertips, glued, len(shapes), worlds) if glued else None
         self._dt, self._film, self._ambient = dt, film, ambient
-        self._level = resolution(tolerance, any(pad.surround is not None for pad in pads))
+        padded = any(pad.surround is not None for pad in pads)
+        self._level = resolution(tolerance, padded, any(shape.solid is not None for shape in shapes))
         self._tip_fields = tuple(tip_field(pad, self._level) for pad in pads)
         self._tips = tuple(field.tip for field in self._tip_fields)
         # pads around elements, which are contacts of their own behind the sensors'
         around = [(f, field.padded) for f, field in enumerate(self._tip_fields) if field.padded is not None]
         self._around = tuple(around)
-        self._rings = tuple(map(rings_of, pads))
-        shares = [ring_shares(pads[f].stack.width, self._rings[f] or (), STEPS) for f, _ in around]
+        shares = [ring_shares(pads[f].stack.width, rings_of(pads[f]) or (), STEPS) for f, _ in around]
         self._shares = np.concatenate((np.zeros((0, STEPS, 2)), *shares))
         self._owners = np.array([*range(len(pads)), *(f for f, _ in around)])
         self._around_of = np.full(len(pads), -1)
@@ -423,6 +424,25 @@ class JoinedHeat:
         return self._given[:, back.tip].sum(axis=1) - self._given[:, :, target].sum(axis=1)
 
     @property
+    def rung(self) -> str:
+        """The model's name."""
+        return f"fields:{self._level.rates}x{self._level.patterns}"
+
+    def faces(self, world: int) -> tuple[np.ndarray, np.ndarray]:
+        """°C of a world's sensors, (F,), and of the objects under each, (F, O): means over the whole face, an object's
+        mean where none has touched it."""
+        objects, patterns = len(self._shapes), self._level.patterns
+        sensors, under = self._ambient + self._warm[world], np.empty(self._current.shape[1:])
+        for f, tip in enumerate(self._tips):
+            sensors[f] += tip.side.ports[:, 0] @ self._x[world, objects + f, : len(tip.side.rates)]
+        under[:] = self.object_temperature[world]
+        for f, o in np.argwhere(self._current[world] >= 0).tolist():
+            field = self._fields[world][o]
+            port = field.port(int(self._current[world, f, o]), patterns)[:, 0]
+            under[f, o] = self._ambient + port @ self._x[world, o, : len(field.rates)]
+        return sensors, under
+
+    @property
     def object_temperature(self) -> np.ndarray:
         """(W, O) °C, the objects' means."""
         return self._ambient + self.warmth
@@ -505,7 +525,7 @@ class JoinedHeat:
         if (o, material, places) not in self._known:
             shape = replace(self._shapes[o], material=material)
             self._known[o, material, places] = (
-                touched(shape, self._film, places, self._tips, self._rings, self._level)
+                touched(shape, self._film, places, self._pads, self._tips, self._level, self._cache)
                 if places
                 else untouched(shape, self._film)
             )

@@ -15,7 +15,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, unknown_name
 
-from ...thermal import Material, SensorStack
+from ...thermal import Material, SensorStack, Solid
 from ...thermal import material as named_material
 from .faces import rotation, triangles
 from .names import collides, find, geom_label, geoms_of
@@ -76,7 +76,8 @@ class BodyShape:
     (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the body's frame. extent
     (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on it.
 
-    A box stands as it is; a round, hollow or composed object is a box of its volume and proportions."""
+    A box stands as it is; a round, hollow or composed object is a box of its volume and proportions. solid: what heat
+    flows in instead, an empty body of that material in the box's frame, which is as large as it."""
 
     name: str
     body: int
@@ -89,11 +90,15 @@ class BodyShape:
     extent: np.ndarray
     surface: float
     elements: tuple[SensorElement, ...] = ()
+    solid: Solid | None = None
 
     @property
     def heat_capacity(self) -> float:
         """J/K."""
-        return float(np.prod(self.size)) * self.material.volumetric_heat_capacity
+        volume = float(np.prod(self.size))
+        if self.solid is not None:
+            volume = sum(part.volume for part in self.solid.parts)
+        return volume * self.material.volumetric_heat_capacity
 
 
 BodyMaterial = str | Material | ThermalBody

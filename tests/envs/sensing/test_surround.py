@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import thermograsp.envs  # noqa: F401  (registers the environments)
-from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, Part, SimulationConfig, Size
 from thermograsp.envs.sensing import GraspHeat
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.thermal import (
@@ -39,7 +39,7 @@ from thermograsp.touch.heat import JoinedHeat
 from thermograsp.touch.scene import bodies, pads
 
 FORCE, STEPS = 10.0, 250
-CUBE = ObjectSpec()
+CUBE, CORE = ObjectSpec(), Part("steel", size=(0.02, 0.02, 0.02))
 
 
 def heat_of(rows: int = 1, tolerance: float = 0.06, air: float = 0.0) -> GraspHeat:
@@ -251,12 +251,10 @@ def test_sizes_are_drawn_by_steps() -> None:
     [
         ({"mode": "O"}, "mode 'O'"),
         ({"thermostat": Thermostat()}, "finite power"),
-        ({"anywhere": True}, "anywhere"),
         ({"face_temperature": (3, 3)}, "face_temperature"),
         ({"sensor": "heated_thermistor"}, "heater of its own"),
-        ({"objects": ObjectSpec(shape="sphere")}, "'object' is a sphere"),
-        ({"scene": [CUBE, ObjectSpec(name="can", shape="cylinder")]}, "'can' is a cylinder"),
-        ({"objects": "mug"}, "is a mesh"),
+        ({"objects": "mug_of_coffee"}, "has contents"),
+        ({"scene": [CUBE, ObjectSpec(name="cup", material="rubber", parts=(CORE,))]}, "'cup' has parts"),
         ({"surround": Surround(width=0.03)}, "0.03 m wide, and the pad 0.02 m"),
         ({"surround": Surround(width=0.0095)}, "leaves hardly anything"),
         ({"surround": "aluminium"}, "conducts 237"),

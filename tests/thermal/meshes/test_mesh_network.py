@@ -14,7 +14,7 @@ from thermograsp.thermal.meshes.grid import (
     mesh_grid,
 )
 from thermograsp.thermal.meshes.network import body_network
-from thermograsp.thermal.meshes.patterns import learned_patterns
+from thermograsp.thermal.meshes.patch import learned_patterns
 from thermograsp.thermal.meshes.place import place_patch
 from thermograsp.thermal.meshes.solve import conduct
 from thermograsp.thermal.network.system import SHIFTS, sample_geometry

@@ -1,0 +1,332 @@
+"""Heat of grasps whose sensors have pads around them, wherever these touch: the fields of ThermalTouch.
+
+A box that is touched in the middle of its faces has a network of its own with a pad (heat.py). All else is here: a
+round body is a box of its volume and proportions, a mesh as it is, a fingertip touches them where it is, narrow
+contacts spread their heat, and fingertips keep theirs as they go from object to object (touch/heat).
+
+B: environments, O: objects, F: 1 or 2 fingertips with a sensor, N: heat samples of a control step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...thermal.contact import FOOTPRINT_LAW
+from ...touch.contacts import COLUMNS
+from ...touch.heat import HeatBalance, JoinedHeat
+from ...touch.heat import HeatState as FieldState
+from ...touch.scene import BodyShape, PadPlace
+from ..footprint import PAD, GraspBody, PadContact, mesh_steps, pad_contact, touch_pads
+from .heat import HeatStep
+from .kernel import meet_rows
+from .rows import HEAT_INFO, HEAT_ROW
+from .scene_heat import SceneHeatStep, of_fingertips
+
+_TIPS = ("left", "right")
+_DISC, _BALL = math.sqrt(math.pi) / 2, (math.pi / 6) ** (1 / 3)
+_BOXES = {
+    "box": (1.0, 1.0, 1.0),
+    "cylinder": (_DISC, _DISC, 1.0),
+    "sphere": (_BALL, _BALL, _BALL),
+    "mesh": (1.0, 1.0, 1.0),
+}
+"""Sides of the box that heat flows in, of the object's; a mesh's heat flows in itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class PaddedHeatState:
+    """Everything that the heat of some environments remembers; picklable. rows: (n, O) HEAT_ROW records. scenes: each
+    one's objects. fields: of each, what flows in it. owner: (n, 2) each fingertip's object."""
+
+    rows: np.ndarray
+    scenes: tuple[tuple[GraspBody, ...], ...]
+    fields: tuple[FieldState, ...]
+    owner: np.ndarray
+
+
+@dataclass(slots=True)
+class _Row:
+    """An environment's heat. contacts: of each object. touches: (N, 1, F, O + F, columns), and samples: its parts.
+    given: (F, O) J to the objects, stored: (F,) J in elements and pads, air: J, all at the last step's end."""
+
+    heat: JoinedHeat
+    contacts: list[PadContact]
+    touches: np.ndarray
+    samples: list[np.ndarray]
+    given: np.ndarray
+    stored: np.ndarray
+    air: float
+
+
+class PaddedScenes:
+    """The thermal side of `num_envs` grasps with so many objects each, in T mode. Keywords as GraspHeat's."""
+
+    def __init__(
+        self,
+        num_envs: int,
+        objects: int,
+        *,
+        tolerance: float,
+        air: float,
+        dt: float,
+        samples: int,
+        sensor_temperature: float | tuple[float, float],
+        cache: bool = True,
+    ) -> None:
+        self._cache, self._tolerance, self._air, self._dt, self._samples = cache, tolerance, air, dt, samples
+        self._rows = np.zeros((num_envs, objects), HEAT_ROW)
+        self._rows["sensor_temperature"] = sensor_temperature
+        self._laws = np.zeros((num_envs, objects), FOOTPRINT_LAW)
+        self._info = np.zeros((num_envs, objects), HEAT_INFO)
+        self._info["reservoir_temperature"] = np.nan
+        self._scenes: dict[int, tuple[GraspBody, ...]] = {}
+        self._heats: dict[int, _Row] = {}
+        self._owner = np.zeros((num_envs, 2), int)
+        # Meshes, whose contact follows the place: where the pads closed, and how far they have gone.
+        self._meshes: list[tuple[int, int]] = []
+        self._closed = np.zeros((num_envs, objects, 4))
+        self._steps = np.zeros((num_envs, objects, 5), np.int64)
+
+    def reset(
+        self,
+        rows: Sequence[int],
+        scenes: Sequence[Sequence[GraspBody]],
+        sensor_temperatures: np.ndarray,
+        *,
+        waiting: bool = False,
+    ) -> None:
+        """The rows start with new objects, O each, everything at its first temperature. sensor_temperatures: (n, 2) °C
+        of the thermostats. waiting: networks are made when they are touched anyway."""
+        del waiting
+        for row, scene, celsius in zip(rows, scenes, sensor_temperatures, strict=True):
+            self._place(row, tuple(scene), celsius)
+            self._owner[row] = 0
+            for record, body in zip(self._rows[row], scene, strict=True):
+                record["sensor_temperature"], record["difference"] = celsius, celsius - body.temperature
+                for name in ("known", "touching", "books"):
+                    record[name] = 0
+
+    def rung(self, row: int) -> tuple[str, ...]:
+        """The model that computes each object's heat."""
+        return (self._heats[row].heat.rung,) * self._rows.shape[1]
+
+    def advance(self, force: np.ndarray, place: np.ndarray) -> SceneHeatStep:
+        """One control step. force: (B, O, S, 2) N, normal, of each substep, 0 where apart. place: (B, O, 2, 3) m, the
+        sensor faces' middles in each object's frame at the end of the step."""
+        force, place = np.ascontiguousarray(force, float), np.ascontiguousarray(place, float)
+        drop = np.zeros((len(force), self._samples, 2))
+        if self._meshes:
+            self._slip(force, place)
+        meet_rows(self._laws, self._rows, force, place, self._info)
+        self._own(force)
+        for row, one in self._heats.items():
+            for o, contact in enumerate(one.contacts):
+                touch_pads(*contact, force[row, o], place[row, o], one.touches[:, 0, :, o])
+            for k, touches in enumerate(one.samples):
+                one.heat.advance(touches, 1)
+                drop[row, k, : one.heat.drop.shape[1]] = one.heat.drop[0]
+            self._tell(row, one)
+        return self._step(drop)
+
+    def rest(self) -> SceneHeatStep:
+        """What a step would tell of a batch in which nothing has touched yet."""
+        self._info[:] = np.zeros(1, HEAT_INFO)
+        for row in self._heats:
+            self._tell_temperatures(row)
+        return self._step(np.zeros((len(self._rows), self._samples, 2)))
+
+    def state(self, rows: Sequence[int]) -> PaddedHeatState:
+        """A copy of what the rows remember."""
+        chosen = list(rows)
+        return PaddedHeatState(
+            self._rows[chosen],
+            tuple(self._scenes[row] for row in chosen),
+            tuple(self._heats[row].heat.state() for row in chosen),
+            self._owner[chosen],
+        )
+
+    def set_state(self, rows: Sequence[int], state: PaddedHeatState) -> None:
+        """Puts the rows into a state taken by `state`."""
+        for k, row in enumerate(rows):
+            self._place(row, state.scenes[k], state.rows[k, 0]["sensor_temperature"])
+            self._rows[row], self._owner[row] = state.rows[k], state.owner[k]
+            self._heats[row].heat.set_state(state.fields[k])
+            self._close_books(self._heats[row])
+
+    @property
+    def sensor_temperatures(self) -> np.ndarray:
+        """(B, 2) °C of the thermostats."""
+        return self._rows["sensor_temperature"][:, 0]
+
+    def _place(self, row: int, scene: tuple[GraspBody, ...], celsius: np.ndarray) -> None:
+        first = scene[0]
+        self._scenes[row] = scene
+        pads = [_pad(first, number, float(celsius[number])) for number in range(first.fingertips)]
+        heat = JoinedHeat(
+            pads,
+            (),
+            [_shape(body) for body in scene],
+            worlds=1,
+            dt=self._dt,
+            tolerance=self._tolerance,
+            film=self._air,
+            ambient=first.temperature if first.ambient is None else first.ambient,
+            cache=self._cache,
+        )
+        touches = np.zeros((self._samples, 1, len(pads), len(scene) + len(pads), COLUMNS))
+        none = np.zeros((len(pads), len(scene)))
+        self._heats[row] = _Row(
+            heat,
+            [pad_contact(body) for body in scene],
+            touches,
+            list(touches),
+            none,
+            none[:, 0].copy(),
+            0.0,
+        )
+        self._meshes = [each for each in self._meshes if each[0] != row]
+        self._steps[row] = 0
+        for o, body in enumerate(scene):
+            self._laws[row, o], self._rows[row, o]["reach"] = body.law, body.stack.width / 2
+            if body.closed_mesh is not None:
+                self._meshes.append((row, o))
+                self._closed[row, o] = body.closed_mesh.azimuth, *body.closed_mesh.place
+
+    def _slip(self, force: np.ndarray, place: np.ndarray) -> None:
+        """What the pads touch of meshes that have slipped or turned between them."""
+        rows, objects = np.array(self._meshes).T
+        closed = self._closed[rows, objects]
+        now = mesh_steps(place[rows, objects], closed[:, 0], closed[:, 1:])
+        gone = (now != self._steps[rows, objects]).any(axis=1) & (force[rows, objects] > 0).any(axis=(1, 2))
+        for k in np.flatnonzero(gone).tolist():
+            row, o = self._meshes[k]
+            step, body = tuple(now[k].tolist()), self._scenes[row][o]
+            self._steps[row, o] = now[k]
+            self._laws[row, o] = body.slipped_law(step)
+            self._heats[row].contacts[o] = pad_contact(body, step)
+
+    def _own(self, force: np.ndarray) -> None:
+        """Whose the fingertips are after forces (B, O, S, 2): of several objects, that of which they press hardest."""
+        substeps = force.shape[2]
+        for k in range(self._samples):
+            part = force[:, :, k * substeps // self._samples : -(-(k + 1) * substeps // self._samples)]
+            most = part.max(axis=2)
+            self._owner = np.where(most.max(axis=1) > 0, most.argmax(axis=1), self._owner)
+
+    def _tell(self, row: int, one: _Row) -> None:
+        """Fills the row's info after a step."""
+        given, stored, air = one.given, one.stored, one.air
+        balance, seconds = self._close_books(one), self._samples * self._dt
+        tips, flowed = len(stored), one.given - given
+        info = self._info[row]
+        info["flow"][:, :tips] = flowed.T / seconds
+        info["drawn"][:, :tips] = info["flow"][:, :tips] + (one.stored - stored) / seconds
+        info["heat"][:, :tips] = one.stored
+        info["heat"][:, 2] = balance.objects
+        info["air_loss"] = 0.0
+        info["air_loss"][0] = (one.air - air) / seconds
+        books = self._rows[row]["books"]
+        books[:, 1] += np.abs(flowed).sum(axis=0)
+        info["exchanged"] = books[:, 1]
+        info["imbalance"] = 0.0
+        info["imbalance"][0] = balance.objects.sum() + one.air - one.given.sum()
+        self._tell_temperatures(row)
+
+    def _tell_temperatures(self, row: int) -> None:
+        info, heat = self._info[row], self._heats[row].heat
+        info["sensor_surface"] = self._rows[row]["sensor_temperature"]
+        info["object_temperature"] = heat.object_temperature[0]
+        info["object_surface"] = info["object_temperature"][:, None]
+        sensors, objects = heat.faces(0)
+        info["sensor_surface"][:, : len(sensors)] = sensors
+        info["object_surface"][:, : len(sensors)] = objects.T
+        info["reservoir_temperature"] = np.nan
+
+    def _close_books(self, one: _Row) -> HeatBalance:
+        balance = one.heat.balance(0)
+        one.given, one.stored, one.air = balance.given, balance.elements, balance.air
+        return balance
+
+    def _step(self, drop: np.ndarray) -> SceneHeatStep:
+        objects, owner = self._info.copy(), self._owner.copy()
+        return SceneHeatStep(HeatStep(drop, of_fingertips(objects, owner)), objects, owner)
+
+
+class PaddedHeat:
+    """PaddedScenes of one object each, with GraspHeat's methods."""
+
+    def __init__(self, num_envs: int, **settings: Any) -> None:
+        self._scenes = PaddedScenes(num_envs, 1, **settings)
+
+    def reset(
+        self, rows: Sequence[int], bodies: Sequence[GraspBody], sensor_temperatures: np.ndarray | None = None
+    ) -> None:
+        """As GraspHeat's."""
+        celsius = self.sensor_temperatures[list(rows)] if sensor_temperatures is None else sensor_temperatures
+        self._scenes.reset(rows, [(body,) for body in bodies], celsius)
+
+    def rung(self, row: int) -> str:
+        """The model that computes an environment's heat."""
+        return self._scenes.rung(row)[0]
+
+    def advance(self, force: np.ndarray, place: np.ndarray) -> HeatStep:
+        """One control step. force: (B, S, 2) N, normal, of each substep, 0 where apart. place: (B, 2, 3) m, the sensor
+        faces' middles in the object's frame at the end of the step."""
+        return self._scenes.advance(force[:, None], place[:, None]).fingertips
+
+    def rest(self) -> HeatStep:
+        """What a step would tell of a batch in which nothing has touched yet."""
+        return self._scenes.rest().fingertips
+
+    def state(self, rows: Sequence[int]) -> PaddedHeatState:
+        """A copy of what the rows remember."""
+        return self._scenes.state(rows)
+
+    def set_state(self, rows: Sequence[int], state: PaddedHeatState) -> None:
+        """Puts the rows into a state taken by `state`."""
+        self._scenes.set_state(rows, state)
+
+    @property
+    def sensor_temperatures(self) -> np.ndarray:
+        """(B, 2) °C of the thermostats."""
+        return self._scenes.sensor_temperatures
+
+
+def _pad(body: GraspBody, number: int, celsius: float) -> PadPlace:
+    """A fingertip, as warm as its thermostat; where it is, contacts tell."""
+    return PadPlace(
+        label=_TIPS[number],
+        body=0,
+        geoms=(),
+        position=np.zeros(3),
+        axes=np.eye(3),
+        size=np.full(2, PAD.width),
+        stack=body.stack,
+        temperature=celsius,
+        skin=body.skin,
+        surround=body.surround,
+    )
+
+
+def _shape(body: GraspBody) -> BodyShape:
+    """What an object is to its heat: a box of its volume and proportions, or a mesh as it is."""
+    spec, extent = body.spec, np.array(body.spec.size)
+    size = extent * _BOXES[spec.shape]
+    return BodyShape(
+        name=spec.name,
+        body=0,
+        geoms=(),
+        material=body.material,
+        temperature=body.temperature,
+        size=size,
+        centre=np.zeros(3),
+        axes=np.eye(3),
+        extent=extent,
+        surface=spec.surface,
+        solid=body.solid if spec.mesh else None,
+    )

@@ -1,0 +1,281 @@
+"""The pad around the sensor on round objects, on meshes and anywhere: beside ThermalTouch and a box of the same shape,
+books of heat, states, and environments."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import pickle
+from functools import lru_cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+
+import thermograsp.envs  # noqa: F401  (registers the environments)
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size
+from thermograsp.envs.sensing import GraspHeat, PaddedHeat, PaddedScenes
+from thermograsp.thermal import material
+from thermograsp.touch import Fingertip, ThermalTouch
+
+BALL = ObjectSpec(name="ball", shape="sphere")
+ROD = ObjectSpec(name="rod", shape="cylinder", size=(0.04, 0.04, 0.08))
+THIN = ObjectSpec(name="thin", shape="cylinder", size=(0.01, 0.01, 0.08))
+PLATE = ObjectSpec(name="plate", size=(0.02, 0.04, 0.04))
+GEOMS = {
+    BALL: '<geom type="sphere" size=".02" mass="1"/>',
+    ROD: '<geom type="cylinder" size=".02 .04" euler="0 90 0" mass="1"/>',
+    THIN: '<geom type="cylinder" size=".005 .04" euler="0 90 0" mass="1"/>',
+}
+SKIN = "filled_silicone"
+SETTINGS: dict[str, Any] = {"tolerance": 0.06, "dt": 0.01, "samples": 2, "sensor_temperature": 36.0}
+
+
+def body_of(name: str, spec: ObjectSpec, skin: str | None = SKIN, **words: Any):
+    config = SimulationConfig(
+        **{"material": name, "surround": "silicone", "objects": spec, "skin": skin, "fingertips": 1, **words}
+    )
+    plain = dict.fromkeys(("size_factor", "mass_factor", "friction_factor", "roughness_factor"), 1.0)
+    return config.body(config.stack, material(name), spec, {**plain, "object_temperature_shift": 0.0})
+
+
+def heat_of(*bodies: Any, air: float = 0.0) -> PaddedHeat:
+    heat = PaddedHeat(len(bodies), air=air, **SETTINGS)
+    heat.reset(list(range(len(bodies))), bodies)
+    return heat
+
+
+def places(spec: ObjectSpec, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+    half = spec.size[0] / 2
+    return np.array([[-half, y, z], [half, y, z]])
+
+
+def held(heat: Any, spec: ObjectSpec, steps: int, force: float = 10.0, **at: float) -> np.ndarray:
+    """(steps samples, F) K of all rows under that force."""
+    rows = 1 if not hasattr(heat, "_scenes") else len(heat.sensor_temperatures)
+    normal, place = np.full((rows, 10, 2), force), np.tile(places(spec, **at), (rows, 1, 1))
+    return np.concatenate([heat.advance(normal, place).drop for _ in range(steps)], axis=1)
+
+
+@lru_cache
+def touched(spec: ObjectSpec, name: str, skin: str | None, surround: str | None, force: float) -> np.ndarray:
+    """Drops K of a ThermalTouch every 10 ms for 2 s."""
+    high = spec.size[0] / 2
+    model = mujoco.MjModel.from_xml_string(f"""
+<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+  <body name="thing" pos="0 0 {high}">
+    <joint name="up" type="slide" axis="0 0 1" damping="50"/>{GEOMS[spec]}
+  </body>
+  <body name="tip" pos="0 0 -.0101"><geom name="flat" type="box" size=".01 .01 .01" mass="1"/></body>
+</worldbody></mujoco>""")
+    touch = ThermalTouch(
+        model,
+        fingertips={"tip": Fingertip("flat", skin=skin, surround=surround)},
+        objects={"thing": name},
+        air=0.0,
+        chain="ideal",
+        dt=0.01,
+    )
+    data = mujoco.MjData(model)
+    data.qfrc_applied[0] = -force
+    found = []
+    for step in range(1000):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+        if step % 5 == 4:
+            found.append(float(touch.reading.temperature_drop[0]))
+    return np.array(found)
+
+
+FEW = ((BALL, "aluminium", SKIN), (BALL, "glass", None), (ROD, "glass", SKIN), (THIN, "wood", SKIN))
+REST = [
+    pytest.param(*each, marks=pytest.mark.slow)
+    for each in product((BALL, ROD, THIN), ("aluminium", "glass", "wood"), (SKIN, None))
+    if each not in FEW
+]
+
+
+@pytest.mark.parametrize(
+    ("spec", "name", "skin"), [*FEW, *REST], ids=lambda each: getattr(each, "name", each)
+)
+def test_a_round_object_is_felt_as_by_thermal_touch(spec: ObjectSpec, name: str, skin: str | None) -> None:
+    drop = held(heat_of(body_of(name, spec, skin)), spec, 100)[0, :, 0]
+    np.testing.assert_allclose(drop[5:], touched(spec, name, skin, "silicone", 10.0)[5:], atol=0.02)
+
+
+@pytest.mark.parametrize("force", [2.0, 30.0])
+def test_at_any_force(force: float) -> None:
+    drop = held(heat_of(body_of("glass", ROD)), ROD, 100, force)[0, :, 0]
+    np.testing.assert_allclose(drop[5:], touched(ROD, "glass", SKIN, "silicone", force)[5:], atol=0.02)
+
+
+def test_a_pad_changes_the_drop_by_as_much_as_in_thermal_touch() -> None:
+    """Where an environment without one has the same contact: on balls."""
+    for name in ("aluminium", "glass"):
+        alone = GraspHeat(1, air=0.0, **SETTINGS)
+        alone.reset([0], [body_of(name, BALL, surround=None)])
+        without, expected = held(alone, BALL, 100)[0, -1, 0], touched(BALL, name, SKIN, None, 10.0)[-1]
+        change = held(heat_of(body_of(name, BALL)), BALL, 100)[0, -1, 0] - without
+        assert change == pytest.approx(touched(BALL, name, SKIN, "silicone", 10.0)[-1] - expected, abs=0.08)
+
+
+def block(folder: Path) -> ObjectSpec:
+    """The plate as a mesh."""
+    file = folder / "plate.stl"
+    trimesh.creation.box(PLATE.size).export(file)
+    return ObjectSpec(name="plate", shape="mesh", mesh=str(file))
+
+
+MOVES = (
+    *((10.0, (0.0, 0.0)),) * 60,
+    *((0.0, (0.0, 0.0)),) * 20,
+    *((10.0, (0.006, 0.0)),) * 40,
+    *((10.0, (0.006, 0.0001 * k)) for k in range(40)),
+    *((20.0, (0.0, 0.0)),) * 20,
+)
+"""N, and m of both pads along a face: held, let go, elsewhere, sliding, and back."""
+
+
+def felt(heat: PaddedHeat, spec: ObjectSpec, moves: Any = MOVES) -> np.ndarray:
+    """(samples, 2) K; heat that flows is in the object."""
+    found = []
+    for force, (y, z) in moves:
+        step = heat.advance(np.full((1, 10, 2), force), places(spec, y, z)[None])
+        assert abs(step.info["imbalance"][0]) <= 1e-10 * step.info["exchanged"][0]
+        found.append(step.drop[0])
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize(
+    ("name", "skin", "moves"),
+    [
+        ("glass", SKIN, MOVES[:60]),
+        pytest.param("aluminium", SKIN, MOVES, marks=pytest.mark.slow),
+        pytest.param("glass", None, MOVES, marks=pytest.mark.slow),
+    ],
+    ids=["held", "slides", "slides bare"],
+)
+def test_a_mesh_is_felt_as_the_box_that_it_is(
+    name: str, skin: str | None, moves: Any, tmp_path: Path
+) -> None:
+    """Through other networks, of other kernels."""
+    mesh, words = block(tmp_path), {"skin": skin, "fingertips": 2}
+    box = felt(heat_of(body_of(name, PLATE, anywhere=True, **words)), PLATE, moves)
+    found = felt(heat_of(body_of(name, mesh, **words)), PLATE, moves)
+    np.testing.assert_allclose(found[4:], box[4:], atol=0.06)
+
+
+def test_in_the_middle_of_a_face_it_is_the_network_of_press() -> None:
+    """Which boxes have unless they are touched anywhere."""
+    for name in ("aluminium", "glass", "wood"):
+        alone = GraspHeat(1, air=0.0, **SETTINGS)
+        alone.reset([0], [body_of(name, PLATE, fingertips=2)])
+        expected = held(alone, PLATE, 150)[0, 4:]
+        body = body_of(name, PLATE, fingertips=2, anywhere=True)
+        np.testing.assert_allclose(held(heat_of(body), PLATE, 150)[0, 4:], expected, atol=0.06)
+
+
+@pytest.mark.parametrize("spec", [BALL, THIN, PLATE], ids=lambda spec: spec.name)
+def test_what_flows_is_in_the_object_or_the_air(spec: ObjectSpec) -> None:
+    rng = np.random.default_rng(3)
+    heat = heat_of(body_of("glass", spec, None, fingertips=2, air=20.0, anywhere=True), air=20.0)
+    step = heat.rest()
+    for _ in range(200):
+        normal = 10.0 ** rng.uniform(-2, 2, (1, 10, 2)) * (rng.random((1, 10, 2)) < 0.7)
+        place = places(spec) + rng.uniform(-0.003, 0.003, (2, 3)) * (0, 1, 1)
+        step = heat.advance(normal, place[None])
+        assert abs(step.info["imbalance"][0]) <= 1e-10 * step.info["exchanged"][0]
+        assert ((step.drop > -0.01) & (step.drop < 12.0)).all()
+    gained = step.info["heat"][0, 2]
+    assert step.info["object_temperature"][0] > 24.0 and gained > 0
+
+
+@pytest.mark.parametrize("shape", ["rod", pytest.param("mesh", marks=pytest.mark.slow)])
+def test_a_state_goes_on_bit_for_bit_in_another_batch(shape: str, tmp_path: Path) -> None:
+    spec = ROD if shape == "rod" else block(tmp_path)
+    one = heat_of(body_of("glass", spec, fingertips=2))
+    held(one, spec, 40)
+    held(one, spec, 10, z=0.004)
+    kept = pickle.loads(pickle.dumps(one.state([0])))
+    expected = held(one, spec, 30, z=0.002)
+    other = heat_of(body_of("glass", BALL), body_of("glass", BALL))
+    other.set_state([1], kept)
+    np.testing.assert_array_equal(held(other, spec, 30, z=0.002)[1], expected[0])
+
+
+def test_one_row_is_as_alone() -> None:
+    bodies = [body_of(name, BALL) for name in ("aluminium", "glass", "wood")]
+    together = held(heat_of(*bodies), BALL, 30)
+    for row, body in enumerate(bodies):
+        np.testing.assert_array_equal(held(heat_of(body), BALL, 30)[0], together[row])
+
+
+def test_a_fingertip_takes_its_warmth_from_one_object_to_the_next() -> None:
+    scenes = PaddedScenes(1, 2, air=0.0, **SETTINGS)
+    scenes.reset([0], [[body_of("aluminium", BALL), body_of("glass", ROD)]], np.full((1, 2), 36.0))
+    normal, place = np.zeros((1, 2, 10, 2)), np.stack([places(BALL), places(ROD)])[None]
+    normal[0, 0], step = 10.0, scenes.rest()
+    for _ in range(50):
+        step = scenes.advance(normal, place)
+    before, cold = step.fingertips.info["heat"][0, 0], step.fingertips.drop[0, -1, 0]
+    assert step.owner.tolist() == [[0, 0]] and cold > 1.0 and step.fingertips.info["flow"][0, 0] > 0
+    normal[0] = normal[0, ::-1].copy()
+    step = scenes.advance(normal, place)
+    assert step.owner.tolist() == [[1, 1]]
+    assert step.fingertips.info["heat"][0, 0] == pytest.approx(before, rel=0.15)
+    assert step.objects["object_temperature"][0].tolist() != [24.0, 24.0]
+    total = step.fingertips.info
+    assert abs(total["imbalance"][0]) <= 1e-10 * total["exchanged"][0]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        {"objects": BALL, "material": "glass"},
+        {"objects": BALL, "material": "glass", "randomize": [Size((0.8, 1.2))]},
+        {"anywhere": True, "material": "steel"},
+        {"scene": [BALL, ObjectSpec(name="other", position=(0.0, 0.1))], "material": "glass"},
+    ],
+    ids=["ball", "drawn sizes", "anywhere", "scene"],
+)
+def test_environments_take_it(words: dict[str, Any]) -> None:
+    env = gymnasium.make("thermograsp/Grasp-v0", surround="silicone", tolerance=0.06, **words).unwrapped
+    for seed in (4, 5):
+        observation, info = env.reset(seed=seed)
+        for _ in range(60):
+            observation, *_, info = env.step(np.array([-1.0, -0.5, 0.0]))
+    assert np.abs(info["temperature_drop"]).max() > 0.1
+    assert all(np.isfinite(np.ravel(each)).all() for each in observation.values())
+    env.close()
+
+
+def test_boxes_whose_edges_come_near_know_where_they_are_touched() -> None:
+    """Also where only the smallest that is drawn does."""
+    words: dict[str, Any] = {"material": "glass", "surround": "silicone"}
+    slim = ObjectSpec(size=(0.02, 0.02, 0.04))
+    assert not SimulationConfig(objects=slim, **words).padded
+    assert SimulationConfig(objects=slim, randomize=[Size((0.7, 1.2))], **words).padded
+    assert not SimulationConfig(objects=slim, anywhere=False, randomize=[Size((0.7, 1.2))], **words).padded
+    assert SimulationConfig(objects=ObjectSpec(size=(0.012, 0.012, 0.04)), **words).padded
+
+
+def test_several_environments_are_as_each_alone() -> None:
+    words: dict[str, Any] = {"objects": BALL, "material": ["glass", "steel"], "surround": "silicone"}
+    moves = np.tile([-1.0, -0.5, 0.0], (2, 1))
+    both = GraspBatch(2, task=GraspTask(), **words)
+    both.reset([0, 1], [np.random.default_rng(row) for row in range(2)])
+    for _ in range(60):
+        both.step(moves)
+    for row in range(2):
+        alone = GraspBatch(1, task=GraspTask(), **words)
+        alone.reset([0], [np.random.default_rng(row)])
+        for _ in range(60):
+            alone.step(moves[:1])
+        assert alone.reading is not None and both.reading is not None
+        np.testing.assert_array_equal(alone.reading.voltage[0], both.reading.voltage[row])

@@ -1,0 +1,64 @@
+"""Networks of bodies of any shape in pads: of a block they are those of the box, which come from other kernels, and of
+any body no ring's heat is lost."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from thermograsp.thermal import Material, SurfacePatch, Surround, material, sensor, solid
+from thermograsp.thermal.kernels import GRASP, Patches
+from thermograsp.thermal.matter import SKINS
+from thermograsp.thermal.meshes import PLACED_LEVEL, body_in_pads, surface_patch
+from thermograsp.thermal.padded import box_in_pads, padded_tip, ring_sides
+
+STACK = SKINS["filled_silicone"].over(sensor("seed"))
+SURROUND = Surround().around(sensor("seed"))
+SIDES = ring_sides(STACK.width, SURROUND)
+
+
+def impedance(rates: np.ndarray, ports: np.ndarray) -> np.ndarray:
+    """(S, N, N) K/W at GRASP."""
+    return np.einsum("ni,sn,nj->sij", ports, 1 / (GRASP[:, None] + rates), ports)
+
+
+def block(size: tuple[float, float, float], made: Material):
+    mesh = trimesh.creation.box(size)
+    return solid(np.asarray(mesh.vertices), np.asarray(mesh.faces), made)
+
+
+@pytest.mark.parametrize("thickness", [0.01, pytest.param(0.003, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["aluminium", pytest.param("glass", marks=pytest.mark.slow)])
+def test_a_block_is_the_box(name: str, thickness: float) -> None:
+    made, size = material(name), (thickness, 0.04, 0.04)
+    patches = [SurfacePatch((way * thickness / 2, 0.0, 0.0), (way, 0.0, 0.0), 81e-6) for way in (-1.0, 1.0)]
+    network, beside = body_in_pads(block(size, made), patches, STACK, SIDES)
+    tip = padded_tip(STACK, SURROUND, PLACED_LEVEL, 12).tip
+    faces = Patches(np.array([0, 1]), np.full((2, 2), 0.02), np.full((2, 2), 0.0045))
+    box, around = box_in_pads(made, size, faces, (tip, tip), (SIDES, SIDES), PLACED_LEVEL)
+    found = impedance(network.rates, np.concatenate((network.ports, beside), axis=1))
+    expected = impedance(box.rates, np.concatenate((box.ports, around), axis=1))
+    even = [0, 3, *range(6, 12)]
+    found, expected = (each[:, even][:, :, even] for each in (found, expected))
+    most = np.sqrt(np.einsum("sii,sjj->sij", expected, expected))
+    assert np.abs((found - expected) / most).max() < 1e-2
+
+
+@pytest.mark.parametrize(
+    "shape", ["box", *(pytest.param(each, marks=pytest.mark.slow) for each in ("ball", "rod"))]
+)
+def test_all_heat_of_a_ring_is_in_the_body(shape: str) -> None:
+    """Also of rings that reach beyond what there is of it."""
+    made, radius = material("glass"), 0.008
+    mesh = {
+        "ball": trimesh.creation.icosphere(3, radius=radius),
+        "rod": trimesh.creation.cylinder(radius, 0.05, sections=32),
+        "box": trimesh.creation.box((2 * radius, 0.012, 0.03)),
+    }[shape]
+    body = solid(np.asarray(mesh.vertices), np.asarray(mesh.faces), made)
+    patch = surface_patch(body, np.array([-0.02, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 81e-6)
+    network, beside = body_in_pads(body, [patch], STACK, SIDES)
+    np.testing.assert_allclose(network.outputs["heat"][0] * beside[0], 1.0, rtol=1e-9)
+    assert network.outputs["heat"][0] * network.ports[0, 0] == pytest.approx(1.0, rel=1e-9)
+    assert (network.rates >= 0).all() and np.isfinite(beside).all()

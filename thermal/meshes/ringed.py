@@ -1,0 +1,170 @@
+"""A body touched anywhere by sensors in pads: its network through their faces, and through rings of the pads around.
+
+Heat through a ring passes the pad's silicone, which resists more than most bodies do. What the body is to a ring may
+thus be known less exactly than under the face (placed.py): even flow into what the ring covers of the surface, on the
+modes of the whole body once heat has spread, and before that on the box beneath the place.
+
+P: patches, M: patterns, R: rings, T: times.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from thermograsp.errors import MeshError
+
+from ..kernels import TIMES, before
+from ..matter import SensorStack
+from ..network import ThermalNetwork
+from ..surfaces import Solid, SurfacePatch
+from .beneath import Beneath
+from .modes import BodyModes, body_modes
+from .patch import patch_on_grid, uniform_pattern
+from .place import PlacedPatch, place_patch
+from .placed import (
+    LEVEL,
+    FaceImpedance,
+    bent_room,
+    box_beneath,
+    face_impedance,
+    ringed_network,
+    seen_on_grid,
+)
+from .touched import surface_normal
+
+_UPRIGHT = math.cos(math.radians(10.0))  # a surface this near to an axis is taken as across it
+_LEAST = 1e-3  # of a square, below which nothing of the ring around it touches
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Squares:
+    """Squares around a place, the face first, and rings between. placed: where. areas: (1 + R,) m2 of the body's
+    surface in the squares. rings: (R, modes) of the body's modes by even flows into the rings."""
+
+    placed: tuple[PlacedPatch, ...]
+    areas: np.ndarray
+    rings: np.ndarray
+
+
+def body_in_pads(
+    body: Solid,
+    patches: Sequence[SurfacePatch],
+    stack: SensorStack,
+    sides: tuple[float, ...],
+    *,
+    cache: bool = True,
+) -> tuple[ThermalNetwork, np.ndarray]:
+    """The body's network of P M ports, in orthonormal patterns of the sensor's whole face, its output "heat" the J that
+    it has gained, and (n, P R) ports of even flows into rings of the pads around. sides: (R,) m, the rings' outer
+    sides. Raises MeshError where a patch meets no surface, or the
+    body is no solid in one piece."""
+    found = face_impedance(body, patches, stack, None, cache)
+    around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]
+    modes = found.modes
+    kernel = _local(found, around, modes.diffusivity * TIMES) / modes.capacity
+    areas = np.concatenate([np.diff(each.areas) for each in around])
+    some = areas > _LEAST * stack.face_area
+    early = some * before(modes.diffusivity) / (modes.capacity * np.where(some, areas, 1.0))
+    seen = np.concatenate([each.rings for each in around])
+    network = ringed_network(found, seen, kernel, early)
+    faces, ports = len(patches) * LEVEL.patterns, network.ports
+    whole = replace(network, ports=ports[:, :faces], direct=network.direct[:faces, :faces])
+    return whole, ports[:, faces:]
+
+
+def surface_patch(body: Solid, centre: np.ndarray, outward: np.ndarray, area: float) -> SurfacePatch:
+    """Of m2 where a line through a place (3,) m outside the body, along an outward unit vector, leaves its surface, or
+    on the surface that is nearest where none does; across it."""
+    along_x, along_y, along_z = outward.tolist()
+    wanted = SurfacePatch(_triple(centre), (along_x, along_y, along_z), area)
+    try:
+        at = place_patch(body.outside, wanted, np.eye(3)).centre
+    except MeshError:
+        middles = body.outside.mean(axis=1)
+        at = middles[np.argmin(((middles - centre) ** 2).sum(axis=1))]
+    normal = surface_normal(body, at)
+    if normal @ outward > _UPRIGHT:
+        normal = outward
+    return SurfacePatch(_triple(at), _triple(normal), area)
+
+
+def _triple(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
+
+
+@lru_cache(maxsize=256)
+def _squares(body: Solid, patch: SurfacePatch, sides: tuple[float, ...], cache: bool) -> _Squares:
+    modes = body_modes(body, None, cache=cache)
+    triangles = body.outside @ modes.grid.frame.T
+    first = place_patch(triangles, patch, modes.grid.frame)
+    placed = tuple(replace(first, half_width=side / 2) for side in sides)
+    on_grid = [patch_on_grid(modes.grid, triangles, each, uniform_pattern()) for each in placed]
+    seen = np.array([seen_on_grid(modes, each.shares, first.normal)[0] for each in on_grid])
+    areas = np.array([each.area for each in on_grid])
+    areas = np.maximum.accumulate(areas)
+    return _Squares(placed, areas, _between(areas, seen, _even(modes)) / np.sqrt(modes.capacity))
+
+
+def _even(modes: BodyModes) -> np.ndarray:
+    """(modes,) of the modes by a flow that is even in all of the body."""
+    return modes.fields.T @ modes.grid.capacity / modes.grid.capacity.sum()
+
+
+def _between(areas: np.ndarray, squares: np.ndarray, nothing: np.ndarray) -> np.ndarray:
+    """(R, k) what is even over rings between squares (1 + R, k), each even over its area; `nothing` (k,) where there is
+    nothing of a ring."""
+    found = []
+    for n in range(1, len(areas)):
+        whole, within = areas[n], areas[n - 1]
+        some = whole - within > _LEAST * whole
+        found.append((whole * squares[n] - within * squares[n - 1]) / (whole - within) if some else nothing)
+    return np.array(found)
+
+
+def _local(found: FaceImpedance, around: Sequence[_Squares], taus: np.ndarray) -> np.ndarray:
+    """(T, P M + P R, P M + P R) 1/m3, of unit material, where a face's or a ring's heat warms a ring, by the boxes
+    beneath the places; zero between faces."""
+    count, rings, places = LEVEL.patterns, len(around[0].areas) - 1, len(around)
+    total = places * (count + rings)
+    kernel, known = np.zeros((len(taus), total, total)), np.zeros((total, total))
+    for n, place in enumerate(found.places):
+        each = place.below
+        if min(each.size) <= 0 or each.on_box(each.placed) is None:
+            continue
+        on = {m: _on_box(each, squares) for m, squares in enumerate(around)}
+        on = {m: found for m, found in on.items() if found is not None}
+        if n not in on:
+            continue
+        order = [n, *(m for m in on if m != n)]
+        rectangles = [rectangle for m in order for rectangle in on[m]]
+        local = bent_room(each, taus) * box_beneath(each, rectangles, found.one, taus)
+        turn, ports = np.zeros((len(rectangles) * count, len(order) * (count + rings))), []
+        for k, m in enumerate(order):
+            first, column = k * (1 + rings) * count, k * (count + rings)
+            turn[first : first + count, column : column + count] = np.eye(count)
+            squares = np.eye(len(turn))[[first + s * count for s in range(1 + rings)]]
+            areas = np.array([4 * float(half.prod()) for _, _, half in on[m]])
+            turn[:, column + count : column + count + rings] = _between(areas, squares, 0 * squares[0]).T
+            ports += [*range(m * count, (m + 1) * count)]
+            ports += [*range(places * count + m * rings, places * count + (m + 1) * rings)]
+        told = turn.T @ local @ turn
+        own = count + rings
+        for rows, columns in ((slice(own), slice(None)), (slice(own, None), slice(own))):
+            at = np.ix_(ports[rows], ports[columns])
+            kernel[:, at[0], at[1]] += told[:, rows, columns]
+            known[at] += 1
+    return kernel / np.maximum(known, 1)
+
+
+def _on_box(each: Beneath, squares: _Squares) -> list[tuple[int, np.ndarray, np.ndarray]] | None:
+    """The squares' rectangles on the box; None where they lie on no face of it."""
+    found = [each.on_box(placed) for placed in squares.placed]
+    if any(one is None for one in found):
+        return None
+    return [one for one in found if one is not None]
