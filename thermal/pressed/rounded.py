@@ -1,8 +1,9 @@
 """The directions in which a mesh's surface looks at the corners of its triangles, where that is smooth.
 
 A mesh stands for a round body by flat triangles, and a rigid face would lie on one of them. Where triangles that meet
-at a corner look nearly alike, the surface is taken as smooth there and looks their way on the mean; edges that are
-sharper stay edges.
+at a corner look nearly alike, the surface is taken as smooth there and looks their way on the mean. Edges that are
+sharper stay edges, and so do those at the end of triangles so long that a smooth surface would leave them by far: the
+straight wall of a jar below its shoulder.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 _SMOOTH = math.cos(math.radians(30.0))
+_BULGE = 0.5e-3  # m, by which a smooth surface leaves a triangle at most
 _SAME = 1e-7  # m between vertices that are one
 
 
@@ -53,10 +55,27 @@ def _mean(points, triangles, corner, met, begin, normals):
             total = np.zeros(3)
             for n in range(begin[corner[f, k]], begin[corner[f, k] + 1]):
                 other = met[n]
-                if (flat[f] * flat[other]).sum() > _SMOOTH:
+                if (flat[f] * flat[other]).sum() > _SMOOTH and _bulge(
+                    points, triangles, flat, f, other
+                ) < _BULGE:
                     for j in range(3):
                         if corner[other, j] == corner[f, k]:
                             total += angle[other, j] * flat[other]
             size = np.sqrt((total**2).sum())
             if size > 0.0:
                 normals[f, k] = total / size
+
+
+@njit(cache=True, error_model="numpy")
+def _bulge(points, triangles, flat, f, other):
+    """m by which a surface that turns evenly from one triangle's direction to the other's leaves the longer of them:
+    an eighth of the turn times its extent in the direction of the turn."""
+    turn = flat[other] - flat[f]
+    most = 0.0
+    for each in (f, other):
+        low, high = np.inf, -np.inf
+        for k in range(3):
+            along = (points[triangles[each, k]] * turn).sum()
+            low, high = min(low, along), max(high, along)
+        most = max(most, high - low)
+    return most / 8

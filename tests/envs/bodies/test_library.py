@@ -20,13 +20,12 @@ from thermograsp.envs.bodies.library import (
     objects,
 )
 from thermograsp.envs.bodies.recipes import RECIPES, make
-from thermograsp.envs.footprint.surface_height import mesh_map
 from thermograsp.envs.limits import MAX_OPENING
 from thermograsp.envs.mechanics.batch import Mechanics
 from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.files import cache_dir
 from thermograsp.thermal import material, sensor
-from thermograsp.thermal.pressed import map_heights
+from thermograsp.thermal.pressed import height_map, map_heights
 
 NAMES = tuple(objects())
 MESHES = tuple(name for name in NAMES if objects()[name].solid.surface is not None)
@@ -154,8 +153,9 @@ def test_what_collides_is_the_surface_where_the_pads_meet_it(name: str) -> None:
         pad = np.array([[0.1 * side, 0.0, 0.0], [-side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, 1.0]])
         pad[0] -= middle
         nearest = []
-        for shape in (spec.geometry, replace(spec.geometry, path=f"hull of {name}", surface=hull)):
-            seen = mesh_map(shape, pad[1])
+        for vertices, faces in (spec.geometry.surface, hull):
+            axes = np.stack([pad[1], *pad[2:]])
+            seen = height_map(vertices, faces, axes)  # of flat triangles, which are what collides
             y, z = np.meshgrid(*2 * [np.linspace(-0.0095, 0.0095, 39)])
             places = np.stack([y.ravel(), z.ravel()], axis=1)
             height, cover = np.zeros(len(places)), np.zeros(len(places))

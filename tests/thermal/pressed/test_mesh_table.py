@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from thermograsp.envs.bodies import library_object
 from thermograsp.thermal import SKINS, Pad, material, materials
 from thermograsp.thermal.contact import (
     FIRST_FORCE,
@@ -21,7 +22,7 @@ from thermograsp.thermal.contact import (
     flat_footprint,
     skinned,
 )
-from thermograsp.thermal.pressed import PressedMesh, pressed_view
+from thermograsp.thermal.pressed import PressedMesh, corner_normals, height_map, pressed_view
 
 PAD, SKIN, METAL = Pad(), SKINS["filled_silicone"], material("aluminium")
 AXES = np.array([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
@@ -106,3 +107,14 @@ def test_of_any_mesh_more_force_is_more_heat_and_nothing_is_more_than_flat(skin:
             for force in forces[::8].tolist():
                 curved_shares(table, force, *place, shares)
                 assert 0 <= shares.min() and shares.max() <= 1 + 1e-12
+
+
+@pytest.mark.parametrize("name", ["jam_jar", "beer_bottle", "rolling_pin", "screwdriver", "mug"])
+def test_a_straight_wall_below_a_shoulder_stays_straight(name: str) -> None:
+    """Smooth surfaces leave the triangles by what stands for a round wall, and by no bend of its outline."""
+    vertices, faces = library_object(name).spec().geometry.surface
+    vertices, faces = np.ascontiguousarray(vertices, float), faces.astype(np.int64)
+    flat = height_map(vertices, faces, AXES).height
+    smooth = height_map(vertices, faces, AXES, corner_normals(vertices.tobytes(), faces.tobytes())).height
+    both = np.isfinite(flat) & np.isfinite(smooth)
+    assert both.any() and np.abs(smooth[both] - flat[both]).max() < 5e-5
