@@ -146,7 +146,7 @@ BAD = {
     "grasp --skin filled_silicone --mode O": "a skin is what touches the object",
     "grasp --surround silicone_": "did you mean 'silicone'",
     "grasp --surround silicone --mode O": "a surround is around the element of a fingertip",
-    "grasp --surround silicone --object mug": "is a mesh",
+    "grasp --surround silicone --object screwdriver": "has parts, and the heat of a pad",
     "device emulate --skin filled_silicon": "did you mean 'filled_silicone'",
     "grasp --mode X": "mode must be 'T' or 'O'",
     "grasp --shape tetrahedron": "unknown shape",
