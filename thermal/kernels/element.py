@@ -172,14 +172,15 @@ def face_impedance(
     layer, seen = stack.layers[-1], seen_face(stack, covered)
     rule = element_rule(layer.diffusivity, float(seen.half.min()), shown)
     few = element(stack).few[SHOWN if shown else OF_GRASP]
+    # copies are all of one kind, for which it is compiled once
     return _impedance(
         seen.half,
         seen.within,
         seen.below,
-        few,
-        shares,
+        few.copy(),
+        shares.copy(),
         terms,
-        gram,
+        gram.copy(),
         *rule,
         layer.conductivity,
         layer.diffusivity,
