@@ -36,9 +36,7 @@ _FINER = 3  # times as many, of what is touched
 def mesh_contact(pad: Pad, spec: ObjectSpec, forces: tuple[float, ...]) -> ContactArea | None:
     """What pads that close on a mesh along x, at its place and angle, touch at these forces N above 0, the mean of
     those of the two that meet it; None where neither does. Arrays (n,)."""
-    height = spec.grasp_height - spec.size[2] / 2
-    sides = (_side(pad, spec.geometry, spec.position, spec.yaw, height, forces, side) for side in (1, -1))
-    touched = [side for side in sides if side is not None]
+    touched = [side for side in map(_side, _both(pad, spec, forces)) if side is not None]
     if not touched:
         return None
     return ContactArea(*np.mean([side[:3] for side in touched], axis=0))
@@ -57,12 +55,27 @@ def around_face(
     pad: Pad, spec: ObjectSpec, forces: tuple[float, ...], sides: tuple[float, ...]
 ) -> AroundFace:
     """sides: (R,) m, the outer sides of rings around the face."""
-    height = spec.grasp_height - spec.size[2] / 2
-    every = (
-        _beside(pad, spec.geometry, spec.position, spec.yaw, height, forces, side, sides) for side in (1, -1)
-    )
+    every = (_beside(closing, sides) for closing in _both(pad, spec, forces))
     touched = np.mean([side for side in every if side is not None], axis=0)
     return AroundFace(touched[5:].reshape(len(sides), 2, len(forces)), touched[:5].T)
+
+
+class _Closing(NamedTuple):
+    """A pad that closes on a mesh along x (side 1), or against it (-1), with these forces N above 0. position (2,) m
+    and yaw rad of the mesh between the pads. height: m, the pads' middles above the mesh's."""
+
+    pad: Pad
+    shape: MeshShape
+    position: tuple[float, float]
+    yaw: float
+    height: float
+    forces: tuple[float, ...]
+    side: int
+
+
+def _both(pad: Pad, spec: ObjectSpec, forces: tuple[float, ...]) -> list[_Closing]:
+    place = spec.position, spec.yaw, spec.grasp_height - spec.size[2] / 2
+    return [_Closing(pad, spec.geometry, *place, forces, side) for side in (1, -1)]
 
 
 class _Aligned(NamedTuple):
@@ -83,16 +96,9 @@ class _Aligned(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def _aligned(
-    pad: Pad,
-    shape: MeshShape,
-    position: tuple[float, float],
-    yaw: float,
-    height: float,
-    forces: tuple[float, ...],
-    side: int,
-) -> _Aligned | None:
-    """The pad whose normal is along x, or against it; None where it meets nothing."""
+def _aligned(closing: _Closing) -> _Aligned | None:
+    """None where the pad meets nothing."""
+    pad, shape, position, yaw, height, forces, side = closing
     cos, sin = math.cos(yaw), math.sin(yaw)
     x, y = position
     normal = np.array([side * cos, -side * sin, 0.0])
@@ -117,18 +123,9 @@ def _aligned(
 
 
 @lru_cache(maxsize=512)
-def _side(
-    pad: Pad,
-    shape: MeshShape,
-    position: tuple[float, float],
-    yaw: float,
-    height: float,
-    forces: tuple[float, ...],
-    side: int,
-) -> np.ndarray | None:
-    """(3, n): m2 on the pad, m2 on the face, N on the face, of the pad whose normal is along x, or against it; None
-    where it meets nothing."""
-    aligned = _aligned(pad, shape, position, yaw, height, forces, side)
+def _side(closing: _Closing) -> np.ndarray | None:
+    """(3, n): m2 on the pad, m2 on the face, N on the face; None where the pad meets nothing."""
+    pad, forces, aligned = closing.pad, closing.forces, _aligned(closing)
     if aligned is None:
         return None
     pitch = pad.width / (_POINTS * _FINER)
@@ -157,18 +154,9 @@ def _touched(places, heights, cover, within, stiffer, face_ratio, depth, tilt, o
 
 
 @lru_cache(maxsize=512)
-def _beside(
-    pad: Pad,
-    shape: MeshShape,
-    position: tuple[float, float],
-    yaw: float,
-    height: float,
-    forces: tuple[float, ...],
-    side: int,
-    rings: tuple[float, ...],
-) -> np.ndarray | None:
+def _beside(closing: _Closing, rings: tuple[float, ...]) -> np.ndarray | None:
     """(5 + 2 R, n) of the same pad: AroundFace's lying, then m2 and N on each ring up to these outer sides m."""
-    aligned = _aligned(pad, shape, position, yaw, height, forces, side)
+    pad, shape, forces, aligned = closing.pad, closing.shape, closing.forces, _aligned(closing)
     if aligned is None:
         return None
     pitch, fine = pad.width / (_POINTS * _FINER), aligned.fine

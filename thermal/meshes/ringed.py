@@ -61,8 +61,7 @@ def body_in_pads(
 ) -> tuple[ThermalNetwork, np.ndarray]:
     """The body's network of P M ports, in orthonormal patterns of the sensor's whole face, its output "heat" the J that
     it has gained, and (n, P R) ports of even flows into rings of the pads around. sides: (R,) m, the rings' outer
-    sides. Raises MeshError where a patch meets no surface, or the
-    body is no solid in one piece."""
+    sides. Raises MeshError where a patch meets no surface, or the body is no solid in one piece."""
     found = face_impedance(body, patches, stack, None, cache)
     around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]
     modes = found.modes
