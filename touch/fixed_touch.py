@@ -92,7 +92,8 @@ class FixedTouch:
     fingertips, objects: names. materials: those that each object may be of; a world's number counts along them.
     bodies (F,) that carry the pads and geoms (G,) of the objects, integers: their numbers in the model. origin: the
     states of the ThermalTouch's worlds, or of one of them. ambient: °C. states_of: (O, K), 1 at the states of each
-    object, and mean: (O, K), 1 at the one of its mean temperature."""
+    object, and mean: (O, K), 1 at the one of its mean temperature. first_kind: (N,) integers, the narrow contacts of
+    the first materials."""
 
     dt: float
     substeps: int
@@ -108,6 +109,7 @@ class FixedTouch:
     difference: Array
     tables: ArrayTables
     narrow: ArrayNarrow
+    first_kind: Array
     held: Array
     mean: Array
     states_of: Array
@@ -267,12 +269,11 @@ class FixedTouch:
 
     def _numbers(self, material: Array) -> tuple[Array | int, Array]:
         """The networks (B,) and the narrow contacts' kinds (B, N) of worlds with those materials."""
-        network, most = 0, max(map(len, self.materials))
+        network = 0
         for o, choices in enumerate(self.materials):
             network = network * len(choices) + material[:, o]
         pairs = namespace_of(material).concatenate([material] * len(self.fingertips), -1)
-        first = as_integers(as_like(np.arange(pairs.shape[-1]) * most, self.difference))
-        return (network if len(self.tables.decay) > 1 else 0), pairs + first
+        return (network if len(self.tables.decay) > 1 else 0), pairs + self.first_kind
 
     def _check(self, state: FixedTouchState, contacts: TouchContacts) -> None:
         if not isinstance(state, FixedTouchState):
@@ -400,6 +401,7 @@ def fixed_touch(
         array_narrow(
             networks.narrow, networks.narrow_number, networks.width, networks.decay, networks.dt, like
         ),
+        integers(np.arange(len(tips) * len(objects)) * max(map(len, materials))),
         array(networks.held),
         array(mean),
         array(states_of),

@@ -77,6 +77,10 @@ class WorldsHeat:
         for old, new in zip(self.reading[1:], reading[1:], strict=True):
             old.copy_(new)
 
+    def tensors(self) -> tuple[Tensor, ...]:
+        """All that a step writes."""
+        return *_leaves(self.state), *self.reading[1:], self._held, self._way
+
     def reset(self, worlds: Tensor | slice) -> None:
         """Puts those worlds at their first temperatures, with the electronics at rest."""
         chosen = self._held[:, 0] & False

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -28,6 +28,7 @@ from thermograsp.touch import TouchContacts, grasp_touch
 from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads, whole_steps
 
 from .heat import WorldsHeat
+from .recording import recorded
 
 try:
     import torch
@@ -172,6 +173,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
             like=like,
             compiled=torch.compile if cfg.compiled else None,
         )
+        self._run: Callable[[], None] | None = None
         self._mj_data = data
         self._material = torch.zeros((worlds, len(shapes)), dtype=torch.long, device=device)
         count, geoms = len(tips), len(self._fixed.geoms)
@@ -240,6 +242,15 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
         return self._read
 
     def _advance(self) -> None:
+        """A step of the heat; on a GPU the first one is recorded, and later ones are replayed."""
+        if self._run is None:
+            on_gpu = self._conductance.is_cuda
+            self._run = (
+                recorded(self._step, (*self._heat.tensors(), self._conductance)) if on_gpu else self._step
+            )
+        self._run()
+
+    def _step(self) -> None:
         heat = self._heat
         noise = torch.randn_like(self._conductance) if self._chain.noise else 0.0
         heat.advance(self._record, self._material, noise)
