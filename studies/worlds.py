@@ -70,8 +70,8 @@ class Grasp:
 @dataclass(frozen=True)
 class Way:
     """felt: from sensordata (H, sensordata), the same in every world, to the temperature drop (B, F) K a step later.
-    again: such a step with the last sensordata, whose end it awaits. bytes: that a step must move. kept: what must live,
-    because a graph reads its tensors where they lie."""
+    again: such a step with the last sensordata, whose end it awaits. bytes: that a step must move. kept: what must
+    live, because a graph reads its tensors where they lie."""
 
     felt: Callable[[np.ndarray], np.ndarray]
     again: Callable[[], object]
