@@ -44,6 +44,7 @@ from ..footprint import PAD, GraspBody
 from ..grippers import SHIPPED_GRIPPER, GripperModel
 from ..limits import MOST_VOLTAGE, SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
 from ..mechanics import SHIPPED, SolverSettings
+from .objects import all_plain_boxes, check_objects, drawn_objects, scene_objects
 from .randomization import (
     Cause,
     Delay,
@@ -140,10 +141,10 @@ class SimulationConfig:
             non_negative("placement (m, degree)", value)
         within("placement", self.placement[0], 0.0, LONGEST, "m")
         checked(self.randomize)
-        _check_objects(
+        check_objects(
             "objects", [self.objects] if isinstance(self.objects, str | ObjectSpec) else self.objects
         )
-        _check_objects("scene", self.scene)
+        check_objects("scene", self.scene)
         object.__setattr__(self, "skin", self._chosen_skin())
         _ = self.tactile  # checks it
         if self.face_temperature is not None:
@@ -180,10 +181,8 @@ class SimulationConfig:
         """Raises UnknownNameError, and InvalidValueError for what is none or cannot be worn."""
         if not isinstance(self.skin, str) or self.skin != AUTO:
             return named_skin(self.skin, self.mode)
-        given = self.objects if self.scene is None else self.scene
-        several = [given] if given is None or isinstance(given, str | ObjectSpec) else given
         if (
-            all(map(_plain_box, several))
+            all_plain_boxes(self.objects if self.scene is None else self.scene)
             or self.mode == "O"
             or isinstance(any_sensor(self.sensor), HeatedStack)
         ):
@@ -310,17 +309,7 @@ class SimulationConfig:
         their names or numbers of convex pieces differ, which all environments of a batch share."""
         if self.scene is not None:
             return self._scene_objects[:1]
-        given = ObjectSpec() if self.objects is None else self.objects
-        several = [given] if isinstance(given, str | ObjectSpec) else given
-        listed = tuple(_from_library(one) if isinstance(one, str) else one for one in several)
-        if not listed:
-            raise InvalidValueError("objects is an empty list: give at least one, or None for a box")
-        if len({(shape.name, shape.hulls) for shape in listed}) != 1:
-            raise InvalidValueError(
-                f"objects {[shape.name for shape in listed]} of {[shape.hulls for shape in listed]} convex pieces: "
-                "give only those of one name and one number of pieces"
-            )
-        return listed
+        return drawn_objects(self.objects)
 
     @property
     def others(self) -> tuple[ObjectSpec, ...]:
@@ -329,9 +318,7 @@ class SimulationConfig:
 
     @property
     def _scene_objects(self) -> tuple[ObjectSpec, ...]:
-        if self.scene is None:
-            return ()
-        return _numbered([_from_library(one) if isinstance(one, str) else one for one in self.scene])
+        return () if self.scene is None else scene_objects(self.scene)
 
     @property
     def tactile(self) -> Taxels | None:
@@ -560,31 +547,3 @@ def check_fields(plant: str, given: Iterable[str], *more: str) -> None:
     for name in given:
         if name not in known:
             raise unknown_keyword(f"plant {plant!r}", name, known)
-
-
-def _check_objects(name: str, given: Any) -> None:
-    """Raises InvalidValueError for what is no list of objects and names of the library."""
-    several = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
-    if given is not None and not (several and all(isinstance(one, str | ObjectSpec) for one in given)):
-        raise InvalidValueError(
-            f"{name} must be ObjectSpecs or names of the library, several of them in a list, got {given!r}"
-        )
-
-
-def _plain_box(one: str | ObjectSpec | None) -> bool:
-    """Whether it is a box without a material of its own, on which a bare, rigid face lies flat."""
-    return one is None or (isinstance(one, ObjectSpec) and one.shape == "box" and one.material is None)
-
-
-def _numbered(scene: Sequence[ObjectSpec]) -> tuple[ObjectSpec, ...]:
-    """The objects with a name each: a name that came before gets its number."""
-    names: list[str] = []
-    for number, spec in enumerate(scene):
-        names.append(f"{spec.name}_{number}" if spec.name in names else spec.name)
-    return tuple(replace(spec, name=name) for spec, name in zip(scene, names, strict=True))
-
-
-def _from_library(name: str) -> ObjectSpec:
-    from ..bodies import library_object
-
-    return library_object(name).spec()
