@@ -70,7 +70,8 @@ TIPS: dict[str, tuple[str, str, dict[str, str | Fingertip]]] = {
 def test_it_reads_what_the_compiled_reader_reads(shape: str, tip: str) -> None:
     if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
         pytest.skip("this MuJoCo has no contact sensors")
-    materials = ("wood", "aluminium")
+    # the tables of a mesh take long: its two are of one material
+    materials = ("wood", "wood" if shape == "mesh" else "aluminium")
     left, right, fingers = TIPS[tip]
     # a capsule or an ellipsoid meets an edge beside its pad
     feeling = 1 if (shape, tip) in (("turned box", "round"), ("mesh", "one round")) else 2

@@ -216,7 +216,7 @@ EDGE = """
 WAYS, SKINS = ("1 0 0", "0 -1 0", "0.8 0.6 0"), (None, "filled_silicone")
 
 
-QUICK = ("0.8 0.6 0", None), ("0 -1 0", "filled_silicone")  # of the mesh
+QUICK = (("0.8 0.6 0", None),)  # of the mesh
 
 
 @NEEDS_SPECS

@@ -156,16 +156,13 @@ def test_what_is_not_served_is_refused(words: dict, message: str) -> None:
 
 def test_without_a_compiler_it_says_what_is_missing(tmp_path: Path) -> None:
     code = (
-        "import thermograsp\nfrom thermograsp.touch import load_plugin\n"
-        "try:\n    load_plugin()\nexcept thermograsp.errors.MissingDependencyError as e:\n    print(e)"
+        "import os, thermograsp\nfrom thermograsp.touch import load_plugin\n"
+        "try:\n    load_plugin()\nexcept thermograsp.errors.MissingDependencyError as e:\n    print(e)\n"
+        "os.environ['CC'] = 'false'\nload_plugin()"
     )
     environment = os.environ | {"CC": "no-such-compiler", "THERMOGRASP_CACHE": str(tmp_path)}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
-    )
-    assert "there is no 'no-such-compiler'" in done.stdout
-    environment["CC"] = "false"
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert "there is no 'no-such-compiler'" in done.stdout
     assert "ThermograspError" in done.stderr and "failed" in done.stderr
     assert issubclass(MissingDependencyError, ThermograspError) and list(tmp_path.iterdir()) == []
 

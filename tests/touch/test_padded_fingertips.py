@@ -201,9 +201,14 @@ def test_whatever_the_rings_do_nothing_grows_and_no_heat_is_lost(place: tuple[fl
     assert np.isfinite(heat.state().narrow).all()
 
 
-@pytest.mark.parametrize("surround", [None, "silicone"])
 @pytest.mark.parametrize(
-    ("name", "size"), [("glass", (0.03, 0.025, 0.004)), ("polypropylene", (0.04, 0.04, 0.001))]
+    ("name", "size", "surround"),
+    [
+        ("glass", (0.03, 0.025, 0.004), None),
+        ("glass", (0.03, 0.025, 0.004), "silicone"),
+        ("polypropylene", (0.04, 0.04, 0.001), None),
+        pytest.param("polypropylene", (0.04, 0.04, 0.001), "silicone", marks=pytest.mark.slow),
+    ],
 )
 def test_a_fingertip_may_go_anywhere_as_often_as_it_likes(
     name: str, size: tuple[float, float, float], surround: str | None

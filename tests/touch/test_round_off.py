@@ -63,7 +63,12 @@ def nudged_sensor(stack: SensorStack, rng: np.random.Generator) -> SensorStack:
 @NEEDS_RECORDS
 @pytest.mark.parametrize(
     ("name", "skin"),
-    [("rubber", None), ("rubber", "filled_silicone"), ("aluminium", None), ("wood", None)],
+    [
+        pytest.param("rubber", None, marks=pytest.mark.slow),
+        ("rubber", "filled_silicone"),
+        ("aluminium", None),
+        ("wood", None),
+    ],
 )
 def test_slides_that_differ_by_round_off_are_curves_alike(name: str, skin: str | None) -> None:
     rng, matter, stack = np.random.default_rng(7), material(name), sensor("seed")

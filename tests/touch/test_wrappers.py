@@ -100,17 +100,20 @@ def test_an_environment_without_mujoco_is_refused() -> None:
         thermograsp.wrappers.AddThermalObservation(gymnasium.make("CartPole-v1"), fingertips=PADS)
 
 
-@pytest.mark.parametrize(
-    "line", ["", "from thermograsp import wrappers", "import thermograsp.wrappers", "thermograsp.wrappers"]
-)
-def test_it_has_one_name_however_it_is_imported(line: str) -> None:
-    """By a process that has imported nothing yet; `thermograsp.wrappers` is a module, not only a name."""
-    code = f"""
-import thermograsp
-{line}
-from thermograsp.wrappers import AddThermalObservation
-import thermograsp.touch.wrappers
-assert AddThermalObservation is thermograsp.wrappers.AddThermalObservation
-assert AddThermalObservation is thermograsp.touch.wrappers.AddThermalObservation
+def test_it_has_one_name_however_it_is_imported() -> None:
+    """By a process that has imported nothing of ours yet; `thermograsp.wrappers` is a module, not only a name."""
+    code = """
+import os
+import gymnasium, mujoco, numba, scipy.optimize  # once for all of them
+for line in ("", "from thermograsp import wrappers", "import thermograsp.wrappers", "thermograsp.wrappers"):
+    if os.fork() == 0:
+        import thermograsp
+        exec(line)
+        from thermograsp.wrappers import AddThermalObservation
+        import thermograsp.touch.wrappers
+        assert AddThermalObservation is thermograsp.wrappers.AddThermalObservation
+        assert AddThermalObservation is thermograsp.touch.wrappers.AddThermalObservation
+        os._exit(0)
+    assert os.wait()[1] == 0, line
 """
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -72,14 +72,20 @@ class PressedMesh:
     ring: Ring | None = None
 
     def table(self) -> np.ndarray:
-        """(CURVED_TABLE,)."""
-        view = pressed_view(skinned(self.pad, self.skin), self.vertices, self.faces, self.axes)
-        if self.ring is not None:
-            touched = view.touched(self.ring, bare=self.body if self.skin is None else None)
-            return conducting(view.pad, touching_joint(self.skin, self.body, self.ring), view.places, touched)
-        found = view.conducted(self.skin, self.body)
-        end(found[..., :4], found[..., 4:6])
-        return filled(view.places, np.concatenate((found[..., 6:], found[..., 4:6]), axis=-1), found[..., :4])
+        """(CURVED_TABLE,), read-only."""
+        return _table(self)
+
+
+@lru_cache(maxsize=128)
+def _table(of: PressedMesh) -> np.ndarray:
+    """Made once for all touches of a process, as those of round bodies are."""
+    view = pressed_view(skinned(of.pad, of.skin), of.vertices, of.faces, of.axes)
+    if of.ring is not None:
+        touched = view.touched(of.ring, bare=of.body if of.skin is None else None)
+        return conducting(view.pad, touching_joint(of.skin, of.body, of.ring), view.places, touched)
+    found = view.conducted(of.skin, of.body)
+    end(found[..., :4], found[..., 4:6])
+    return filled(view.places, np.concatenate((found[..., 6:], found[..., 4:6]), axis=-1), found[..., :4])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -164,9 +164,10 @@ def test_what_collides_is_the_surface_where_the_pads_meet_it(name: str) -> None:
         assert nearest[0] == pytest.approx(nearest[1], abs=1e-4)
 
 
+@pytest.mark.parametrize("seconds", [3.0, pytest.param(10.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", NAMES)
-def test_a_held_object_stays_held(name: str) -> None:
-    """At its grip force: less than .5 mm in 10 s of holding."""
+def test_a_held_object_stays_held(name: str, seconds: float) -> None:
+    """At its grip force: less than .5 mm in 10 s of holding, at any time of it."""
     spec, force = objects()[name].spec(), objects()[name].grip_force
     assert force <= 40
     mechanics = Mechanics((spec,))
@@ -181,7 +182,7 @@ def test_a_held_object_stays_held(name: str) -> None:
     run(0.5, 0.05)
     before = run(0.4)
     assert before[2] - spec.size[2] / 2 == pytest.approx(0.025, abs=2e-3)
-    assert np.linalg.norm(run(10.0) - before) < 5e-4
+    assert np.linalg.norm(run(seconds) - before) < 5e-5 * seconds
 
 
 def test_names_and_tables_are_checked(tmp_path) -> None:

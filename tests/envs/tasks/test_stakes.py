@@ -61,7 +61,7 @@ def test_a_limit_must_be_above_zero():
 )
 def test_no_reward_without_the_deed(deed: str, mean: float):
     """A success is worth 1.7 or more; a touch without a lift .2 a second."""
-    env = GraspVectorEnv(32, **STAKES)
+    env = GraspVectorEnv(16, **STAKES)
     env.reset(seed=0)
     rng = np.random.default_rng(0)
     constant = {
@@ -70,9 +70,9 @@ def test_no_reward_without_the_deed(deed: str, mean: float):
         "squeeze gently": action_of(0.0, 9.0, 0.0),
         "lift nothing": action_of(0.085, 10.0, 0.05),
     }
-    returns, running = np.zeros(32), np.ones(32, bool)
+    returns, running = np.zeros(16), np.ones(16, bool)
     while running.any():
-        action = rng.uniform(-1, 1, (32, 3)) if deed == "random" else np.tile(constant[deed], (32, 1))
+        action = rng.uniform(-1, 1, (16, 3)) if deed == "random" else np.tile(constant[deed], (16, 1))
         _, reward, terminated, truncated, info = env.step(action)
         assert not (info["success"] & running).any()
         returns += np.where(running, reward, 0.0)

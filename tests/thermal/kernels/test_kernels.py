@@ -213,7 +213,7 @@ def test_an_element_is_the_sum_over_its_eigenfunctions(
     centre: tuple[float, float], half: tuple[float, float], stack: SensorStack
 ) -> None:
     slabs = stack.layers[::-1]
-    count = 1200
+    count = 800
     wave = np.arange(count) * np.pi / WIDTH
     shares = []
     for middle, wide in zip(centre, half, strict=True):
