@@ -10,7 +10,7 @@ export PYTHONDONTWRITEBYTECODE :=
 
 DEMO_FLAGS  ?=
 TEST_FLAGS  ?=
-WORKERS     ?= 2
+WORKERS     ?= 3
 BENCH_FLAGS ?=
 
 FOLDERS := core envs touch thermal assets hardware agents figures dataset studio twin reports benchmarks
@@ -23,7 +23,8 @@ FILES   := $(sort $(shell find $(FOLDERS) -name __pycache__ -prune -o -type f -p
 demo: build/.run
 	$(PY) -m thermograsp demo $(DEMO_FLAGS)
 
-# Side by side in as many processes as WORKERS says; each takes half of the tests in their order, then what is left.
+# Side by side in as many processes as WORKERS says; each takes its part of the tests in their order, then what is left.
+# One more than two cores can run: tests of serial lines and of the studio wait for a minute in all.
 test: build/.test
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(TEST_FLAGS)
 

@@ -81,7 +81,7 @@ def test_a_picture_or_the_reason_why_there_is_none(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "grasp.gif"
-    status = main(["grasp", "--seconds", "1", "--hold", "0.02", "--render", str(file)])
+    status = main(["grasp", "--seconds", "0.4", "--hold", "0.02", "--render", str(file)])
     if status == 2:
         assert "apt-get install" in capsys.readouterr().err
     else:

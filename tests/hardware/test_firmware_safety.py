@@ -128,7 +128,8 @@ def test_power_that_warms_nothing_ends(board: Board, what: str) -> None:
     assert abs(board.signals.plate[1] - 36.0) < 0.5
 
 
-@pytest.mark.parametrize("drawn", [0.0, pytest.param(3.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("drawn", [0.0, 3.0])
 def test_power_that_warms_slowly_goes_on(board: Board, drawn: float) -> None:
     board.signals.supply = 4.6
     board.signals.heat[0] = drawn

@@ -62,10 +62,21 @@ def record(
 @pytest.fixture(scope="module")
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     """Of ten touches, as the command takes them."""
-    folder, rng = tmp_path_factory.mktemp("recordings"), np.random.default_rng(20)
-    named = []
+    return recorded(tmp_path_factory.mktemp("recordings"), 10)
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The first three of them."""
+    return recorded(tmp_path_factory.mktemp("few"), 3)
+
+
+def recorded(folder: Path, count: int) -> list[str]:
+    rng, named = np.random.default_rng(20), []
     for k, conductance in enumerate(np.geomspace(3e3, 2e4, 5).tolist()):
         for material in ("glass", "aluminium"):
+            if len(named) == count:
+                break
             file = folder / f"{material}{k}.tgr"
             record(file, material, conductance, rng)
             named.append(f"{material}={file}" if k else f"{material}@24={file}")
@@ -123,10 +134,10 @@ def test_the_recipe_two_touches_tell_the_sensor_and_a_third_colder_one_agrees(
 
 
 def test_what_recordings_do_not_tell_is_no_success(
-    recordings: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    few: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     preset = tmp_path / "sensor.toml"
-    words = ["device", "fit", recordings[2], "--fingertip", "right", "--save", str(preset)]
+    words = ["device", "fit", few[2], "--fingertip", "right", "--save", str(preset)]
     assert main(words) == 1
     out = capsys.readouterr().out
     assert "not told: seebeck and conductivity are told only together" in out and f"wrote {preset}" in out
@@ -153,9 +164,9 @@ def test_what_recordings_do_not_tell_is_no_success(
     ],
 )
 def test_a_fit_that_cannot_be(
-    recordings: list[str], words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+    few: list[str], words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = recordings[0].partition("=")[2]
+    file = few[0].partition("=")[2]
     assert main(["device", "fit", *(word.replace("FILE", file) for word in words)]) == 2
     assert said in capsys.readouterr().err
 

@@ -208,7 +208,7 @@ def test_a_bad_line(tmp_path: Path, fault: str) -> None:
         with served.paused():
             device.line = LineFaults(**{fault: 0.2})
             sent = device._samples
-        samples = tips.wait(300, 6.0)
+        samples = tips.wait(150, 6.0)
         with served.paused():
             device.line = LineFaults()
         tips.set_setpoint(30.0, None)  # through whatever is left of the bad line

@@ -107,24 +107,28 @@ def test_the_arm_goes_where_a_simulation_alone_has_it(twin: gymnasium.Env) -> No
     alone.close()
 
 
+WEAK = ["--force-range", "1", "40"]
+
+
 @pytest.mark.parametrize(
-    ("task", "policy", "forces"),
+    ("task", "policy", "forces", "episodes"),
     [
-        pytest.param(task, policy, forces, marks=() if quick else pytest.mark.slow)
-        for (task, policy), weak_is_quick in {
-            ("sort", "trained"): False,
-            ("hotter", "trained"): True,
-            ("hotter", "scripted"): False,
-        }.items()
-        for forces, quick in (([], not weak_is_quick), (["--force-range", "1", "40"], weak_is_quick))
+        ("sort", "trained", [], 2),
+        ("hotter", "trained", WEAK, 2),
+        ("hotter", "scripted", [], 2),
+        *(
+            pytest.param(task, policy, forces, 4, marks=pytest.mark.slow)
+            for task, policy in (("sort", "trained"), ("hotter", "trained"), ("hotter", "scripted"))
+            for forces in ([], WEAK)
+        ),
     ],
 )
 def test_objects_are_sorted_and_judged_through_the_line(
-    task: str, policy: str, forces: list[str], capsys: Any
+    task: str, policy: str, forces: list[str], episodes: int, capsys: Any
 ) -> None:
-    words = ["score", policy, "--task", task, "--twin", "--episodes", "4", "--json", *forces]
+    words = ["score", policy, "--task", task, "--twin", "--episodes", str(episodes), "--json", *forces]
     assert main(words + ["--no-load"] * (policy == "trained")) == 0
-    assert json.loads(capsys.readouterr().out)["successes"] == 4
+    assert json.loads(capsys.readouterr().out)["successes"] == episodes
 
 
 def to(place: float, reading: Reading, opening: float) -> Command:

@@ -215,7 +215,7 @@ def test_a_fingertip_may_go_anywhere_as_often_as_it_likes(
 ) -> None:
     """Each new place tells the box's field anew, and it must not grow by that."""
     rng, heat, found = np.random.default_rng(7), joined(name, size, surround=surround), []
-    for _ in range(150):
+    for _ in range(75):
         touches = touching(size, tuple(rng.uniform(-0.012, 0.012, 2)))
         for _ in range(20):
             heat.advance(touches, 1)

@@ -249,6 +249,7 @@ def touched(
     return touch, data
 
 
+@lru_cache
 def drop(shape: str, name: str, skin: str | None, surround: str | None = "silicone") -> float:
     return float(touched(shape, name, skin, surround)[0].reading.temperature_drop[0])
 

@@ -299,7 +299,7 @@ def test_what_springs_bear_is_the_force() -> None:
             assert held == pytest.approx(load, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["box", "thread", "nut"])
+@pytest.mark.parametrize("name", ["box", pytest.param("thread", marks=pytest.mark.slow), "nut"])
 def test_three_forms_agree_while_a_mesh_slips(name: str) -> None:
     words = {"fingertips": {"tip": Fingertip("tip", skin="filled_silicone")}, "objects": {"thing": "steel"}}
     try:

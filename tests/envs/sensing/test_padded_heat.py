@@ -186,7 +186,7 @@ def test_what_flows_is_in_the_object_or_the_air(spec: ObjectSpec) -> None:
     rng = np.random.default_rng(3)
     heat = heat_of(body_of("glass", spec, None, fingertips=2, air=20.0, anywhere=True), air=20.0)
     step = heat.rest()
-    for _ in range(200):
+    for _ in range(100):
         normal = 10.0 ** rng.uniform(-2, 2, (1, 10, 2)) * (rng.random((1, 10, 2)) < 0.7)
         place = places(spec) + rng.uniform(-0.003, 0.003, (2, 3)) * (0, 1, 1)
         step = heat.advance(normal, place[None])
