@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -42,12 +43,23 @@ def of_kind(messages: list[dict[str, Any]], kind: str) -> list[dict[str, Any]]:
 @pytest.fixture
 def session() -> Iterator[Session]:
     """Set up, at its beginning, paused."""
+    with closing(paused()) as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def refusing() -> Iterator[Session]:
+    """One for all that is refused, which changes nothing."""
+    with closing(paused()) as made:
+        yield made
+
+
+def paused() -> Session:
     made = Session()
     made.handle({"do": "control", "playing": False})
     turn(made)
     turn(made)
-    yield made
-    made.close()
+    return made
 
 
 def play(session: Session, seconds: float) -> list[dict[str, Any]]:
@@ -288,16 +300,16 @@ def test_no_message_breaks_it(session: Session, do: Any, content: dict[str, Any]
 
 @pytest.mark.parametrize("name", [*RANGES])
 @pytest.mark.parametrize("off", [-1e-6, 1e-6, float("nan"), float("inf"), True, "1", None])
-def test_numbers_outside_their_range_are_refused(session: Session, name: str, off: Any) -> None:
+def test_numbers_outside_their_range_are_refused(refusing: Session, name: str, off: Any) -> None:
     allowed = RANGES[name]
     value = off
     if isinstance(off, float) and np.isfinite(off):
         value = (allowed.low if off < 0 else allowed.high) + off
-    before = session.choices, session.controls
-    session.handle({"do": "choose" if name in Choices().message() else "control", name: value})
-    (problem,) = of_kind(turn(session, 0.0), "problem")
+    before = refusing.choices, refusing.controls
+    refusing.handle({"do": "choose" if name in Choices().message() else "control", name: value})
+    (problem,) = of_kind(turn(refusing, 0.0), "problem")
     assert name in problem["text"]
-    assert (session.choices, session.controls) == before
+    assert (refusing.choices, refusing.controls) == before
 
 
 def test_the_log_keeps_the_newest() -> None:
