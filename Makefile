@@ -24,7 +24,7 @@ demo: build/.run
 	$(PY) -m thermograsp demo $(DEMO_FLAGS)
 
 # Side by side in as many processes as WORKERS says; each takes its part of the tests in their order, then what is left.
-# One more than two cores can run: tests of serial lines and of the studio wait for a minute in all.
+# One more than two cores can run: tests of serial lines and of the studio do nothing but wait for some 50 s in all.
 test: build/.test
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(TEST_FLAGS)
 

@@ -149,7 +149,7 @@ def test_refuses_what_cannot_be_worn() -> None:
 
 
 @pytest.mark.parametrize("name", ["aluminium", "glass"])
-@pytest.mark.parametrize("shape", ["sphere", "cylinder"])
+@pytest.mark.parametrize("shape", ["sphere", pytest.param("cylinder", marks=pytest.mark.slow)])
 def test_a_bare_face_is_rigid_on_a_mesh_too(name: str, shape: str, tmp_path: Path) -> None:
     """A ball's or a can's mesh is felt as the shape is; as soft a face as the pad would feel three times as much."""
     solid = (

@@ -153,7 +153,9 @@ def test_a_mug_s_contents_feed_the_place_under_the_finger(moves, meshes):
     assert flows[60.0, True] < 1.1 * flows[60.0, False] < 0 < flows[0.0, True]
 
 
-@pytest.mark.parametrize("film", [2.0, 60.0])  # W/K, of still water and of what boils
+@pytest.mark.parametrize(
+    "film", [pytest.param(2.0, marks=pytest.mark.slow), 60.0]
+)  # W/K, of still water and of what boils
 def test_hot_contents_need_no_grid_of_the_whole_at_the_usual_tolerance(film, meshes, monkeypatch):
     """Nor for a place that is new; what the network's error may be is told."""
 

@@ -80,7 +80,7 @@ def through_a_wall(film: float, s: float) -> float:
     )
 
 
-@pytest.mark.parametrize("film", [500.0, 1e4])
+@pytest.mark.parametrize("film", [pytest.param(500.0, marks=pytest.mark.slow), 1e4])
 def test_a_thin_wall_between_finger_and_contents_is_a_wall_with_a_film(film):
     made = body("plastic", film)
     inside = film * 6 * (SIDE - 2 * WALL) ** 2

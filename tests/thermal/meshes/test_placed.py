@@ -110,7 +110,7 @@ PLACES = {
     ),
     "corner": (lambda: trimesh.creation.box(CUBE), at(0.015, 0.0103, 0.0, normal=(1, 0, 0)), True),
     "edge": (lambda: trimesh.creation.box(CUBE), at(0.015, 0.015, 0.0, normal=(1, 0, 0)), False),
-    "ball": (lambda: trimesh.creation.icosphere(4, 0.02), at(0.02, 0.0, 0.0, normal=(1, 0, 0)), True),
+    "ball": (lambda: trimesh.creation.icosphere(5, 0.02), at(0.02, 0.0, 0.0, normal=(1, 0, 0)), True),
 }
 """Mesh, patch, and whether it is plain there."""
 QUICK = ("wall", "ceramic"), ("rim", "aluminium"), ("ball", "wood")
