@@ -163,7 +163,8 @@ class BoxHeat:
             self._turn(row, last, prints, own)
             for f, (number, now) in enumerate(zip(last.contacts, touched.contacts, strict=True)):
                 worn = prints[number].tip if number >= 0 else self._whole
-                if now >= 0 and worn is not self._prints[row][now].tip:
+                warm = now >= 0 and own[self.fingertip(f)].any()
+                if warm and worn is not self._prints[row][now].tip:
                     heats = (
                         fixed_tip_heat(tables, _element(one)) for one in (worn, self._prints[row][now].tip)
                     )

@@ -1,7 +1,7 @@
 """The kernel along an axis between the functions of one patch (patterns.py) where no end is near, of any patch: a
 function of the diffusion length over the patch's half width alone, from a table.
 
-F: functions, E: nodes, M: combinations, T: times.
+A: axes, F: functions, E: nodes, M: combinations, T: times.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from .axis import free_kernels
-from .patterns import JUMPS, NODES
+from .patterns import EACH_FUNCTION, JUMPS, NODES
 
 _FIRST, _LAST = -18, 14  # ln of diffusivity times time over the half width squared
 _FINE = 16  # nodes a unit of it
@@ -31,12 +31,20 @@ def _table() -> np.ndarray:
 
 
 def alone(half: np.ndarray, shares: np.ndarray, taus: np.ndarray) -> np.ndarray:
-    """(2, M, M, T) m of a patch of half widths (2,) m between combinations, of shares (2, M, F) along its two axes, at
+    """(A, M, M, T) m of a patch of half widths (A,) m between combinations, of shares (A, M, F) along these axes, at
     taus (T,) m2, ascending."""
-    found = np.empty((2, shares.shape[1], shares.shape[1], len(taus)))
+    found = np.empty((len(half), shares.shape[1], shares.shape[1], len(taus)))
     if _between(_table(), half, shares, taus, found):
         return found
-    return free_kernels(half[None], (shares @ JUMPS)[None], NODES, taus)[0]  # of no usual sensor
+    both, jumps = np.tile(half[:, None], 2), np.tile((shares @ JUMPS)[:, None], (1, 2, 1, 1))
+    return free_kernels(both, jumps, NODES, taus)[:, 0].copy()  # of no usual sensor
+
+
+@lru_cache(maxsize=1024)
+def each_alone(half: float, begun: float, spacing: float, count: int) -> np.ndarray:
+    """(F, F, T) m between the functions along an axis of half width m, at so many times from begun m2 on, apart by
+    that spacing in the logarithm."""
+    return alone(np.array([half]), EACH_FUNCTION[:1], begun * np.exp(spacing * np.arange(count)))[0]
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")
@@ -45,7 +53,7 @@ def _between(table, half, shares, taus, found):
     functions, kept = shares.shape[2], shares.shape[1]
     weights, pairs, part = np.empty(_NEAR), np.empty(table.shape[1]), np.empty(functions)
     whole = np.empty((functions, functions))
-    for w in range(2):
+    for w in range(len(half)):
         plain = kept == functions  # or they are the functions themselves
         for m in range(kept):
             for f in range(functions):

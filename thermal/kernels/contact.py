@@ -100,14 +100,9 @@ def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle
 
 def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
     known, kept, columns = element(stack), basis.shape[1], _fades(level)
-    impedance = face_impedance(
-        stack, covered, basis_shares(basis), basis_terms(kept), np.eye(kept), shown=False
-    )
-    even = np.zeros(kept)
-    even[0] = 1.0
+    rest = face_impedance(stack, covered, basis_shares(basis), basis_terms(kept), _unit(kept), shown=False)
     (x0, x1), (y0, y1) = covered
-    area = (x1 - x0) * (y1 - y0)
-    rest, alone = impedance.copy(), impedance[:, 0, 0].copy()
+    area, alone = (x1 - x0) * (y1 - y0), rest[:, 0, 0].copy()
     rest[:, 0, 0] -= known.slow
     weight = contact_weight(alone, area)
     rates, ports, drop, heat = _element_states(
@@ -124,7 +119,14 @@ def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.nd
         known.heat_rest[OF_GRASP],
     )
     side = ThermalNetwork(rates, ports, outputs={"drop": drop, "element": heat})
-    return Tip(area, basis, even, alone, side)
+    return Tip(area, basis, _unit(kept)[0], alone, side)
+
+
+@lru_cache(maxsize=16)
+def _unit(kept: int) -> np.ndarray:
+    matrix = np.eye(kept)
+    matrix.setflags(write=False)
+    return matrix
 
 
 @lru_cache(maxsize=64)

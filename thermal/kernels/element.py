@@ -37,6 +37,7 @@ from .samples import (
     TO_SLOPES,
     before,
     element_rule,
+    times_sooner,
 )
 
 Rectangle = tuple[tuple[float, float], tuple[float, float]]
@@ -130,32 +131,28 @@ def element(stack: SensorStack) -> Element:
     )
 
 
-class SeenFace(NamedTuple):
-    """A rectangle of the face, of half widths half (2,) m, as the functions along its two axes see it. within:
-    (2, F, F, T) m of the first layer's half-space at element_rule's times and below: (2, F, F, R) m of the lateral
-    eigenfunctions' sums."""
+class SeenSide(NamedTuple):
+    """A rectangle of the face along one axis, as the functions along it see it. within: (F, F, T) m of the first layer's
+    half-space at element_rule's times and below: (F, F, R) m of the lateral eigenfunctions' sums."""
 
-    half: np.ndarray
     within: np.ndarray
     below: np.ndarray
 
 
 @lru_cache(maxsize=1024)
-def seen_face(stack: SensorStack, covered: Rectangle) -> SeenFace:
-    """covered: m from the face's corner."""
+def seen_side(stack: SensorStack, low: float, high: float, sooner: int) -> SeenSide:
+    """low, high: m from the face's edge. sooner: times_sooner of the rectangle."""
     known, diffusivity = element(stack), stack.layers[-1].diffusivity
-    (x0, x1), (y0, y1) = covered
-    centre, half = np.array([(x0 + x1) / 2, (y0 + y1) / 2]), np.array([(x1 - x0) / 2, (y1 - y0) / 2])
-    narrow = float(half.min())
-    taus, finest = diffusivity * element_rule(diffusivity, narrow, shown=False).times, narrow * _FINEST
+    centre, half, functions = (low + high) / 2, (high - low) / 2, len(JUMPS)
+    taus = diffusivity * element_rule(diffusivity, sooner, shown=False).times
     early = int(taus.searchsorted(SWITCH * stack.width * stack.width, "right"))
-    count = min(int(known.nodes[-1]) + 1, int(_REACH / finest * stack.width / math.pi) + 1)
-    within, functions = np.zeros((2, len(JUMPS), len(JUMPS), len(taus))), len(JUMPS)
-    within[..., :early] = alone(half, EACH_FUNCTION, taus[:early])
+    count = min(int(known.nodes[-1]) + 1, int(_REACH / (half * _FINEST) * stack.width / math.pi) + 1)
+    within = np.zeros((functions, functions, len(taus)))
+    within[..., :early] = alone(np.array([half]), EACH_FUNCTION[:1], taus[:early])[0]
     sums = _sums(known, count)
-    below = np.zeros((2, functions, functions, sums.shape[1]))
+    below = np.zeros((functions, functions, sums.shape[1]))
     _within(stack.width, taus, early, centre, half, NODES, JUMPS, sums, within, below)
-    return SeenFace(half, within, below)
+    return SeenSide(within, below)
 
 
 def face_impedance(
@@ -169,15 +166,16 @@ def face_impedance(
     """(S, M, M) K/W between combinations of the patterns on a rectangle of the face, m from its corner: functions of
     shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
     their products' means. At SHOWN, or at GRASP."""
-    layer, seen = stack.layers[-1], seen_face(stack, covered)
-    rule = element_rule(layer.diffusivity, float(seen.half.min()), shown)
-    few = element(stack).few[SHOWN if shown else OF_GRASP]
+    layer, ((x0, x1), (y0, y1)) = stack.layers[-1], covered
+    sooner = times_sooner(min(x1 - x0, y1 - y0) / 2)
+    first, second = seen_side(stack, x0, x1, sooner), seen_side(stack, y0, y1, sooner)
+    rule = element_rule(layer.diffusivity, sooner, shown)
     # copies are all of one kind, for which it is compiled once
     return _impedance(
-        seen.half,
-        seen.within,
-        seen.below,
-        few.copy(),
+        np.array([(x1 - x0) / 2, (y1 - y0) / 2]),
+        np.array([first.within, second.within]),
+        np.array([first.below, second.below]),
+        _few(stack, shown),
         shares.copy(),
         terms,
         gram.copy(),
@@ -185,6 +183,11 @@ def face_impedance(
         layer.conductivity,
         layer.diffusivity,
     )
+
+
+@lru_cache(maxsize=64)
+def _few(stack: SensorStack, shown: bool) -> np.ndarray:
+    return element(stack).few[SHOWN if shown else OF_GRASP].copy()
 
 
 def _sums(known: Element, count: int) -> np.ndarray:
@@ -331,48 +334,47 @@ def _along_sides(width, taus, early, centre, half, nodes, jumps, count):
 
 @njit(cache=True, error_model="numpy")
 def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below):
-    """Adds to within (2, F, F, T) what comes by way of the face's ends at the first `early` taus (T,) m2, and fills it
-    at the others by eigenfunctions; fills below (2, F, F, R) with these eigenfunctions' sums (count, R)."""
+    """Adds to within (F, F, T) what comes by way of the face's ends at the first `early` taus (T,) m2, and fills it at
+    the others by eigenfunctions; fills below (F, F, R) with these eigenfunctions' sums (count, R)."""
     functions, ends = len(jumps), len(nodes)
     table, places, done, seen = np.empty((ends, ends)), np.empty(ends), np.empty(ends), np.empty(ends)
     overlap, decay = np.empty((functions, len(sums))), np.empty(len(taus))
-    for axis in range(2):
+    for k in range(ends):
+        places[k] = centre + half * nodes[k]
+    for w in range(len(sums)):
+        wave, norm = w * math.pi / width, math.sqrt(width if w == 0 else width / 2)
+        last = early
+        while last < len(taus):
+            decay[last] = math.exp(-wave * wave * taus[last])
+            if decay[last] < _FADED:
+                break
+            last += 1
         for k in range(ends):
-            places[k] = centre[axis] + half[axis] * nodes[k]
-        for w in range(len(sums)):
-            wave, norm = w * math.pi / width, math.sqrt(width if w == 0 else width / 2)
-            last = early
-            while last < len(taus):
-                decay[last] = math.exp(-wave * wave * taus[last])
-                if decay[last] < _FADED:
-                    break
-                last += 1
-            for k in range(ends):
-                seen[k] = places[k] if w == 0 else math.sin(wave * places[k]) / wave
-            for f in range(functions):
-                total = 0.0
-                for k in range(ends):
-                    total += jumps[f, k] * seen[k]
-                overlap[f, w] = total / norm
-                for g in range(f + 1):
-                    both = overlap[f, w] * overlap[g, w]
-                    for t in range(early, last):
-                        within[axis, f, g, t] += both * decay[t]
-                    for r in range(sums.shape[1]):
-                        below[axis, f, g, r] += both * sums[w, r]
+            seen[k] = places[k] if w == 0 else math.sin(wave * places[k]) / wave
         for f in range(functions):
-            for g in range(f):
-                for t in range(early, len(taus)):
-                    within[axis, g, f, t] = within[axis, f, g, t]
+            total = 0.0
+            for k in range(ends):
+                total += jumps[f, k] * seen[k]
+            overlap[f, w] = total / norm
+            for g in range(f + 1):
+                both = overlap[f, w] * overlap[g, w]
+                for t in range(early, last):
+                    within[f, g, t] += both * decay[t]
                 for r in range(sums.shape[1]):
-                    below[axis, g, f, r] = below[axis, f, g, r]
-        for t in range(early):
-            low_end, high_end = ends_felt(places, places, width, taus[t])
-            if not low_end and not high_end:
-                continue
-            table[:] = 0.0
-            add_images(places, 1, places, 1, True, width, 0.0, taus[t], table)
-            add_met(jumps, table, jumps, done, within[axis], t)
+                    below[f, g, r] += both * sums[w, r]
+    for f in range(functions):
+        for g in range(f):
+            for t in range(early, len(taus)):
+                within[g, f, t] = within[f, g, t]
+            for r in range(sums.shape[1]):
+                below[g, f, r] = below[f, g, r]
+    for t in range(early):
+        low_end, high_end = ends_felt(places, places, width, taus[t])
+        if not low_end and not high_end:
+            continue
+        table[:] = 0.0
+        add_images(places, 1, places, 1, True, width, 0.0, taus[t], table)
+        add_met(jumps, table, jumps, done, within, t)
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")

@@ -14,17 +14,18 @@ from thermograsp.compiled import njit
 
 from ..matter import SensorStack
 from ..numerics import factor, solve_factored
-from .alone import alone
+from .alone import each_alone
 from .axis import SWITCH
 from .box import Patches, box_kernel
 from .element import Rectangle, face_impedance
 from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
-from .samples import MOMENTS, SHOWN, at_moments, rough_rule
+from .samples import MOMENTS, ROUGH_SPACING, SHOWN, at_moments, rough_rule
 
 CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
 _CONDUCTANCES = np.array(CONDUCTANCES)
 _ORTHONORMAL = np.ascontiguousarray(np.linalg.inv(EVENNESS.T))
 _EACH_JUMPS, _EACH_TERM = np.tile(JUMPS, (2, 2, 1, 1)), ALONG[:, None].copy()
+_AT_ONCE = 4  # steps in which a patch's kernel by itself is told for few times or many
 _DOUBLED = 6  # powers of a matrix, to the 64th
 _LEAST_UNEVEN = 1e-12  # beside flows of size 1, what counts as none, squared
 
@@ -48,7 +49,10 @@ def shown_box(
     diffusivity, count = conductivity / heat_capacity, len(patches.face)
     rule = rough_rule(diffusivity)
     taus = diffusivity * rule.times
-    early = taus[: max(int(taus.searchsorted(SWITCH * max(size) ** 2, "right")), 1)]
+    begun = float(taus[0])
+    images = int(taus.searchsorted(SWITCH * max(size) ** 2, "right"))  # times at which these serve
+    many = _AT_ONCE * (images // _AT_ONCE + 1)
+    alone = [[each_alone(side, begun, ROUGH_SPACING, many) for side in half] for half in patches.half.tolist()]
     kernel, rate, port, _, heat = box_kernel(
         size,
         conductivity,
@@ -59,10 +63,10 @@ def shown_box(
         _EACH_TERM,
         count,
         rule.times,
-        free=np.array([alone(half, EACH_FUNCTION, early) for half in patches.half]),
+        free=np.array(alone),
     )
-    begun = 1 / (heat_capacity * math.sqrt(math.pi * taus[0]) * patches.areas)
-    return _with_slowest(kernel, port, begun, GRAM, rule.to_moments, rule.early, MOMENTS[SHOWN], rate)
+    first = 1 / (heat_capacity * math.sqrt(math.pi * begun) * patches.areas)
+    return _with_slowest(kernel, port, first, GRAM, rule.to_moments, rule.early, MOMENTS[SHOWN], rate)
 
 
 @njit(cache=True, error_model="numpy")

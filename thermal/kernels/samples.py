@@ -33,7 +33,7 @@ SHOWN = slice(6, 20, 3)
 """Of MOMENTS, at which it is told what flows a contact excites."""
 
 FEW_SPACING = 1.0  # of times in ln t: the transforms are known to exp(-pi^2 / spacing), 5e-5
-_ELEMENT_SPACING, _ROUGH_SPACING = 0.85, 1.4  # the same to 9e-6 and 9e-4
+_ELEMENT_SPACING, ROUGH_SPACING = 0.85, 1.4  # the same to 9e-6 and 9e-4
 _UNFELT = (
     2.5e-10  # m2, diffusivity times time up to which every strip of a contact is a half-space of its own
 )
@@ -61,14 +61,15 @@ def grasp_rule(diffusivity: float) -> Rule:
     return _rule(diffusivity, GRASP, FEW_SPACING, _UNFELT)
 
 
-def element_rule(diffusivity: float, half: float, shown: bool) -> Rule:
-    """The same of an element, closer, since all that it touches is told beside it, under a patch of half width m along
-    its shorter side; at SHOWN its times are the first ones of those at GRASP."""
-    return _element_rule(diffusivity, max(math.ceil(2 * math.log(_WIDE / half)), 0), shown)
+def times_sooner(half: float) -> int:
+    """How much sooner, in ln t, a patch of half width m along its shorter side has to be told."""
+    return max(math.ceil(2 * math.log(_WIDE / half)), 0)
 
 
 @lru_cache(maxsize=512)
-def _element_rule(diffusivity: float, sooner: int, shown: bool) -> Rule:
+def element_rule(diffusivity: float, sooner: int, shown: bool) -> Rule:
+    """The same of an element, closer, since all that it touches is told beside it, and so much sooner; at SHOWN its
+    times are the first ones of those at GRASP."""
     moments = MOMENTS[SHOWN] if shown else GRASP
     return _rule(diffusivity, moments, _ELEMENT_SPACING, _UNFELT * math.exp(-sooner))
 
@@ -76,7 +77,7 @@ def _element_rule(diffusivity: float, sooner: int, shown: bool) -> Rule:
 @lru_cache(maxsize=512)
 def rough_rule(diffusivity: float) -> Rule:
     """The same at SHOWN, of what only decides on patterns of flow, at fewer times."""
-    return _rule(diffusivity, MOMENTS[SHOWN], _ROUGH_SPACING, _UNFELT)
+    return _rule(diffusivity, MOMENTS[SHOWN], ROUGH_SPACING, _UNFELT)
 
 
 def _rule(diffusivity: float, moments: np.ndarray, spacing: float, unfelt: float) -> Rule:

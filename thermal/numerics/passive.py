@@ -42,7 +42,7 @@ class ThermalNetwork:
             direct = np.zeros((ports.shape[1],) * 2)
         if direct.shape != (ports.shape[1],) * 2:
             raise InvalidValueError(f"direct must be (P, P) = {(ports.shape[1],) * 2}, got {direct.shape}")
-        if not math.isfinite(rates.sum() + ports.sum() + direct.sum()):
+        if not math.isfinite(rates.sum() + ports.sum() + (direct.sum() if given else 0.0)):
             raise InvalidValueError("rates, ports and direct must be finite")
         if rates.size and rates.min() < 0:
             raise InvalidValueError(f"rates must be >= 0 for a passive network, got {rates.min():g} 1/s")

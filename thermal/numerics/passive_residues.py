@@ -12,7 +12,7 @@ from thermograsp.compiled import njit
 
 from .symmetric import turn_diagonal
 
-_STEPS = 20  # at most
+_STEPS = 12  # at most
 _SETTLED = (
     4e-4  # change of any residue in a step, beside columns of unit length, from which on it is the last
 )
@@ -32,44 +32,55 @@ def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray
 def port_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(N, N, K) positive semidefinite, whose sum with the columns (S, K) is nearest to what is wanted (S, N, N) where
     errors count by weight (S,)."""
-    return _residues(columns, wanted[None], weight)
+    return _residues(columns, wanted, weight, False)
 
 
 def mirrored_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """The same, to round-off, of what is wanted between ports whose two halves could change places: what both see of
     flows that are alike and of opposite flows are two problems of half the size."""
-    half = wanted.shape[1] // 2
-    own = (wanted[:, :half, :half] + wanted[:, half:, half:]) / 2
-    across = (wanted[:, :half, half:] + wanted[:, half:, :half]) / 2
-    alike, opposite = np.split(_residues(columns, np.stack((own + across, own - across)), weight), 2, axis=2)
-    own, across = (alike + opposite) / 2, (alike - opposite) / 2
-    return np.concatenate((np.concatenate((own, across), axis=1), np.concatenate((across, own), axis=1)))
+    return _residues(columns, wanted, weight, True)
 
 
 @njit(cache=True, error_model="numpy")
-def _residues(columns, wanted, weight):
-    """port_residues (N, N, G K) of one or two wanted (G, S, N, N), which end together."""
+def _residues(columns, wanted, weight, mirrored):
+    """port_residues, or mirrored_residues, whose two problems end together."""
     samples, rates = columns.shape
-    groups, ports = len(wanted), wanted.shape[2]
+    groups, half = 1, len(wanted[0])
+    if mirrored:
+        groups, half = 2, half // 2
     scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((2, rates, rates))
     _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
-    shape = ports, ports, groups * rates
+    shape = half, half, groups * rates
     seen, inside = np.zeros(shape), np.zeros(shape)
     for group in range(groups):
-        for i in range(ports):
-            for j in range(ports):
+        opposite = 1.0 - 2.0 * group
+        for i in range(half):
+            for j in range(i + 1):
                 its_seen = seen[i, j, group * rates : (group + 1) * rates]
                 for s in range(samples):
-                    value = weight[s] * wanted[group, s, i, j]
+                    value = wanted[s, i, j]
+                    if mirrored:
+                        own = value + wanted[s, half + i, half + j]
+                        across = wanted[s, i, half + j] + wanted[s, half + i, j]
+                        value = (own + opposite * across) / 2
+                    value *= weight[s]
                     for k in range(rates):
                         its_seen[k] += value * scaled[s, k]
                 _added(inverse[0], its_seen, inside[i, j, group * rates : (group + 1) * rates])
     _in_cone(inverse[1], seen, inside)
-    for i in range(ports):
-        for j in range(ports):
-            for k in range(groups * rates):
-                inside[i, j, k] /= size[k % rates]
-    return inside
+    found = np.empty((groups * half, groups * half, rates))
+    for i in range(half):
+        for j in range(i + 1):
+            for k in range(rates):
+                own, across = inside[i, j, k] / size[k], 0.0
+                if mirrored:
+                    other = inside[i, j, rates + k] / size[k]
+                    own, across = (own + other) / 2, (own - other) / 2
+                for m in range(groups):  # either half sees its own flows, and the other's
+                    to, beside = m * half, (groups - 1 - m) * half
+                    found[to + i, beside + j, k] = found[to + j, beside + i, k] = across
+                    found[to + i, to + j, k] = found[to + j, to + i, k] = own
+    return found
 
 
 @njit(cache=True, error_model="numpy")
@@ -134,7 +145,8 @@ def _inverse(matrix, ridge, out):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def _in_cone(solve, seen, inside):
-    """Turns the first guess inside (N, N, G K) into the answer. solve: (K, K) symmetric. seen: (N, N, G K)."""
+    """Turns the first guess inside (N, N, G K) into the answer; of these and of seen (N, N, G K) it looks at the lower
+    half. solve: (K, K) symmetric."""
     ports, rates, each = seen.shape[1], seen.shape[2], len(solve)
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
     turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
@@ -187,10 +199,6 @@ def _in_cone(solve, seen, inside):
                     moving = max(moving, pulled[k])
         if moving < _SETTLED:
             break
-    for i in range(ports):
-        for j in range(i):
-            for k in range(rates):
-                inside[j, i, k] = inside[i, j, k]
 
 
 @njit(cache=True, inner=True, error_model="numpy", forceinline=True)
