@@ -155,16 +155,19 @@ class BoxHeat:
         tables = self.tables
         for row, fingertips in strayed:
             own, last = state[row], self._touched[row]
-            before, prints = fixed_heat(tables, row, own), self._prints.get(row, ())
+            warm = bool(own.any())  # or nothing has flowed yet, and there is nothing to keep
+            before = fixed_heat(tables, row, own) if warm else 0.0
+            prints = self._prints.get(row, ())
             touched = self._moved(row, fingertips, middles[row], own)
             if not touched.places:
                 continue
             self._set(row, touched)
+            if not warm:
+                continue
             self._turn(row, last, prints, own)
             for f, (number, now) in enumerate(zip(last.contacts, touched.contacts, strict=True)):
                 worn = prints[number].tip if number >= 0 else self._whole
-                warm = now >= 0 and own[self.fingertip(f)].any()
-                if warm and worn is not self._prints[row][now].tip:
+                if now >= 0 and worn is not self._prints[row][now].tip:
                     heats = (
                         fixed_tip_heat(tables, _element(one)) for one in (worn, self._prints[row][now].tip)
                     )
@@ -188,7 +191,8 @@ class BoxHeat:
         for f in (*fingertips, *new):
             place = place_of(size, normal, width, middles[f].tolist())
             if place is not None:
-                warmth = fixed_warmth(self.tables, row, state, self._left)[: len(touched.places)]
+                count = len(touched.places)
+                warmth = fixed_warmth(self.tables, row, state, self._left)[:count] if count else ()
                 touched, given_up = touched.moved(f, place, warmth, size, width)
                 if given_up is not None:
                     gone, heir = given_up
@@ -384,12 +388,10 @@ def _tip(stack: SensorStack, covered: Rectangle, spot: Spot) -> Tip:
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:
-    first, second = covered = place.covered(size, width)
-    (x, half_x), (y, half_y) = (
-        (middle + (low + high - width) / 2, (high - low) / 2)
-        for middle, (low, high) in zip(place.middle, covered, strict=True)
-    )
-    return Footprint((first, second), (x, y), (half_x, half_y))
+    (x, y), covered = place.middle, place.covered(size, width)
+    (x0, x1), (y0, y1) = covered
+    centre = x + (x0 + x1 - width) / 2, y + (y0 + y1 - width) / 2
+    return Footprint(covered, centre, ((x1 - x0) / 2, (y1 - y0) / 2))
 
 
 @lru_cache(maxsize=1024)
@@ -416,22 +418,24 @@ def _stand_ins(
 ) -> tuple[_Placed, ...]:
     """Few places that serve for those of fingertips: further from the face's ends by less than they tell, and in a
     thick box over each other nearly as these."""
-    first, *rest = (prints[number] for number in numbers)
-    axes = []
-    for axis, side in enumerate(first.place.sides(size)):
-        middles = [first.foot.centre[axis], *(each.foot.centre[axis] for each in rest)]
-        gap = min(
-            min(middle, side - middle) - prints[number].foot.half[axis]
-            for middle, number in zip(middles, numbers, strict=True)
-        )
+    feet = [prints[number].foot for number in numbers]
+    face = prints[numbers[0]].place.face
+    depth, axes = size[face // 2], []
+    for axis, side in enumerate(prints[numbers[0]].place.sides(size)):
+        middles, gap = [foot.centre[axis] for foot in feet], side
+        for foot, middle in zip(feet, middles, strict=True):
+            gap = min(gap, min(middle, side - middle) - foot.half[axis])
         step = width * _STEPS[bisect(_GAPS, gap / width)]
         if step > 0:
-            begun = side / 2 + step * round((middles[0] - side / 2) / step)
-            fine = width * _OFFS[bisect(_DEPTHS, size[first.place.face // 2] / width)]
-            off = (middle - middles[0] for middle in middles)
-            middles = [begun + (fine * round(each / fine) if fine > 0 else each) for each in off]
+            first = middles[0]
+            begun = side / 2 + step * round((first - side / 2) / step)
+            fine = width * _OFFS[bisect(_DEPTHS, depth / width)]
+            if fine > 0:
+                middles = [begun + fine * round((middle - first) / fine) for middle in middles]
+            else:
+                middles = [begun + (middle - first) for middle in middles]
         axes.append([round(middle, 9) for middle in middles])
     return tuple(
-        (prints[number].place.face, centre, prints[number].foot.half, prints[number].tip)
-        for number, centre in zip(numbers, zip(*axes, strict=True), strict=True)
+        (prints[number].place.face, centre, foot.half, prints[number].tip)
+        for number, foot, centre in zip(numbers, feet, zip(*axes, strict=True), strict=True)
     )

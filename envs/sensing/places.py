@@ -59,11 +59,8 @@ class Place:
     def covered(self, size: Sequence[float], width: float) -> Rectangle:
         """What the face covers of a sensor's of that width, from the sensor's corner, to a nanometre: of two places as
         far from their face's ends it is the same."""
-        (x, y), (first, second), half = self.middle, _SIDES[self.face // 2], width / 2
-        return (
-            (max(round(half - x, 9), 0.0), min(round(size[first] - x + half, 9), width)),
-            (max(round(half - y, 9), 0.0), min(round(size[second] - y + half, 9), width)),
-        )
+        (x, y), (first, second) = self.middle, _SIDES[self.face // 2]
+        return _covered(x, size[first], width), _covered(y, size[second], width)
 
     def serves(self, other: Place, size: Sequence[float], width: float) -> bool:
         """Whether a pad at the other place is on this one too."""
@@ -75,6 +72,11 @@ class Place:
         (a, b), (c, d) = self.covered(size, width)
         (a0, b0), (c0, d0) = other.covered(size, width)
         return max(abs(a - a0), abs(b - b0), abs(c - c0), abs(d - d0)) <= EDGE * width
+
+
+def _covered(middle: float, side: float, width: float) -> tuple[float, float]:
+    low, high = width / 2 - middle, side - middle + width / 2
+    return (max(round(low, 9), 0.0) if low > 0 else 0.0), (min(round(high, 9), width) if high < width else width)
 
 
 def opposite(place: Place, places: Sequence[Place], width: float) -> Place | None:
@@ -159,16 +161,21 @@ def place_of(size: Sequence[float], normal: int, width: float, middle: Sequence[
 
 def _on_lattice(place: Place, size: Sequence[float], width: float, *, coarse: bool) -> Place:
     """coarse: that one is asked for, where the sensor's face lies well within the box's."""
-    along = []
-    for at, side in zip(place.middle, place.sides(size), strict=True):
-        off, room = at - side / 2, side / 2 - width
-        rough = side / 2 + _LATTICE * round(off / _LATTICE)
-        # over the face's end as much of the sensor's face as in another box
-        over = at < width / 2, side - at < width / 2
-        start = side / 2 if over[0] == over[1] else side * over[1]
-        fine = start + _FINE_LATTICE * round((at - start) / _FINE_LATTICE)
-        along.append(rough if coarse and abs(rough - side / 2) <= room and abs(off) <= room else fine)
-    return Place(place.face, (along[0], along[1]))
+    (x, y), (first, second) = place.middle, place.sides(size)
+    return Place(place.face, (_nearest(x, first, width, coarse), _nearest(y, second, width, coarse)))
+
+
+def _nearest(at: float, side: float, width: float, coarse: bool) -> float:
+    """The same along one side."""
+    off, room = at - side / 2, side / 2 - width
+    if coarse and abs(off) <= room:
+        rough = _LATTICE * round(off / _LATTICE)
+        if abs(rough) <= room:
+            return side / 2 + rough
+    # over the face's end as much of the sensor's face as in another box
+    low, high = at < width / 2, side - at < width / 2
+    start = side / 2 if low == high else side * high
+    return start + _FINE_LATTICE * round((at - start) / _FINE_LATTICE)
 
 
 @njit(cache=True, error_model="numpy")

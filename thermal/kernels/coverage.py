@@ -70,30 +70,28 @@ class Spot:
         much where something touches a thin box from behind."""
         thin = self.depth < THIN * width
         exact = thin and self.opposite is not None
-        centre, sides, halves, covered = [], [], [], []
-        for axis, side in enumerate(self.sides):
-            middle, half, part = (
-                self.contact.centre[axis],
-                self.contact.half[axis],
-                self.contact.covered[axis],
-            )
-            low, high = (_gap(gap, width) for gap in (middle - half, side - middle - half))
-            if not exact:
-                part = _nearly_covered(part, width)
-                half = (part[1] - part[0]) / 2
-            centre.append(low + half)
-            sides.append(low + high + 2 * half)
-            halves.append(half)
-            covered.append(part)
-        contact = Footprint((covered[0], covered[1]), (centre[0], centre[1]), (halves[0], halves[1]))
+        x, first, half_x, part_x = self._alike_along(0, width, exact)
+        y, second, half_y, part_y = self._alike_along(1, width, exact)
+        contact = Footprint((part_x, part_y), (x, y), (half_x, half_y))
         return Spot(
             _rounded(self.conductivity, _PROPERTIES),
             _rounded(self.heat_capacity, _PROPERTIES),
-            (sides[0], sides[1]),
+            (first, second),
             _rounded(min(self.depth, width), _STEPS_OF_DEPTH),
             contact,
-            self._behind(contact, sides, width) if thin else None,
+            self._behind(contact, (first, second), width) if thin else None,
         )
+
+    def _alike_along(
+        self, axis: int, width: float, exact: bool
+    ) -> tuple[float, float, float, tuple[float, float]]:
+        """Middle, side, half width and what is covered along an axis of such a one."""
+        middle, half, part = self.contact.centre[axis], self.contact.half[axis], self.contact.covered[axis]
+        low, high = _gap(middle - half, width), _gap(self.sides[axis] - middle - half, width)
+        if not exact:
+            part = _nearly_covered(part, width)
+            half = (part[1] - part[0]) / 2
+        return low + half, low + high + 2 * half, half, part
 
     def _behind(self, contact: Footprint, sides: Sequence[float], width: float) -> Footprint | None:
         """The opposite one in steps from this one, which has moved."""
