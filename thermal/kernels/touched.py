@@ -61,13 +61,13 @@ class UnderTips(NamedTuple):
     """What of a box follows from the places under its fingertips alone. own: the box with no other place. For others,
     at GRASP: opened (S, A M, A M), what the temperatures are that flow elsewhere would bring about if the film covered
     the fingertips too, by these; returned (S, A M) J/K, heat that it does not take there, by what they are. slowest:
-    1/s, the rate under such a film. fit (S, K): an impedance's residues."""
+    1/s, the rate under such a film. weight (S,): what an error of impedance counts, W/K."""
 
     own: BodyResidues
     opened: np.ndarray
     returned: np.ndarray
     slowest: float
-    fit: np.ndarray
+    weight: np.ndarray
 
 
 class _Kernel(NamedTuple):
@@ -113,7 +113,7 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
         under.slowest,
         under.opened,
         under.returned,
-        under.fit,
+        free_residues(fit.fades, under.weight),
         GRASP,
         total,
         fit.seen,
@@ -146,20 +146,22 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
         np.array([_weight(one) for one in box.tips]),
     )
     found = (mirrored_residues if _mirrored(box) else port_residues)(fit.fades, rest, weight)
-    heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
     if box.film > 0:
         even = np.concatenate([one.even for one in box.tips])
         whole = capacity * math.prod(box.size)
         heat, still = _warmed(found, warmth, even, port, held, whole, fit.seen, fit.share)
+    else:
+        heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
     own = BodyResidues(rate, port, held, found, heat, still)
-    return UnderTips(own, opened, returned, known.rate, free_residues(fit.fades, weight))
+    return UnderTips(own, opened, returned, known.rate, weight)
 
 
 def _mirrored(box: TouchedBox) -> bool:
     """Whether two like fingertips are exactly over each other on opposite faces."""
+    if len(box.tips) != 2 or box.tips[0] is not box.tips[1]:
+        return False
     face, centre, half = (each.tolist() for each in box.patches)
-    opposite = len(face) == 2 and face[0] == face[1] ^ 1 and box.tips[0] is box.tips[1]
-    return opposite and centre[0] == centre[1] and half[0] == half[1]
+    return face[0] == face[1] ^ 1 and centre[0] == centre[1] and half[0] == half[1]
 
 
 def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
