@@ -185,14 +185,14 @@ def free_kernels(half, jumps, nodes, taus):
             places = half[n, w] * nodes
             for t in range(len(taus)):
                 _free_strips(places, places, 2 * math.sqrt(taus[t]), table)
-                add_met(jumps[n, w], table, jumps[n, w], done, found[n, w], t)
+                add_met(jumps[n, w], table, jumps[n, w], False, done, found[n, w], t)
     return found
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def add_met(by, table, beside, done, out, t):
+def add_met(by, table, beside, same, done, out, t):
     """Adds to out (F one, F other, T), at number t, jumps (F one, E one) times the table times jumps (F other,
-    E other). done: room (E other,)."""
+    E other). same: these are the same, and only the lower half is wanted. done: room (E other,)."""
     count = len(done)
     for f in range(len(by)):
         for q in range(count):
@@ -200,7 +200,7 @@ def add_met(by, table, beside, done, out, t):
         for k in range(by.shape[1]):
             for q in range(count):
                 done[q] += by[f, k] * table[k, q]
-        for g in range(len(beside)):
+        for g in range(f + 1 if same else len(beside)):
             even, odd = 0.0, 0.0  # sums that need not wait for each other
             for q in range(count // 2):
                 even += beside[g, 2 * q] * done[2 * q]

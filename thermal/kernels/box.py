@@ -228,7 +228,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                 for t in range(first, min(begun, last)):
                     if n == m and across:
                         for f in range(functions):
-                            for g in range(functions):
+                            for g in range(f + 1):
                                 between[axis, n, f, m, g, t] = free[n, which[axis, n], f, g, t]
                         low_end, high_end = ends_felt(a, b, length, taus[t])
                         if not low_end and not high_end:
@@ -239,7 +239,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                         add_images(a, 1, b, 1, True, length, film, taus[t], table)
                     else:
                         images(a, order[n], b, order[m], n == m, length, film, taus[t], table)
-                    add_met(by, table, beside, half_done[: len(b)], between[axis, n, :, m], t)
+                    add_met(by, table, beside, n == m, half_done[: len(b)], between[axis, n, :, m], t)
                 for f in range(axis_functions):
                     for g in range(f + 1 if n == m else others):
                         along = between[axis, n, f, m, g]

@@ -39,6 +39,7 @@ _COVERED = 1 / 9  # of the sensor's width, steps of how much of it is covered
 _OPPOSITE_STEP = 0.02  # of the sensor's width, steps of an opposite contact's edges beyond this one's
 _STEPS_OF_DEPTH = 5  # a decade, of depths up to the sensor's width
 _PROPERTIES = 2  # a decade, of conductivities and heat capacities
+_OPPOSITE = np.array([5, 4])  # faces
 _MATERIALS = ((237.0, 2.42e6), (16.2, 4.0e6), (1.0, 2.1e6), (0.15, 1.02e6))  # W/(m K), J/(m3 K)
 
 
@@ -214,8 +215,8 @@ def _patterns_of(
     kept: int,
 ) -> list[np.ndarray]:
     """Of one or of two on opposite faces. made: W/(m K) and J/(m3 K)."""
-    centre, half = (np.array([getattr(each, name) for each in touched]) for name in ("centre", "half"))
-    patches = Patches(np.array([5, 4][: len(touched)]), centre, half)
+    centre, half = np.array([each.centre for each in touched]), np.array([each.half for each in touched])
+    patches = Patches(_OPPOSITE[: len(touched)], centre, half)
     elements = np.array([shown_element(stack, each.covered) for each in touched])
     found = excited(shown_box(size, *made, patches), elements, patches.areas, kept)
     found.setflags(write=False)

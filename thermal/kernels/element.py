@@ -25,7 +25,7 @@ from ..matter import SensorStack
 from ..numerics import Sampled, dot
 from ..plates import from_nodes, log_nodes, stack_impedance, stack_profile
 from .alone import alone
-from .axis import MODES, SWITCH, add_images, add_met, ends_felt, images
+from .axis import MODES, SWITCH, add_images, add_met, ends_felt, images, overlaps
 from .patterns import ALONG, EACH_FUNCTION, GRAM, JUMPS, NODES
 from .samples import (
     GRASP,
@@ -337,44 +337,41 @@ def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below)
     """Adds to within (F, F, T) what comes by way of the face's ends at the first `early` taus (T,) m2, and fills it at
     the others by eigenfunctions; fills below (F, F, R) with these eigenfunctions' sums (count, R)."""
     functions, ends = len(jumps), len(nodes)
-    table, places, done, seen = np.empty((ends, ends)), np.empty(ends), np.empty(ends), np.empty(ends)
+    table, places, done = np.empty((ends, ends)), np.empty(ends), np.empty(ends)
+    waves, seen = np.empty(len(sums)), np.empty(len(sums))
     overlap, decay = np.empty((functions, len(sums))), np.empty(len(taus))
     for k in range(ends):
         places[k] = centre + half * nodes[k]
     for w in range(len(sums)):
-        wave, norm = w * math.pi / width, math.sqrt(width if w == 0 else width / 2)
+        waves[w] = w * math.pi / width
+    overlaps(places, jumps, 1, width, waves, seen, overlap)
+    for w in range(len(sums)):
         last = early
         while last < len(taus):
-            decay[last] = math.exp(-wave * wave * taus[last])
+            decay[last] = math.exp(-waves[w] * waves[w] * taus[last])
             if decay[last] < _FADED:
                 break
             last += 1
-        for k in range(ends):
-            seen[k] = places[k] if w == 0 else math.sin(wave * places[k]) / wave
         for f in range(functions):
-            total = 0.0
-            for k in range(ends):
-                total += jumps[f, k] * seen[k]
-            overlap[f, w] = total / norm
             for g in range(f + 1):
                 both = overlap[f, w] * overlap[g, w]
                 for t in range(early, last):
                     within[f, g, t] += both * decay[t]
                 for r in range(sums.shape[1]):
                     below[f, g, r] += both * sums[w, r]
-    for f in range(functions):
-        for g in range(f):
-            for t in range(early, len(taus)):
-                within[g, f, t] = within[f, g, t]
-            for r in range(sums.shape[1]):
-                below[g, f, r] = below[f, g, r]
     for t in range(early):
         low_end, high_end = ends_felt(places, places, width, taus[t])
         if not low_end and not high_end:
             continue
         table[:] = 0.0
         add_images(places, 1, places, 1, True, width, 0.0, taus[t], table)
-        add_met(jumps, table, jumps, done, within, t)
+        add_met(jumps, table, jumps, True, done, within, t)
+    for f in range(functions):
+        for g in range(f):
+            for t in range(len(taus)):
+                within[g, f, t] = within[f, g, t]
+            for r in range(sums.shape[1]):
+                below[g, f, r] = below[f, g, r]
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")

@@ -23,6 +23,7 @@ from .samples import MOMENTS, ROUGH_SPACING, SHOWN, at_moments, rough_rule
 
 CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
 _CONDUCTANCES = np.array(CONDUCTANCES)
+_MOMENTS = MOMENTS[SHOWN].copy()
 _ORTHONORMAL = np.ascontiguousarray(np.linalg.inv(EVENNESS.T))
 _EACH_JUMPS, _EACH_TERM = np.tile(JUMPS, (2, 2, 1, 1)), ALONG[:, None].copy()
 _AT_ONCE = 4  # steps in which a patch's kernel by itself is told for few times or many
@@ -52,7 +53,10 @@ def shown_box(
     begun = float(taus[0])
     images = int(taus.searchsorted(SWITCH * max(size) ** 2, "right"))  # times at which these serve
     many = _AT_ONCE * (images // _AT_ONCE + 1)
-    alone = [[each_alone(side, begun, ROUGH_SPACING, many) for side in half] for half in patches.half.tolist()]
+    free = np.empty((count, 2, len(JUMPS), len(JUMPS), many))
+    for n, half in enumerate(patches.half.tolist()):
+        for axis, side in enumerate(half):
+            free[n, axis] = each_alone(side, begun, ROUGH_SPACING, many)
     kernel, rate, port, _, heat = box_kernel(
         size,
         conductivity,
@@ -63,10 +67,10 @@ def shown_box(
         _EACH_TERM,
         count,
         rule.times,
-        free=np.array(alone),
+        free=free,
     )
     first = 1 / (heat_capacity * math.sqrt(math.pi * begun) * patches.areas)
-    return _with_slowest(kernel, port, first, GRAM, rule.to_moments, rule.early, MOMENTS[SHOWN], rate)
+    return _with_slowest(kernel, port, first, GRAM, rule.to_moments, rule.early, _MOMENTS, rate)
 
 
 @njit(cache=True, error_model="numpy")
