@@ -165,12 +165,25 @@ def left_inside(places, length, film, tau, out):
     time at which eigenfunctions need not serve."""
     scale = 2 * math.sqrt(tau)
     for k in range(len(places)):
-        low, high = places[k], length - places[k]
-        if film * scale / 2 <= _FEW:
-            fine, more = _FINE / scale, film * scale
-            out[k] = low + scale * (_soon(low * fine, more)[1] - _soon(high * fine, more)[1])
-        else:
-            out[k] = low + _lost(low, scale, film, 2) - _lost(high, scale, film, 2)
+        out[k] = places[k]
+    if film * scale / 2 <= _FEW:
+        fine, more, reach = _FINE / scale, film * scale, _REACH * scale
+        near, far = 0, len(places)
+        while near < len(places) and places[near] <= reach:
+            near += 1
+        while far > 0 and length - places[far - 1] <= reach:
+            far -= 1
+        for k in range(near):
+            out[k] += scale * _soon(places[k] * fine, more)[1]
+        for k in range(far, len(places)):
+            out[k] -= scale * _soon((length - places[k]) * fine, more)[1]
+        return
+    low_end, high_end = places[0] <= _REACH * scale, length - places[-1] <= _REACH * scale
+    for k in range(len(places)):
+        if low_end:
+            out[k] += _lost(places[k], scale, film, 2)
+        if high_end:
+            out[k] -= _lost(length - places[k], scale, film, 2)
 
 
 @njit(cache=True, error_model="numpy")
@@ -223,13 +236,23 @@ def _free_strips(one, other, scale, out):
 @njit(cache=True, inner=True, error_model="numpy")
 def _strip_images(one, other, same, end, side, film, scale, out):
     """Adds to out what comes to strips by way of one end, at distances end + side (x + x')."""
-    fine = _FINE / scale
+    fine, reach, first = _FINE / scale, _REACH * scale, 0
+    last = len(other)
+    if side < 0:
+        first = last
     for i in range(len(one)):
         start = end + side * one[i]
-        for j in range(i + 1 if same else len(other)):
-            first, lost = _soon((start + side * other[j]) * fine, film * scale)
-            out[i, j] += scale * (first / 2 - lost)
-        for j in range(i if same else 0):
+        # of the other's nodes those within reach, fewer from one to the next or more
+        if side > 0:
+            while last > 0 and start + other[last - 1] > reach:
+                last -= 1
+        else:
+            while first > 0 and start - other[first - 1] <= reach:
+                first -= 1
+        for j in range(first, min(last, i + 1) if same else last):
+            near, lost = _soon((start + side * other[j]) * fine, film * scale)
+            out[i, j] += scale * (near / 2 - lost)
+        for j in range(first, min(last, i) if same else first):
             out[j, i] = out[i, j]
 
 

@@ -280,10 +280,16 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                     continue
                 images(a, order[n], ends, 1, False, length, film, taus[t], table)
                 everywhere[axis, n, 0, t] = table[0, 1] - table[0, 0]
-    rows, told = wanted * patterns, total - start * patterns
+    rows, told, skipped = wanted * patterns, total - start * patterns, start * patterns
     kernel, whole, port = np.zeros((len(taus), rows, told)), np.zeros((len(taus), told)), np.zeros(total)
-    sums = np.empty(len(taus))
+    # from integrals over patterns to means, and without the slowest eigenfunction, which is even where no film is
+    slowest = slowest if film > 0.0 else 0.0
+    held *= np.sqrt(heat_capacity)
+    areas, left, sums = np.empty(count), np.empty(len(taus)), np.empty(len(taus))
+    for t in range(len(taus)):
+        left[t] = np.exp(-slowest * taus[t])
     for n in range(count):
+        areas[n] = 4 * half[n, 0] * half[n, 1]
         for i in range(patterns):
             at = n * patterns + i
             for x in range(terms.shape[1]):
@@ -291,12 +297,16 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                     continue
                 f0, f1, f2 = _functions(terms[i, x], orders, which, n)
                 port[at] += overlap[0, n, f0, 0] * overlap[1, n, f1, 0] * overlap[2, n, f2, 0]
-                if n < start:
+                if n < start or film == 0.0:
                     continue
                 for t in range(len(taus)):
                     air = everywhere[0, n, f0, t] * everywhere[1, n, f1, t]
-                    whole[t, at - start * patterns] += air * everywhere[2, n, f2, t]
+                    whole[t, at - skipped] += air * everywhere[2, n, f2, t]
+            port[at] /= areas[n] * np.sqrt(heat_capacity)
+            for t in range(len(taus) if n >= start else 0):
+                whole[t, at - skipped] = whole[t, at - skipped] / areas[n] - left[t] * port[at] * held
             for m in range(min(n + 1, wanted) if n >= start else 0):
+                scale = 1 / (areas[n] * areas[m] * heat_capacity)
                 for j in range(patterns if m < n else i + 1):
                     for t in range(len(taus)):
                         sums[t] = 0.0
@@ -310,26 +320,13 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                             third = between[2, n, f2, m, g2]
                             for t in range(len(taus)):
                                 sums[t] += first[t] * second[t] * third[t]
+                    other = m * patterns + j
+                    both = port[at] * port[other]
                     for t in range(len(taus)):
-                        kernel[t, m * patterns + j, at - start * patterns] = sums[t]
-    # from integrals over patterns to means, and without the slowest eigenfunction, which is even where no film is
-    slowest = slowest if film > 0.0 else 0.0
-    held *= np.sqrt(heat_capacity)
-    areas = np.empty(total)
-    for i in range(total):
-        areas[i] = 4 * half[i // patterns, 0] * half[i // patterns, 1]
-        port[i] /= areas[i] * np.sqrt(heat_capacity)
-    for t in range(len(taus)):
-        left_over = np.exp(-slowest * taus[t])
-        for j in range(told):
-            whole[t, j] = (
-                whole[t, j] / areas[start * patterns + j] - left_over * port[start * patterns + j] * held
-            )
-            for i in range(min(start * patterns + j + 1, rows)):
-                area = areas[i] * areas[start * patterns + j] * heat_capacity
-                kernel[t, i, j] = kernel[t, i, j] / area - left_over * port[i] * port[start * patterns + j]
-                if start == 0 and j < rows:
-                    kernel[t, j, i] = kernel[t, i, j]
+                        value = scale * sums[t] - both * left[t]
+                        kernel[t, other, at - skipped] = value
+                        if start == 0 and at < rows:
+                            kernel[t, at, other] = value
     return kernel, slowest, port, held, whole
 
 
