@@ -163,7 +163,8 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
     everywhere = np.ones((3, count, functions, len(taus)))
     # by axis: whether it lies in a patch, and which of the patch's two it is
     orders, which = np.ones((3, count), np.int64), np.zeros((3, count), np.int64)
-    alike = np.empty(count, np.int64)
+    # the first patch whose functions are the same, and the first that is the same by itself
+    alike, evenly = np.empty(count, np.int64), np.empty(count, np.int64)
     for axis in range(3):
         length = size[axis]
         waves = wave_numbers(length, film)
@@ -189,7 +190,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
             alike[n] = n
             facing = face[n] // 2
             if facing == axis:
-                order[n] = 0
+                order[n], evenly[n] = 0, n
+                for m in range(n - 1, (start if n >= start else 0) - 1, -1):
+                    if face[m] == face[n]:
+                        alike[n] = m
+                    if face[m] // 2 == axis:
+                        evenly[n] = m  # by itself it is as one at the other end
                 places[n, 0] = length * (face[n] % 2)
                 overlaps(places[n, :1], point, 0, length, waves, room, overlap[axis, n])
                 continue
@@ -206,6 +212,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                             same &= jumps[n, w, f, k] == jumps[m, which[axis, m], f, k]
                     if same:
                         alike[n] = m
+            evenly[n] = alike[n]
             if alike[n] == n:
                 overlaps(places[n], jumps[n, w], 1, length, waves, room, overlap[axis, n])
                 continue
@@ -222,9 +229,10 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                 b = places[m] if order[m] == 1 else places[m, :1]
                 beside = jumps[m, which[axis, m]] if order[m] == 1 else point
                 first, last = _felt(size, face, n, m, taus), len(taus)
-                if alike[n] < n or alike[m] < m:
+                one, other = (evenly[n], evenly[n]) if n == m else (alike[n], alike[m])
+                if one < n or other < m:
                     # opposite fingertips often differ along one axis only
-                    last = max(_felt(size, face, alike[n], alike[m], taus), first)
+                    last = max(_felt(size, face, one, other, taus), first)
                 for t in range(first, min(begun, last)):
                     if n == m and across:
                         for f in range(functions):
@@ -249,10 +257,10 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                                 along[t] += both * fading[w, t]
                         if last == len(taus):
                             continue
-                        if alike[m] <= alike[n]:
-                            known = between[axis, alike[n], f, alike[m], g]
+                        if other <= one:
+                            known = between[axis, one, f, other, g]
                         else:
-                            known = between[axis, alike[m], g, alike[n], f]
+                            known = between[axis, other, g, one, f]
                         for t in range(last, len(taus)):
                             along[t] = known[t]
                 for f in range(axis_functions if n == m else 0):
@@ -261,9 +269,9 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                             between[axis, n, g, n, f, t] = between[axis, n, f, n, g, t]
             for f in range(axis_functions if film > 0.0 else 0):
                 along = everywhere[axis, n, f]
-                if alike[n] < n:
+                if evenly[n] < n:
                     for t in range(len(taus)):
-                        along[t] = everywhere[axis, alike[n], f, t]
+                        along[t] = everywhere[axis, evenly[n], f, t]
                     continue
                 for t in range(len(taus)):
                     along[t] = 0.0
@@ -271,7 +279,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                     both = overlap[axis, n, f, w] * inside[0, w]
                     for t in range(begun, faded[w]):
                         along[t] += both * fading[w, t]
-            for t in range(begun if film > 0.0 and alike[n] == n else 0):
+            for t in range(begun if film > 0.0 and evenly[n] == n else 0):
                 if across:
                     left_inside(a, length, film, taus[t], half_done)
                     for f in range(functions):
