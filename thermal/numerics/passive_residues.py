@@ -13,7 +13,7 @@ from thermograsp.compiled import njit
 from .symmetric import turn_diagonal
 
 _STEPS = 12  # at most
-_SETTLED = 4e-4  # of any residue in a step, beside columns of unit length, from which on it is the last
+_SETTLED = 4e-4  # change of any residue in a step, beside columns of unit length, up to which it is the last
 _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _FREE_RIDGE = 1e-6  # of residues without constraint
