@@ -76,7 +76,9 @@ class Place:
 
 def _covered(middle: float, side: float, width: float) -> tuple[float, float]:
     low, high = width / 2 - middle, side - middle + width / 2
-    return (max(round(low, 9), 0.0) if low > 0 else 0.0), (min(round(high, 9), width) if high < width else width)
+    return (max(round(low, 9), 0.0) if low > 0 else 0.0), (
+        min(round(high, 9), width) if high < width else width
+    )
 
 
 def opposite(place: Place, places: Sequence[Place], width: float) -> Place | None:

@@ -22,7 +22,9 @@ MODES = 24
 SWITCH = 0.0075  # diffusion length squared over length squared from which eigenfunctions serve
 _ROOT_PI = math.sqrt(math.pi)
 _REACH = 6.0  # diffusion lengths (2 sqrt tau) beyond which an image is below round-off
-_FINE = 512.0  # nodes a unit of the tables below: cubic Hermite interpolation leaves 4e-14, and few are read soon
+_FINE = (
+    512.0  # nodes a unit of the tables below: cubic Hermite interpolation leaves 4e-14, and few are read soon
+)
 
 
 def _integral_of_erfc() -> np.ndarray:

@@ -132,8 +132,8 @@ def element(stack: SensorStack) -> Element:
 
 
 class SeenSide(NamedTuple):
-    """A rectangle of the face along one axis, as the functions along it see it. within: (F, F, T) m of the first layer's
-    half-space at element_rule's times and below: (F, F, R) m of the lateral eigenfunctions' sums."""
+    """A rectangle of the face along one axis, as the functions along it see it. within: (F, F, T) m of the first
+    layer's half-space at element_rule's times and below: (F, F, R) m of the lateral eigenfunctions' sums."""
 
     within: np.ndarray
     below: np.ndarray
@@ -378,8 +378,9 @@ def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below)
 def _impedance(
     half, within, below, few, shares, terms, gram, times, to_moments, early, conductivity, diffusivity
 ):
-    """face_impedance of a SeenFace. few: (S, R, R) of the element. conductivity, diffusivity: W/(m K) and m2/s of the
-    first layer. The rest as in face_impedance and Rule."""
+    """face_impedance of a rectangle of half widths half (2,) m. within: (2, F, F, T) and below: (2, F, F, R) of its
+    SeenSides. few: (S, R, R) of the element. conductivity, diffusivity: W/(m K) and m2/s of the first layer. The rest
+    as in face_impedance and Rule."""
     moments, sums, kept = len(early), few.shape[1], len(terms)
     functions, known = shares.shape[1], shares.shape[2]
     own = np.zeros((2, functions, functions, len(times)))
