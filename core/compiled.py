@@ -32,6 +32,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.environment import lookup_environment
 from numba.core.extending import _Intrinsic
+from numba.core.lowering import Lower
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
@@ -250,7 +251,7 @@ def _in_less_time() -> Iterator[None]:
     and find little. numba's options, which it compares tens of thousands of times, make their dictionaries at once in
     place of calling a property for each. numba finds only once what an operator makes of numbers and arrays: at each
     place it would try all that the operator can mean, for dates too. Of arrays' elements and of loops it makes fewer
-    instructions (lowered.py). After each of its passes it finds no variables
+    instructions, and none of most variables' ends (lowered.py). After each of its passes it finds no variables
     that only generators and Python's objects need. And it takes no times, which nobody reads."""
     collects = gc.isenabled()
     calls: Any = BaseFunction
@@ -347,6 +348,7 @@ _QUICKER: tuple[tuple[Any, str, Any], ...] = (
     (ir.Inst, "_rec_list_vars", _variables),
     (PostProcessor, "run", _processed),
     (BaseContext, "get_function", lowered.function),
+    (Lower, "delvar", lowered.deleted),
     (event, "install_timer", lambda kind, callback: nullcontext()),
 )
 """What of numba is replaced while it compiles."""

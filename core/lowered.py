@@ -1,5 +1,6 @@
-"""What numba makes of elements of arrays and of loops over a range, in fewer instructions: what compiles takes as long
-as there are instructions, and most of ours were of these. What they do is the same, to the last bit."""
+"""What numba makes of elements of arrays, of loops over a range and of variables that are not used any more, in fewer
+instructions: to compile takes as long as there are instructions, and most of ours were of these. What they do is the
+same, to the last bit."""
 
 from __future__ import annotations
 
@@ -12,9 +13,10 @@ from numba import types
 from numba.core import cgutils
 from numba.core.base import BaseContext
 from numba.core.imputils import impl_ret_borrowed
+from numba.core.lowering import Lower
 from numba.np.arrayobj import load_item, store_item
 
-_FUNCTION = BaseContext.get_function
+_FUNCTION, _DELETED = BaseContext.get_function, Lower.delvar
 _STEPS = types.range_state64_type
 
 
@@ -26,6 +28,17 @@ def function(self: Any, fn: Any, sig: Any, _firstcall: bool = True) -> Any:
     if make is None:
         return _FUNCTION(self, fn, sig, _firstcall)
     return lambda builder, args, loc=None: make(self, builder, sig, args)
+
+
+def deleted(self: Any, name: str) -> None:
+    """Lower.delvar, which forgets a variable. One that nobody counts is left as it is."""
+    kind = self.typeof(name)
+    if self.context.enable_nrt and self.context.data_model_manager[kind].contains_nrt_meminfo():
+        _DELETED(self, name)
+        return
+    if name not in self._blk_local_varmap and not self._disable_sroa_like_opt:
+        self._singly_assigned_vars.discard(name)
+    self._alloca_var(name, kind)
 
 
 def _of_range(make: Any) -> Callable[[Any, Any], Any]:
