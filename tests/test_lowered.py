@@ -36,7 +36,16 @@ def looked_at(array, i, j, k):
     array[i, j, k] += 2
     array[-1, 0, -1] = 7
     part[0, 0] += 1
-    return array[i, j, k], array[-i - 1, -1, 0], row[-1], part[-1, k], len(row), part.size, part.shape[1], row.ndim
+    return (
+        array[i, j, k],
+        array[-i - 1, -1, 0],
+        row[-1],
+        part[-1, k],
+        len(row),
+        part.size,
+        part.shape[1],
+        row.ndim,
+    )
 
 
 def _arrays(kind: type) -> list[np.ndarray]:

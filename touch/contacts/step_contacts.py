@@ -127,7 +127,9 @@ def sense_contacts(record_at, first, last, entries_at):
     turns, offsets = floats(entries[3], (geoms, 9)), floats(entries[4], (geoms, 3))
     pads, parts = floats(entries[5], (tips, PAD)), words(entries[6], (part_count, 4))
     which = words(entries[8], worlds)
-    kinds = which.max() + 1
+    kinds = 1
+    for w in range(worlds):
+        kinds = max(kinds, which[w] + 1)
     law = laws(entries[7], (kinds, tips, part_count, 6))
     curved = words(entries[19], (kinds, tips, part_count, sides, 1 + RINGS))
     tables = floats(entries[20], (entries[33], CURVED_TABLE))
