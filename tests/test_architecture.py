@@ -15,19 +15,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 
-LEAVES = (
-    "errors",
-    "notice",
-    "sources",
-    "files",
-    "columns",
-    "plant",
-    "doors",
-    "beside",
-    "lowered",
-    "compiled",
-    "opengl",
-)
+LEAVES = ("errors", "notice", "sources", "files", "columns", "plant", "doors", "beside", "compiled", "opengl")
 """Modules of the root package that everybody may import; each may import those before it."""
 
 FOLDERS = {
@@ -116,6 +104,7 @@ ROOMS = {
         "readings",
         "heard",
         "given",
+        "ahead",
         "thermal_touch",
         "engine",
         "wrappers",

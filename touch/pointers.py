@@ -57,7 +57,7 @@ def _chains(context, address, shape):
     return _array(_CHAIN, address, shape), _made
 
 
-def _array(kind, address, shape):
+def _array(kind: types.Type, address: types.Type, shape: Any) -> Any:
     return types.Array(kind, shape.count if isinstance(shape, types.BaseTuple) else 1, "C")(address, shape)
 
 

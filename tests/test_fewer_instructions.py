@@ -1,4 +1,4 @@
-"""What lowered.py makes of elements and loops is what Python does."""
+"""Elements of arrays and loops, which become fewer instructions than numba makes of them, do what Python does."""
 
 import gc
 import weakref
