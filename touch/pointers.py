@@ -58,7 +58,7 @@ def _chains(context, address, shape):
 
 
 def _array(kind: types.Type, address: types.Type, shape: Any) -> Any:
-    return types.Array(kind, shape.count if isinstance(shape, types.BaseTuple) else 1, "C")(address, shape)
+    return types.Array(kind, getattr(shape, "count", 1), "C")(address, shape)
 
 
 def _made(context, builder, signature, arguments):
