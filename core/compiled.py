@@ -13,7 +13,6 @@ import glob
 import hashlib
 import inspect
 import logging
-import operator
 import os
 import pickle
 import types
@@ -24,9 +23,7 @@ from typing import Any, cast
 
 import numba
 import numpy as np
-from llvmlite import ir as llvm
-from numba.core import cgutils, event, ir
-from numba.core.base import BaseContext
+from numba.core import event, ir
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
@@ -34,8 +31,6 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.environment import lookup_environment
 from numba.core.extending import _Intrinsic
-from numba.core.imputils import impl_ret_borrowed
-from numba.core.lowering import Lower
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
@@ -43,7 +38,6 @@ from numba.core.sigutils import normalize_signature
 from numba.core.targetconfig import TargetConfig
 from numba.core.transforms import canonicalize_cfg
 from numba.core.types.functions import BaseFunction
-from numba.np.arrayobj import load_item, store_item
 
 from thermograsp.beside import start_beside, turn
 from thermograsp.errors import InvalidValueError
@@ -253,11 +247,8 @@ def _in_less_time() -> Iterator[None]:
     """While it lasts, Python collects no cycles: of what a compilation builds, it would search all a thousand times
     and find little. numba's options, which it compares tens of thousands of times, make their dictionaries at once in
     place of calling a property for each. numba finds only once what an operator makes of numbers and arrays: at each
-    place it would try all that the operator can mean, for dates too. After each of its passes it finds no
-    variables that only generators and Python's objects need. Elements of arrays, loops over a range and the
-    ends of variables that are not used any more become fewer instructions, which do the same to the last bit:
-    to compile takes as long as there are instructions, and most of ours were of these. And numba takes no
-    times, which nobody reads."""
+    place it would try all that the operator can mean, for dates too. After each of its passes it finds no variables
+    that only generators and Python's objects need. And it takes no times, which nobody reads."""
     collects = gc.isenabled()
     calls: Any = BaseFunction
     call_type = calls.get_call_type
@@ -347,168 +338,11 @@ def _processed(self: Any, emit_dels: bool = False, extend_lifetimes: bool = Fals
     found.variable_lifetime, found.generator_info = VariableLifetime(found.blocks), None
 
 
-_FUNCTION, _DELETED = BaseContext.get_function, Lower.delvar
-_RANGES = numba.types.range_state64_type, numba.types.range_iter64_type
-
-
-def _lowered(self: Any, fn: Any, sig: Any, _firstcall: bool = True) -> Any:
-    """BaseContext.get_function, which says how a function is told in instructions."""
-    key = getattr(fn, "typing_key", fn)
-    known = _KNOWN.get(key) if isinstance(key, str) or callable(key) else None
-    make = None if known is None else known(self, sig.args)
-    if make is None:
-        return _FUNCTION(self, fn, sig, _firstcall)
-    return lambda builder, args, loc=None: make(self, builder, sig, args)
-
-
-def _deleted(self: Any, name: str) -> None:
-    """Lower.delvar, which forgets a variable. One that nobody counts is left as it is."""
-    kind = self.typeof(name)
-    if self.context.enable_nrt and self.context.data_model_manager[kind].contains_nrt_meminfo():
-        _DELETED(self, name)
-        return
-    if name not in self._blk_local_varmap and not self._disable_sroa_like_opt:
-        self._singly_assigned_vars.discard(name)
-    self._alloca_var(name, kind)
-
-
-def _of_range(make: Any) -> Callable[[Any, Any], Any]:
-    """Takes loops over int64."""
-
-    def known(context: Any, args: Any) -> Any:
-        return make if args[0] in _RANGES else None
-
-    return known
-
-
-def _of_element(make: Any, values: int) -> Callable[[Any, Any], Any]:
-    """Takes indices that are all integers, into arrays whose axes lie one behind the other or have strides."""
-
-    def known(context: Any, args: Any) -> Any:
-        array, index = args[0], args[1]
-        if type(array) is not numba.types.Array or array.layout not in "CA" or context.enable_boundscheck:
-            return None
-        kinds = _kinds(index)
-        if not 0 < len(kinds) <= array.ndim or not all(
-            isinstance(kind, numba.types.Integer) for kind in kinds
-        ):
-            return None
-        whole = len(kinds) == array.ndim and isinstance(array.dtype, numba.types.Number)
-        # what is put is a number
-        serves = (
-            whole and isinstance(args[2], numba.types.Number) if values else whole or len(kinds) < array.ndim
-        )
-        return make if serves else None
-
-    return known
-
-
-def _kinds(index: Any) -> tuple[Any, ...]:
-    return tuple(cast(Any, index).types) if isinstance(index, numba.types.BaseTuple) else (index,)
-
-
-def _begun(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """An iterator at a range's start, with how many numbers are to come. A step is not 0."""
-    start, stop, step = (builder.extract_value(args[0], i) for i in range(3))
-    zero, one = llvm.Constant(start.type, 0), llvm.Constant(start.type, 1)
-    up = builder.icmp_signed(">", step, zero)
-    far = builder.select(up, builder.sub(stop, start), builder.sub(start, stop))
-    size = builder.select(up, step, builder.neg(step))
-    count = builder.add(builder.sdiv(builder.sub(far, one), size), one)
-    count = builder.select(builder.icmp_signed(">", far, zero), count, zero)
-    found = llvm.Constant(context.get_value_type(sig.return_type), llvm.Undefined)
-    for place, part in enumerate((_kept(builder, start), stop, step, _kept(builder, count))):
-        found = builder.insert_value(found, part, place)
-    return found
-
-
-def _kept(builder: Any, value: Any) -> Any:
-    at = cgutils.alloca_once(builder, value.type)
-    builder.store(value, at)
-    return at
-
-
-def _next(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """The next number and whether there is one. It counts on behind the last, which nobody looks at."""
-    at, _, step, counted = (builder.extract_value(args[0], i) for i in range(4))
-    number, count = builder.load(at), builder.load(counted)
-    builder.store(builder.sub(count, llvm.Constant(count.type, 1), flags=["nsw"]), counted)
-    builder.store(builder.add(number, step), at)
-    found = llvm.Constant(context.get_value_type(sig.return_type), llvm.Undefined)
-    found = builder.insert_value(found, number, 0)
-    return builder.insert_value(found, builder.icmp_signed(">", count, llvm.Constant(count.type, 0)), 1)
-
-
-def _taken(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """An element, or the part of an array that has the first few indices."""
-    kind, (array, index) = sig.args[0], args
-    at = _address(context, builder, kind, array, sig.args[1], index)
-    if not isinstance(sig.return_type, numba.types.Array):
-        return load_item(context, builder, kind, at)
-    model, made = (context.data_model_manager[each] for each in (kind, sig.return_type))
-    found = llvm.Constant(made.get_value_type(), llvm.Undefined)
-    for name in ("meminfo", "parent", "itemsize"):
-        found = made.set(builder, found, model.get(builder, array, name), name)
-    first, count = len(_kinds(sig.args[1])), context.get_constant(numba.types.intp, 1)
-    for name in ("shape", "strides"):
-        place = model.get_field_position(name)
-        for axis in range(first, kind.ndim):
-            part = builder.extract_value(array, (place, axis))
-            found = builder.insert_value(found, part, (made.get_field_position(name), axis - first))
-            count = builder.mul(count, part, flags=["nsw"]) if name == "shape" else count
-    found = made.set(builder, made.set(builder, found, count, "nitems"), at, "data")
-    return impl_ret_borrowed(context, builder, sig.return_type, found)
-
-
-def _put(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """An element's new number."""
-    kind, index, given = sig.args
-    at = _address(context, builder, kind, args[0], index, args[1])
-    store_item(context, builder, kind, context.cast(builder, args[2], given, kind.dtype), at)
-    return context.get_dummy_value()
-
-
-def _address(context: Any, builder: Any, kind: Any, array: Any, index: Any, value: Any) -> Any:
-    """Of what has these first indices."""
-    model, whole = context.data_model_manager[kind], isinstance(index, numba.types.BaseTuple)
-    shape, strides = (model.get_field_position(name) for name in ("shape", "strides"))
-    offset: Any = None
-    for axis, of in enumerate(_kinds(index)):
-        place = builder.extract_value(value, axis) if whole else value
-        place = context.cast(builder, place, of, numba.types.intp if of.signed else numba.types.uintp)
-        if of.signed and not isinstance(place, llvm.Constant):
-            size = builder.extract_value(array, (shape, axis))
-            behind = builder.icmp_signed("<", place, llvm.Constant(place.type, 0))
-            place = builder.select(behind, builder.add(place, size), place)
-        elif isinstance(place, llvm.Constant) and place.constant < 0:
-            place = builder.add(place, builder.extract_value(array, (shape, axis)))
-        if kind.layout != "C":
-            place = builder.mul(place, builder.extract_value(array, (strides, axis)))
-        elif offset is not None:
-            offset = builder.mul(offset, builder.extract_value(array, (shape, axis)))
-        offset = place if offset is None else builder.add(offset, place)
-    data = model.get(builder, array, "data")
-    if kind.layout != "C":
-        return cgutils.pointer_add(builder, data, offset)
-    for axis in range(len(_kinds(index)), kind.ndim):
-        offset = builder.mul(offset, builder.extract_value(array, (shape, axis)))
-    return builder.gep(data, [offset])
-
-
-_KNOWN: dict[Any, Callable[[Any, Any], Any]] = {
-    "getiter": _of_range(_begun),
-    "iternext": _of_range(_next),
-    operator.getitem: _of_element(_taken, 0),
-    operator.setitem: _of_element(_put, 1),
-}
-
 _PROCESSED = PostProcessor.run
 _QUICKER: tuple[tuple[Any, str, Any], ...] = (
     (TargetConfig, "values", _values),
     (ir.Inst, "_rec_list_vars", _variables),
     (PostProcessor, "run", _processed),
-    (BaseContext, "get_function", _lowered),
-    (Lower, "delvar", _deleted),
     (event, "install_timer", lambda kind, callback: nullcontext()),
 )
 """What of numba is replaced while it compiles."""
