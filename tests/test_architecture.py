@@ -104,6 +104,7 @@ ROOMS = {
         "readings",
         "heard",
         "given",
+        "ahead",
         "thermal_touch",
         "engine",
         "wrappers",

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numba import carray, types  # pyright: ignore[reportPrivateImportUsage]
+from numba import types  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
@@ -49,6 +49,19 @@ def hearer() -> Callable[[int], int]:
     return hear.compile((types.int64,))
 
 
+def compile_hearing() -> None:
+    """Compiles what a Hearing needs."""
+    _functions()
+    hearer()
+
+
+def compile_record_hearing() -> None:
+    """Compiles what a RecordHearing needs."""
+    _sensing()
+    _of_samples()
+    hear_record.compile((types.int64,) * 4)
+
+
 @cache
 def _functions() -> tuple[int, int, int]:
     return entry(read_contacts, 4), *_of_samples()
@@ -85,7 +98,7 @@ class RecordHearing:
         return int(self._heard[0])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def _close(advance, heat, touches, substeps, taken, of_reading, close, electronics):
     """What hear returns at a sample's end. Addresses and sizes as in Hearing."""
     if heat == 0 or called(advance, heat, touches, substeps[0], 0) != 0:
@@ -98,14 +111,14 @@ def _close(advance, heat, touches, substeps, taken, of_reading, close, electroni
     return DUE * due + SPENT * called_two(close, electronics, due)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def hear_record(at, record_at, first, count):
     """The substeps first to count - 1 of a record at that address, or those up to the end of the first sample after
     which something is to be done, as `hear` tells it. at: a RecordHearing's address."""
-    entries = carray(words(at), 15)
-    last, step = carray(floats(entries[0]), entries[5]), carray(floats(entries[1]), 2)
-    substeps, taken = carray(words(entries[2]), 1), carray(words(entries[3]), 1)
-    heard = carray(words(entries[4]), 1)
+    entries = words(at, 15)
+    last, step = floats(entries[0], entries[5]), floats(entries[1], 2)
+    substeps, taken = words(entries[2], 1), words(entries[3], 1)
+    heard = words(entries[4], 1)
     heard[0] = first
     while heard[0] < count:
         begun, heard[0] = heard[0], min(heard[0] + entries[10] - substeps[0], count)
@@ -124,21 +137,21 @@ def hear_record(at, record_at, first, count):
     return NOTHING
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def hear(at):
     """To be called after a step. at: a Hearing's address."""
-    entries = carray(words(at), _LENGTH)
+    entries = words(at, _LENGTH)
     last, step, now = (
-        carray(floats(entries[_LAST]), 1),
-        carray(floats(entries[_STEP]), 2),
-        carray(floats(entries[_NOW]), 1),
+        floats(entries[_LAST], 1),
+        floats(entries[_STEP], 2),
+        floats(entries[_NOW], 1),
     )
     if not abs(now[0] - last[0] - step[0]) <= step[1]:
         return ELSEWHERE
     last[0] = now[0]
-    substeps, taken = carray(words(entries[_SUBSTEPS]), 1), carray(words(entries[_TAKEN]), 1)
+    substeps, taken = words(entries[_SUBSTEPS], 1), words(entries[_TAKEN], 1)
     substeps[0] += 1
-    contacts = carray(integers(entries[_CONTACTS]), 1)[0]
+    contacts = integers(entries[_CONTACTS], 1)[0]
     if contacts > 0 and called(entries[_READ], contacts, 1, entries[_MEMORY], entries[_READER]) == 0:
         return BROKEN
     if substeps[0] < entries[_OF_SAMPLE]:

@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
@@ -295,29 +294,29 @@ class Electronics:
         return TouchReading(time.copy(), broken.copy(), numbers, layout)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def close_sample(entries_at, due):
     """Adds a sample's forces to those of the reading and starts their sums anew; the converter's next voltages. due: 1
     makes the reading too. entries_at: the address of Electronics' table. Returns 1 where noise has run out, else 0."""
-    entries = carray(words(entries_at), 22)
+    entries = words(entries_at, 22)
     worlds, tips, targets, sensors, objects = entries[17], entries[18], entries[19], entries[20], entries[21]
     rows = worlds * sensors
-    touches = carray(floats(entries[0]), (worlds, tips, targets, COLUMNS))
-    beside = carray(floats(entries[1]), (worlds, tips))
-    sent, drop = carray(floats(entries[2]), (rows, 1, 1)), carray(floats(entries[3]), (worlds, sensors))
-    warmth = carray(floats(entries[4]), (worlds, objects))
+    touches = floats(entries[0], (worlds, tips, targets, COLUMNS))
+    beside = floats(entries[1], (worlds, tips))
+    sent, drop = floats(entries[2], (rows, 1, 1)), floats(entries[3], (worlds, sensors))
+    warmth = floats(entries[4], (worlds, objects))
     pressed, off = (
-        carray(floats(entries[5]), (worlds, tips, targets)),
-        carray(floats(entries[6]), (worlds, tips)),
+        floats(entries[5], (worlds, tips, targets)),
+        floats(entries[6], (worlds, tips)),
     )
-    filtered, last = carray(floats(entries[8]), (rows, 1)), carray(floats(entries[9]), (rows, 1))
+    filtered, last = floats(entries[8], (rows, 1)), floats(entries[9], (rows, 1))
     ahead, at = (
-        carray(floats(entries[10]), (worlds, NOISE_BLOCK, sensors)),
-        carray(words(entries[11]), worlds),
+        floats(entries[10], (worlds, NOISE_BLOCK, sensors)),
+        words(entries[11], worlds),
     )
-    drawn, sampled = carray(floats(entries[12]), (rows, 1, 1)), carray(floats(entries[13]), (rows, 1, 1))
-    voltage = carray(floats(entries[14]), (worlds, sensors, SAMPLES))
-    means = carray(floats(entries[16]), 2)
+    drawn, sampled = floats(entries[12], (rows, 1, 1)), floats(entries[13], (rows, 1, 1))
+    voltage = floats(entries[14], (worlds, sensors, SAMPLES))
+    means = floats(entries[16], 2)
     spent = 0
     for w in range(worlds):
         for f in range(tips):
@@ -334,9 +333,9 @@ def close_sample(entries_at, due):
         at[w] += 1
         if at[w] == NOISE_BLOCK:
             spent = 1
-    chain = carray(chains(entries[7]), rows)
+    chain = chains(entries[7], rows)
     # voltages under way: none
-    measure_rows(chain, filtered, last, carray(floats(entries[8]), (rows, 0, 1)), sent, drawn, sampled)
+    measure_rows(chain, filtered, last, floats(entries[8], (rows, 0, 1)), sent, drawn, sampled)
     for w in range(worlds):
         for s in range(sensors):
             for k in range(SAMPLES - 1):
@@ -344,11 +343,11 @@ def close_sample(entries_at, due):
             voltage[w, s, SAMPLES - 1] = sampled[w * sensors + s, 0, 0]
     if due == 1:
         size = sensors * (SAMPLES + 1) + 3 * tips + objects
-        _tell(voltage, drop, warmth, pressed, off, means, carray(floats(entries[15]), (worlds, size)))
+        _tell(voltage, drop, warmth, pressed, off, means, floats(entries[15], (worlds, size)))
     return spent
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _tell(voltage, drop, warmth, pressed, off, means, numbers):
     """Fills the numbers of a reading (Layout) and starts the sums anew. Fingertips on one another are noted with the
     first of the two."""

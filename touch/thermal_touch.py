@@ -23,6 +23,7 @@ from ..thermal import material as named_material
 from ..thermal.numerics import Array
 from ..thermal.readout import chain_numbers
 from ..thermal.stack import converter
+from .ahead import start_compiling
 from .contacts import ContactReader, sensor_places
 from .draw import draw_fingertips
 from .fixed_touch import FixedTouch, fixed_touch, pad_poses
@@ -123,6 +124,7 @@ class ThermalTouch:
         self._pads = pads(model, fingertips, self._shapes)
         self._glued = glued_elements(model, self._shapes, ambient)
         self._many, count = worlds is not None, int(worlds or 1)
+        start_compiling(recorded=self._many)
         self._materials = [tuple(shape.material for shape in self._shapes)] * count
         self._first = np.tile([shape.temperature for shape in self._shapes], (count, 1))
         self._ambient, self._chain = ambient, named_chain(chain)

@@ -67,7 +67,7 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
     positive("scale", scale)
     if pieces < 1 or int(pieces) != pieces:
         raise MeshError(f"pieces {pieces}: give a whole number, 1 for the convex hull")
-    compile_beside("thermograsp.envs.sensing.mesh_ahead", gas_conduction, crossed_above)
+    compile_beside("thermograsp.envs.sensing.mesh_ahead", gas_conduction.called(), crossed_above)
     surface = read_surface(str(path))
     mesh = trimesh.Trimesh(surface.vertices * scale, surface.faces, process=False)
     _check_size(path, mesh.extents, scale)

@@ -38,7 +38,7 @@ from ...thermal.contact import (
 from ...thermal.kernels import Footprint, Patches, Spot, TouchedBox, tip, tip_at, touched_box
 from ...thermal.network import workspace
 from ...thermal.numerics import port_residues
-from ...thermal.readout import CHAIN_NUMBERS, measure_rows
+from ...thermal.readout import compile_measuring
 from .kernel import _reading
 from .places import BOX_ROW, strayed
 
@@ -50,9 +50,9 @@ def start_compiling(boxes: bool) -> None:
     """Starts that process, where nothing of it is kept on disk and another processor is there (see compile_beside).
     boxes: all objects have networks from heat kernels, and need nothing of others."""
     if boxes:
-        compile_beside(__name__, gas_conduction, advance_fixed, by="compile_boxes_ahead")
+        compile_beside(__name__, gas_conduction.called(), advance_fixed, by="compile_boxes_ahead")
     else:
-        compile_beside(__name__, gas_conduction, advance_row)
+        compile_beside(__name__, gas_conduction.called(), advance_row)
 
 
 def compile_ahead() -> None:
@@ -62,7 +62,7 @@ def compile_ahead() -> None:
         0.01, np.zeros((1, 6), np.int64), np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 1), np.complex128)
     )
     _advance(advance_row, tables, 2, _made_by(workspace, types.int64, types.int64))
-    _readings()
+    compile_measuring()
 
 
 def compile_boxes_ahead() -> None:
@@ -71,7 +71,7 @@ def compile_boxes_ahead() -> None:
     port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
     _contacts()
     _advance(advance_fixed, no_fixed_tables(0.01), 1, _made_by(fixed_room, types.int64))
-    _readings()
+    compile_measuring()
     strayed(
         np.zeros(1, BOX_ROW), np.zeros((1, 1, 2)), np.zeros((1, 2, 3)), 1, _SIDE, np.zeros((1, 2), np.int64)
     )
@@ -99,16 +99,6 @@ def _contacts() -> None:
     _made_by(solid_conduction, law, types.float64, types.float64)
     pad = types.NestedArray(types.float64, (1,))
     _made_by(beside_face, numba.from_dtype(CONTACT_LAW), pad, types.float64, _VECTOR, _VECTOR)
-
-
-def _readings() -> None:
-    """The electronics."""
-    chains, matrix, cube = (
-        numba.typeof(np.zeros(1, CHAIN_NUMBERS)),
-        types.float64[:, ::1],
-        types.float64[:, :, ::1],
-    )
-    measure_rows.compile((chains, matrix, matrix, cube, cube, cube, cube))
 
 
 def _advance(step: Any, tables: Any, contacts: int, room: types.Type) -> None:

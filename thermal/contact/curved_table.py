@@ -209,7 +209,7 @@ def _fill(law, resistance, forces, aside, along, values, shares):
                 shares[k, i, j, 2] = 0.0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, borrows=True, error_model="numpy", forceinline=True)
 def curved_contact(table, force, aside, along):
     """(W/K, patch m2, its length m) at a force N > 0 on the pad, the crown that far m from the pad's middle, either
     sign; 0 where nothing conducts. table: of curved_table."""
@@ -245,7 +245,7 @@ def curved_contact(table, force, aside, along):
     return total, area, math.sqrt(area * long / broad) if broad > _THIN else long
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, borrows=True, error_model="numpy", forceinline=True)
 def curved_shares(table, force, aside, along, shares):
     """Fills shares (4,): by how much such a contact lies at an end of the face along both axes, and of the body."""
     i, u = _between(table[:PLACES], abs(aside))
@@ -263,7 +263,7 @@ def curved_shares(table, force, aside, along, shares):
             shares[n] += weight * table[first + n]
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _between(places, at):
     """(number of the place before, share of the way to the next)."""
     k = 0
@@ -272,7 +272,7 @@ def _between(places, at):
     return k, min((at - places[k]) / (places[k + 1] - places[k]), 1.0)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _even(table, at, u, v):
     """Between four places."""
     one = table[at] + v * (table[at + _VALUES] - table[at])
@@ -281,14 +281,14 @@ def _even(table, at, u, v):
     return one + u * (other - one)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _mixed(table, low, high, u, v, w):
     """Between four places at two forces."""
     one = _even(table, low, u, v)
     return one + w * (_even(table, high, u, v) - one)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _by_force(low, high, w, power):
     """What a contact conducts between two forces of a table."""
     ratio = math.exp(FORCE_STEP * power)

@@ -202,7 +202,7 @@ def contact(law, force, place):
     return area, force * share
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def flat_patch(law, area, place, shares):
     """m, the second side of a flat contact of that area m2 on the face; fills shares (4,) by which it lies at an end of
     the face along both sides, and at an end of the object (patch_place.py). place: as contact's."""
@@ -237,7 +237,7 @@ def conductance(law, pressure):
     return solid + law.gas / gap
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def beside_face(law, halves, force, place, areas):
     """W/(m2 K) where a flat object touches a pad beside the sensor's face, at a normal force N > 0 on the pad, whose
     own pressure is less there than on the face under a skin. law: pad_law's, of the pad's own surface. Fills areas (R,)

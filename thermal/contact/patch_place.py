@@ -19,7 +19,7 @@ NARROW = 1 - 1e-9
 """Of the sensor's width: contacts narrower than that have heat to spread."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def patch_offset(offset, length, width):
     """Share by which a contact of that length m lies at an end of the sensor's face, its middle offset m from the
     face's. Both ends count: their images follow one another at the sensor's width m."""
@@ -32,7 +32,7 @@ def patch_offset(offset, length, width):
     return min(math.log(aside) / near, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def patch_ends(middle, pad, length, side, width):
     """Share by which a contact of that length m lies at an end of what is touched, which is side m long: middle and pad
     (m) are the contact's middle and the pad's from its own. What the whole face of a pad there meets is 0."""

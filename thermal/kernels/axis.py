@@ -75,7 +75,7 @@ def wave_numbers(length, film):
     return waves
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def overlaps(nodes, jumps, order, length, waves, seen, out):
     """Fills out (F, M) with the functions' products with normalised eigenfunctions. seen: room (M,)."""
     out[:] = 0.0
@@ -108,7 +108,7 @@ def _sine(x):
     return (r + r * series) * (1 - 2 * (turns - 2 * np.floor(turns / 2)))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def images(one, order, other, other_order, same, length, film, tau, out):
     """Fills out (E one, E other) with the kernel's antiderivatives, of the orders in x and in x', at tau m2. What is
     linear in both is left out: no function over strips sees it. one, other: ascending. same: one is other."""
@@ -123,14 +123,14 @@ def images(one, order, other, other_order, same, length, film, tau, out):
     add_images(one, order, other, other_order, same, length, film, tau, out)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def ends_felt(one, other, length, tau):
     """Whether anything comes from one to the other by way of the axis' first end, and of its last; as in images."""
     reach = _REACH * 2 * math.sqrt(tau)
     return one[0] + other[0] <= reach, 2 * length - one[-1] - other[-1] <= reach
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def add_images(one, order, other, other_order, same, length, film, tau, out):
     """Adds to out what comes by way of the ends, as in images."""
     total = order + other_order
@@ -161,7 +161,7 @@ def add_images(one, order, other, other_order, same, length, film, tau, out):
                 out[j, i] = out[i, j]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def left_inside(places, length, film, tau, out):
     """Fills out (E,) with the antiderivative along the axis of what of heat that starts there is in it at tau m2, at a
     time at which eigenfunctions need not serve."""
@@ -204,7 +204,7 @@ def free_kernels(half, jumps, nodes, taus):
     return found
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def add_met(by, table, beside, same, done, out, t):
     """Adds to out (F one, F other, T), at number t, jumps (F one, E one) times the table times jumps (F other,
     E other). same: these are the same, and only the lower half is wanted. done: room (E other,)."""
@@ -225,7 +225,7 @@ def add_met(by, table, beside, same, done, out, t):
             out[f, g, t] += even + odd
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _free_strips(one, other, scale, out):
     """Fills out with the free kernel's antiderivative in x and x', by loops that become vectors."""
     fine = _FINE / scale
@@ -235,7 +235,7 @@ def _free_strips(one, other, scale, out):
             out[i, j] = -0.5 * (d + scale * _between(_TABLE, min(d * fine, _REACH * _FINE)))
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _strip_images(one, other, same, end, side, film, scale, out):
     """Adds to out what comes to strips by way of one end, at distances end + side (x + x')."""
     fine, reach, first = _FINE / scale, _REACH * scale, 0
@@ -258,7 +258,7 @@ def _strip_images(one, other, same, end, side, film, scale, out):
             out[j, i] = out[i, j]
 
 
-@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _soon(place, more):
     """At place _FINE y / scale, y from an end: the integral of erfc from y / scale on, and _lost of order 2 over the
     scale while more, film times scale, is at most 2 _FEW. That one is a series of the repeated integrals of erfc, which
@@ -299,7 +299,7 @@ def _beyond(d, side, scale, order):
     return 0.5 * scale * _between(_TABLE, r * _FINE)
 
 
-@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _between(table, place):
     """The table's value between two of its nodes."""
     k = int(place)

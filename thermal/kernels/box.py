@@ -343,14 +343,14 @@ def _fading(wave, tau):
     return math.exp(-wave * wave * tau)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _unseen(size, face, n, m, tau):
     """Whether patches n and m are on opposite faces, of which neither has felt the other by then to round-off."""
     axis = face[n] // 2
     return face[m] // 2 == axis and face[m] != face[n] and size[axis] * size[axis] > _UNSEEN * tau
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _felt(size, face, n, m, taus):
     """The number of the first time at which they have, as many as there are for never."""
     first = 0
@@ -359,7 +359,7 @@ def _felt(size, face, n, m, taus):
     return first
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _functions(term, orders, which, n):
     """The number of patch n's function along each of the box's axes."""
     f0 = term[which[0, n]] if orders[0, n] == 1 else 0

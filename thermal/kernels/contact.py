@@ -152,10 +152,17 @@ def _element_states(found, weight, moments, decay, least, slow, seen, drops, hea
     states = count + len(fast)
     rates, ports = np.empty(states), np.zeros((states, kept))
     drop, heat = np.empty(states), np.empty(states)
-    rates[:count], rates[count:], ports[:count, 0], ports[count:] = slow, fast, seen, fast_ports
-    drop[:count], heat[:count] = drops, heats
-    drop[count:] = least_row(moments, wanted[0], fast, fast_ports, weight, jumps[0], True)
-    heat[count:] = least_row(moments, wanted[1], fast, fast_ports, moments, jumps[1], True)
+    for k in range(count):
+        rates[k], ports[k, 0], drop[k], heat[k] = slow[k], seen[k], drops[k], heats[k]
+    for n in range(len(fast)):
+        rates[count + n] = fast[n]
+        for i in range(kept):
+            ports[count + n, i] = fast_ports[n, i]
+    for output in range(2):  # one call of it compiles sooner than two
+        into, errors = (drop, weight) if output == 0 else (heat, moments)
+        row = least_row(moments, wanted[output], fast, fast_ports, errors, jumps[output], True)
+        for n in range(len(fast)):
+            into[count + n] = row[n]
     return rates, ports, drop, heat
 
 
@@ -246,11 +253,15 @@ def rate_states(found, rates, least):
     """The same of residues found (N, N, K), which it writes over."""
     count, all_rates = len(found), len(rates)
     turn, room = np.zeros_like(found), np.empty((4, all_rates))
-    fading, ports = np.empty(count * all_rates), np.empty((count * all_rates, count))
     for i in range(count):
         turn[i, i] = 1.0
     turn_diagonal(found, turn, room)
-    kept = 0
+    kept = count * all_rates
+    for k in range(all_rates):
+        for i in range(count):
+            kept -= found[i, i, k] <= least * rates[k]
+    fading, ports = np.empty(kept), np.empty((kept, count))
+    n = 0
     for k in range(all_rates):
         share = least * rates[k]
         for i in range(count):
@@ -258,8 +269,8 @@ def rate_states(found, rates, least):
             if value <= share:
                 continue
             size = math.sqrt(value - share * share / value)
-            fading[kept] = rates[k]
+            fading[n] = rates[k]
             for j in range(count):
-                ports[kept, j] = size * turn[i, j, k]
-            kept += 1
-    return fading[:kept], ports[:kept]
+                ports[n, j] = size * turn[i, j, k]
+            n += 1
+    return fading, ports

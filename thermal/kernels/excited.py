@@ -117,7 +117,7 @@ def _excited(box, elements, areas, conductances, gram, evenness, orthonormal, ke
     return found
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _joined(both, box, elements, first, count, conducts, gram):
     """Fills both with the impedance K/W that contacts first .. first + count - 1 see, of W/K each."""
     known = len(gram)

@@ -362,7 +362,7 @@ def _fit(level: Resolution) -> _Fit:
     return _Fit(columns, np.ascontiguousarray(seen), inverse[:-1, -1].copy())
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _balanced(row, total, share):
     """Gives a row (K,) of heat its share of the total."""
     for _ in range(2):  # the second time it is what rounding has left of the total

@@ -120,7 +120,7 @@ def _inverses(columns, weight, ridges, scaled, size, inverse):
         _inverse(normal, ridges[which], inverse[which])
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _inverse(matrix, ridge, out):
     """Fills out with the inverse of a matrix that is symmetric and nowhere negative, plus a ridge on its diagonal."""
     count = len(matrix)
@@ -199,7 +199,7 @@ def _in_cone(solve, seen, inside):
             break
 
 
-@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _added(solve, pulled, free):
     """Adds a symmetric matrix' (K, K) product with pulled (K,) to free (K,)."""
     for m in range(len(pulled)):
@@ -207,7 +207,7 @@ def _added(solve, pulled, free):
             free[k] += solve[m, k] * pulled[m]
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _product(first, second, out):
     """out[m, i] = sum over r of first[i, r] second[m, r], of matrices (N, N, K)."""
     ports, rates = first.shape[1], first.shape[2]

@@ -20,7 +20,7 @@ _TINY = 1e-300  # beside a zero
 _UNSEEN = 1e-12  # of the largest eigenvalue, up to which one counts as none
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def dot(first, second):
     """The sum of two rows' products."""
     total = 0.0
@@ -29,7 +29,7 @@ def dot(first, second):
     return total
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def factor(matrix):
     """Turns the lower half of a positive definite matrix into its triangular factor, with 1 / its diagonal."""
     count = len(matrix)
@@ -41,7 +41,7 @@ def factor(matrix):
             matrix[p, j] = 1 / math.sqrt(left) if j == p else left * matrix[j, j]
 
 
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def solve_factored(lower, column):
     """Turns a column (N,) into the solution. lower: factor's."""
     count = len(column)
@@ -79,7 +79,7 @@ def solve_singular(matrix, column):
             column[j] += turn[i, j, 0] * along[i]
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def turn_diagonal(matrix, turn, room):
     """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
     which it adds to turn's rows. room: (4, K)."""
@@ -118,7 +118,7 @@ def turn_diagonal(matrix, turn, room):
                     _rotate(turn, p, m, q, m, cosine, sine)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _angle(first, second, between, cosine, sine):
     """Cosines and sines of the rotations that make between (K,) 0, and the diagonal after them; all in place."""
     for k in range(len(between)):
@@ -132,7 +132,7 @@ def _angle(first, second, between, cosine, sine):
         between[k] = 0.0
 
 
-@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _rotate(matrix, i, j, m, n, cosine, sine):
     for k in range(len(cosine)):
         a, b = matrix[i, j, k], matrix[m, n, k]

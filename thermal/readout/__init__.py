@@ -1,6 +1,6 @@
 """From a temperature drop to the voltage that a driver reports, and the thermostat behind the sensor."""
 
-from .kernel import CHAIN_NUMBERS, chain_numbers, measure_rows
+from .kernel import CHAIN_NUMBERS, chain_numbers, compile_measuring, measure_rows
 from .signal import (
     ADS1115,
     ADS1115_DIVIDER,
@@ -35,6 +35,7 @@ __all__ = [
     "Thermostat",
     "ThermostatState",
     "chain_numbers",
+    "compile_measuring",
     "ideal_thermostat",
     "measure",
     "measure_rows",

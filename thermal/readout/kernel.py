@@ -5,6 +5,7 @@ B: rows, F: fingertips, n: samples.
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 
 from thermograsp.compiled import njit
@@ -28,7 +29,7 @@ def chain_numbers(chain: SignalChain, seebeck: float, dt: float) -> np.ndarray:
     return np.array([numbers], CHAIN_NUMBERS)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def measure_rows(chains, filtered, last, late, drop, noise, voltage):
     """signal.measure for many rows with chains (B,) CHAIN_NUMBERS of their own: fills voltage (B, n, F) V from drop (B,
     n, F) K and noise (B, n, F), standard normal. The low-pass's filtered and last (B, F) V and the voltages under way,
@@ -52,3 +53,10 @@ def measure_rows(chains, filtered, last, late, drop, noise, voltage):
                     late[b, chain.delay - 1, f] = seen
                     seen = arriving
                 voltage[b, i, f] = seen
+
+
+def compile_measuring() -> None:
+    """Compiles measure_rows as Python calls it."""
+    chains, matrix = numba.typeof(np.zeros(1, CHAIN_NUMBERS)), numba.types.float64[:, ::1]
+    cube = numba.types.float64[:, :, ::1]
+    measure_rows.compile((chains, matrix, matrix, cube, cube, cube, cube))

@@ -78,7 +78,7 @@ def _geom(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float, fl
     return (0.0, 0.0, _WIDE, _WIDE)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def round_contact(bend, curve, sides, force, y, z):
     """(area m2 and force N on the face were it met in its middle, share of that area that is on it, how many times as
     long as broad it is) at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (4,) the
@@ -109,7 +109,7 @@ def round_contact(bend, curve, sides, force, y, z):
     return 4 * a * b * area, 4 * bend[2] * depth * a * b * load, share, max(longer, 1 / longer)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _depth(load, most, least, reach, width):
     """m at which the pressure over its stiffness is the load m3, over a rectangle of half sides m."""
     # what an ellipse, strips or the whole rectangle without its curvature would need: each is less
@@ -126,7 +126,7 @@ def _depth(load, most, least, reach, width):
     return depth
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _clipped(x, y):
     """Of a quarter of the unit disc in a rectangle x by y, at most 1: its area, and the integral of 1 - r^2 over it."""
     if x * x + y * y <= 1.0:

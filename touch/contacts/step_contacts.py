@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-from numba import carray  # pyright: ignore[reportPrivateImportUsage]
-
 from thermograsp.compiled import njit
 
 from ...thermal.contact import CURVED_TABLE
@@ -38,35 +36,35 @@ from .tilt import TILT
 from .views import VIEW
 
 
-@njit(cache=True, error_model="numpy", short_loops=True)
+@njit(cache=True, borrows=True, error_model="numpy", short_loops=True)
 def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite or a table could not be made."""
-    memory, entries = carray(words(memory_at), WORDS), carray(words(entries_at), 23)
+    memory, entries = words(memory_at, WORDS), words(entries_at, 23)
     tips, targets, part_count = entries[16], entries[17], entries[18]
     pyramidal, sides = entries[19], entries[21]
-    role = carray(words(entries[0]), entries[15])
-    pads = carray(floats(entries[1]), (tips, PAD))
-    parts = carray(words(entries[2]), (part_count, 4))
-    bend = carray(floats(entries[3]), (tips, BEND))
-    curve = carray(floats(entries[4]), (part_count, 3, CURVES))
-    pushed = carray(floats(entries[5]), (tips, part_count, 3))  # room for forces and moments
-    touches = carray(floats(entries[6]), (tips, targets, COLUMNS))
-    beside = carray(floats(entries[7]), tips)
-    law = carray(laws(entries[8]), (tips, part_count, 6))
-    curved = carray(words(entries[9]), (tips, part_count, sides, 1 + RINGS))
-    tables = carray(floats(entries[10]), (entries[20], CURVED_TABLE))
-    frames, spot = carray(floats(entries[11]), (tips, PLACED)), carray(floats(entries[12]), SPOT)
-    tilts = carray(floats(entries[13]), (tips, part_count, 3, TILT))
-    views = carray(floats(entries[14]), (part_count, sides, VIEW))
-    place = carray(words(memory[CONTACTS]), 1)[0]
-    numbers = carray(floats(place), (count, memory[STRIDE] // 8))
-    whole = carray(integers(place), (count, memory[STRIDE] // 4))
-    efc = carray(floats(carray(words(memory[FORCES]), 1)[0]), 0)  # as many as MuJoCo says
-    xpos, xmat = carray(floats(memory[XPOS]), (1, 3)), carray(floats(memory[XMAT]), (1, 9))
-    geom_xpos = carray(floats(memory[GEOM_XPOS]), (1, 3))
-    geom_xmat = carray(floats(memory[GEOM_XMAT]), (1, 9))
+    role = words(entries[0], entries[15])
+    pads = floats(entries[1], (tips, PAD))
+    parts = words(entries[2], (part_count, 4))
+    bend = floats(entries[3], (tips, BEND))
+    curve = floats(entries[4], (part_count, 3, CURVES))
+    pushed = floats(entries[5], (tips, part_count, 3))  # room for forces and moments
+    touches = floats(entries[6], (tips, targets, COLUMNS))
+    beside = floats(entries[7], tips)
+    law = laws(entries[8], (tips, part_count, 6))
+    curved = words(entries[9], (tips, part_count, sides, 1 + RINGS))
+    tables = floats(entries[10], (entries[20], CURVED_TABLE))
+    frames, spot = floats(entries[11], (tips, PLACED)), floats(entries[12], SPOT)
+    tilts = floats(entries[13], (tips, part_count, 3, TILT))
+    views = floats(entries[14], (part_count, sides, VIEW))
+    place = words(memory[CONTACTS], 1)[0]
+    numbers = floats(place, (count, memory[STRIDE] // 8))
+    whole = integers(place, (count, memory[STRIDE] // 4))
+    efc = floats(words(memory[FORCES], 1)[0], 0)  # as many as MuJoCo says
+    xpos, xmat = floats(memory[XPOS], (1, 3)), floats(memory[XMAT], (1, 9))
+    geom_xpos = floats(memory[GEOM_XPOS], (1, 3))
+    geom_xmat = floats(memory[GEOM_XMAT], (1, 9))
     pos, frame = numbers[:, memory[POS] :], numbers[:, memory[FRAME] :]
     geom, dim, address = whole[:, memory[GEOM] :], whole[:, memory[DIM]], whole[:, memory[EFC]]
     weight = float(substeps)
@@ -115,35 +113,37 @@ def read_contacts(count, substeps, memory_at, entries_at):
     return 1
 
 
-@njit(cache=True, error_model="numpy", short_loops=True)
+@njit(cache=True, borrows=True, error_model="numpy", short_loops=True)
 def sense_contacts(record_at, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `sensing`.
     Returns 1, and 0 where a table could not be made."""
-    entries = carray(words(entries_at), 37)
+    entries = words(entries_at, 37)
     worlds, size, pairs, poses, geoms = entries[25], entries[26], entries[27], entries[28], entries[29]
     tips, part_count, targets, sides = entries[30], entries[31], entries[32], entries[34]
-    record = carray(floats(record_at), (worlds, entries[36], size))
-    pair, pose = carray(words(entries[0]), (pairs, 3)), carray(words(entries[1]), (poses, 3))
-    placed = carray(words(entries[2]), (geoms, 2))
-    turns, offsets = carray(floats(entries[3]), (geoms, 9)), carray(floats(entries[4]), (geoms, 3))
-    pads, parts = carray(floats(entries[5]), (tips, PAD)), carray(words(entries[6]), (part_count, 4))
-    which = carray(words(entries[8]), worlds)
-    kinds = which.max() + 1
-    law = carray(laws(entries[7]), (kinds, tips, part_count, 6))
-    curved = carray(words(entries[19]), (kinds, tips, part_count, sides, 1 + RINGS))
-    tables = carray(floats(entries[20]), (entries[33], CURVED_TABLE))
-    views = carray(floats(entries[24]), (part_count, sides, VIEW))
-    tilts = carray(floats(entries[23]), (kinds, tips, part_count, 3, TILT))
-    frames, spot = carray(floats(entries[21]), (tips, PLACED)), carray(floats(entries[22]), SPOT)
-    bend = carray(floats(entries[9]), (tips, BEND))
-    curve = carray(floats(entries[10]), (part_count, 3, CURVES))
-    pushed = carray(floats(entries[11]), (tips, part_count, 3))  # room for forces and moments
+    record = floats(record_at, (worlds, entries[36], size))
+    pair, pose = words(entries[0], (pairs, 3)), words(entries[1], (poses, 3))
+    placed = words(entries[2], (geoms, 2))
+    turns, offsets = floats(entries[3], (geoms, 9)), floats(entries[4], (geoms, 3))
+    pads, parts = floats(entries[5], (tips, PAD)), words(entries[6], (part_count, 4))
+    which = words(entries[8], worlds)
+    kinds = 1
+    for w in range(worlds):
+        kinds = max(kinds, which[w] + 1)
+    law = laws(entries[7], (kinds, tips, part_count, 6))
+    curved = words(entries[19], (kinds, tips, part_count, sides, 1 + RINGS))
+    tables = floats(entries[20], (entries[33], CURVED_TABLE))
+    views = floats(entries[24], (part_count, sides, VIEW))
+    tilts = floats(entries[23], (kinds, tips, part_count, 3, TILT))
+    frames, spot = floats(entries[21], (tips, PLACED)), floats(entries[22], SPOT)
+    bend = floats(entries[9], (tips, BEND))
+    curve = floats(entries[10], (part_count, 3, CURVES))
+    pushed = floats(entries[11], (tips, part_count, 3))  # room for forces and moments
     # room for the poses of the bodies and geoms, as many as the model has
-    xpos, xmat = carray(floats(entries[12]), (1, 3)), carray(floats(entries[13]), (1, 9))
-    geom_xpos, geom_xmat = carray(floats(entries[14]), (1, 3)), carray(floats(entries[15]), (1, 9))
-    touches = carray(floats(entries[16]), (worlds, tips, targets, COLUMNS))
-    beside, broken = carray(floats(entries[17]), (worlds, tips)), carray(flags(entries[18]), worlds)
+    xpos, xmat = floats(entries[12], (1, 3)), floats(entries[13], (1, 9))
+    geom_xpos, geom_xmat = floats(entries[14], (1, 3)), floats(entries[15], (1, 9))
+    touches = floats(entries[16], (worlds, tips, targets, COLUMNS))
+    beside, broken = floats(entries[17], (worlds, tips)), flags(entries[18], worlds)
     for w in range(worlds):
         kind = which[w]
         if not _sense_world(

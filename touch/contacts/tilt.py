@@ -56,7 +56,7 @@ def tilt_row(
     return (turn, soft, 0.0, float(law["mean_gap"]), *sizes)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def tilted(tilt, force, slope, middle):
     """(share of the line, force N on it) of a rod under a force N > 0. slope: tangent of the angle between the rod and
     the pad, above 0 where its axis leads away from it; middle: m, the pad's middle from the rod's along the pad."""

@@ -143,7 +143,7 @@ def stacked_views(model: mujoco.MjModel, geoms: Sequence[int], others: int) -> t
     return views, counts
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def viewed(views, count, normal, place, half_face):
     """(number of the view, m along its two axes from where the face begins to meet the mesh, at least 0). normal (3,)
     and middle, place (3,) m, of the pad in the geom's frame."""

@@ -6,7 +6,6 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact and fields
 from __future__ import annotations
 
 import numpy as np
-from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 
 from thermograsp.compiled import njit
 
@@ -107,74 +106,74 @@ def settle(
     return moved, outdated
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def sample(entries_at, touches_at, substeps, settled):
     """One step of every world; first, unless it is settled, `settle`, and no step where contacts are not where they
     were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
     many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
-    entries = carray(words(entries_at), TABLE)
+    entries = words(entries_at, TABLE)
     worlds, tips, objects, contacts, lanes = entries[40], entries[41], entries[42], entries[57], entries[58]
     targets = tips + objects
     touches, widths = (
-        carray(floats(touches_at), (worlds, tips, targets, COLUMNS)),
-        carray(floats(entries[1]), lanes),
+        floats(touches_at, (worlds, tips, targets, COLUMNS)),
+        floats(entries[1], lanes),
     )
     if settled == 0:
         moved, stale = settle(
             touches,
-            carray(floats(entries[0]), (objects, 18)),
+            floats(entries[0], (objects, 18)),
             widths,
-            carray(floats(entries[2]), lanes),
-            carray(words(entries[3]), (worlds, tips, objects)),
-            carray(floats(entries[4]), (worlds, tips, objects, 2)),
-            carray(words(entries[5]), (worlds, tips, objects)),
-            carray(floats(entries[6]), (worlds, tips, objects, 2)),
-            carray(words(entries[7]), (worlds, tips, objects)),
-            carray(floats(entries[8]), (worlds, tips, objects, 2)),
-            carray(flags(entries[9]), (worlds, contacts, targets)),
-            carray(flags(entries[10]), worlds),
-            carray(words(entries[36]), tips),
+            floats(entries[2], lanes),
+            words(entries[3], (worlds, tips, objects)),
+            floats(entries[4], (worlds, tips, objects, 2)),
+            words(entries[5], (worlds, tips, objects)),
+            floats(entries[6], (worlds, tips, objects, 2)),
+            words(entries[7], (worlds, tips, objects)),
+            floats(entries[8], (worlds, tips, objects, 2)),
+            flags(entries[9], (worlds, contacts, targets)),
+            flags(entries[10], worlds),
+            words(entries[36], tips),
         )
         if moved or stale:
             return moved + stale
     states, rates = entries[50], entries[53]
-    decays = carray(floats(entries[22]), (3, rates))
+    decays = floats(entries[22], (3, rates))
     _march(
-        carray(floats(entries[32]), 1)[0],
+        floats(entries[32], 1)[0],
         substeps,
         entries[43],
         touches,
-        carray(floats(entries[11]), (worlds, tips)),
-        carray(words(entries[12]), (worlds, entries[44])),
-        carray(words(entries[13]), entries[45]),
-        carray(words(entries[14]), entries[46]),
-        carray(floats(entries[15]), entries[47]),
-        carray(floats(entries[16]), entries[48]),
-        carray(floats(entries[17]), entries[54] * PACE),
-        carray(floats(entries[18]), (entries[49], states)),
-        carray(floats(entries[19]), (worlds, objects)),
-        carray(floats(entries[20]), (tips, entries[51])),
-        carray(words(entries[21]), (worlds, targets)),
+        floats(entries[11], (worlds, tips)),
+        words(entries[12], (worlds, entries[44])),
+        words(entries[13], entries[45]),
+        words(entries[14], entries[46]),
+        floats(entries[15], entries[47]),
+        floats(entries[16], entries[48]),
+        floats(entries[17], entries[54] * PACE),
+        floats(entries[18], (entries[49], states)),
+        floats(entries[19], (worlds, objects)),
+        floats(entries[20], (tips, entries[51])),
+        words(entries[21], (worlds, targets)),
         decays[0],
         decays[1],
         decays[2],
-        carray(floats(entries[23]), (entries[52], 2, 2, STEPS, STEPS, rates)),
-        carray(words(entries[24]), (worlds, lanes, targets, 2)),
+        floats(entries[23], (entries[52], 2, 2, STEPS, STEPS, rates)),
+        words(entries[24], (worlds, lanes, targets, 2)),
         widths,
-        carray(words(entries[37]), contacts),
-        carray(floats(entries[25]), (worlds, targets, states)),
-        carray(floats(entries[25]), worlds * targets * states),
-        carray(floats(entries[26]), (worlds, lanes, targets, rates)),
-        carray(floats(entries[27]), (worlds, lanes, targets)),
-        carray(floats(entries[28]), worlds),
-        carray(floats(entries[29]), (worlds, tips)),
-        carray(flags(entries[30]), targets),
-        carray(floats(entries[31]), (worlds, objects)),
-        carray(floats(entries[33]), (contacts * targets * entries[43], rates)),
-        carray(floats(entries[34]), entries[55]),
-        carray(floats(entries[35]), 4),
-        carray(floats(entries[38]), (lanes - tips, STEPS, 2)),
-        carray(floats(entries[39]), (contacts * targets * entries[43], rates)),
+        words(entries[37], contacts),
+        floats(entries[25], (worlds, targets, states)),
+        floats(entries[25], worlds * targets * states),
+        floats(entries[26], (worlds, lanes, targets, rates)),
+        floats(entries[27], (worlds, lanes, targets)),
+        floats(entries[28], worlds),
+        floats(entries[29], (worlds, tips)),
+        flags(entries[30], targets),
+        floats(entries[31], (worlds, objects)),
+        floats(entries[33], (contacts * targets * entries[43], rates)),
+        floats(entries[34], entries[55]),
+        floats(entries[35], 4),
+        floats(entries[38], (lanes - tips, STEPS, 2)),
+        floats(entries[39], (contacts * targets * entries[43], rates)),
         entries[56],
     )
     return 0

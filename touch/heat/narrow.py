@@ -102,7 +102,7 @@ def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:
     return np.broadcast_to(ratio[..., None] * impedance, (2, 2, *ratio.shape, len(impedance)))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, borrows=True, error_model="numpy")
 def spread(own, other, width, area, length, aside, ends, root):
     """Fills root (K,) with the b_k of a contact of that area m2 and length m, along the second axis, under a sensor of
     that width m. own, other: of narrow_table, of the pad and of what it touches; aside, ends: (2,) the shares by which
@@ -122,7 +122,7 @@ def spread(own, other, width, area, length, aside, ends, root):
     return True
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def seen(width, area, length):
     """Where a contact stands in narrow_tables: of both widths the number of the one before and the share of the way to
     the next; numbers of -1 for one that is as wide as the face."""
@@ -135,7 +135,7 @@ def seen(width, area, length):
     return i, u, j, v
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def add_squares(table, i, u, j, v, shares, squares):
     """Adds the b_k^2 of a table to squares (K,), of a contact as `seen` tells it. shares: (2,) by which it lies at an
     end."""
@@ -174,7 +174,7 @@ def lean(own, other, width, area, length, aside, ends, shares, curved, root, res
     return True
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _between(ratio):
     """(number of the width before, share of the way to the next) of a width that is a ratio-th of the sensor's: evenly
     by its inverse, to which the impedance is proportional at first."""
@@ -184,7 +184,7 @@ def _between(ratio):
     return at, min((ratio / size - 1) / (_ROOT - 1), 1.0)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _of(share, end):
     share = min(max(share, 0.0), 1.0)
     return share if end == 1 else 1 - share

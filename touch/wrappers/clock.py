@@ -23,7 +23,6 @@ from typing import Any
 import mujoco
 import numpy as np
 from llvmlite import ir
-from numba import carray  # pyright: ignore[reportPrivateImportUsage]
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 
@@ -161,8 +160,8 @@ def _works(clock: _Clock) -> bool:
 @njit(cache=True, error_model="numpy")
 def look(table_at):
     """What the clock does where the time has advanced. table_at: the address of its table."""
-    entries = carray(words(table_at), _LENGTH)
-    now, seen = carray(floats(entries[_NOW]), 1), carray(floats(entries[_SEEN]), 2)
+    entries = words(table_at, _LENGTH)
+    now, seen = floats(entries[_NOW], 1), floats(entries[_SEEN], 2)
     seen[0] = now[0]
     found = ELSEWHERE
     if entries[_HEARING] != 0:
