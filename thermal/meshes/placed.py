@@ -45,7 +45,8 @@ from ..matter import SensorStack
 from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
-from .beneath import Beneath, beneath
+from ..unrolled import Face, LocalKernel, Part, local_kernel
+from .beneath import ROUND, Beneath, beneath
 from .film import Film, film_of, filmed, held_apart
 from .grid import MeshGridding
 from .modes import BodyModes, body_modes
@@ -100,6 +101,7 @@ class Placed:
     below: Beneath
     seen: np.ndarray
     impedance: np.ndarray | None
+    local: LocalKernel | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,17 +163,26 @@ def face_impedance(
     if len(body.parts) == 1:
         over = _over(taus, modes.rates[-1] - modes.rates[0])[:, None, None]
         local = _local(below, one, taus, body.parts[0].material.conductivity, inside) / modes.capacity
+        early = over[:, 0, 0] < 1
+        for n, place in enumerate(places):
+            if place.local is not None:
+                ports = slice(n * LEVEL.patterns, (n + 1) * LEVEL.patterns)
+                local[early, ports, ports] = place.local.kernel(taus[early]) / modes.capacity
         kernel = over * kernel + (1 - over) * local
+    kernel_first = kernel[0].copy()
     kernel -= _faded(slow.held.T, slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
     count = LEVEL.patterns
     at = [slice(n * count, (n + 1) * count) for n in range(len(places))]
     for n, place in enumerate(places):
-        if place.impedance is None:
+        if place.local is not None:
+            first = kernel_first[at[n], at[n]]
+            impedance[:, at[n], at[n]] += first * np.sqrt(np.pi * modes.diffusivity * TIMES[0]) * before(modes.diffusivity)
+        elif place.impedance is None:
             ports = np.arange(n * count, (n + 1) * count)
             impedance[:, ports, ports] += before(modes.diffusivity) / (modes.capacity * one.area)
-            continue
-        impedance[:, at[n], at[n]] = place.impedance
+        else:
+            impedance[:, at[n], at[n]] = place.impedance
     for n, m in combinations(range(len(places)), 2):
         if _close(places[n], places[m]):
             pair = _pair(body, patches[n], patches[m], stack, inside, level, cache)
@@ -256,17 +267,30 @@ def _placed(
     seen = _seen(modes, body.outside, below.placed, patterns) / np.sqrt(modes.capacity)
     rounds = film is not None and below.ends.min() < below.placed.half_width + _CORNER
     if below.plain and len(body.parts) == 1 and not rounds:
-        return Placed(below, seen, None)
+        return Placed(below, seen, None, None)
+    if len(body.parts) == 1 and np.abs(below.curvature).max() * below.placed.half_width <= ROUND:
+        face = Face(below.placed.centre, np.stack((*below.placed.sides, below.placed.normal)), np.where(np.abs(below.curvature) < 1e-3, 0.0, below.curvature))
+        triangles = face.local(body.outside)
+        wet = np.zeros(len(triangles), bool)
+        through = 0.0
+        if film is not None:
+            known = {each.tobytes() for each in np.round(film.triangles.mean(axis=1), 7)}
+            wet = np.array([each.tobytes() in known for each in np.round(body.outside.mean(axis=1), 7)])
+            through = film.conductance / film.area / body.parts[0].material.conductivity
+        last = 2 * max(_SWITCH, _TOLD / (modes.rates[-1] - modes.rates[0]))
+        local = local_kernel(face, [Part(triangles, wet, 1.0, 1.0, None)], below.placed.half_width, below.ends, below.depth, one, through, last)
+        if local is not None:
+            return Placed(below, seen, None, local)
     fine, slow = _fields(body, patch, stack, film, level), _slow(modes, seen, film)
     fading = slice(1 if film is None else 0, None)  # the body's mean is on both grids
     impedance = _impedance(fine.ports[fading].T, fine.rates[fading])
     impedance -= _impedance(slow.held[fading].T, slow.fades[fading])
-    return Placed(below, seen, impedance)
+    return Placed(below, seen, impedance, None)
 
 
 def _close(one: Placed, other: Placed) -> bool:
     """Whether one feels the other before the modes tell, where no box stands for the body beneath both."""
-    if one.impedance is None and other.impedance is None:
+    if all(each.impedance is None and each.local is None for each in (one, other)):
         return False
     apart = one.below.placed.centre - other.below.placed.centre
     return float(np.linalg.norm(apart)) < 2 * one.below.placed.half_width + _FELT
@@ -288,7 +312,7 @@ def _pair(
     first, second = (_placed(body, patch, stack, film, level, cache) for patch in (one, other))
     told, fading = [], slice(1 if film is None else 0, None)
     for place, patch, beside, turned in ((first, one, other, False), (second, other, one, True)):
-        if place.impedance is not None:
+        if place.impedance is not None or place.local is not None:
             fine = _fields(body, patch, stack, film, level)
             seen = fine.seen(body, beside, patterns)[fading].T
             between = _impedance(fine.ports[fading].T, fine.rates[fading], seen)
