@@ -45,9 +45,9 @@ from ..matter import SensorStack
 from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
-from ..unrolled import Face, LocalKernel, Part, local_kernel
+from ..unrolled import Face, LocalKernel, Part, filmed, local_kernel
 from .beneath import ROUND, Beneath, beneath
-from .film import Film, film_of, filmed, held_apart
+from .film import Film, film_of, held_apart
 from .grid import MeshGridding
 from .modes import BodyModes, body_modes
 from .network import PatchFields, patch_fields

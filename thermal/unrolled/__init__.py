@@ -5,7 +5,8 @@ A face that is curved a little is unrolled: cells are along it and along the wal
 """
 
 from .cells import Part
+from .filmed import filmed
 from .local import Fineness, LocalKernel, local_kernel
 from .rays import Face
 
-__all__ = ["Face", "Fineness", "LocalKernel", "Part", "local_kernel"]
+__all__ = ["Face", "Fineness", "LocalKernel", "Part", "filmed", "local_kernel"]

@@ -14,7 +14,8 @@ from ..surfaces import FACING, net_volumes
 from .rays import Face, Hits, cast
 
 _LEAST = 1e-4  # of a cell, less than which is nothing
-_SMALL = 0.25  # of a cell, as much as which it holds at least
+_FAST = 8.0
+_LENT = 0.5
 _ROUND = 0.05  # of the way to a round face's axis, that is left at least
 _ROUGH = 0.03  # of what is touched, that is not on the face
 _BIN = 50e-6  # m
@@ -46,6 +47,7 @@ class Cells(NamedTuple):
     sink: np.ndarray
     cover: np.ndarray
     top: np.ndarray
+    wet: bool
 
 
 def cells_beneath(
@@ -77,6 +79,8 @@ def cells_beneath(
     covered = area.sum()
     if not covered > 0 or (area * (np.abs(tops) > smooth)).sum() > _ROUGH * covered:
         return None
+    below = np.abs(hits[0].surfaces[..., 1]) == 2
+    under = bool((area * below).sum() > covered / 2)
     for each in hits:
         each.heights[...] -= shift[..., None]
     w = _down(hits, depth, half, first, growth, largest)
@@ -85,7 +89,7 @@ def cells_beneath(
     whole = np.minimum(whole, 1.0)
     bare = _wet(whole, *[sum(x) for x in zip(*wetted)], w, np.diff(along[0]) / 2, np.diff(along[1]) / 2)
     edges = along[0], along[1], w
-    return _joined(face, parts, edges, fills, whole, bare, film, touched)
+    return _joined(face, parts, edges, fills, whole, bare, film, touched, under, first)
 
 
 def _halves(edges: np.ndarray) -> np.ndarray:
@@ -197,7 +201,7 @@ def _mean(x: np.ndarray) -> np.ndarray:
     return (x[::2, ::2] + x[1::2, ::2] + x[::2, 1::2] + x[1::2, 1::2]) / 4
 
 
-def _joined(face, parts, edges, fills, whole, bare, film, touched) -> Cells:
+def _joined(face, parts, edges, fills, whole, bare, film, touched, under, first) -> Cells:
     x, y, z = (np.diff(e) for e in edges)
     middle = (edges[2][1:] + edges[2][:-1]) / 2
     around = np.maximum(1 + face.bend[:, None] * middle, _ROUND)  # (2, K), lengths along u and v there
@@ -215,7 +219,7 @@ def _joined(face, parts, edges, fills, whole, bare, film, touched) -> Cells:
     density = sum(part.capacity * s for part, s in zip(parts, shares, strict=True))
     cell = x[:, None, None] * y[:, None] * z * around[0] * around[1]
     amount = filled[held]
-    capacity = (density * cell)[held] * np.maximum(amount, _SMALL) / amount
+    capacity = (density * cell)[held]
     neighbours = np.repeat(np.arange(count)[:, None], 6, axis=1)
     links = np.zeros((count, 6))
     wide = np.full(whole.shape, 0.0)
@@ -250,9 +254,23 @@ def _joined(face, parts, edges, fills, whole, bare, film, touched) -> Cells:
         wet = wet[held]
         thick = np.broadcast_to(z, index.shape)[held] * amount
         sink = wet / (1 / film + thick / 2 / across)
+    fastest = _FAST * max(part.conductivity / part.capacity for part in parts) / first**2
+    _shared(capacity, neighbours, links, sink, fastest)
     heldw = whole > _LEAST
     last = np.where(heldw.any(axis=2), whole.shape[2] - 1 - np.argmax(heldw[..., ::-1], axis=2), -1)
     top = np.where(held.any(axis=2), held.shape[2] - 1 - np.argmax(held[..., ::-1], axis=2), -1)
     i, j = np.indices(top.shape)
     number = np.where(top >= 0, index[i, j, np.maximum(top, 0)], -1)
-    return Cells(edges, index, capacity, neighbours, links, sink, _mean(touched * (last >= 0)), number)
+    return Cells(edges, index, capacity, neighbours, links, sink, _mean(touched * (last >= 0)), number, under)
+
+
+def _shared(capacity, neighbours, links, sink, fastest) -> None:
+    """Cells that would change faster than that borrow heat capacity of the neighbours that they follow."""
+    need = 2 * (links.sum(axis=1) + sink) / fastest - capacity
+    small = np.flatnonzero(need > 0)
+    best = links[small].argmax(axis=1)
+    lender = neighbours[small, best]
+    lent = np.minimum(need[small], _LENT * capacity[lender])
+    capacity[small] += need[small]
+    total = np.bincount(lender, lent, len(capacity))
+    capacity -= np.minimum(total, _LENT * capacity)

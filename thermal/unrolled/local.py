@@ -16,16 +16,21 @@ import numpy as np
 from ..kernels import FUNCTIONS, NODES, Patches, Tip, basis_shares, basis_terms, box_kernel
 from ..numerics import graded_cells
 from .cells import Cells, Part, cells_beneath
+from .filmed import filmed
 from .fading import Fading, fading
-from .rays import Face
+from .rays import Face, cast
+
+_STEP = 0.1e-3  # m, between rays that look for what is not even
+_JUMP = 0.3
 
 
 class Fineness(NamedTuple):
     side: float = 0.5e-3
     first: float = 0.25e-3
-    growth: float = 0.6
+    growth: float = 0.45
     largest: float = 3e-3
     reach: float = 9e-3
+    least: float = 0.3e-3
 
 
 class LocalKernel(NamedTuple):
@@ -39,6 +44,7 @@ class LocalKernel(NamedTuple):
     jumps: np.ndarray
     diffusivity: float
     capacity: float
+    film: float
 
     def kernel(self, times: np.ndarray) -> np.ndarray:
         """(T, M, M) K/J."""
@@ -49,6 +55,8 @@ class LocalKernel(NamedTuple):
             self.size, 1.0, 1.0, 0.0, patches, self.jumps[None], basis_terms(count), 1, taus
         )
         exact = exact + np.outer(port, port)
+        if self.film > 0:
+            exact *= filmed(taus, self.size[2], self.film)[:, None, None]
         coarse = _box_on_cells(self.gridded, taus, count)
         turn = np.linalg.cholesky(exact) @ np.linalg.inv(np.linalg.cholesky(coarse))
         return turn @ self.fading.kernel(times) @ turn.transpose(0, 2, 1)
@@ -56,7 +64,7 @@ class LocalKernel(NamedTuple):
 
 def local_kernel(
     face: Face, parts: Sequence[Part], half: float, ends: np.ndarray, depth: float, tip: Tip, film: float, last: float,
-    fine: Fineness = Fineness(), planes=((), ()),
+    fine: Fineness = Fineness(),
 ) -> LocalKernel | None:
     """ends: (2, 2) m, seen along the normal, where the face ends; depth m."""
     outer = parts[0]
@@ -75,9 +83,13 @@ def local_kernel(
         if not b - a > 0.1 * wide:
             return None
         points = {-reach, reach, a, b, -low, high}
-        others = [p for p in planes[axis] if min(abs(p - q) for q in points) > 0.2e-3]
+        jumps = _jumps(face, parts, axis, (a + b) / 2, reach, depth)
+        others = [p for p in jumps if min(abs(p - q) for q in points) > 0.2e-3]
         breaks = sorted(points | set(others))
-        edges.append(graded_cells(breaks, {x: fine.side for x in (a, b)}, fine.growth, fine.largest))
+        sizes = {x: fine.side for x in (a, b)}
+        for at in others:
+            sizes[at] = min(fine.side, max(min(abs(at - q) for q in breaks if q != at) / 2, fine.least))
+        edges.append(graded_cells(breaks, sizes, fine.growth, fine.largest))
         spans.append((-low, high, a, b))
     cells = cells_beneath(
         face, parts, (edges[0], edges[1]), half, fine.reach, film, fine.first, fine.growth, fine.largest, 0.08 * half
@@ -105,12 +117,31 @@ def local_kernel(
     deep = min(depth, -w[0])
     w = w[(w <= 1e-12) & (w >= -deep - 0.1e-3)].copy()
     w[0], w[-1] = -deep, 0.0
-    gridded.append((*_line(w), np.eye(len(w) - 1)[-1:]))
+    wet = film / outer.conductivity if film > 0 and cells.wet else 0.0
+    gridded.append((*_line(w, wet), np.eye(len(w) - 1)[-1:]))
     jumps = -np.diff(np.pad(np.array(values), ((0, 0), (0, 0), (1, 1))), axis=2)
     size = (spans[0][1] - spans[0][0], spans[1][1] - spans[1][0], deep)
     middle = np.array([(s[2] + s[3]) / 2 - s[0] for s in spans])
     halves = np.array([(s[3] - s[2]) / 2 for s in spans])
-    return LocalKernel(faded, cells, tuple(gridded), size, middle, halves, np.array(values), jumps, diffusivity, outer.capacity)
+    return LocalKernel(faded, cells, tuple(gridded), size, middle, halves, np.array(values), jumps, diffusivity, outer.capacity, wet)
+
+
+def _jumps(face: Face, parts: Sequence[Part], axis: int, middle: float, reach: float, depth: float) -> list[float]:
+    """m along an axis of the face, where the body beneath gets thicker or thinner at once."""
+    places = np.arange(-reach, reach, _STEP) + _STEP / 3
+    thickness = np.zeros(len(places))
+    for part in parts:
+        if part.host is None:
+            across = places, np.array([1.3e-6])
+            hits = cast(face, part.triangles, np.where(part.wet, 2, 1), *across[:: 1 if axis == 0 else -1], 2 * reach)
+            heights = hits.heights.reshape(len(places), -1)
+            surfaces = hits.surfaces.reshape(len(places), -1)
+            top = np.where(surfaces[:, 0] > 0, heights[:, 0], np.nan)
+            bottom = np.where(surfaces[:, 1] < 0, heights[:, 1], -2 * reach)
+            thickness = np.fmax(thickness, top - bottom)
+    thickness = np.minimum(np.nan_to_num(thickness), reach)
+    step = np.abs(np.diff(thickness)) > _JUMP * np.minimum(thickness[1:], thickness[:-1]) + _STEP
+    return ((places[1:] + places[:-1]) / 2)[step].tolist()
 
 
 def _means(values: np.ndarray, edges: np.ndarray) -> np.ndarray:
@@ -143,7 +174,7 @@ def _ports(face: Face, cells: Cells, shares: np.ndarray, half: float) -> np.ndar
     return ports
 
 
-def _line(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _line(edges: np.ndarray, film: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) and fields (n, n), of cells along a line, of unit material."""
     size = np.diff(edges)
     link = 2 / (size[1:] + size[:-1])
@@ -153,6 +184,8 @@ def _line(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     matrix[i, i] += link
     matrix[i + 1, i + 1] += link
     matrix[i, i + 1] = matrix[i + 1, i] = -link
+    if film > 0:
+        matrix[0, 0] += 1 / (1 / film + size[0] / 2)
     rates, turn = np.linalg.eigh(root[:, None] * matrix * root)
     return np.maximum(rates, 0.0), root[:, None] * turn
 
