@@ -15,7 +15,7 @@ _SAMPLES = (1.0, 1.3, 1.7, 2.2, 3.0, 4.0)  # half widths from the middle at whic
 _BEND = 0.6  # of the half width, where the surface's height tells its curvature
 _ASIDE = np.array([1.1e-5, 0.7e-5])  # m, beside edges of triangles
 _ALONG, _LEVEL = 0.95, 0.3  # cosine to a face's normal, and half widths from it, for a patch to be on it
-_FLAT = 1e-3  # 1/m, curvature below which a face is as flat
+FLAT = 1e-3  # 1/m, curvature below which a face is as flat
 _EDGE = 1e-9  # of a triangle's side, that a line may lie beyond it
 ROUND = 0.33  # curvature times half width, up to which its terms of second order serve
 _UNSMOOTH = 0.08  # half widths, by which the surface may differ from its curvature's, as with large facets
@@ -77,7 +77,7 @@ class Beneath:
     def _unrolled(self, offset: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
         """Of a point (3,) m from the place, along its sides and its normal: how far it is along the curved face (2,) m
         and above it, m, and the face's normal there."""
-        bend = np.where(np.abs(self.curvature) < _FLAT, _FLAT, self.curvature)
+        bend = np.where(np.abs(self.curvature) < FLAT, FLAT, self.curvature)
         angles = np.arctan2(bend * offset[:2], 1 + bend * offset[2])
         angles = np.clip(angles, -1.0, 1.0)
         level = offset[2] + float(np.sum((1 - np.cos(angles)) / bend))

@@ -13,43 +13,46 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-_ERROR = 14.0  # -ln
+_ERROR = 14.0  # minus its logarithm, of what is left out
+_PORTS = 3
 
 
 class Fading(NamedTuple):
-    """fastest: 1/s. moments: (D, P, P)."""
+    """fastest: 1/s. moments: (D, P, P) K/J."""
 
     fastest: float
     moments: np.ndarray
 
     def kernel(self, times: np.ndarray) -> np.ndarray:
-        """(T, P, P) 1/(J/K)."""
-        z = times * self.fastest / 2
+        """(T, P, P) K/J at times s."""
         weights = np.zeros((len(times), len(self.moments)))
-        _weights(z, weights)
+        _weights(times * self.fastest / 2, weights)
         return np.tensordot(weights, self.moments, axes=1)
 
 
 def fading(
-    capacity: np.ndarray, neighbours: np.ndarray, links: np.ndarray, sink: np.ndarray, ports: np.ndarray, last: float
+    capacity: np.ndarray,
+    neighbours: np.ndarray,
+    links: np.ndarray,
+    sink: np.ndarray,
+    ports: np.ndarray,
+    last: float,
 ) -> Fading:
-    """ports: (N, P). last: s, until which."""
+    """capacity: (N,) J/K. neighbours: (N, 6), and links: (N, 6) W/K to them. sink: (N,) W/K. ports: (N, P), how each
+    port's flow enters the cells, of three ports at most. last: s, until when."""
     root = 1 / np.sqrt(capacity)
-    lost = links.sum(axis=1) + sink
-    diagonal = lost / capacity
-    fastest = 1.0 * float(((2 * links.sum(axis=1) + sink) / capacity).max())
-    # Gershgorin, by the roots of capacities
-    off = links * (root[:, None] * root[neighbours])
-    fastest = float((diagonal + off.sum(axis=1)).max())
-    half = max(2, math.ceil(math.sqrt(_ERROR * fastest * last) / 2 * 1.0) + 2)
+    diagonal = (links.sum(axis=1) + sink) / capacity
+    beside = links * root[:, None] * root[neighbours]
+    fastest = float((diagonal + beside.sum(axis=1)).max())  # Gershgorin's bound
+    half = math.ceil(math.sqrt(_ERROR * fastest * last) / 2) + 2
     scale = 4 / fastest
-    x = np.zeros((len(capacity), 3))
+    x = np.zeros((len(capacity), _PORTS))
     x[:, : ports.shape[1]] = root[:, None] * ports
     flat = np.zeros((2 * half + 1, 6))
-    _moments(scale * diagonal - 2, -scale * off, neighbours.astype(np.int32), x, half, flat)
+    _moments(scale * diagonal - 2, -scale * beside, neighbours.astype(np.int32), x, half, flat)
     count = ports.shape[1]
-    rows, columns = np.tril_indices(3)
-    moments = np.zeros((len(flat), 3, 3))
+    rows, columns = np.tril_indices(_PORTS)
+    moments = np.zeros((len(flat), _PORTS, _PORTS))
     moments[:, rows, columns] = moments[:, columns, rows] = flat
     return Fading(fastest, moments[:, :count, :count])
 

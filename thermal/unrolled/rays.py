@@ -1,4 +1,7 @@
-"""Rays down through a body's surfaces, across a curved face: where each of them is in material."""
+"""Rays down through a body's surfaces, across a curved face that is unrolled.
+
+F: triangles, A, B: rays along u and v.
+"""
 
 from __future__ import annotations
 
@@ -8,77 +11,83 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-_HITS = 24  # of a ray
+_HITS = 24  # of a ray, at most
 _BESIDE = 1.3  # of the rays' reach, beyond which nothing is hit
-_SIDEWAYS = 0.3  # of the way to the axis of a curved face, from which on a corner tells no angle
+_SIDEWAYS = 0.3  # of the way to a face's axis that is left above a corner, below which it tells no angle
+_SLACK = 1e-6  # m, by which a triangle may reach farther along the face than its corners
+_TWICE_BENT = 0.01  # of the rays' reach, the same where the face is curved both ways
 
 
 class Face(NamedTuple):
-    """A curved face, unrolled: u, v m along it from its middle, w m above it. centre: (3,) m. axes: (3, 3) rows are the
-    directions of u, v and w in the middle. bend: (2,) 1/m, curvature along u and v."""
+    """A curved face, unrolled: u, v m along it from its middle, w m above it. centre: (3,) m. axes: (3, 3), rows are the
+    directions of u, v and w in the middle. bend: (2,) 1/m, curvature along u and v, 0 or more than that of a face that
+    is as good as flat."""
 
     centre: np.ndarray
     axes: np.ndarray
     bend: np.ndarray
+
+    def seen(self, along: np.ndarray, axis: int) -> np.ndarray:
+        """m from the middle, seen along the normal there, of places along the face."""
+        bend = float(self.bend[axis])
+        return np.sin(bend * along) / bend if bend else along
+
+    def along(self, seen: float, axis: int) -> float:
+        """m along the face of a place that is seen at that distance."""
+        bend = float(self.bend[axis])
+        return float(np.arcsin(np.clip(bend * seen, -1.0, 1.0)) / bend) if bend else seen
 
     def local(self, triangles: np.ndarray) -> np.ndarray:
         """(F, 3, 3) m along the axes."""
         return (triangles - self.centre) @ self.axes.T
 
     def unrolled(self, points: np.ndarray) -> np.ndarray:
-        """(..., 2) m of u and v of points (..., 3) along the axes; not a number beyond the face's axis."""
+        """(..., 2) m of u and v of points (..., 3) m along the axes; not a number near the face's axis and beyond."""
         height = 1 + self.bend * points[..., 2:]
-        angles = np.arctan2(self.bend * points[..., :2], height)
         flat = self.bend == 0
+        angles = np.arctan2(self.bend * points[..., :2], height)
         along = np.where(flat, points[..., :2], angles / np.where(flat, 1.0, self.bend))
         return np.where(height > _SIDEWAYS, along, np.nan)
 
-    def seen(self, along: np.ndarray, axis: int) -> np.ndarray:
-        """m from the middle, seen along the normal there, of places along the face."""
-        bend = self.bend[axis]
-        return np.sin(bend * along) / bend if bend else along
-
-    def along(self, seen: float, axis: int) -> float:
-        """m along the face of a place seen at that distance."""
-        bend = float(self.bend[axis])
-        return float(np.arcsin(np.clip(bend * seen, -1.0, 1.0)) / bend) if bend else seen
-
 
 class Hits(NamedTuple):
-    """Of rays at u (A,) and v (B,), downwards. heights: (A, B, n) m, w of each. surfaces: (A, B, n), number of what is
-    hit, from 1 on, negative where the ray leaves it. slopes: (A, B, n) cosine to the normal. counts: (A, B)."""
+    """What rays meet on their way down. heights: (A, B, n) m, w of each. surfaces: (A, B, n), the number of what is
+    entered there, negative where it is left, 0 for nothing more. slopes: (A, B, n) cosine to the ray."""
 
     heights: np.ndarray
     surfaces: np.ndarray
     slopes: np.ndarray
-    counts: np.ndarray
 
 
-def cast(face: Face, triangles: np.ndarray, surfaces: np.ndarray, u: np.ndarray, v: np.ndarray, depth: float) -> Hits:
-    """triangles: (F, 3, 3) m along the face's axes, and surfaces (F,) numbers. u: (A,), v: (B,) ascending. depth: m,
-    below which no ray goes."""
-    reach = np.array([max(abs(u[0]), abs(u[-1])), max(abs(v[0]), abs(v[-1]))])
+def cast(
+    face: Face, triangles: np.ndarray, surfaces: np.ndarray, u: np.ndarray, v: np.ndarray, depth: float
+) -> Hits:
+    """triangles: (F, 3, 3) m along the face's axes, and surfaces (F,), their numbers from 1 on. u: (A,), v: (B,) m of
+    the rays, ascending. depth: m below the face, to which they go."""
+    reach = np.array([np.abs(u).max(), np.abs(v).max()])
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
     sunk = float((np.abs(face.bend) * reach**2).sum()) / 2
-    seen = triangles[:, :, :2]
-    near = (triangles[:, :, 2].max(axis=1) > -depth - sunk) & np.all(
-        (seen.min(axis=1) < _BESIDE * reach) & (seen.max(axis=1) > -_BESIDE * reach), axis=1
+    near = (high[:, 2] > -depth - sunk) & np.all(
+        (low[:, :2] < _BESIDE * reach) & (high[:, :2] > -_BESIDE * reach), axis=1
     )
-    triangles, surfaces = triangles[near], surfaces[near]
+    triangles = np.ascontiguousarray(triangles[near])
     along = face.unrolled(triangles)
     low, high = along.min(axis=1), along.max(axis=1)
-    wide = np.isnan(low)
-    low, high = np.where(wide, -np.inf, low), np.where(wide, np.inf, high)
-    slack = 1e-6 if (face.bend == 0).any() else 0.1 * float(max(np.ptp(u), np.ptp(v))) * 0.1
-    first = np.stack((np.searchsorted(u, low[:, 0] - slack), np.searchsorted(v, low[:, 1] - slack)), axis=1)
-    last = np.stack((np.searchsorted(u, high[:, 0] + slack), np.searchsorted(v, high[:, 1] + slack)), axis=1)
+    low, high = np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
+    slack = _TWICE_BENT * reach.max() if face.bend.all() else _SLACK
+    first, last = (
+        np.stack([np.searchsorted(rays, end[:, k] + way) for k, rays in enumerate((u, v))], axis=1)
+        for end, way in ((low, -slack), (high, slack))
+    )
     shape = len(u), len(v), _HITS
-    found = Hits(np.zeros(shape), np.zeros(shape, np.int64), np.zeros(shape), np.zeros(shape[:2], np.int64))
-    _cast(np.ascontiguousarray(triangles), surfaces, first, last, u, v, face.bend, depth, *found)
+    found = Hits(np.zeros(shape), np.zeros(shape, np.int64), np.zeros(shape))
+    _cast(triangles, surfaces[near], first, last, u, v, face.bend, depth, *found)
     return found
 
 
 @njit(cache=True, error_model="numpy")
-def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slopes, counts):
+def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slopes):
+    """Moller & Trumbore, J. Graph. Tools 2, 1997. first, last: (F, 2), of the rays that a triangle may be met by."""
     for f in range(len(triangles)):
         a = triangles[f, 0]
         e0, e1, e2 = triangles[f, 1, 0] - a[0], triangles[f, 1, 1] - a[1], triangles[f, 1, 2] - a[2]
@@ -104,16 +113,16 @@ def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slo
                     continue
                 r0, r1, r2 = x - a[0], y - a[1], z - a[2]
                 c0, c1, c2 = r1 * d2 - r2 * d1, r2 * d0 - r0 * d2, r0 * d1 - r1 * d0
-                p = (g0 * c0 + g1 * c1 + g2 * c2) / -facing
+                p = -(g0 * c0 + g1 * c1 + g2 * c2) / facing
                 q = (e0 * c0 + e1 * c1 + e2 * c2) / facing
                 if p < 0 or q < 0 or p + q > 1:
                     continue
                 w = -(n0 * r0 + n1 * r1 + n2 * r2) / facing
-                n = counts[i, j]
-                if w < -depth or n >= heights.shape[2]:
+                last_one = heights.shape[2] - 1
+                if w < -depth or hit[i, j, last_one] != 0:
                     continue
-                k = n
-                while k > 0 and heights[i, j, k - 1] < w:  # from the top down
+                k = last_one
+                while k > 0 and (hit[i, j, k - 1] == 0 or heights[i, j, k - 1] < w):  # from the top down
                     heights[i, j, k] = heights[i, j, k - 1]
                     hit[i, j, k] = hit[i, j, k - 1]
                     slopes[i, j, k] = slopes[i, j, k - 1]
@@ -121,4 +130,3 @@ def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slo
                 heights[i, j, k] = w
                 hit[i, j, k] = surfaces[f] if facing > 0 else -surfaces[f]
                 slopes[i, j, k] = abs(facing) / size
-                counts[i, j] = n + 1
