@@ -34,8 +34,8 @@ _AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x o
 @dataclass(frozen=True, slots=True, eq=False)
 class Beneath:
     """What lies beneath a place. depth: m. curvature: (2,) 1/m along its sides. ends: (2, 2) m along each side to where
-    the face ends either way, negative where its middle lies beyond. plain: whether it is as a box there, bent a little: covered wholly, of one depth, and all
-    of its other side wet or none. wet: whether contents wet that side."""
+    the face ends either way, negative where its middle lies beyond. plain: whether it is as a box there, bent a little:
+    covered wholly, of one depth, and all of its other side wet or none. wet: whether contents wet that side."""
 
     placed: PlacedPatch
     depth: float
@@ -184,7 +184,9 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None
         behind = _Column(walls, placed)
         middle_and_around = zip([np.zeros(2), *half * _AROUND], [depth, *around], strict=True)
         wet = [_wet(heights(at), behind.bottoms(_ASIDE + at), thick) for at, thick in middle_and_around]
-    plain = even and smooth and not base.any() and ends.min() >= half and np.abs(curvature).max() * half <= ROUND
+    plain = (
+        even and smooth and not base.any() and ends.min() >= half and np.abs(curvature).max() * half <= ROUND
+    )
     return Beneath(placed, depth, curvature, ends, bool(plain) and all(wet) == any(wet), all(wet))
 
 

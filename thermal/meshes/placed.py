@@ -3,8 +3,10 @@
 The heat kernel between patches is that of the body's slow modes once heat has spread over a few millimetres, and before
 that the local one: of a box as thick as the body is there and as wide as its face goes on, curved as it is (the terms
 of first and second order in the curvature, from the impedances of cylinder and sphere). So a network is a function of
-place in milliseconds. Where that box would not be the body (rims, edges, strong curvature, layers of other materials),
-a patch's own impedance is a grid's that is fine there, in tenths of a second. Its states are the body's slowest modes,
+place in milliseconds. Where that box would not be the body (rims, edges, feet, layers of other materials), the kernel
+is that of cells along the face, unrolled, in a few more (unrolled/). Where the surface is curved too much for that, or
+heat goes too far along another material, a patch's own impedance is a grid's that is fine there, in tenths of a
+second. Its states are the body's slowest modes,
 whatever the place, and what fades sooner, at rates that are the same for all places, its residues positive
 semidefinite. Contents behind a film on the walls of a hollow make modes of their own, and a wall that they wet has a
 film at its other side.
@@ -71,6 +73,7 @@ _LAYERED = 100.0  # s, the same where there are several materials, whose cells t
 _FADED = 2.0  # times that, from when on modes alone tell
 _REACH = 9e-3  # m beyond a patch, that its heat is followed until then at least
 _FARTHEST = 25e-3  # m, at most
+_BOTH_WAYS = 0.01  # product of a face's curvatures times half widths, up to which it is unrolled
 _TAKEN = 0.2  # the slowest rate behind a film over heat's along a cell, from which on modes tell no places
 _FELT = 6e-3  # m between patches, across which heat goes before the modes tell
 _STILL = 1e-12  # m2, diffusivity times time before which heat has gone nowhere
@@ -99,8 +102,9 @@ _FIELDS = 16  # grids of such places, 8 MB each
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
-    """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). impedance: (S,
-    M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there; None where the local box tells."""
+    """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). local: its
+    kernel on cells, impedance: (S, M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there; None
+    where another of them or the box tells."""
 
     below: Beneath
     seen: np.ndarray
@@ -278,14 +282,13 @@ def _placed(
     return Placed(below, seen, None, impedance)
 
 
-def _unrolled(
-    body: Solid, below: Beneath, one: Tip, film: Film | None, told: float
-) -> LocalKernel | None:
-    """What lies beneath a place that is no box, until the modes tell, told s. None where the surface is curved too much,
-    or heat goes too far along another material."""
+def _unrolled(body: Solid, below: Beneath, one: Tip, film: Film | None, told: float) -> LocalKernel | None:
+    """What lies beneath a place that is no box, until the modes tell, told s. None where the surface is curved too
+    much, or heat goes too far along another material."""
     farthest = max(part.material.diffusivity for part in body.parts) * told
     reach = _REACH if len(body.parts) == 1 else math.sqrt(farthest)
-    if np.abs(below.curvature).max() * below.placed.half_width > ROUND or reach > _FARTHEST:
+    bent = np.abs(below.curvature) * below.placed.half_width
+    if bent.max() > ROUND or bent.prod() > _BOTH_WAYS or reach > _FARTHEST:
         return None
     bend = np.where(np.abs(below.curvature) < FLAT, 0.0, below.curvature)
     face = Face(below.placed.centre, np.stack((*below.placed.sides, below.placed.normal)), bend)

@@ -14,6 +14,7 @@ from .columns import Columns
 from .filmed import filmed
 from .rays import Face
 
+_FADED = 1e-4  # of the even pattern's kernel, below which that of others is not told
 _TOLD = 2e-5  # m2, diffusivity times time, later than which cells are fine enough by themselves
 
 
@@ -49,8 +50,10 @@ class BoxBeside(NamedTuple):
         exact += np.outer(port, port)
         if self.film > 0:
             exact *= filmed(taus, self.size[2], self.film)[:, None, None]
-        # of positive definite ones, the factor that turns the one into the other
-        return np.linalg.cholesky(exact) @ np.linalg.inv(np.linalg.cholesky(self._on_cells(taus)))
+        # where patterns have faded, both would be singular
+        least = _FADED * exact[:, :1, :1] * np.diag(np.arange(exact.shape[1]) > 0)
+        factors = (np.linalg.cholesky(each + least) for each in (exact, self._on_cells(taus)))
+        return next(factors) @ np.linalg.inv(next(factors))
 
     def _on_cells(self, taus: np.ndarray) -> np.ndarray:
         x, y, z = (line.kernel(taus) for line in self.lines)
@@ -62,7 +65,13 @@ class BoxBeside(NamedTuple):
 
 
 def box_beside(
-    face: Face, half: float, along: tuple[Columns, Columns], w: np.ndarray, tip: Tip, depth: float, film: float
+    face: Face,
+    half: float,
+    along: tuple[Columns, Columns],
+    w: np.ndarray,
+    tip: Tip,
+    depth: float,
+    film: float,
 ) -> BoxBeside:
     """Below a patch of half a side m. w: edges of cells, the face's 0 among them. film: 1/m, at that depth m."""
     depth = min(depth, -float(w[0]))

@@ -13,8 +13,10 @@ import numpy as np
 from ..surfaces import FACING, net_volumes
 from .columns import Fineness, Piece, Place
 from .fills import fill, planes, wet_area
-from .rays import Face, Hits, cast
+from .rays import Face, cast
 
+_RAYS = (0.2503, 0.7501), (0.2437, 0.7553)
+"""Shares of a cell's length where rays go down, along u and v: edges of triangles lie nowhere so."""
 _LEAST = 1e-4  # of a cell, less than which is nothing
 _SMOOTH = 0.08  # half widths, by which the surface may differ from a place's face
 _ROUGH = 0.03  # of what is touched, that may differ by more
@@ -41,10 +43,10 @@ class Cells(NamedTuple):
 def cells_beneath(
     place: Place, pieces: Sequence[Piece], along: tuple[np.ndarray, np.ndarray], film: float, fine: Fineness
 ) -> Cells | None:
-    """along: m, edges of columns along u and v. film: W/(m2 K) at what is wet. None where what is touched does not lie on
-    the face."""
+    """along: m, edges of columns along u and v. film: W/(m2 K) at what is wet. None where what is touched does not
+    lie on the face."""
     face, half = place.face, place.half
-    u, v = (_halves(edges) for edges in along)
+    u, v = (_halves(edges, *shares) for edges, shares in zip(along, _RAYS, strict=True))
     du, dv = (np.repeat(np.diff(edges) / 2, 2) for edges in along)
     hits = [cast(face, piece.triangles, piece.surfaces, u, v, 2 * fine.deep) for piece in pieces]
     outer = [each for each, piece in zip(hits, pieces, strict=True) if piece.host is None]
@@ -79,10 +81,10 @@ def cells_beneath(
     )
 
 
-def _halves(edges: np.ndarray) -> np.ndarray:
-    """Two places in each cell, beside edges of triangles."""
+def _halves(edges: np.ndarray, first: float, second: float) -> np.ndarray:
+    """Two places in each cell, at these shares of its length."""
     size = np.diff(edges)
-    return np.stack((edges[:-1] + 0.2503 * size, edges[:-1] + 0.7501 * size), axis=1).ravel()
+    return np.stack((edges[:-1] + first * size, edges[:-1] + second * size), axis=1).ravel()
 
 
 def _mean(rays: np.ndarray) -> np.ndarray:
@@ -133,7 +135,8 @@ def _joined(filled: _Filled, pieces: Sequence[Piece], film: float, first: float,
             area = (met[:, ::2] + met[:, 1::2]) / 2 * (y, x)[axis][:, None] * (z * middle[1 - axis])
             length = np.broadcast_to((x[:, None, None], y[:, None])[axis] * middle[axis], index.shape)
             conductivity = along
-        low, high, size = np.moveaxis(index, axis, 0)[:-1], np.moveaxis(index, axis, 0)[1:], np.moveaxis(length, axis, 0)
+        numbers, size = np.moveaxis(index, axis, 0), np.moveaxis(length, axis, 0)
+        low, high = numbers[:-1], numbers[1:]
         area = np.moveaxis(area, 2, 0) if axis == 2 else area
         joined = (low >= 0) & (high >= 0)
         a, b = low[joined], high[joined]

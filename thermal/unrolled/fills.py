@@ -68,7 +68,9 @@ def fill(hits: Hits, w: np.ndarray) -> Fill:
     return found
 
 
-def wet_area(solid: np.ndarray, fills: Sequence[Fill], w: np.ndarray, du: np.ndarray, dv: np.ndarray) -> np.ndarray:
+def wet_area(
+    solid: np.ndarray, fills: Sequence[Fill], w: np.ndarray, du: np.ndarray, dv: np.ndarray
+) -> np.ndarray:
     """(A, B, K) m2 of each ray in each cell that is wet, along a flat face: what rays meet, and what is beside them
     where a wall is so steep that they do not. du: (A,), dv: (B,) m between rays."""
     void = np.minimum(sum(each.void for each in fills), 1 - solid)

@@ -70,8 +70,8 @@ def local_kernel(
 
 
 def _ports(place: Place, cells: Cells, along: tuple[Columns, Columns], tip: Tip) -> np.ndarray:
-    """(N, M) of each pattern's flow into the cells, that of the even one in all 1: no other lets heat in, also where the
-    face ends within the patch."""
+    """(N, M) of each pattern's flow into the cells, that of the even one in all 1: no other lets heat in, also where
+    the face ends within the patch."""
     edges = [
         np.clip(place.face.seen(each.edges, axis) / place.half, -1.0, 1.0) for axis, each in enumerate(along)
     ]

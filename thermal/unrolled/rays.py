@@ -19,9 +19,9 @@ _TWICE_BENT = 0.01  # of the rays' reach, the same where the face is curved both
 
 
 class Face(NamedTuple):
-    """A curved face, unrolled: u, v m along it from its middle, w m above it. centre: (3,) m. axes: (3, 3), rows are the
-    directions of u, v and w in the middle. bend: (2,) 1/m, curvature along u and v, 0 or more than that of a face that
-    is as good as flat."""
+    """A curved face, unrolled: u, v m along it from its middle, w m above it. centre: (3,) m. axes: (3, 3), rows are
+    the directions of u, v and w in the middle. bend: (2,) 1/m, curvature along u and v, 0 for one that is as good as
+    flat."""
 
     centre: np.ndarray
     axes: np.ndarray
@@ -121,6 +121,14 @@ def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slo
                 last_one = heights.shape[2] - 1
                 if w < -depth or hit[i, j, last_one] != 0:
                     continue
+                code = surfaces[f] if facing > 0 else -surfaces[f]
+                twice = False  # on an edge of two triangles
+                for m in range(last_one):
+                    if hit[i, j, m] == 0:
+                        break
+                    twice |= hit[i, j, m] == code and abs(heights[i, j, m] - w) < 1e-9
+                if twice:
+                    continue
                 k = last_one
                 while k > 0 and (hit[i, j, k - 1] == 0 or heights[i, j, k - 1] < w):  # from the top down
                     heights[i, j, k] = heights[i, j, k - 1]
@@ -128,5 +136,5 @@ def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slo
                     slopes[i, j, k] = slopes[i, j, k - 1]
                     k -= 1
                 heights[i, j, k] = w
-                hit[i, j, k] = surfaces[f] if facing > 0 else -surfaces[f]
+                hit[i, j, k] = code
                 slopes[i, j, k] = abs(facing) / size
