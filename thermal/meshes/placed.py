@@ -103,8 +103,8 @@ _FIELDS = 16  # grids of such places, 8 MB each
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
     """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). local: its
-    kernel on cells, impedance: (S, M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there; None
-    where another of them or the box tells."""
+    kernel on cells, impedance: (S, M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there;
+    None where another of them or the box tells."""
 
     below: Beneath
     seen: np.ndarray

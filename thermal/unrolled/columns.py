@@ -72,7 +72,10 @@ def columns(place: Place, pieces: Sequence[Piece], axis: int, fine: Fineness) ->
     reach = min(wide + fine.reach, _ANGLE / bend if bend else np.inf)
     ends = [float(end) for end in place.ends[axis]]
     below, above = (reach if end * bend >= 1 else min(face.along(end, axis), reach) for end in ends)
-    low, high = max(-wide, -below), min(wide, above)
+    # no column is a sliver
+    below, above = (reach if reach - end < _APART else end for end in (below, above))
+    low, high = (end if end - wide < _APART else wide for end in (below, above))
+    low = -low
     if high - low < _LEAST_COVER * wide:
         return None
     breaks = [-reach, *sorted({-below, low, high, above} - {-reach, reach}), reach]
