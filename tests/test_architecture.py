@@ -66,6 +66,7 @@ ROOMS = {
         "plates",
         "kernels",
         "padded",
+        "unrolled",
         "readout",
         "network",
         "stack",

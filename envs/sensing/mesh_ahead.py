@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...thermal import SolidPart, SurfacePatch, body_network, material
+from ...thermal import SolidPart, SurfacePatch, body_network, material, sensor
+from ...thermal.kernels import Resolution, tip
 from ...thermal.pressed import pressure_map
 from ...thermal.surfaces import Solid
+from ...thermal.unrolled import Face, Fineness, Place, local_kernel
 from . import ahead
 
 _SIDE = 0.01  # m
@@ -19,6 +21,20 @@ def compile_ahead() -> None:
     pressure_map(np.zeros(1), one, np.zeros((1, 2)), 1.0, 1.0, 1.0, 1.0, middle, np.zeros(1))
     body_network(_cube(), (SurfacePatch((0.0, 0.0, _SIDE / 2), (0.0, 0.0, 1.0), 4e-6),), cache=False)
     ahead.compile_ahead()
+    _edge()
+
+
+def _edge() -> None:
+    """What a place over an edge needs."""
+    stack, half = sensor("seed"), _SIDE / 2
+    face = Face(np.array([0.0, half, half]), np.eye(3), np.zeros(2))
+    place = Place(face, half, np.array([[half, half], [_SIDE, 0.0]]), _SIDE)
+    one = tip(stack, ((0.0, stack.width),) * 2, Resolution(12, 3))
+    cube = _cube()
+    wet = [np.zeros(len(part.faces), bool) for part in cube.parts]
+    local = local_kernel(cube, wet, 0.0, place, one, 1.0, Fineness(_SIDE, _SIDE))
+    assert local is not None
+    local.kernel(np.ones(1))
 
 
 def _cube() -> Solid:

@@ -38,6 +38,14 @@ def test_contents_are_felt_through_a_mug_s_wall_and_at_its_rim(study: ModuleType
     assert len(found) == 2 and all(abs(row.error) < 0.048 for row in found)
 
 
+def test_a_steel_cup_in_a_sleeve_is_felt_within_what_is_stated(study: ModuleType, monkeypatch) -> None:
+    """Through the sleeve, which no box with modes behind it stands for."""
+    monkeypatch.setattr(study, "VESSEL_FILMS", (500.0,))
+    monkeypatch.setattr(study, "DRAWN", 1)
+    (row,) = study.vessel_rows("sleeved_mug")
+    assert max(map(abs, row.errors)) < 0.002
+
+
 def test_an_unknown_case_is_refused_with_those_there_are(study: ModuleType, monkeypatch, capsys) -> None:
     monkeypatch.setattr(sys, "argv", ["mesh_places.py", "teapot"])
     with pytest.raises(SystemExit):

@@ -32,7 +32,7 @@ from .contact import Resolution, Tip, at_rates, box_side, contact_weight, residu
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
 from .glued import GluedElement, glued_element
-from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES, basis_jumps, basis_terms
+from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES, basis_jumps, basis_shares, basis_terms
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
 from .touch import Detail, states, touch_box, touch_sides
 from .touched import BodyResidues, TouchedBox, UnderTips, touched_box, under_tips
@@ -64,6 +64,7 @@ __all__ = [
     "UnderTips",
     "at_rates",
     "basis_jumps",
+    "basis_shares",
     "basis_terms",
     "before",
     "box_kernel",

@@ -15,9 +15,9 @@ _SAMPLES = (1.0, 1.3, 1.7, 2.2, 3.0, 4.0)  # half widths from the middle at whic
 _BEND = 0.6  # of the half width, where the surface's height tells its curvature
 _ASIDE = np.array([1.1e-5, 0.7e-5])  # m, beside edges of triangles
 _ALONG, _LEVEL = 0.95, 0.3  # cosine to a face's normal, and half widths from it, for a patch to be on it
-_FLAT = 1e-3  # 1/m, curvature below which a face is as flat
+FLAT = 1e-3  # 1/m, curvature below which a face is as flat
 _EDGE = 1e-9  # of a triangle's side, that a line may lie beyond it
-_ROUND = 0.33  # curvature times half width, up to which its terms of second order serve
+ROUND = 0.33  # curvature times half width, up to which its terms of second order serve
 _UNSMOOTH = 0.08  # half widths, by which the surface may differ from its curvature's, as with large facets
 _BEYOND, _ENDED = (
     1.5,
@@ -25,14 +25,17 @@ _BEYOND, _ENDED = (
 )  # half widths from the middle, and to the nearest surface there if the face has ended
 _DEEP = 6e-3  # m, depth from which on no difference is felt before the body's modes take over
 _UNEVEN = 0.15  # of the depth, by which it may differ around a place
+_BASES = 0.5 * np.array(
+    [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]]
+)  # half widths from the middle
 _AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y])  # half widths
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beneath:
     """What lies beneath a place. depth: m. curvature: (2,) 1/m along its sides. ends: (2, 2) m along each side to where
-    the face ends either way. plain: whether it is as a box there, bent a little: covered wholly, of one depth, and all
-    of its other side wet or none. wet: whether contents wet that side."""
+    the face ends either way, negative where its middle lies beyond. plain: whether it is as a box there, bent a little:
+    covered wholly, of one depth, and all of its other side wet or none. wet: whether contents wet that side."""
 
     placed: PlacedPatch
     depth: float
@@ -74,7 +77,7 @@ class Beneath:
     def _unrolled(self, offset: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
         """Of a point (3,) m from the place, along its sides and its normal: how far it is along the curved face (2,) m
         and above it, m, and the face's normal there."""
-        bend = np.where(np.abs(self.curvature) < _FLAT, _FLAT, self.curvature)
+        bend = np.where(np.abs(self.curvature) < FLAT, FLAT, self.curvature)
         angles = np.arctan2(bend * offset[:2], 1 + bend * offset[2])
         angles = np.clip(angles, -1.0, 1.0)
         level = offset[2] + float(np.sum((1 - np.cos(angles)) / bend))
@@ -134,21 +137,28 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None
     def heights(offset: np.ndarray) -> np.ndarray:
         return column.tops(_ASIDE + offset)
 
+    def near(offset: np.ndarray) -> np.ndarray:
+        """(0 or 1,) m, the height that is nearest to the place's, within half a side."""
+        found = heights(offset)
+        found = found[np.abs(found) < half]
+        return found[np.argsort(np.abs(found))[:1]]
+
+    # where the very middle is beyond an edge, a place beside it that is not
+    base = next((half * place for place in _BASES if len(near(half * place))), np.zeros(2))
+    level = near(base) if base.any() else np.zeros(1)
     curvature, ends = np.zeros(2), np.full((2, 2), _FAR)
     for n, along in enumerate(np.eye(2)):
-        for sign in (-1.0, 1.0):
-            found = heights(sign * _BEND * half * along)
-            found = found[np.abs(found) < half]
-            if len(found):
-                height = found[np.argmin(np.abs(found))]  # of a circle's arc
+        found = [near(base + sign * _BEND * half * along) for sign in (-1.0, 1.0)]
+        if not base.any() or (not base[n] and all(map(len, found))):
+            for height in np.concatenate(found) - level:  # of a circle's arc
                 curvature[n] -= height / ((_BEND * half) ** 2 + height**2)
         for k, sign in enumerate((-1.0, 1.0)):
 
             def there(u: float, n: int = n, way: np.ndarray = sign * along) -> bool:
-                found = heights(u * way) + curvature[n] * u * u / 2
+                found = heights(base + u * way) - level + curvature[n] * u * u / 2
                 return bool(len(found)) and float(np.abs(found).min()) < 0.2 * u
 
-            ends[n, k] = _end(there, half)
+            ends[n, k] = _end(there, half) + sign * base[n]
 
     def thickness(offset: np.ndarray) -> float:
         """m from the surface down to the next; 0 where it is not within half a side of the place's height."""
@@ -162,7 +172,7 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None
         found = heights(offset) + curvature @ offset**2 / 2
         return float(np.min(np.abs(found), initial=np.inf))
 
-    depth = thickness(np.zeros(2))
+    depth = thickness(base)
     around = [thickness(half * offset) for offset in _AROUND]
     even = np.abs(np.minimum(around, _DEEP) - min(depth, _DEEP)).max() <= _UNEVEN * min(depth, _DEEP)
     smooth = all(bent(half * offset) <= _UNSMOOTH * half for offset in _AROUND)
@@ -174,7 +184,9 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None
         behind = _Column(walls, placed)
         middle_and_around = zip([np.zeros(2), *half * _AROUND], [depth, *around], strict=True)
         wet = [_wet(heights(at), behind.bottoms(_ASIDE + at), thick) for at, thick in middle_and_around]
-    plain = even and smooth and ends.min() >= half and np.abs(curvature).max() * half <= _ROUND
+    plain = (
+        even and smooth and not base.any() and ends.min() >= half and np.abs(curvature).max() * half <= ROUND
+    )
     return Beneath(placed, depth, curvature, ends, bool(plain) and all(wet) == any(wet), all(wet))
 
 

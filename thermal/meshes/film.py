@@ -10,7 +10,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..network import ThermalNetwork
 from ..surfaces import Solid, enclosed, wetted_faces
@@ -21,8 +20,6 @@ _ALONE = 1e-3  # of a wall's area in a cell, that others may add there
 _LEAST_FILM = 0.2  # of the film's resistance, that is left where a wall lies before its cell's node
 _ACROSS = 0.3  # cosine of an axis to a wall's normal, from which on a node is moved to the wall along it
 _STRETCHED = 0.2, 4.0  # of a link's resistance, that is left at least, and at most, where nodes are moved
-_TERMS = 12
-_EARLY = 0.02  # of the depth's square
 
 
 class Film(NamedTuple):
@@ -122,22 +119,6 @@ def held_apart(network: ThermalNetwork, film: float) -> tuple[np.ndarray, np.nda
     wet = np.stack([row for name, row in network.outputs.items() if name.startswith("film:")])
     rates, turn = np.linalg.eigh(np.diag(network.rates) + film * wet.T @ wet)
     return np.maximum(rates, 0.0), turn
-
-
-def filmed(taus: np.ndarray, depth: float, film: float) -> np.ndarray:
-    """(T,) of the kernel of a layer whose other side is adiabatic, where a film is there (Carslaw & Jaeger, Conduction
-    of Heat in Solids, 2nd ed., section 3.9): both at the side that is touched, at taus m2. depth: m. film: 1/m, its
-    conductance W/(m2 K) over the conductivity."""
-    free, held = np.ones(len(taus)), np.zeros(len(taus))
-    biot = film * depth
-    for n in range(_TERMS):
-        low, high = n * np.pi, (n + 0.5) * np.pi
-        root = float(brentq(lambda b: b * np.sin(b) - biot * np.cos(b), low, high))  # pyright: ignore[reportArgumentType]
-        held += np.exp(-((root / depth) ** 2) * taus) * 2 / (1 + np.sin(2 * root) / (2 * root))
-        if n:
-            free += 2 * np.exp(-((n * np.pi / depth) ** 2) * taus)
-    early = taus < _EARLY * depth**2  # before anything comes back from there
-    return np.where(early, 1.0, held / free)
 
 
 @lru_cache(maxsize=16)

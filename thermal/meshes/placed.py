@@ -3,8 +3,10 @@
 The heat kernel between patches is that of the body's slow modes once heat has spread over a few millimetres, and before
 that the local one: of a box as thick as the body is there and as wide as its face goes on, curved as it is (the terms
 of first and second order in the curvature, from the impedances of cylinder and sphere). So a network is a function of
-place in milliseconds. Where that box would not be the body (rims, edges, strong curvature, layers of other materials),
-a patch's own impedance is a grid's that is fine there, in tenths of a second. Its states are the body's slowest modes,
+place in milliseconds. Where that box would not be the body (rims, edges, feet, layers of other materials), the kernel
+is that of cells along the face, unrolled, in a few more (unrolled/). Where the surface is curved too much for that, or
+heat goes too far along another material, a patch's own impedance is a grid's that is fine there, in tenths of a
+second. Its states are the body's slowest modes,
 whatever the place, and what fades sooner, at rates that are the same for all places, its residues positive
 semidefinite. Contents behind a film on the walls of a hollow make modes of their own, and a wall that they wet has a
 film at its other side.
@@ -45,8 +47,9 @@ from ..matter import SensorStack
 from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
-from .beneath import Beneath, beneath
-from .film import Film, film_of, filmed, held_apart
+from ..unrolled import Face, Fineness, LocalKernel, Place, filmed, local_kernel
+from .beneath import FLAT, ROUND, Beneath, beneath
+from .film import Film, film_of, held_apart
 from .grid import MeshGridding
 from .modes import BodyModes, body_modes
 from .network import PatchFields, patch_fields
@@ -66,6 +69,11 @@ FILLED_SHARE = 4.4e-3
 _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
 _TOLD = 3.0  # over the last mode's rate above the first one's, likewise
+_LAYERED = 100.0  # s, the same where there are several materials, whose cells tell layers late
+_FADED = 2.0  # times that, from when on modes alone tell
+_REACH = 9e-3  # m beyond a patch, that its heat is followed until then at least
+_FARTHEST = 25e-3  # m, at most
+_BOTH_WAYS = 0.01  # product of a face's curvatures times half widths, up to which it is unrolled
 _TAKEN = 0.2  # the slowest rate behind a film over heat's along a cell, from which on modes tell no places
 _FELT = 6e-3  # m between patches, across which heat goes before the modes tell
 _STILL = 1e-12  # m2, diffusivity times time before which heat has gone nowhere
@@ -94,11 +102,13 @@ _FIELDS = 16  # grids of such places, 8 MB each
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
-    """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). impedance: (S,
-    M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there; None where the local box tells."""
+    """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). local: its
+    kernel on cells, impedance: (S, M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there;
+    None where another of them or the box tells."""
 
     below: Beneath
     seen: np.ndarray
+    local: LocalKernel | None
     impedance: np.ndarray | None
 
 
@@ -158,20 +168,26 @@ def face_impedance(
     taus = modes.diffusivity * TIMES
     slow = _slow(modes, seen, inside)
     kernel = _faded(seen, modes.rates, taus)
+    over = _over(_told_by(body, modes))[:, None, None]
     if len(body.parts) == 1:
-        over = _over(taus, modes.rates[-1] - modes.rates[0])[:, None, None]
         local = _local(below, one, taus, body.parts[0].material.conductivity, inside) / modes.capacity
         kernel = over * kernel + (1 - over) * local
-    kernel -= _faded(slow.held.T, slow.fades, TIMES)
-    impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
-    count = LEVEL.patterns
+    count, early = LEVEL.patterns, over[:, 0, 0] < 1
     at = [slice(n * count, (n + 1) * count) for n in range(len(places))]
-    for n, place in enumerate(places):
-        if place.impedance is None:
-            ports = np.arange(n * count, (n + 1) * count)
-            impedance[:, ports, ports] += before(modes.diffusivity) / (modes.capacity * one.area)
-            continue
-        impedance[:, at[n], at[n]] = place.impedance
+    soon = np.zeros(kernel.shape[1:])  # K/W, before the first time
+    for place, ports in zip(places, at, strict=True):
+        if place.local is not None:
+            told = _faded(place.seen, modes.rates, taus)
+            told[early] += (1 - over[early]) * (place.local.kernel(TIMES[early]) - told[early])
+            kernel[:, ports, ports] = told
+            soon[ports, ports] = np.sqrt(np.pi * TIMES[0]) * before(1.0) * told[0]
+        else:
+            soon[ports, ports] = before(modes.diffusivity) / (modes.capacity * one.area) * np.eye(count)
+    kernel -= _faded(slow.held.T, slow.fades, TIMES)
+    impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1) + soon
+    for place, ports in zip(places, at, strict=True):
+        if place.impedance is not None:
+            impedance[:, ports, ports] = place.impedance
     for n, m in combinations(range(len(places)), 2):
         if _close(places[n], places[m]):
             pair = _pair(body, patches[n], patches[m], stack, inside, level, cache)
@@ -189,7 +205,7 @@ def ringed_network(
     every = np.concatenate((*(place.seen for place in found.places), seen))
     slow = _slow(modes, every, None, len(seen))
     taus = modes.diffusivity * TIMES
-    over = _over(taus, modes.rates[-1] - modes.rates[0])[:, None, None]
+    over = _over(max(_SWITCH, _TOLD / (modes.rates[-1] - modes.rates[0])) / modes.diffusivity)[:, None, None]
     kernel = over * _faded(every, modes.rates, taus) + (1 - over) * kernel
     kernel -= _faded(slow.held.T, slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
@@ -256,17 +272,51 @@ def _placed(
     seen = _seen(modes, body.outside, below.placed, patterns) / np.sqrt(modes.capacity)
     rounds = film is not None and below.ends.min() < below.placed.half_width + _CORNER
     if below.plain and len(body.parts) == 1 and not rounds:
-        return Placed(below, seen, None)
+        return Placed(below, seen, None, None)
+    if (local := _unrolled(body, below, one, film, _told_by(body, modes))) is not None:
+        return Placed(below, seen, local, None)
     fine, slow = _fields(body, patch, stack, film, level), _slow(modes, seen, film)
     fading = slice(1 if film is None else 0, None)  # the body's mean is on both grids
     impedance = _impedance(fine.ports[fading].T, fine.rates[fading])
     impedance -= _impedance(slow.held[fading].T, slow.fades[fading])
-    return Placed(below, seen, impedance)
+    return Placed(below, seen, None, impedance)
+
+
+def _unrolled(body: Solid, below: Beneath, one: Tip, film: Film | None, told: float) -> LocalKernel | None:
+    """What lies beneath a place that is no box, until the modes tell, told s. None where the surface is curved too
+    much, or heat goes too far along another material."""
+    farthest = max(part.material.diffusivity for part in body.parts) * told
+    reach = _REACH if len(body.parts) == 1 else math.sqrt(farthest)
+    bent = np.abs(below.curvature) * below.placed.half_width
+    if bent.max() > ROUND or bent.prod() > _BOTH_WAYS or reach > _FARTHEST:
+        return None
+    bend = np.where(np.abs(below.curvature) < FLAT, 0.0, below.curvature)
+    face = Face(below.placed.centre, np.stack((*below.placed.sides, below.placed.normal)), bend)
+    place = Place(face, below.placed.half_width, below.ends, below.depth)
+    reach = max(reach, _REACH)
+    through = 0.0 if film is None else film.conductance / film.area
+    return local_kernel(body, _wetted(body, film), through, place, one, _FADED * told, Fineness(reach, reach))
+
+
+@lru_cache(maxsize=16)
+def _wetted(body: Solid, film: Film | None) -> list[np.ndarray]:
+    """(F,) of each part, whether its triangles are wet."""
+    if film is None:
+        return [np.zeros(len(part.faces), bool) for part in body.parts]
+    walls = {each.tobytes() for each in film.triangles}
+    return [np.array([each.tobytes() in walls for each in part.triangles]) for part in body.parts]
+
+
+def _told_by(body: Solid, modes: BodyModes) -> float:
+    """s, in the middle of going over from the local kernel to the modes."""
+    if len(body.parts) > 1:
+        return _LAYERED
+    return max(_SWITCH, _TOLD / (modes.rates[-1] - modes.rates[0])) / modes.diffusivity
 
 
 def _close(one: Placed, other: Placed) -> bool:
     """Whether one feels the other before the modes tell, where no box stands for the body beneath both."""
-    if one.impedance is None and other.impedance is None:
+    if all(each.impedance is None and each.local is None for each in (one, other)):
         return False
     apart = one.below.placed.centre - other.below.placed.centre
     return float(np.linalg.norm(apart)) < 2 * one.below.placed.half_width + _FELT
@@ -288,7 +338,7 @@ def _pair(
     first, second = (_placed(body, patch, stack, film, level, cache) for patch in (one, other))
     told, fading = [], slice(1 if film is None else 0, None)
     for place, patch, beside, turned in ((first, one, other, False), (second, other, one, True)):
-        if place.impedance is not None:
+        if place.impedance is not None or place.local is not None:
             fine = _fields(body, patch, stack, film, level)
             seen = fine.seen(body, beside, patterns)[fading].T
             between = _impedance(fine.ports[fading].T, fine.rates[fading], seen)
@@ -318,10 +368,9 @@ def _impedance(seen: np.ndarray, rates: np.ndarray, others: np.ndarray | None = 
     return np.einsum("ir,sr,jr->sij", seen, 1 / (GRASP[:, None] + rates), others, optimize=True)
 
 
-def _over(taus: np.ndarray, fastest: float) -> np.ndarray:
-    """(T,) how far the kernel is the modes', from 0 to 1 within a factor of four; later on a large body, of which the
-    modes tell later. fastest: 1/m2, rate of the last mode."""
-    over = np.clip((np.log2(taus / max(_SWITCH, _TOLD / fastest)) + 1) / 2, 0.0, 1.0)
+def _over(told: float) -> np.ndarray:
+    """(T,) how far the kernel at TIMES is the modes', from 0 to 1 within a factor of four around told, s."""
+    over = np.clip((np.log2(TIMES / told) + 1) / 2, 0.0, 1.0)
     return over * over * (3 - 2 * over)
 
 

@@ -8,7 +8,7 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.errors import MeshError
-from thermograsp.thermal.meshes import body_network, field_carried, placed_body
+from thermograsp.thermal.meshes import body_network, field_carried, placed, placed_body
 from thermograsp.thermal.meshes.beneath import beneath
 from thermograsp.thermal.meshes.modes import body_modes
 from thermograsp.thermal.meshes.placed import PLACED_SHARE, centred_tip, face_patterns, placed_network
@@ -103,6 +103,8 @@ PLACES = {
     "wall": (cup, at(0.02, 0.0, 0.0, normal=(1, 0, 0)), True),
     "foot": (cup, at(0.0, 0.0, -0.02, normal=(0, 0, -1)), True),
     "rim": (cup, at(0.02, 0.0, 0.0175, normal=(1, 0, 0)), False),
+    "beyond the rim": (cup, at(0.02, 0.0, 0.0207, normal=(1, 0, 0)), False),
+    "foot's edge": (cup, at(0.02, 0.0, -0.0175, normal=(1, 0, 0)), False),
     "rod": (
         lambda: trimesh.creation.cylinder(0.006, 0.05, sections=64),
         at(0.006, 0.0, 0.0, normal=(1, 0, 0)),
@@ -129,6 +131,22 @@ def test_a_touch_is_within_the_stated_share(place: str, material: str) -> None:
     body = of(mesh(), material)
     assert beneath(body.outside, patch).plain is plain
     assert worst(body, patch) < PLACED_SHARE * DIFFERENCE
+
+
+def test_only_what_is_strongly_curved_or_conducts_far_needs_a_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(placed, "patch_fields", refused)
+    for place in ("rim", "beyond the rim", "foot's edge", "edge"):
+        mesh, patch, _ = PLACES[place]
+        placed_network(of(mesh(), "limestone"), [patch], STACK)
+    layered = at(0.003, 0.002, 0.013, normal=(0, 0, 1))
+    placed_network(slab("neoprene", "stainless_steel"), [layered], STACK)
+    mesh, patch, _ = PLACES["rod"]
+    for body, where in ((of(mesh(), "limestone"), patch), (slab("neoprene", "aluminium"), layered)):
+        with pytest.raises(AssertionError):
+            placed_network(body, [where], STACK)
 
 
 def test_on_a_ball_heat_begins_as_on_a_plane_of_the_touched_surface() -> None:

@@ -1,0 +1,147 @@
+"""Heat beneath a face on unrolled cells beside closed forms, other solvers and finer cells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.linalg import expm
+
+from thermograsp import thermal
+from thermograsp.thermal.kernels import Patches, Resolution, basis_jumps, basis_terms, box_kernel, tip
+from thermograsp.thermal.matter import Material
+from thermograsp.thermal.surfaces import Solid, SolidPart
+from thermograsp.thermal.unrolled import Face, Fineness, Place, filmed, local_kernel
+from thermograsp.thermal.unrolled.fading import fading
+
+STACK = thermal.sensor("seed")
+WIDTH = STACK.width
+TIP = tip(STACK, ((0.0, WIDTH), (0.0, WIDTH)), Resolution(12, 3))
+COARSE = Fineness(9e-3, 9e-3)
+GLASS = thermal.material("glass")
+TAUS = np.geomspace(1e-8, 1e-5, 8)  # m2
+
+
+def solid(*meshes: tuple[trimesh.Trimesh, Material]) -> Solid:
+    return Solid(tuple(SolidPart(np.array(mesh.vertices), np.array(mesh.faces), of) for mesh, of in meshes))
+
+
+def dry(body: Solid) -> list[np.ndarray]:
+    return [np.zeros(len(part.faces), bool) for part in body.parts]
+
+
+def on_top(height: float, ends: list[list[float]], depth: float, x: float = 0.0) -> Place:
+    return Place(Face(np.array([x, 0.0, height]), np.eye(3), np.zeros(2)), WIDTH / 2, np.array(ends), depth)
+
+
+def test_chebyshev_moments_are_the_exponential_s() -> None:
+    rng = np.random.default_rng(3)
+    count = 40
+    neighbours = np.tile(np.arange(count)[:, None], 6)
+    links = np.zeros((count, 6))
+    low = np.arange(count - 1)
+    neighbours[low, 1], neighbours[low + 1, 0] = low + 1, low
+    links[low, 1] = links[low + 1, 0] = rng.uniform(0.5, 2.0, count - 1)
+    capacity, sink = rng.uniform(0.5, 2.0, count), rng.uniform(0.0, 0.1, count)
+    ports = rng.normal(size=(count, 3))
+    matrix = np.diag(links.sum(axis=1) + sink)
+    matrix[low, low + 1] = matrix[low + 1, low] = -links[low, 1]
+    known = fading(capacity, neighbours, links, sink, ports, 50.0)
+    times = np.array([0.0, 0.3, 4.0, 50.0])
+    for time, found in zip(times, known.kernel(times), strict=True):
+        expected = ports.T @ expm(-time * matrix / capacity[:, None]) @ (ports / capacity[:, None])
+        assert found == pytest.approx(
+            expected, abs=1e-5 * np.abs(ports.T @ (ports / capacity[:, None])).max()
+        )
+
+
+@pytest.mark.parametrize("x", [0.0, 0.011, 0.016])
+def test_on_a_block_it_is_the_block_s(x: float) -> None:
+    """In the middle of a face, over its edge, and with its middle beyond the edge."""
+    body = solid((trimesh.creation.box((0.03, 0.04, 0.005)), GLASS))
+    place = on_top(0.0025, [[0.05, 0.015 - x], [0.05, 0.05]], 0.005, x)
+    local = local_kernel(body, dry(body), 0.0, place, TIP, 1.2e-5 / GLASS.diffusivity, COARSE)
+    assert local is not None
+    found = local.kernel(TAUS / GLASS.diffusivity) * GLASS.volumetric_heat_capacity
+    low, high = x + 0.015 - WIDTH / 2, min(x + 0.015 + WIDTH / 2, 0.03)
+    patches = Patches(
+        np.array([5]), np.array([[(low + high) / 2, 0.02]]), np.array([[(high - low) / 2, WIDTH / 2]])
+    )
+    jumps = basis_jumps(TIP.basis)[None]
+    expected, _, port, _, _ = box_kernel(
+        (0.03, 0.04, 0.005), 1.0, 1.0, 0.0, patches, jumps, basis_terms(3), 1, TAUS
+    )
+    expected += np.outer(port, port)
+    assert found[:, 0, 0] == pytest.approx(expected[:, 0, 0], rel=2e-3)
+    if x == 0:  # other patterns are cut off at an edge
+        assert found / expected[:, :1, :1] == pytest.approx(expected / expected[:, :1, :1], abs=2e-3)
+
+
+def test_layers_conduct_as_in_one_dimension() -> None:
+    """A patch that covers a block of glass on steel: through it alone heat flows."""
+    steel = thermal.material("stainless_steel")
+    upper, lower = (trimesh.creation.box((WIDTH, WIDTH, h)) for h in (0.002, 0.004))
+    lower.apply_translation((0, 0, -0.003))
+    body = solid((upper, GLASS), (lower, steel))
+    place = on_top(0.001, [[WIDTH / 2] * 2] * 2, 0.002)
+    local = local_kernel(body, dry(body), 0.0, place, TIP, 40.0, COARSE)
+    assert local is not None
+    times = np.geomspace(0.05, 40.0, 9)
+    found = local.kernel(times)[:, 0, 0]
+    count = 1200
+    at = np.arange(count) < count // 3
+    size = 0.006 / count
+    capacity = np.where(at, GLASS.volumetric_heat_capacity, steel.volumetric_heat_capacity) * size * WIDTH**2
+    half = size / 2 / (np.where(at, GLASS.conductivity, steel.conductivity) * WIDTH**2)
+    link = 1 / (half[1:] + half[:-1])
+    matrix = np.diag(np.append(link, 0) + np.append(0, link)) - np.diag(link, 1) - np.diag(link, -1)
+    root = 1 / np.sqrt(capacity)
+    rates, turn = np.linalg.eigh(root[:, None] * matrix * root)
+    expected = np.exp(-np.outer(times, np.maximum(rates, 0.0))) @ (root[0] * turn[0]) ** 2
+    assert found == pytest.approx(expected, rel=0.02)
+
+
+def test_contents_take_heat_through_a_wall() -> None:
+    """A patch that covers a plate with a film at its other side."""
+    film, thick = 2000.0, 0.003
+    mesh = trimesh.creation.box((WIDTH, WIDTH, thick))
+    body = solid((mesh, GLASS))
+    wet = [mesh.face_normals[:, 2] < -0.5]
+    place = on_top(thick / 2, [[WIDTH / 2] * 2] * 2, thick)
+    times = np.geomspace(0.1, 20.0, 8)
+    local = local_kernel(body, wet, film, place, TIP, 20.0, COARSE)
+    assert local is not None
+    taus = GLASS.diffusivity * times
+    free = np.ones(len(times))
+    for n in range(1, 400):
+        free += 2 * np.exp(-((n * np.pi / thick) ** 2) * taus)
+    free /= thick * WIDTH**2 * GLASS.volumetric_heat_capacity
+    expected = free * filmed(taus, thick, film / GLASS.conductivity)
+    assert local.kernel(times)[:, 0, 0] == pytest.approx(expected, rel=0.015)
+
+
+@pytest.mark.parametrize("height", [0.0353, 0.0365, 0.04, -0.0352, -0.038])
+def test_few_cells_serve_at_a_rim_and_at_a_foot(height: float) -> None:
+    profile = [(0, -0.04), (0.03, -0.04), (0.03, 0.04), (0.027, 0.04), (0.027, -0.037), (0, -0.037)]
+    body = solid((trimesh.creation.revolve(profile, sections=128), GLASS))
+    axes = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+    face = Face(np.array([0.03, 0.0, height]), axes, np.array([0.0, 1 / 0.03]))
+    place = Place(face, WIDTH / 2, np.array([[height + 0.04, 0.04 - height], [0.05, 0.05]]), 0.003)
+    fine = Fineness(12e-3, 12e-3, 0.12e-3, 0.25e-3, 0.15e-3, 0.25, 1.5e-3)
+    few, many = (
+        local_kernel(body, dry(body), 0.0, place, TIP, 1.2e-5 / GLASS.diffusivity, each)
+        for each in (COARSE, fine)
+    )
+    assert few is not None and many is not None
+    times = TAUS / GLASS.diffusivity
+    expected = many.kernel(times)
+    assert few.kernel(times)[:, 0, 0] == pytest.approx(expected[:, 0, 0], rel=0.01)
+
+
+def test_a_surface_that_leaves_the_face_is_refused() -> None:
+    body = solid((trimesh.creation.cylinder(0.006, 0.05, sections=64), GLASS))
+    axes = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+    place = Place(
+        Face(np.array([0.006, 0.0, 0.0]), axes, np.zeros(2)), WIDTH / 2, np.full((2, 2), 0.05), 0.012
+    )
+    assert local_kernel(body, dry(body), 0.0, place, TIP, 1.0, COARSE) is None

@@ -1,0 +1,137 @@
+"""How heat in a few patterns fades on cells: Chebyshev moments of their operator, of which the kernel at any time is a
+sum (Tal-Ezer & Kosloff, J. Chem. Phys. 81, 1984, in imaginary time).
+
+N: cells, P: ports, D: moments, T: times.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+_ERROR = 14.0  # minus its logarithm, of what is left out
+_PORTS = 3
+
+
+class Fading(NamedTuple):
+    """fastest: 1/s. moments: (D, P, P) K/J."""
+
+    fastest: float
+    moments: np.ndarray
+
+    def kernel(self, times: np.ndarray) -> np.ndarray:
+        """(T, P, P) K/J at times s."""
+        weights = np.zeros((len(times), len(self.moments)))
+        _weights(times * self.fastest / 2, weights)
+        return np.tensordot(weights, self.moments, axes=1)
+
+
+def fading(
+    capacity: np.ndarray,
+    neighbours: np.ndarray,
+    links: np.ndarray,
+    sink: np.ndarray,
+    ports: np.ndarray,
+    last: float,
+) -> Fading:
+    """capacity: (N,) J/K. neighbours: (N, 6), and links: (N, 6) W/K to them. sink: (N,) W/K. ports: (N, P), how each
+    port's flow enters the cells, of three ports at most. last: s, until when."""
+    root = 1 / np.sqrt(capacity)
+    diagonal = (links.sum(axis=1) + sink) / capacity
+    beside = links * root[:, None] * root[neighbours]
+    fastest = float((diagonal + beside.sum(axis=1)).max())  # Gershgorin's bound
+    half = math.ceil(math.sqrt(_ERROR * fastest * last) / 2) + 2
+    scale = 4 / fastest
+    x = np.zeros((len(capacity), _PORTS))
+    x[:, : ports.shape[1]] = root[:, None] * ports
+    flat = np.zeros((2 * half + 1, 6))
+    _moments(scale * diagonal - 2, -scale * beside, neighbours.astype(np.int32), x, half, flat)
+    count = ports.shape[1]
+    rows, columns = np.tril_indices(_PORTS)
+    moments = np.zeros((len(flat), _PORTS, _PORTS))
+    moments[:, rows, columns] = moments[:, columns, rows] = flat
+    return Fading(fastest, moments[:, :count, :count])
+
+
+@njit(cache=True, error_model="numpy", short_loops=True)
+def _moments(diagonal, off, neighbours, x, half, moments):
+    """diagonal (N,), off (N, 6): of twice the scaled operator. x: (N, 3). moments: (2 half + 1, 6), of the six products
+    of three ports."""
+    n = len(x)
+    old, new = x.copy(), np.empty(x.shape)
+    for i in range(n):
+        d = diagonal[i] / 2
+        s0, s1, s2 = d * x[i, 0], d * x[i, 1], d * x[i, 2]
+        for k in range(6):
+            j, g = neighbours[i, k], off[i, k] / 2
+            s0 += g * x[j, 0]
+            s1 += g * x[j, 1]
+            s2 += g * x[j, 2]
+        new[i, 0], new[i, 1], new[i, 2] = s0, s1, s2
+    for i in range(n):
+        c = 0
+        for p in range(3):
+            for q in range(p + 1):
+                moments[0, c] += x[i, p] * x[i, q]
+                moments[1, c] += new[i, p] * x[i, q]
+                c += 1
+    for m in range(1, half + 1):
+        a0, a1, a2, a3, a4, a5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        b0, b1, b2, b3, b4, b5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(n):
+            d = diagonal[i]
+            x0, x1, x2 = new[i, 0], new[i, 1], new[i, 2]
+            s0, s1, s2 = d * x0 - old[i, 0], d * x1 - old[i, 1], d * x2 - old[i, 2]
+            for k in range(6):
+                j, g = neighbours[i, k], off[i, k]
+                s0 += g * new[j, 0]
+                s1 += g * new[j, 1]
+                s2 += g * new[j, 2]
+            old[i, 0], old[i, 1], old[i, 2] = s0, s1, s2
+            a0 += x0 * x0
+            a1 += x1 * x0
+            a2 += x1 * x1
+            a3 += x2 * x0
+            a4 += x2 * x1
+            a5 += x2 * x2
+            b0 += s0 * x0
+            b1 += s1 * x0
+            b2 += s1 * x1
+            b3 += s2 * x0
+            b4 += s2 * x1
+            b5 += s2 * x2
+        old, new = new, old
+        even, odd = (a0, a1, a2, a3, a4, a5), (b0, b1, b2, b3, b4, b5)
+        for c in range(6):
+            moments[2 * m, c] = 2 * even[c] - moments[0, c]
+            if m < half:
+                moments[2 * m + 1, c] = 2 * odd[c] - moments[1, c]
+
+
+@njit(cache=True, error_model="numpy")
+def _weights(z, weights):
+    """exp(-z (1 + x)) as a sum over Chebyshev polynomials of x: modified Bessel functions by Miller's recurrence."""
+    count = weights.shape[1]
+    for t in range(len(z)):
+        if z[t] < 1e-8:
+            weights[t, 0] = 1.0
+            continue
+        start = count + 30 + int(z[t] ** 0.5)
+        high, now, total = 0.0, 1e-280, 0.0
+        for k in range(start, -1, -1):
+            # now = I_k, high = I_{k+1}
+            if k < count:
+                weights[t, k] = now
+            total += now if k == 0 else 2 * now
+            low = high + 2 * k / z[t] * now
+            high, now = now, low
+            if now > 1e200:
+                high, now, total = high * 1e-200, now * 1e-200, total * 1e-200
+                for q in range(k, count):
+                    weights[t, q] *= 1e-200
+        for k in range(count):
+            weights[t, k] *= (1.0 if k == 0 else (2.0 if k % 2 == 0 else -2.0)) / total

@@ -1,0 +1,87 @@
+"""The heat kernel of a sensor's face on a body, until its heat has gone far: of cells beneath, unrolled.
+
+What cells are too coarse for, a box that is cut into the same cells is, too (box.py): so few serve.
+
+M: patterns, T: times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..kernels import Tip
+from ..surfaces import Solid
+from .box import BoxBeside, box_beside, functions, means
+from .cells import Cells, cells_beneath
+from .columns import Columns, Fineness, Piece, Place, columns
+from .fading import Fading, fading
+
+
+class LocalKernel(NamedTuple):
+    """fading: on cells. beside: the box that tells what these are too coarse for. diffusivity: m2/s of what is
+    touched."""
+
+    fading: Fading
+    beside: BoxBeside
+    diffusivity: float
+
+    def kernel(self, times: np.ndarray) -> np.ndarray:
+        """(T, M, M) K/J at times s."""
+        turn = self.beside.turn(self.diffusivity * times)
+        return turn @ self.fading.kernel(times) @ turn.transpose(0, 2, 1)
+
+
+def local_kernel(
+    body: Solid, wet: Sequence[np.ndarray], film: float, place: Place, tip: Tip, last: float, fine: Fineness
+) -> LocalKernel | None:
+    """wet: (F,) of each part, whether contents wet its triangles, behind a film of W/(m2 K). last: s, until when. None
+    where what is touched does not lie on the place's face, or the body's parts cross."""
+    if body.hosts is None:
+        return None
+    pieces = [
+        Piece(
+            place.face.local(part.triangles),
+            under,
+            part.material.conductivity,
+            part.material.volumetric_heat_capacity,
+            host,
+        )
+        for part, under, host in zip(body.parts, wet, body.hosts, strict=True)
+    ]
+    u, v = (columns(place, pieces, axis, fine) for axis in range(2))
+    if u is None or v is None:
+        return None
+    found = cells_beneath(place, pieces, (u.edges, v.edges), film, fine)
+    if found is None:
+        return None
+    outer = pieces[0]
+    through = film / outer.conductivity if found.wet and len(pieces) == 1 else 0.0
+    beside = box_beside(place.face, place.half, (u, v), found.w, tip, place.depth, through)
+    return LocalKernel(
+        fading(
+            found.capacity, found.neighbours, found.links, found.sink, _ports(place, found, (u, v), tip), last
+        ),
+        beside,
+        outer.conductivity / outer.capacity,
+    )
+
+
+def _ports(place: Place, cells: Cells, along: tuple[Columns, Columns], tip: Tip) -> np.ndarray:
+    """(N, M) of each pattern's flow into the cells, that of the even one in all 1: no other lets heat in, also where
+    the face ends within the patch."""
+    edges = [
+        np.clip(place.face.seen(each.edges, axis) / place.half, -1.0, 1.0) for axis, each in enumerate(along)
+    ]
+    weight = cells.cover * np.diff(edges[0])[:, None] * np.diff(edges[1])
+    weight /= weight.sum()
+    x, y = (means(values, each) for values, each in zip(functions(tip), edges, strict=True))
+    values = x[:, :, None] + y[:, None, :]
+    values[0] = 1.0
+    values[1:] -= np.tensordot(values[1:], weight, axes=2)[:, None, None]
+    ports = np.zeros((len(cells.capacity), len(values)))
+    touched = weight > 0
+    ports[cells.top[touched]] = (weight * values)[:, touched].T
+    return ports
