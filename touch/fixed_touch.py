@@ -452,12 +452,12 @@ def grasp_touch(
     for o, shape in enumerate(shapes):
         poses[:, :, o, :3] = shape.centre
         poses[:, :, o, 3:] = side[:, None] * shape.axes.T[:ways, None]
-    first = [replace(shape, material=choices[0]) for shape, choices in zip(shapes, materials, strict=True)]
+    first = [shape.of(choices[0]) for shape, choices in zip(shapes, materials, strict=True)]
     heat = JoinedHeat(pads, (), first, worlds=1, dt=dt, tolerance=tolerance, film=air, ambient=ambient)
     most = max(map(len, materials))
     kinds = [
         tuple(
-            replace(shape, material=choices[min(v, len(choices) - 1)])
+            shape.of(choices[min(v, len(choices) - 1)])
             for shape, choices in zip(shapes, materials, strict=True)
         )
         for v in range(most)

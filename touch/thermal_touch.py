@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -46,6 +46,7 @@ from .scene import (
     bodies,
     glued_elements,
     materials_by_world,
+    own_shapes,
     pads,
     refuse_overlap,
     samples_in,
@@ -88,7 +89,7 @@ class ThermalTouch:
     World w's noise is that of seed + w.
 
     Heat is advanced once per sample of the converter, a hundredth of a second or the nearest whole part of dt. What two
-    fingertips feel through an object follows its box (BodyShape).
+    fingertips feel through an object follows its box, or its own shape where it is a closed mesh (BodyShape).
     Raises UnknownNameError for names and InvalidValueError for values that cannot be.
     """
 
@@ -122,6 +123,7 @@ class ThermalTouch:
         self._sample_steps = self._substeps // self._samples
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
+        self._shapes = own_shapes(model, self._shapes, self._pads)
         self._glued = glued_elements(model, self._shapes, ambient)
         self._many, count = worlds is not None, int(worlds or 1)
         start_compiling(recorded=self._many)
@@ -341,7 +343,7 @@ class ThermalTouch:
         most = max(map(len, every))
         kinds = [
             tuple(
-                replace(shape, material=choices[min(v, len(choices) - 1)])
+                shape.of(choices[min(v, len(choices) - 1)])
                 for shape, choices in zip(self._shapes, every, strict=True)
             )
             for v in range(most)

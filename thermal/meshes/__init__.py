@@ -1,6 +1,7 @@
 """Bodies of any shape: solids on cut-cell grids, their networks, and where they are touched."""
 
 from .film import wetted_area
+from .modes import body_modes
 from .network import body_network
 from .placed import LEVEL as PLACED_LEVEL
 from .placed import PLACED_SHARE, placed_body
@@ -13,6 +14,7 @@ __all__ = [
     "PLACED_SHARE",
     "TouchedBody",
     "body_in_pads",
+    "body_modes",
     "body_network",
     "field_carried",
     "placed_body",

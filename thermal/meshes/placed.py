@@ -197,10 +197,10 @@ def face_impedance(
 
 def ringed_network(
     found: FaceImpedance, seen: np.ndarray, kernel: np.ndarray, early: np.ndarray
-) -> ThermalNetwork:
-    """Of an empty body's faces and of J other ports behind them, of even flows. seen: (J, R) of the modes by these.
-    kernel: (T, P M + J, P M + J) 1/J K of the boxes beneath, at TIMES, before the modes tell; that of faces is known
-    better. early: (J,) K/W of these before then."""
+) -> tuple[ThermalNetwork, int]:
+    """Of an empty body's faces and of J other ports behind them, of even flows; and how many of its states are slow.
+    seen: (J, R) of the modes by these. kernel: (T, P M + J, P M + J) 1/J K of the boxes beneath, at TIMES, before the
+    modes tell; that of faces is known better. early: (J,) K/W of these before then."""
     modes, faces = found.modes, found.impedance.shape[1]
     every = np.concatenate((*(place.seen for place in found.places), seen))
     slow = _slow(modes, every, None, len(seen))
@@ -212,7 +212,7 @@ def ringed_network(
     others = np.arange(faces, len(every))
     impedance[:, others, others] += early
     impedance[:, :faces, :faces] = found.impedance
-    return _fitted(found, slow, impedance, _EMPTY)
+    return _fitted(found, slow, impedance, _EMPTY), len(slow.fades)
 
 
 def _fitted(found: FaceImpedance, slow: _Slow, impedance: np.ndarray, level: _Fineness) -> ThermalNetwork:

@@ -16,12 +16,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from thermograsp.errors import MeshError
-
 from ..kernels import TIMES, before
 from ..matter import SensorStack
 from ..network import ThermalNetwork
-from ..surfaces import Solid, SurfacePatch
+from ..surfaces import FACING, Solid, SurfacePatch, crossings
 from .beneath import Beneath
 from .modes import BodyModes, body_modes
 from .patch import patch_on_grid, uniform_pattern
@@ -32,12 +30,14 @@ from .placed import (
     bent_room,
     box_beneath,
     face_impedance,
+    placed_network,
     ringed_network,
     seen_on_grid,
 )
-from .touched import surface_normal
+from .touched import nearest_surface
 
 _UPRIGHT = math.cos(math.radians(10.0))  # a surface this near to an axis is taken as across it
+_FARTHER = 2.0  # than the nearest point, that a place may be on the line across the surface
 _LEAST = 1e-3  # of a square, below which nothing of the ring around it touches
 
 
@@ -58,10 +58,14 @@ def body_in_pads(
     sides: tuple[float, ...],
     *,
     cache: bool = True,
-) -> tuple[ThermalNetwork, np.ndarray]:
+) -> tuple[ThermalNetwork, np.ndarray, int]:
     """The body's network of P M ports, in orthonormal patterns of the sensor's whole face, its output "heat" the J that
-    it has gained, and (n, P R) ports of even flows into rings of the pads around. sides: (R,) m, the rings' outer
-    sides. Raises MeshError where a patch meets no surface, or the body is no solid in one piece."""
+    it has gained; (n, P R) ports of even flows into rings of the pads around; and how many of its states, the first
+    ones, are the body's own wherever it is touched. sides: (R,) m, the rings' outer sides, none without pads. Raises
+    MeshError where a patch meets no surface, or the body is no solid in one piece."""
+    if not sides:
+        alone = placed_network(body, patches, stack, cache=cache)
+        return alone.network, np.zeros((len(alone.network.rates), 0)), alone.slow
     found = face_impedance(body, patches, stack, None, cache)
     around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]
     modes = found.modes
@@ -70,23 +74,24 @@ def body_in_pads(
     some = areas > _LEAST * stack.face_area
     early = some * before(modes.diffusivity) / (modes.capacity * np.where(some, areas, 1.0))
     seen = np.concatenate([each.rings for each in around])
-    network = ringed_network(found, seen, kernel, early)
+    network, slow = ringed_network(found, seen, kernel, early)
     faces, ports = len(patches) * LEVEL.patterns, network.ports
     whole = replace(network, ports=ports[:, :faces], direct=network.direct[:faces, :faces])
-    return whole, ports[:, faces:]
+    return whole, ports[:, faces:], slow
 
 
 def surface_patch(body: Solid, centre: np.ndarray, outward: np.ndarray, area: float) -> SurfacePatch:
-    """Of m2 where a line through a place (3,) m outside the body, along an outward unit vector, leaves its surface, or
-    on the surface that is nearest where none does; across it."""
-    along_x, along_y, along_z = outward.tolist()
-    wanted = SurfacePatch(_triple(centre), (along_x, along_y, along_z), area)
-    try:
-        at = place_patch(body.outside, wanted, np.eye(3)).centre
-    except MeshError:
-        middles = body.outside.mean(axis=1)
-        at = middles[np.argmin(((middles - centre) ** 2).sum(axis=1))]
-    normal = surface_normal(body, at)
+    """Of m2 on the surface that looks along an outward unit vector, across it: where a line that way through a place
+    (3,) m leaves the body, or at the nearest point where the line meets it far from there."""
+    triangles = body.outside
+    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    facing = triangles[across @ outward > FACING * np.linalg.norm(across, axis=1)]
+    at, normal = nearest_surface(facing if len(facing) else triangles, centre)
+    met = crossings(triangles, centre, outward)
+    if len(met):
+        along = met[np.argmin(np.abs(met))]
+        if abs(along) < _FARTHER * np.linalg.norm(at - centre) + math.sqrt(area) / 2:
+            at, normal = nearest_surface(facing, centre + along * outward)
     if normal @ outward > _UPRIGHT:
         normal = outward
     return SurfacePatch(_triple(at), _triple(normal), area)

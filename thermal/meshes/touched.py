@@ -205,7 +205,11 @@ def touched_body(
 
 def surface_normal(body: Solid, place: np.ndarray) -> np.ndarray:
     """(3,) outward normal of the face nearest to a place (3,) m."""
-    triangles = body.outside
+    return nearest_surface(body.outside, place)[1]
+
+
+def nearest_surface(triangles: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The point (3,) m of triangles (F, 3, 3) m that is nearest to a place (3,) m, and their normal (3,) there."""
     a = triangles[:, 0]
     normals = np.cross(triangles[:, 1] - a, triangles[:, 2] - a)
     areas = np.linalg.norm(normals, axis=1)
@@ -215,15 +219,18 @@ def surface_normal(body: Solid, place: np.ndarray) -> np.ndarray:
     # beside a face its nearest point is on an edge
     foot = place - above[:, None] * normals
     inside = np.ones(len(foot), bool)
-    nearest = np.full(len(foot), np.inf)
+    nearest, at = np.full(len(foot), np.inf), foot.copy()
     for i in range(3):
         start, end = triangles[faces, i], triangles[faces, (i + 1) % 3]
         edge = end - start
         inside &= np.einsum("fc,fc->f", np.cross(edge, foot - start), normals) >= 0
         share = np.einsum("fc,fc->f", place - start, edge) / np.einsum("fc,fc->f", edge, edge)
-        away = place - start - np.clip(share, 0.0, 1.0)[:, None] * edge
-        nearest = np.minimum(nearest, np.linalg.norm(away, axis=1))
-    return normals[np.argmin(np.where(inside, np.abs(above), nearest))]
+        on_edge = start + np.clip(share, 0.0, 1.0)[:, None] * edge
+        away = np.linalg.norm(place - on_edge, axis=1)
+        closer = away < nearest
+        nearest[closer], at[closer] = away[closer], on_edge[closer]
+    found = int(np.argmin(np.where(inside, np.abs(above), nearest)))
+    return foot[found] if inside[found] else at[found], normals[found]
 
 
 def field_carried(source: TouchedBody, target: TouchedBody) -> np.ndarray:

@@ -12,7 +12,17 @@ import mujoco
 from thermograsp.errors import InvalidValueError, MissingDependencyError, celsius, non_negative, positive
 
 from ...thermal import Material
-from ..scene import Fingertip, ThermalBody, bodies, glued_elements, pads, samples_in, whole_steps
+from ..scene import (
+    Fingertip,
+    ThermalBody,
+    bodies,
+    glued_elements,
+    is_mesh,
+    pads,
+    samples_in,
+    warn_of_box,
+    whole_steps,
+)
 from .library import load_plugin
 from .numbers import packed
 
@@ -70,6 +80,9 @@ def install(
                 f"fingertip {pad.label!r}: heat inside MuJoCo's step knows a sensor without the pad around it: leave "
                 "surround out, or call ThermalTouch.update after every step"
             )
+    for shape in shapes:
+        if is_mesh(model, shape):
+            warn_of_box(shape, "compiled code makes networks of boxes alone; ThermalTouch.update knows its shape")
     numbers = packed(
         model,
         found,

@@ -20,6 +20,7 @@ from ...thermal.kernels import Patches, Resolution, Tip, box_side, glued_element
 from ...thermal.numerics import ThermalNetwork
 from ...thermal.padded import RINGS, PaddedTip, box_in_pads, padded_tip, ring_sides
 from ..scene import BodyShape, PadPlace
+from .march import ACROSS
 
 NEAR = 0.25 + 1e-6
 """Of the sensor's width: a pad that is as near to a known place is on it. A little more than two steps of the grid
@@ -92,18 +93,26 @@ def tip_field(pad: PadPlace, level: Resolution) -> TipField:
 @dataclass(frozen=True, slots=True)
 class Place:
     """Where a fingertip touches: a face of the object's box, 2 axis + side, the middle (2,) m along the other two axes
-    from its corner, and the fingertip, by number."""
+    from its corner, and the fingertip, by number. across: m from that corner along the face's axis, where the object is
+    no box."""
 
     face: int
     middle: tuple[float, float]
     fingertip: int
+    across: float = 0.0
+
+    @property
+    def whole(self) -> tuple[float, float, float]:
+        """m along the face's axes and across it."""
+        return (*self.middle, self.across)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyField:
     """An object's network of the places where it is touched. rates: (n,) 1/s. ports: (n, N M) sqrt(K/J). heat: (n,) J
     and loss: (n,) W of a state; only the first one, the mean temperature's, has any. beside: (n, N RINGS) ports
-    under the pads around the elements, no columns where no fingertip has one."""
+    under the pads around the elements, no columns where no fingertip has one. own: how many of the states, the first
+    ones, are the object's wherever it is touched."""
 
     places: tuple[Place, ...]
     rates: np.ndarray
@@ -111,6 +120,7 @@ class BodyField:
     heat: np.ndarray
     loss: np.ndarray
     beside: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    own: int = 1
 
     def port(self, place: int, patterns: int) -> np.ndarray:
         """(n, M) of one place."""
@@ -129,6 +139,7 @@ def rings_of(pad: PadPlace) -> Rings | None:
 def near(one: Place, other: Place, reach: float) -> bool:
     """Whether two places of one fingertip are the same to it. reach: m."""
     distance = max(abs(a - b) for a, b in zip(one.middle, other.middle, strict=True))
+    distance = max(distance, ACROSS * abs(one.across - other.across))
     return one.fingertip == other.fingertip and one.face == other.face and distance <= reach
 
 
@@ -153,7 +164,7 @@ def touched(
     takes heat from the object's mean temperature."""
     bare = untouched(shape, film)
     if shape.solid is not None:
-        side, beside = _solid_side(shape, places, pads, cache)
+        side, beside, own = _solid_side(shape, places, pads, cache)
         # the body's mean, by its own heat capacity
         side.ports[0] *= side.outputs["heat"][0] / bare.heat[0]
         beside[0] *= side.outputs["heat"][0] / bare.heat[0]
@@ -162,18 +173,18 @@ def touched(
         at = tuple((place.face, place.middle) for place in places)
         seen = tuple(tips[place.fingertip] for place in places)
         around = tuple(rings_of(pads[place.fingertip]) for place in places)
-        side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
+        (side, beside), own = _side(shape.material, (x, y, z), at, seen, around, level), 1
     rates = side.rates.copy()
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
     heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
-    return BodyField(places, rates, side.ports, heat, loss, beside)
+    return BodyField(places, rates, side.ports, heat, loss, beside, own)
 
 
 def _solid_side(
     shape: BodyShape, places: tuple[Place, ...], pads: tuple[PadPlace, ...], cache: bool
-) -> tuple[ThermalNetwork, np.ndarray]:
-    """As _side's, of a body of any shape. Its places are told as those of the box around it."""
+) -> tuple[ThermalNetwork, np.ndarray, int]:
+    """As _side's, of a body of any shape, and how many of its states are its own."""
     from ...thermal.meshes import body_in_pads, surface_patch
 
     assert shape.solid is not None
@@ -183,10 +194,7 @@ def _solid_side(
         axis, far = divmod(place.face, 2)
         others = [i for i in range(3) if i != axis]
         outward[axis] = 1.0 if far else -1.0
-        centre[others], centre[axis] = (
-            np.array(place.middle) - shape.size[others] / 2,
-            outward[axis] * shape.size[axis] / 2,
-        )
+        centre[[*others, axis]] = np.array(place.whole) - shape.size[[*others, axis]] / 2
         area = pads[place.fingertip].stack.face_area
         patches.append(surface_patch(shape.solid, centre, outward, area))
     pad = pads[places[0].fingertip]
@@ -221,19 +229,21 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     """(n after, n before): the field on the states of a network with other places.
 
     The field on the new states is the one that the places of both will see alike from then on, left alone: their
-    temperatures at AFTERWARDS, by least squares. Heat stays the same: it is all in the mean temperature's state.
+    temperatures at AFTERWARDS, by least squares. What the object has of its own stays as it is, and so does heat: it is
+    all in the mean temperature's state.
     Singular values count the less the nearer they are to those that are left out: round-off decides nothing."""
+    own = min(before.own, after.own)
     matrix = np.zeros((len(after.rates), len(before.rates)))
-    matrix[0, 0] = 1.0
+    matrix[:own, :own] = np.eye(own)
     common = [place for place in before.places if place in after.places]
     if not common:
         return matrix
-    source, target = (_future(field, common, patterns) for field in (before, after))
+    source, target = (_future(field, common, patterns)[:, own - 1 :] for field in (before, after))
     with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
         left, values, right = np.linalg.svd(target, full_matrices=False)
     kept = values > _LEAST * values[0]
     share = (1 - (_LEAST * values[0] / values[kept]) ** 2) / values[kept]
-    matrix[1:, 1:] = (right[kept].T * share) @ (left[:, kept].T @ source)
+    matrix[own:, own:] = (right[kept].T * share) @ (left[:, kept].T @ source)
     return matrix
 
 

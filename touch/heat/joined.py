@@ -11,7 +11,7 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact (objects, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -118,7 +118,10 @@ class JoinedHeat:
         wide = [np.sqrt(padded.areas) for _, padded in around]
         self._widths = np.concatenate(([pad.stack.width for pad in pads], *wide))
         self._boxes = np.array(
-            [np.concatenate((s.size, s.extent, s.centre, s.axes.ravel())) for s in self._shapes]
+            [
+                np.concatenate((s.size, s.extent, s.centre, s.axes.ravel(), [s.solid is not None]))
+                for s in self._shapes
+            ]
         )
         count, objects, fields = len(pads), len(shapes), len(shapes) + len(pads)
         contacts, lanes = len(self._owners), len(self._widths)
@@ -134,7 +137,7 @@ class JoinedHeat:
         self._fields = [list(bare) for _ in range(worlds)]
         self._current = np.full((worlds, count, objects), -1)
         self._faces = np.full((worlds, count, objects), -1)
-        self._middles = np.zeros((worlds, count, objects, 2))
+        self._middles = np.zeros((worlds, count, objects, 3))
         # the places for which these were found to do, and those for which one is to be found
         self._sought_faces, self._sought_middles = self._faces.copy(), self._middles.copy()
         self._new_faces, self._new_middles = self._faces.copy(), self._middles.copy()
@@ -370,7 +373,7 @@ class JoinedHeat:
             poses[..., :3],
             poses[..., 3:],
         )
-        faces, middles = np.full((1, tips, objects), -1), np.zeros((1, tips, objects, 2))
+        faces, middles = np.full((1, tips, objects), -1), np.zeros((1, tips, objects, 3))
         new = faces.copy(), middles.copy()
         closed, stale = np.zeros((1, tips, objects), bool), np.zeros(1, bool)
         known = faces, middles, faces, middles
@@ -523,7 +526,7 @@ class JoinedHeat:
 
     def _field(self, o: int, material: Material, places: tuple[Place, ...]) -> BodyField:
         if (o, material, places) not in self._known:
-            shape = replace(self._shapes[o], material=material)
+            shape = self._shapes[o].of(material)
             self._known[o, material, places] = (
                 touched(shape, self._film, places, self._pads, self._tips, self._level, self._cache)
                 if places
@@ -579,12 +582,13 @@ class JoinedHeat:
         else:
             self._add(w, o, place)
         self._place(w, f, o)
-        self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.middle
+        self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.whole
         self._stale[w] = True
 
     def _wanted(self, f: int, face: int, middle: np.ndarray) -> Place:
         """Of the grid, as `settle` tells it."""
-        return Place(face, (float(middle[0]), float(middle[1])), f)
+        along, beside, across = middle.tolist()
+        return Place(face, (along, beside), f, across)
 
     def _place(self, w: int, f: int, o: int) -> None:
         number = int(self._current[w, f, o])
@@ -593,7 +597,7 @@ class JoinedHeat:
             self._faces[w, f, o] = -1
             return
         place = self._fields[w][o].places[number]
-        self._faces[w, f, o], self._middles[w, f, o] = place.face, place.middle
+        self._faces[w, f, o], self._middles[w, f, o] = place.face, place.whole
 
     def _add(self, w: int, o: int, place: Place) -> None:
         """A new place of an object; the one that was in use the longest ago goes where there would be too many."""

@@ -29,6 +29,10 @@ from .step import CONTACTS, HEADER, PACE, room_of, step
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
 TABLE = 59
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
+BOX = 19
+"""Of a row that tells an object."""
+ACROSS = 0.25
+"""What a step across a face counts for one along it: pads sink in, and walls of one object are far from each other."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
 _TIE = 1e-6
 """By how much a face must look more at the pad than the axis before, and a place must be nearer to the next point of
@@ -43,11 +47,11 @@ def settle(
     """Notes which contacts are closed, (W, F + pads, T), those of pads around the sensors last, and where; stale (W,)
     where that is no longer what it was. pads: (F,) number of each one's pad, from F on, -1 for none.
 
-    boxes: (O, 18) size, extent and centre m and the axes, row by row. widths: (F,) m of the sensors. reach: (F,) m.
-    faces (W, F, O) and middles (W, F, O, 2): the places in use, face -1 for none. A contact that has left its place is
-    told by new_faces, else -1, and new_middles, of the nearest place of the grid; not again where that is the one that
-    was asked for last, for which the place in use was found to do. Returns how many have left theirs, and how many
-    worlds are stale."""
+    boxes: (O, BOX) size, extent and centre m, the axes, row by row, and 1 for what has its own shape. widths: (F,) m of
+    the sensors. reach: (F,) m. faces (W, F, O) and middles (W, F, O, 3): the places in use, face -1 for none; along the
+    face's two axes, and across it, 0 on a box. A contact that has left its place is told by new_faces, else -1, and
+    new_middles, of the nearest place of the grid; not again where that is the one that was asked for last, for which
+    the place in use was found to do. Returns how many have left theirs, and how many worlds are stale."""
     worlds, tips, targets = touches.shape[:3]
     objects, moved = len(boxes), 0
     position, looking, outdated = np.empty(3), np.empty(3), 0
@@ -95,9 +99,14 @@ def settle(
                     new_middles[w, f, t, j] = box[i] / 2 + off
                     distance = max(distance, abs(at - middles[w, f, t, j]))
                     j += 1
+                new_middles[w, f, t, 2] = 0.0
+                if box[18] > 0:
+                    at, spacing = min(max(position[most], -box[most] / 2), box[most] / 2), GRID * widths[f]
+                    new_middles[w, f, t, 2] = box[most] / 2 + np.rint(at / spacing) * spacing
+                    distance = max(distance, ACROSS * abs(new_middles[w, f, t, 2] - middles[w, f, t, 2]))
                 if face != known or distance > reach[f]:
                     answered = face == sought_faces[w, f, t]
-                    for j in range(2):
+                    for j in range(3):
                         answered = answered and new_middles[w, f, t, j] == sought_middles[w, f, t, j]
                     if not answered:
                         new_faces[w, f, t] = face
@@ -121,15 +130,15 @@ def sample(entries_at, touches_at, substeps, settled):
     if settled == 0:
         moved, stale = settle(
             touches,
-            floats(entries[0], (objects, 18)),
+            floats(entries[0], (objects, BOX)),
             widths,
             floats(entries[2], lanes),
             words(entries[3], (worlds, tips, objects)),
-            floats(entries[4], (worlds, tips, objects, 2)),
+            floats(entries[4], (worlds, tips, objects, 3)),
             words(entries[5], (worlds, tips, objects)),
-            floats(entries[6], (worlds, tips, objects, 2)),
+            floats(entries[6], (worlds, tips, objects, 3)),
             words(entries[7], (worlds, tips, objects)),
-            floats(entries[8], (worlds, tips, objects, 2)),
+            floats(entries[8], (worlds, tips, objects, 3)),
             flags(entries[9], (worlds, contacts, targets)),
             flags(entries[10], worlds),
             words(entries[36], tips),

@@ -5,6 +5,7 @@ from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .names import find, geom_label, geoms_of
+from .own_shape import is_mesh, own_shapes, warn_of_box
 from .overlap import refuse_overlap
 from .steps import LONGEST, samples_in, whole_steps
 
@@ -24,14 +25,17 @@ __all__ = [
     "geom_label",
     "geoms_of",
     "glued_elements",
+    "is_mesh",
     "is_round",
     "largest_face",
     "materials_by_world",
     "mesh_of",
+    "own_shapes",
     "pads",
     "refuse_overlap",
     "rotation",
     "samples_in",
     "triangles",
+    "warn_of_box",
     "whole_steps",
 ]

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import mujoco
 import numpy as np
@@ -76,8 +77,8 @@ class BodyShape:
     (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the body's frame. extent
     (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on it.
 
-    A box stands as it is; a round, hollow or composed object is a box of its volume and proportions. solid: what heat
-    flows in instead, an empty body of that material in the box's frame, which is as large as it."""
+    A box stands as it is; a round or composed object is a box of its volume and proportions. solid: what heat flows in
+    instead (own_shape.py), a body of that material in the box's frame, which is as large as it."""
 
     name: str
     body: int
@@ -99,6 +100,17 @@ class BodyShape:
         if self.solid is not None:
             volume = sum(part.volume for part in self.solid.parts)
         return volume * self.material.volumetric_heat_capacity
+
+    def of(self, made_of: Material) -> BodyShape:
+        """The same of another material."""
+        solid = None if self.solid is None else _solid_of(self.solid, made_of)
+        return replace(self, material=made_of, solid=solid)
+
+
+@lru_cache(maxsize=256)
+def _solid_of(solid: Solid, made_of: Material) -> Solid:
+    """One object for each material, by which networks are known."""
+    return Solid(tuple(replace(part, material=made_of) for part in solid.parts))
 
 
 BodyMaterial = str | Material | ThermalBody
