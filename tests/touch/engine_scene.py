@@ -35,6 +35,11 @@ ORDERS = (10.0, 0.0, 0.0), (10.0, 0.015, 0.0), (-5.0, 0.0, 0.0), (10.0, -0.015, 
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS
 
 
+def keep_boxes(patch: pytest.MonkeyPatch) -> None:
+    """For ThermalTouch, whose heat in meshes flows in boxes then, as in MuJoCo's step."""
+    patch.setattr("thermograsp.touch.thermal_touch.own_shapes", lambda model, shapes, pads: tuple(shapes))
+
+
 def order(data: mujoco.MjData, force: float, x: float, z: float, fingers: tuple[str, ...] = ()) -> None:
     hand.press(data, force, *fingers)
     data.actuator("palm").ctrl[0], data.actuator("palm_z").ctrl[0] = x, z

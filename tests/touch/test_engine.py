@@ -30,6 +30,7 @@ from .engine_scene import (
     TIER,
     WARM_CORE,
     furthest,
+    keep_boxes,
     order,
     per_kelvin,
     sent,
@@ -233,7 +234,10 @@ QUICK = (("0.8 0.6 0", None),)  # of the mesh
         ),
     ],
 )
-def test_over_an_edge_its_voltages_are_those_of_thermal_touch(geom: str, way: str, skin: str | None) -> None:
+def test_over_an_edge_its_voltages_are_those_of_thermal_touch(
+    geom: str, way: str, skin: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep_boxes(monkeypatch)
     tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), skin=skin)
     words: dict = {"fingertips": {"tip": tip}, "objects": {"block": "steel"}}
     model = install(mujoco.MjSpec.from_string(EDGE.format(geom, way)), **words)

@@ -27,6 +27,8 @@ from thermograsp.touch.contacts.laws import PairLaws
 from thermograsp.touch.contacts.views import array_viewed, mesh_views, viewed
 from thermograsp.touch.scene import bodies, pads
 
+from .engine_scene import keep_boxes
+
 Mesh = tuple[np.ndarray, np.ndarray]
 PAD = Pad(width=0.020, face=0.009)
 
@@ -300,7 +302,8 @@ def test_what_springs_bear_is_the_force() -> None:
 
 
 @pytest.mark.parametrize("name", ["box", pytest.param("thread", marks=pytest.mark.slow), "nut"])
-def test_three_forms_agree_while_a_mesh_slips(name: str) -> None:
+def test_three_forms_agree_while_a_mesh_slips(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    keep_boxes(monkeypatch)
     words = {"fingertips": {"tip": Fingertip("tip", skin="filled_silicone")}, "objects": {"thing": "steel"}}
     try:
         model = install(spec(name), **words)

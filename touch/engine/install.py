@@ -17,10 +17,9 @@ from ..scene import (
     ThermalBody,
     bodies,
     glued_elements,
-    is_mesh,
     pads,
     samples_in,
-    warn_of_box,
+    warn_of_boxes,
     whole_steps,
 )
 from .library import load_plugin
@@ -80,9 +79,9 @@ def install(
                 f"fingertip {pad.label!r}: heat inside MuJoCo's step knows a sensor without the pad around it: leave "
                 "surround out, or call ThermalTouch.update after every step"
             )
-    for shape in shapes:
-        if is_mesh(model, shape):
-            warn_of_box(shape, "compiled code makes networks of boxes alone; ThermalTouch.update knows its shape")
+    warn_of_boxes(
+        model, shapes, "in MuJoCo's step there are networks of boxes alone; ThermalTouch knows its shape"
+    )
     numbers = packed(
         model,
         found,

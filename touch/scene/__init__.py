@@ -5,8 +5,8 @@ from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .names import find, geom_label, geoms_of
-from .own_shape import is_mesh, own_shapes, warn_of_box
 from .overlap import refuse_overlap
+from .own_shape import own_shapes, warn_of_boxes
 from .steps import LONGEST, samples_in, whole_steps
 
 __all__ = [
@@ -25,7 +25,6 @@ __all__ = [
     "geom_label",
     "geoms_of",
     "glued_elements",
-    "is_mesh",
     "is_round",
     "largest_face",
     "materials_by_world",
@@ -36,6 +35,6 @@ __all__ = [
     "rotation",
     "samples_in",
     "triangles",
-    "warn_of_box",
+    "warn_of_boxes",
     "whole_steps",
 ]

@@ -30,16 +30,21 @@ def own_shapes(
 ) -> tuple[BodyShape, ...]:
     """The objects, those that are meshes with the solids that their heat flows in. A warning says which of these stay
     boxes, and why."""
-    return tuple(_own(model, shape, pads) if is_mesh(model, shape) else shape for shape in shapes)
+    return tuple(_own(model, shape, pads) if _is_mesh(model, shape) else shape for shape in shapes)
 
 
-def is_mesh(model: mujoco.MjModel, shape: BodyShape) -> bool:
-    """Whether an object is one mesh."""
+def warn_of_boxes(model: mujoco.MjModel, shapes: Sequence[BodyShape], why: str) -> None:
+    """Says of which objects the heat flows in boxes where their own shape might have been taken."""
+    for shape in shapes:
+        if _is_mesh(model, shape):
+            _warn(shape, why)
+
+
+def _is_mesh(model: mujoco.MjModel, shape: BodyShape) -> bool:
     return [model.geom_type[geom] for geom in shape.geoms] == [mujoco.mjtGeom.mjGEOM_MESH]
 
 
-def warn_of_box(shape: BodyShape, why: str) -> None:
-    """Says that the heat of a mesh flows in a box."""
+def _warn(shape: BodyShape, why: str) -> None:
     _LOG.warning("object %r: its heat flows in a box of its volume and proportions: %s", shape.name, why)
 
 
@@ -47,7 +52,7 @@ def _own(model: mujoco.MjModel, shape: BodyShape, pads: Sequence[PadPlace]) -> B
     from ...thermal.meshes import body_modes  # nothing that meshes need is loaded without them
 
     if len({(pad.stack, pad.surround) for pad in pads}) > 1:
-        warn_of_box(shape, "its fingertips have different sensors, skins or pads")
+        _warn(shape, "its fingertips have different sensors, skins or pads")
         return shape
     (geom,) = shape.geoms
     vertices, faces = mesh_of(model, geom)
@@ -64,7 +69,7 @@ def _own(model: mujoco.MjModel, shape: BodyShape, pads: Sequence[PadPlace]) -> B
         with busy(f"how heat spreads in {geom_label(model, geom)}, once for its shape"):
             body_modes(solid)
     except ThermograspError as error:
-        warn_of_box(shape, f"mesh {geom_label(model, geom)} is no closed body: {error}")
+        _warn(shape, f"mesh {geom_label(model, geom)} is no closed body: {error}")
         return shape
     centre = model.geom_pos[geom] + axes @ (middle - offset)
     return replace(shape, size=high - low, extent=high - low, centre=centre, axes=axes, solid=solid)
