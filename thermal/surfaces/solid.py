@@ -97,9 +97,7 @@ class Solid:
     @property
     def outside(self) -> np.ndarray:
         """(F, 3, 3) m, faces of the parts that lie in no other: all that can be touched."""
-        within = self.hosts or (None,) * len(self.parts)
-        shown = [part.triangles for part, host in zip(self.parts, within, strict=True) if host is None]
-        return np.concatenate(shown)
+        return _outside(self)
 
     @property
     def surface(self) -> float:
@@ -117,6 +115,15 @@ class Solid:
 @lru_cache(maxsize=256)
 def _hosts(body: Solid) -> tuple[int | None, ...] | None:
     return hosts(shares_within([part.triangles for part in body.parts]))
+
+
+@lru_cache(maxsize=64)
+def _outside(body: Solid) -> np.ndarray:
+    within = body.hosts or (None,) * len(body.parts)
+    shown = [part.triangles for part, host in zip(body.parts, within, strict=True) if host is None]
+    found = np.concatenate(shown)
+    found.flags.writeable = False
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ...thermal import Material
+from ...thermal import Material, Solid, SurfacePatch
 from ...thermal.kernels import Patches, Resolution, Tip, box_side, glued_element, tip
 from ...thermal.numerics import ThermalNetwork
 from ...thermal.padded import RINGS, PaddedTip, box_in_pads, padded_tip, ring_sides
@@ -38,6 +38,7 @@ _PADDED_LEVELS = (
 _PADDED_MOMENTS = 12
 AFTERWARDS = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
 _LEAST = 7e-4  # singular values below that share of the largest are left out
+_LEAST_PORT = 0.03  # of the largest, below which a combination of flows is hardly seen
 _GROWTH = 1.1  # times the norm of a field's states, the root of what they store: a new network has no more
 
 
@@ -185,21 +186,27 @@ def _solid_side(
     shape: BodyShape, places: tuple[Place, ...], pads: tuple[PadPlace, ...], cache: bool
 ) -> tuple[ThermalNetwork, np.ndarray, int]:
     """As _side's, of a body of any shape, and how many of its states are its own."""
-    from ...thermal.meshes import body_in_pads, surface_patch
+    from ...thermal.meshes import body_in_pads
 
     assert shape.solid is not None
-    patches = []
-    for place in places:
-        outward, centre = np.zeros(3), np.zeros(3)
-        axis, far = divmod(place.face, 2)
-        others = [i for i in range(3) if i != axis]
-        outward[axis] = 1.0 if far else -1.0
-        centre[[*others, axis]] = np.array(place.whole) - shape.size[[*others, axis]] / 2
-        area = pads[place.fingertip].stack.face_area
-        patches.append(surface_patch(shape.solid, centre, outward, area))
+    solid, (x, y, z) = shape.solid, shape.size.tolist()
+    patches = [_patch(solid, (x, y, z), place, pads[place.fingertip].stack.face_area) for place in places]
     pad = pads[places[0].fingertip]
     with _BLAS.limit(limits=1, user_api="blas"):
-        return body_in_pads(shape.solid, patches, pad.stack, rings_of(pad) or (), cache=cache)
+        return body_in_pads(solid, patches, pad.stack, rings_of(pad) or (), cache=cache)
+
+
+@lru_cache(maxsize=2048)
+def _patch(solid: Solid, size: tuple[float, float, float], place: Place, area: float) -> SurfacePatch:
+    """Of m2, on a body that is as large as that box."""
+    from ...thermal.meshes import surface_patch
+
+    outward, centre = np.zeros(3), np.zeros(3)
+    axis, far = divmod(place.face, 2)
+    outward[axis] = 1.0 if far else -1.0
+    across_last = [*(i for i in range(3) if i != axis), axis]
+    centre[across_last] = np.array(place.whole) - np.array(size)[across_last] / 2
+    return surface_patch(solid, centre, outward, area)
 
 
 @lru_cache(maxsize=2048)
@@ -238,13 +245,29 @@ def carried(before: BodyField, after: BodyField, patterns: int) -> np.ndarray:
     common = [place for place in before.places if place in after.places]
     if not common:
         return matrix
-    source, target = (_future(field, common, patterns)[:, own - 1 :] for field in (before, after))
+    if own > 1:
+        matrix[own:, own:] = _by_rates(before, after, common, patterns)
+        return matrix
+    source, target = (_future(field, common, patterns) for field in (before, after))
     with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
         left, values, right = np.linalg.svd(target, full_matrices=False)
     kept = values > _LEAST * values[0]
     share = (1 - (_LEAST * values[0] / values[kept]) ** 2) / values[kept]
-    matrix[own:, own:] = (right[kept].T * share) @ (left[:, kept].T @ source)
+    matrix[1:, 1:] = (right[kept].T * share) @ (left[:, kept].T @ source)
     return matrix
+
+
+def _by_rates(before: BodyField, after: BodyField, common: list[Place], patterns: int) -> np.ndarray:
+    """(n after, n before) of what fades sooner than the states that an object has wherever it is touched: at the same
+    rates whatever the places are, so that the states of one rate tell what the common places see of it."""
+    old, new = (field.rates[field.own :] for field in (before, after))
+    seen, wanted = (_seen(field, common, patterns)[:, field.own :] for field in (before, after))
+    found = np.zeros((len(new), len(old)))
+    for rate in np.unique(new):
+        was, now = np.flatnonzero(old == rate), np.flatnonzero(new == rate)
+        if len(was):
+            found[np.ix_(now, was)] = np.linalg.pinv(wanted[:, now], rcond=_LEAST_PORT) @ seen[:, was]
+    return found
 
 
 def carried_states(before: BodyField, after: BodyField, patterns: int, states: np.ndarray) -> np.ndarray:
@@ -260,12 +283,17 @@ def carried_states(before: BodyField, after: BodyField, patterns: int, states: n
     return found
 
 
-def _future(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
-    """(temperatures, n - 1) of the places' patterns at AFTERWARDS, each weighted by the time that it stays."""
+def _seen(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
+    """(temperatures, n) of the places' patterns and rings."""
     at = [field.places.index(place) for place in common]
     seen = [field.port(place, patterns) for place in at]
     if field.beside.size:
         seen += [field.in_rings(place) for place in at]
-    ports = np.concatenate(seen, axis=1)[1:]
+    return np.concatenate(seen, axis=1).T
+
+
+def _future(field: BodyField, common: list[Place], patterns: int) -> np.ndarray:
+    """(temperatures, n - 1) of the places' patterns at AFTERWARDS, each weighted by the time that it stays."""
+    ports = _seen(field, common, patterns).T[1:]
     faded = np.exp(-np.outer(field.rates[1:], AFTERWARDS)) * np.sqrt(np.maximum(AFTERWARDS, AFTERWARDS[1]))
     return (ports[:, :, None] * faded[:, None, :]).reshape(len(ports), -1).T
