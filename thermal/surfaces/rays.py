@@ -38,6 +38,10 @@ def crossed_above(places, triangles, margin):
     for n in range(len(places)):
         x, y, z = places[n]
         for f in range(len(triangles)):
+            # most are beside the place
+            one, two, three = triangles[f, 0, 0], triangles[f, 1, 0], triangles[f, 2, 0]
+            if min(one, two, three) > x or max(one, two, three) < x:
+                continue
             a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
             if max(a[2], b[2], c[2]) <= z + margin:
                 continue

@@ -33,7 +33,7 @@ def block(size: tuple[float, float, float], made: Material):
 def test_a_block_is_the_box(name: str, thickness: float) -> None:
     made, size = material(name), (thickness, 0.04, 0.04)
     patches = [SurfacePatch((way * thickness / 2, 0.0, 0.0), (way, 0.0, 0.0), 81e-6) for way in (-1.0, 1.0)]
-    network, beside = body_in_pads(block(size, made), patches, STACK, SIDES)
+    network, beside, _ = body_in_pads(block(size, made), patches, STACK, SIDES)
     tip = padded_tip(STACK, SURROUND, PLACED_LEVEL, 12).tip
     faces = Patches(np.array([0, 1]), np.full((2, 2), 0.02), np.full((2, 2), 0.0045))
     box, around = box_in_pads(made, size, faces, (tip, tip), (SIDES, SIDES), PLACED_LEVEL)
@@ -58,7 +58,7 @@ def test_all_heat_of_a_ring_is_in_the_body(shape: str) -> None:
     }[shape]
     body = solid(np.asarray(mesh.vertices), np.asarray(mesh.faces), made)
     patch = surface_patch(body, np.array([-0.02, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 81e-6)
-    network, beside = body_in_pads(body, [patch], STACK, SIDES)
+    network, beside, _ = body_in_pads(body, [patch], STACK, SIDES)
     np.testing.assert_allclose(network.outputs["heat"][0] * beside[0], 1.0, rtol=1e-9)
     assert network.outputs["heat"][0] * network.ports[0, 0] == pytest.approx(1.0, rel=1e-9)
     assert (network.rates >= 0).all() and np.isfinite(beside).all()
