@@ -38,6 +38,9 @@ from .touched import nearest_surface
 
 _UPRIGHT = math.cos(math.radians(10.0))  # a surface this near to an axis is taken as across it
 _FARTHER = 2.0  # than the nearest point, that a place may be on the line across the surface
+_SAMPLED = np.array(
+    [[x, y] for x in np.linspace(-0.9, 0.9, 7) for y in np.linspace(-0.9, 0.9, 7)]
+)  # half sides
 _LEAST = 1e-3  # of a square, below which nothing of the ring around it touches
 
 
@@ -95,6 +98,17 @@ def surface_patch(body: Solid, centre: np.ndarray, outward: np.ndarray, area: fl
     if normal @ outward > _UPRIGHT:
         normal = outward
     return SurfacePatch(_triple(at), _triple(normal), area)
+
+
+def covered_share(body: Solid, patch: SurfacePatch) -> float:
+    """Of a patch's square, where there is a surface that looks its way, within half a side of its middle."""
+    half, outward = patch.half_width, patch.direction
+    sides = half * np.linalg.svd(outward[None])[2][1:]
+    triangles = body.outside
+    local = (triangles - np.array(patch.centre)) @ sides.T / half
+    near = triangles[((local.min(axis=1) <= half) & (local.max(axis=1) >= -half)).all(axis=1)]
+    found = [crossings(near, np.array(patch.centre) + at @ sides, outward) for at in _SAMPLED]
+    return sum(bool(len(met) and np.abs(met).min() < half) for met in found) / len(found)
 
 
 def _triple(values: np.ndarray) -> tuple[float, float, float]:

@@ -180,12 +180,13 @@ class JoinedHeat:
                 warm = celsius[self._on[e]] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
             self._renumber(w)
-            self._pairs.know(w, self._materials[w])
         rows = list(worlds)
         for back in self._backs:
             back.reset(rows)
             self._warm[rows, back.tip] = back.temperature[rows] - self._ambient
         self._current[rows], self._faces[rows], self._plan[rows] = -1, -1, -1
+        for w in rows:
+            self._pairs.know(w, self._materials[w])
         self._sought_faces[rows] = -1
         self._closed[rows], self._stale[rows] = False, False
         self._narrow[rows] = 0.0
@@ -342,7 +343,14 @@ class JoinedHeat:
         kinds = [
             [choices[min(v, len(choices) - 1)] for v in range(most) for _ in poses] for choices in materials
         ]
-        pairs = [(pad, one) for pad in pads for each in kinds for one in each]
+        # as `after` has them, of which an object may have fewer
+        fields = [[known[min(v, len(known) - 1)] for v in range(most * len(poses))] for known in after]
+        pairs = [
+            (pad, one if field.whole[int(current[f, o])] else None)
+            for f, pad in enumerate(pads)
+            for o, each in enumerate(kinds)
+            for one, field in zip(each, fields[o], strict=True)
+        ]
         tables, number = narrow_tables(pairs, level)
         return fixed_networks(
             self._dt,
@@ -548,6 +556,8 @@ class JoinedHeat:
         for w in range(len(self._fields)):
             self._renumber(w)
             self._pairs.know(w, self._materials[w])
+            for f, o in np.argwhere(self._current[w] >= 0).tolist():
+                self._spread(w, f, o)
         self._plan[:] = -1
         self._stale[:] = True
 
@@ -598,6 +608,13 @@ class JoinedHeat:
             return
         place = self._fields[w][o].places[number]
         self._faces[w, f, o], self._middles[w, f, o] = place.face, place.whole
+        self._spread(w, f, o)
+
+    def _spread(self, w: int, f: int, o: int) -> None:
+        """How a narrow contact's heat spreads in the object at the pair's place."""
+        field = self._fields[w][o]
+        made_of = self._materials[w][o] if field.whole[int(self._current[w, f, o])] else None
+        self._pairs.spread(w, f, o, made_of)
 
     def _add(self, w: int, o: int, place: Place) -> None:
         """A new place of an object; the one that was in use the longest ago goes where there would be too many."""

@@ -49,9 +49,12 @@ Side = tuple[Material | SensorStack | Beside | None, float]
 """What spreads heat on one side of a contact, None for nothing, and W/(m2 K) of the contact if that matters."""
 
 
-def narrow_sides(pad: PadPlace, target: Material | PadPlace) -> tuple[Side, Side]:
+def narrow_sides(pad: PadPlace, target: Material | PadPlace | None) -> tuple[Side, Side]:
     """What spreads heat on either side of a pad's contact with an object's material or another fingertip: None for
-    bare thermostats, which have no impedance, and where an element is glued on, which is met with its whole face."""
+    bare thermostats, which have no impedance, where an element is glued on, which is met with its whole face, and of an
+    object whose network has no more of it than what is under the pad."""
+    if target is None:
+        return _side(pad), (None, 0.0)
     if pad.glued is not None or (isinstance(target, PadPlace) and target.glued is not None):
         return (None, 0.0), (None, 0.0)
     own = _side(pad)

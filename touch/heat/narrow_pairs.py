@@ -49,6 +49,12 @@ class NarrowPairs:
             # the object has a patch of what the ring covers
             self.kinds[w, lane, :, 1] = self._number((None, 0.0), width)
 
+    def spread(self, w: int, f: int, o: int, made_of: Material | None) -> None:
+        """The object of a pair spreads heat as that material, None for nothing."""
+        self.kinds[w, f, o, 1] = self._number(
+            narrow_sides(self._pads[f], made_of)[1], self._pads[f].stack.width
+        )
+
     def _number(self, side: Side, width: float) -> int:
         key = side, width
         if key not in self._numbers:
