@@ -219,6 +219,9 @@ def by_volumes(
         above = np.arange(np.prod(cells)).reshape(cells)
         end = len(target.grid.k) - 1 if joint.last else 0
         below = np.arange(np.prod(target.grid.shape)).reshape(target.grid.shape)[end, : cells[0], : cells[1]]
+        below = np.pad(
+            below, ((0, cells[0] - len(below)), (0, 0))
+        )  # where the target is narrower than the face
         half = [
             np.diff(each.grid.edges[0])[at] / (2 * each.grid.k[at]) for each, at in ((tip, 0), (target, end))
         ]
@@ -477,7 +480,36 @@ def chatter(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndar
     return on_blocks(refine, objects, [("f0", "0 0 0", "0")], [Joint(0, 0, False)], drive, tolerance)
 
 
-SCENES = {"three": three, "curved": one_on_can, "regrasp": regrasp, "shared": shared, "chatter": chatter}
+SHEET = (0.04, 0.004, 0.04)
+"""m, of a plate, with its thickness along y."""
+
+
+def edge(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
+    """A finger on the edge of a plate that is a mesh, which is thinner than the sensor's face is wide."""
+    corners = np.array(np.meshgrid(*([-side / 2, side / 2] for side in SHEET))).reshape(3, -1).T
+    plate = f'<body name="plate" pos="{0.005 + SHEET[0] / 2} 0 0"><geom type="mesh" mesh="plate"/></body>'
+    asset = f'<asset><mesh name="plate" vertex="{" ".join(map(str, corners.ravel()))}"/></asset><worldbody>'
+    world = _world(plate, [("f0", "0 0 0", "0")]).replace("<worldbody>", asset)
+    run = heard(world, {"plate": made_of}, ["f0"], [(0, 0)], _push(f0=lambda now: 8.0), 3.0, tolerance)
+    half, first = SHEET[1] / 2, SHEET[1] / (40 * refine)
+    there = np.sort(half - lines(0.0, half, round(6 * refine), first))
+    beside = lines(half, HALF, round(8 * refine), first)[1:]
+    up = np.concatenate(
+        (face(refine), lines(HALF, SHEET[2] / 2, round(5 * refine), HALF / (16 * refine))[1:])
+    )
+    tip = body(element(np.concatenate((there, beside)), face(refine), refine))
+    sheet = body(_solid(made_of, (lines(0.0, SHEET[0], round(14 * refine), 1e-4 / refine), there, up)))
+    return run, by_volumes([tip], [sheet], [Joint(0, 0, False, half)], run.through, refine)
+
+
+SCENES = {
+    "three": three,
+    "curved": one_on_can,
+    "regrasp": regrasp,
+    "shared": shared,
+    "chatter": chatter,
+    "edge": edge,
+}
 MATERIALS = ("aluminium", "glass", "wood")
 
 
