@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import logging
 import pickle
+import runpy
+from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -282,3 +284,10 @@ def test_an_object_keeps_its_field_when_places_are_forgotten(monkeypatch: pytest
         felt(touch, data, 0.2, -2.0, -0.045)
         found.append(felt(touch, data, 1.0, 10.0, -0.045))
     np.testing.assert_allclose(found[0], found[1], atol=0.03)
+
+
+@pytest.mark.slow
+def test_the_edge_of_a_mesh_is_felt_as_by_finite_volumes() -> None:
+    """It is narrower than the sensor's face."""
+    judged = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "touch_volumes.py"))["judged"]
+    assert judged("edge", "glass").error < 0.04
