@@ -38,7 +38,6 @@ _PADDED_LEVELS = (
 _PADDED_MOMENTS = 12
 AFTERWARDS = np.concatenate(([0.0], np.geomspace(3e-3, 100.0, 14)))  # s, over which a field is followed
 _LEAST = 7e-4  # singular values below that share of the largest are left out
-_WHOLE = 0.75  # of a face under which an object is, from which on it counts as all of it
 _LEAST_PORT = 0.03  # of the largest, below which a combination of flows is hardly seen
 _GROWTH = 1.1  # times the norm of a field's states, the root of what they store: a new network has no more
 
@@ -114,8 +113,8 @@ class BodyField:
     """An object's network of the places where it is touched. rates: (n,) 1/s. ports: (n, N M) sqrt(K/J). heat: (n,) J
     and loss: (n,) W of a state; only the first one, the mean temperature's, has any. beside: (n, N RINGS) ports
     under the pads around the elements, no columns where no fingertip has one. own: how many of the states, the first
-    ones, are the object's wherever it is touched. whole: of each place whether the object is there under all of the
-    sensor's face; else the network knows how heat spreads from what is there."""
+    ones, are the object's wherever it is touched. covered: of each place the share of the sensor's face under which the
+    object is; from less than all the network knows how heat spreads."""
 
     places: tuple[Place, ...]
     rates: np.ndarray
@@ -124,7 +123,7 @@ class BodyField:
     loss: np.ndarray
     beside: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     own: int = 1
-    whole: tuple[bool, ...] = ()
+    covered: tuple[float, ...] = ()
 
     def port(self, place: int, patterns: int) -> np.ndarray:
         """(n, M) of one place."""
@@ -168,7 +167,7 @@ def touched(
     takes heat from the object's mean temperature."""
     bare = untouched(shape, film)
     if shape.solid is not None:
-        side, beside, own, whole = _solid_side(shape, places, pads, cache)
+        side, beside, own, covered = _solid_side(shape, places, pads, cache)
         # the body's mean, by its own heat capacity
         side.ports[0] *= side.outputs["heat"][0] / bare.heat[0]
         beside[0] *= side.outputs["heat"][0] / bare.heat[0]
@@ -178,34 +177,35 @@ def touched(
         seen = tuple(tips[place.fingertip] for place in places)
         around = tuple(rings_of(pads[place.fingertip]) for place in places)
         side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
-        own, whole = 1, (True,) * len(places)
+        own, covered = 1, (1.0,) * len(places)
     rates = side.rates.copy()
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
     heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
-    return BodyField(places, rates, side.ports, heat, loss, beside, own, whole)
+    return BodyField(places, rates, side.ports, heat, loss, beside, own, covered)
 
 
 def _solid_side(
     shape: BodyShape, places: tuple[Place, ...], pads: tuple[PadPlace, ...], cache: bool
-) -> tuple[ThermalNetwork, np.ndarray, int, tuple[bool, ...]]:
-    """As _side's, of a body of any shape; how many of its states are its own, and of which places it has all."""
+) -> tuple[ThermalNetwork, np.ndarray, int, tuple[float, ...]]:
+    """As _side's, of a body of any shape; how many of its states are its own, and how much of each
+    face is on it."""
     from ...thermal.meshes import body_in_pads
 
     assert shape.solid is not None
     solid, (x, y, z) = shape.solid, shape.size.tolist()
     found = [_patch(solid, (x, y, z), place, pads[place.fingertip].stack.face_area) for place in places]
-    patches, whole = [patch for patch, _ in found], tuple(all_there for _, all_there in found)
+    patches, covered = [patch for patch, _ in found], tuple(share for _, share in found)
     pad = pads[places[0].fingertip]
     with _BLAS.limit(limits=1, user_api="blas"):
-        return *body_in_pads(solid, patches, pad.stack, rings_of(pad) or (), cache=cache), whole
+        return *body_in_pads(solid, patches, pad.stack, rings_of(pad) or (), cache=cache), covered
 
 
 @lru_cache(maxsize=2048)
 def _patch(
     solid: Solid, size: tuple[float, float, float], place: Place, area: float
-) -> tuple[SurfacePatch, bool]:
-    """Of m2, on a body that is as large as that box; and whether the body is there under about all of it."""
+) -> tuple[SurfacePatch, float]:
+    """Of m2, on a body that is as large as that box; and the share of it where the body is."""
     from ...thermal.meshes import covered_share, surface_patch
 
     outward, centre = np.zeros(3), np.zeros(3)
@@ -214,7 +214,7 @@ def _patch(
     across_last = [*(i for i in range(3) if i != axis), axis]
     centre[across_last] = np.array(place.whole) - np.array(size)[across_last] / 2
     patch = surface_patch(solid, centre, outward, area)
-    return patch, covered_share(solid, patch) > _WHOLE
+    return patch, covered_share(solid, patch)
 
 
 @lru_cache(maxsize=2048)

@@ -41,7 +41,7 @@ from .fields import (
 from .fixed_networks import FixedNetworks, fixed_networks
 from .fixed_places import FixedPlaces, fixed_places
 from .march import TABLE, sample, settle
-from .narrow import STEPS, narrow_tables
+from .narrow import STEPS, narrow_tables, seen_of
 from .narrow_pairs import NarrowPairs
 from .step import room_size
 from .systems import Pair, SystemPool, groups
@@ -346,7 +346,7 @@ class JoinedHeat:
         # as `after` has them, of which an object may have fewer
         fields = [[known[min(v, len(known) - 1)] for v in range(most * len(poses))] for known in after]
         pairs = [
-            (pad, one if field.whole[int(current[f, o])] else None)
+            (pad, seen_of(one, field.covered[int(current[f, o])]))
             for f, pad in enumerate(pads)
             for o, each in enumerate(kinds)
             for one, field in zip(each, fields[o], strict=True)
@@ -613,8 +613,8 @@ class JoinedHeat:
     def _spread(self, w: int, f: int, o: int) -> None:
         """How a narrow contact's heat spreads in the object at the pair's place."""
         field = self._fields[w][o]
-        made_of = self._materials[w][o] if field.whole[int(self._current[w, f, o])] else None
-        self._pairs.spread(w, f, o, made_of)
+        at = int(self._current[w, f, o])
+        self._pairs.spread(w, f, o, seen_of(self._materials[w][o], field.covered[at]))
 
     def _add(self, w: int, o: int, place: Place) -> None:
         """A new place of an object; the one that was in use the longest ago goes where there would be too many."""

@@ -16,6 +16,7 @@ J: widths of a table, K: rates, S: moments, T: times.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -33,6 +34,7 @@ from ..scene import PadPlace
 STEPS = 13
 """Widths of a table: the sensor's, and each the last one's over the root of 2; narrower ones count as the last."""
 _ROOT = 2.0**0.5
+_WHOLE = 0.9  # of the face, from which on an object counts as being under all of it
 _FINEST = 3e4
 """W/(m2 K) of the contact beside which errors of the impedance are weighed."""
 
@@ -45,20 +47,31 @@ class Beside:
     impedance: tuple[float, ...]
 
 
-Side = tuple[Material | SensorStack | Beside | None, float]
+@dataclass(frozen=True, slots=True)
+class Part:
+    """An object of that material which is under a share of the sensor's face, and whose network knows how heat spreads
+    from there."""
+
+    material: Material
+    share: float
+
+
+Side = tuple[Material | SensorStack | Beside | Part | None, float]
 """What spreads heat on one side of a contact, None for nothing, and W/(m2 K) of the contact if that matters."""
 
 
-def narrow_sides(pad: PadPlace, target: Material | PadPlace | None) -> tuple[Side, Side]:
+def seen_of(made_of: Material, covered: float) -> Material | Part:
+    """An object of that material which is under a share of the sensor's face."""
+    return made_of if covered > _WHOLE else Part(made_of, covered)
+
+
+def narrow_sides(pad: PadPlace, target: Material | PadPlace | Part) -> tuple[Side, Side]:
     """What spreads heat on either side of a pad's contact with an object's material or another fingertip: None for
-    bare thermostats, which have no impedance, where an element is glued on, which is met with its whole face, and of an
-    object whose network has no more of it than what is under the pad."""
-    if target is None:
-        return _side(pad), (None, 0.0)
+    bare thermostats, which have no impedance, and where an element is glued on, which is met with its whole face."""
     if pad.glued is not None or (isinstance(target, PadPlace) and target.glued is not None):
         return (None, 0.0), (None, 0.0)
     own = _side(pad)
-    return own, (target, own[1]) if isinstance(target, Material) else _side(target)
+    return own, _side(target) if isinstance(target, PadPlace) else (target, own[1])
 
 
 def _side(pad: PadPlace) -> Side:
@@ -73,6 +86,9 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
     table = np.zeros((2, 2, STEPS, STEPS, level.rates))
     if matter is None:
         return table
+    if isinstance(matter, Part):
+        table[:] = narrow_table((matter.material, conducts), width, level)
+        return np.maximum(table - _known_of(table, matter.share), 0.0)
     widths = width * 2.0 ** (-np.arange(STEPS) / 2)
     if isinstance(matter, Beside):
         known = _of_part(np.array(matter.impedance), width**2 / np.outer(widths, widths))
@@ -91,13 +107,20 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
 
 
 def narrow_tables(
-    pairs: Sequence[tuple[PadPlace, Material | PadPlace]], level: Resolution
+    pairs: Sequence[tuple[PadPlace, Material | PadPlace | Part]], level: Resolution
 ) -> tuple[np.ndarray, np.ndarray]:
     """Every narrow_table that pairs need (N, 2, 2, J, J, K), and the numbers (pairs, 2) of those of their sides."""
     keys = [(side, pad.stack.width) for pad, target in pairs for side in narrow_sides(pad, target)]
     numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
     tables = np.array([narrow_table(*key, level) for key in numbers])
     return tables, np.array([numbers[key] for key in keys]).reshape(-1, 2)
+
+
+def _known_of(table: np.ndarray, share: float) -> np.ndarray:
+    """(2, 2, 1, 1, K) K/J of a table that belong to a contact of all of the face's length and that share of its width,
+    along either axis: of the next width that is narrower, so that such a contact has no more."""
+    at = min(max(math.ceil(2 * math.log2(1 / max(share, 1e-3))), 1), STEPS - 1)
+    return np.maximum(table[:, :, at, 0], table[:, :, 0, at])[:, :, None, None]
 
 
 def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 from ...thermal import Material
 from ...thermal.kernels import Resolution
 from ..scene import PadPlace
-from .narrow import Beside, Side, narrow_sides, narrow_table
+from .narrow import Beside, Part, Side, narrow_sides, narrow_table
 
 
 class NarrowPairs:
@@ -49,8 +49,8 @@ class NarrowPairs:
             # the object has a patch of what the ring covers
             self.kinds[w, lane, :, 1] = self._number((None, 0.0), width)
 
-    def spread(self, w: int, f: int, o: int, made_of: Material | None) -> None:
-        """The object of a pair spreads heat as that material, None for nothing."""
+    def spread(self, w: int, f: int, o: int, made_of: Material | Part) -> None:
+        """What the object of a pair spreads heat as."""
         self.kinds[w, f, o, 1] = self._number(
             narrow_sides(self._pads[f], made_of)[1], self._pads[f].stack.width
         )
