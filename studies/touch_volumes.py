@@ -484,10 +484,15 @@ SHEET = (0.04, 0.004, 0.04)
 """m, of a plate, with its thickness along y."""
 
 
-def edge(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
-    """A finger on the edge of a plate that is a mesh, which is thinner than the sensor's face is wide."""
+def edge(refine: float, made_of: str, tolerance: float, mesh: bool = False) -> tuple[Run, np.ndarray]:
+    """A finger on the edge of a plate, which is thinner than the sensor's face is wide."""
     corners = np.array(np.meshgrid(*([-side / 2, side / 2] for side in SHEET))).reshape(3, -1).T
-    plate = f'<body name="plate" pos="{0.005 + SHEET[0] / 2} 0 0"><geom type="mesh" mesh="plate"/></body>'
+    geom = (
+        'type="mesh" mesh="plate"'
+        if mesh
+        else f'size="{" ".join(str(side / 2) for side in SHEET)}" type="box"'
+    )
+    plate = f'<body name="plate" pos="{0.005 + SHEET[0] / 2} 0 0"><geom {geom}/></body>'
     asset = f'<asset><mesh name="plate" vertex="{" ".join(map(str, corners.ravel()))}"/></asset><worldbody>'
     world = _world(plate, [("f0", "0 0 0", "0")]).replace("<worldbody>", asset)
     run = heard(world, {"plate": made_of}, ["f0"], [(0, 0)], _push(f0=lambda now: 8.0), 3.0, tolerance)
@@ -502,6 +507,11 @@ def edge(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray
     return run, by_volumes([tip], [sheet], [Joint(0, 0, False, half)], run.through, refine)
 
 
+def rim(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
+    """The same where the plate is a mesh."""
+    return edge(refine, made_of, tolerance, mesh=True)
+
+
 SCENES = {
     "three": three,
     "curved": one_on_can,
@@ -509,6 +519,7 @@ SCENES = {
     "shared": shared,
     "chatter": chatter,
     "edge": edge,
+    "rim": rim,
 }
 MATERIALS = ("aluminium", "glass", "wood")
 

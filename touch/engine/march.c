@@ -210,13 +210,29 @@ static int before(double ratio, double* share) {
   return at;
 }
 
-/* Fills root with the b_k of a narrow contact; false where it is as wide as the face. */
-static bool spread(const Numbers* numbers, int pair, const double* touch, double* root) {
+#define WHOLE 0.9 /* of the face, from which on an object counts as being under all of it */
+
+/* The share of a sensor's face under which an object is, at the place that is in use. */
+static double covered(const Numbers* numbers, const State* state, int f, int o) {
+  int number = (int)state->current[f * numbers->objects + o];
+  if (number < 0) return 1;
+  const double *box = numbers->boxes + o * BOX, width = numbers->pads[f * PAD + WIDTH];
+  int axis = (int)state->places[(o * numbers->places + number) * SLOT + FACE] / 2;
+  double share = 1;
+  for (int i = 0; i < 3; i++)
+    if (i != axis) share *= lesser(box[i] / width, 1);
+  return share;
+}
+
+/* Fills root with the b_k of a narrow contact; false where it is as wide as the face. share: of the face on the object,
+   from less than all of which its network knows how heat spreads. */
+static bool spread(const Numbers* numbers, int pair, const double* touch, double share, double* root) {
   if (!(touch[AREA] > 0)) return false;
   double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
   double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = lesser(area / first, width), u, v;
   if (!(first > 0 && second > 0 && lesser(first, second) < width * (1 - 1e-9))) return false; /* any number may have been written to the state */
   int rates = numbers->rates, i = before(width / first, &u), j = before(width / second, &v);
+  int all = (int)lesser(greater(ceil(2 * log2(1 / greater(share, 1e-3))), 1), WIDTHS - 1);
   memset(root, 0, sizeof(double) * rates);
   for (int side = 0; side < 2; side++) {
     const double* table = numbers->narrow + (size_t)numbers->spread[2 * pair + side] * SPREAD * rates;
@@ -226,8 +242,13 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, double
       int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2 & 1, d = corner >> 3;
       double weight = (a ? one : 1 - one) * (b ? other : 1 - other) * (c ? u : 1 - u) * (d ? v : 1 - v);
       if (!(weight > 0)) continue;
-      const double* row = table + (((2 * a + b) * WIDTHS + i + c) * WIDTHS + j + d) * rates;
-      for (int k = 0; k < rates; k++) root[k] += weight * row[k];
+      const double *places = table + (2 * a + b) * WIDTHS * WIDTHS * rates, *row = places + ((i + c) * WIDTHS + j + d) * rates;
+      if (!side || share > WHOLE) {
+        for (int k = 0; k < rates; k++) root[k] += weight * row[k];
+        continue;
+      }
+      const double *along = places + all * WIDTHS * rates, *beside = places + all * rates;
+      for (int k = 0; k < rates; k++) root[k] += weight * greater(row[k] - greater(along[k], beside[k]), 0);
     }
   }
   for (int k = 0; k < rates; k++) root[k] = sqrt(root[k]);
@@ -252,7 +273,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
     resistance[i] = lesser(numbers->sample_steps / touch[CONDUCTANCE], MOST);
     difference[i] = warm(numbers, state, f) - (t >= objects ? warm(numbers, state, t - objects) : 0);
-    if (!spread(numbers, pair[i], touch, root)) continue;
+    if (!spread(numbers, pair[i], touch, t < objects ? covered(numbers, state, f, t) : 1, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
       difference[i] -= root[k] * part * own[k];

@@ -177,12 +177,20 @@ def touched(
         seen = tuple(tips[place.fingertip] for place in places)
         around = tuple(rings_of(pads[place.fingertip]) for place in places)
         side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
-        own, covered = 1, (1.0,) * len(places)
+        widths = [pads[place.fingertip].stack.width for place in places]
+        own = 1
+        covered = tuple(_under((x, y, z), place, width) for place, width in zip(places, widths, strict=True))
     rates = side.rates.copy()
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
     heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
     return BodyField(places, rates, side.ports, heat, loss, beside, own, covered)
+
+
+def _under(size: tuple[float, float, float], place: Place, width: float) -> float:
+    """The share of a face of that width m under which a box is."""
+    one, other = (side for axis, side in enumerate(size) if axis != place.face // 2)
+    return min(one / width, 1.0) * min(other / width, 1.0)
 
 
 def _solid_side(
