@@ -28,7 +28,7 @@ BAR = trimesh.creation.box((0.12, 0.012, 0.012))
 WALL = 1e-3  # m
 
 
-def tray() -> trimesh.Trimesh:
+def tray() -> Any:
     """A box of 40 x 40 x 30 mm that is hollow: its walls are that thick."""
     outside = trimesh.creation.box((0.04, 0.04, 0.03))
     inside = trimesh.creation.box((0.04 - 2 * WALL, 0.04 - 2 * WALL, 0.03 - 2 * WALL))
@@ -36,7 +36,7 @@ def tray() -> trimesh.Trimesh:
     return trimesh.util.concatenate([outside, inside])
 
 
-MESHES = {"cube": CUBE, "bar": BAR, "tray": tray()}
+MESHES: dict[str, Any] = {"cube": CUBE, "bar": BAR, "tray": tray()}
 
 
 def spec(geom: str, high: float, tips: int = 1) -> mujoco.MjSpec:
@@ -126,7 +126,7 @@ def test_thin_walls_are_felt_as_by_a_grid_that_is_fine_there(name: str) -> None:
     expected = press_body(
         body,
         patch,
-        conductance=lambda t: np.array(through)[np.minimum(np.asarray(t) / 0.01, 399).astype(int)],
+        conductance=lambda t: through[min(int(t / 0.01), 399)],
         seconds=4.0,
         dt=0.01,
         tolerance=0.05,
@@ -233,7 +233,7 @@ def test_many_worlds_are_single_ones_and_a_material_scales_time() -> None:
     model = prepare(spec(mesh("bar"), 0.006, 2), pads, {"thing": "steel"})
     touch = touch_of(model, made_of, tips=2, worlds=2)
     single = [touch_of(model, each, tips=2, worlds=1) for each in made_of]
-    data = mujoco.MjData(model)
+    data, alone = mujoco.MjData(model), []
     by_data = touch_of(model, "wood", tips=2)
     for move in MOVES:
         data.ctrl[:] = move
@@ -256,7 +256,7 @@ def test_fixed_touch_is_the_loop() -> None:
     model = prepare(spec(mesh("tray"), 0.015, 2), pads, {"thing": "ceramic"})
     touch = touch_of(model, "ceramic", tips=2, worlds=1, dt=0.01)
     fixed = touch.fixed_touch(like=np.zeros(0))
-    state, data = fixed.start(), mujoco.MjData(model)
+    state, data, drop = fixed.start(), mujoco.MjData(model), np.zeros(2)
     data.ctrl[:] = 10.0, 0.0, 8.0, 0.0
     for n in range(60):
         record = np.empty((1, fixed.substeps, model.nsensordata))

@@ -55,7 +55,7 @@ def warn_of_boxes(model: mujoco.MjModel, shapes: Sequence[BodyShape], why: str) 
 def _has_own(model: mujoco.MjModel, shape: BodyShape) -> bool:
     """Whether a box would leave out thin walls: a round geom that stands alone is as thick as its box."""
     mesh = mujoco.mjtGeom.mjGEOM_MESH
-    return len(shape.geoms) > 1 or model.geom_type[shape.geoms[0]] == mesh
+    return len(shape.geoms) > 1 or all(model.geom_type[geom] == mesh for geom in shape.geoms)
 
 
 def _warn(shape: BodyShape, why: str) -> None:
