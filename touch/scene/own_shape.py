@@ -9,6 +9,7 @@ import logging
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from importlib.util import find_spec
 
 import mujoco
 import numpy as np
@@ -124,10 +125,8 @@ def _fused(parts: Sequence[Surface]) -> Surface:
     """The surface of all of them together. Raises MissingDependencyError, and MeshError where one is not closed."""
     import trimesh
 
-    try:
-        import manifold3d  # noqa: F401  # pyright: ignore[reportMissingImports]
-    except ImportError:
-        raise MissingDependencyError(f"geoms are fused by manifold3d: {how_to_install('mesh')}") from None
+    if find_spec("manifold3d") is None:
+        raise MissingDependencyError(f"geoms are fused by manifold3d: {how_to_install('mesh')}")
     grown = []
     for vertices, faces in parts:
         low, high = vertices.min(axis=0), vertices.max(axis=0)
