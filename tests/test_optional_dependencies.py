@@ -114,8 +114,11 @@ BEHIND_TRAINING = {
     ("agents/learning/training.py", "torch"),
 }
 """The command comes to them when training.py has found stable-baselines3, which brings PyTorch."""
-BY_MJLAB = {(f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "keep_cube", "sort_cubes", "tasks")}
-"""mjlab itself imports its tasks; the door goes on without it."""
+BY_MJLAB = {
+    *((f"core/mjlab/{file}.py", "mjlab") for file in ("__init__", "keep_cube", "sort_cubes", "tasks")),
+    ("core/mjlab/recording.py", "torch"),
+}
+"""mjlab itself imports its tasks; the door goes on without it. The sensor imports recordings behind PyTorch."""
 WHERE_INSTALLED = {
     ("benchmarks/speed/fetch.py", "gymnasium_robotics"),
     ("touch/scene/own_shape.py", "manifold3d"),

@@ -28,11 +28,12 @@ from thermograsp.touch import TouchContacts, grasp_touch
 from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads, warn_of_boxes, whole_steps
 
 from .heat import WorldsHeat
-from .recording import recorded
 
 try:
     import torch
     from mjlab.sensor import ContactMatch, ContactSensor, ContactSensorCfg, Sensor, SensorCfg
+
+    from .recording import recorded
 except ImportError as error:
     raise MissingDependencyError(f"thermograsp.mjlab needs mjlab: {install('mjlab')}") from error
 
