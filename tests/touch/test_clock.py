@@ -208,11 +208,12 @@ def test_timers_go_on() -> None:
     env = Env(_ten)
     wrapped = _wrapped(env)
     wrapped.reset(seed=0)
+    wrapped.step(np.array([10.0]))  # compiles
     before = [(each.duration, each.number) for each in env.data.timer]
     wrapped.step(np.array([10.0]))
     whole = mujoco.mjtTimer.mjTIMER_STEP
     assert env.data.timer[whole].number == before[whole][1] + 10
-    assert 0 < env.data.timer[whole].duration - before[whole][0] < 1.0
+    assert 0 < env.data.timer[whole].duration - before[whole][0] < 60.0  # s, neither ticks nor us
 
 
 def test_a_clock_of_one_s_own_stays_and_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:

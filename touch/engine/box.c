@@ -7,7 +7,7 @@ exponentials.py. */
 
 #include "heat.h"
 
-enum { MODES = 24, STEPS = 20 };
+enum { MODES = 24, STEPS = 12 };
 #define SWITCH 0.0075 /* diffusion length squared over length squared from which eigenfunctions serve */
 #define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
