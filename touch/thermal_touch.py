@@ -140,6 +140,7 @@ class ThermalTouch:
             "sensors": tuple(pad.heated or pad.stack for pad in (*self._pads, *self._glued)),
             "thermostats": tuple((pad.temperature, pad.thermostat) for pad in self._pads),
             "surrounds": tuple(pad.surround for pad in self._pads),
+            "shapes": tuple("box" if shape.solid is None else "own" for shape in self._shapes),
             "ambient": ambient,
             "air": air,
             "chain": self._chain,
@@ -420,8 +421,8 @@ class ThermalTouch:
         if not isinstance(state, TouchState):
             raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
         for name, expected in self._identity.items():
-            if state.of[name] != expected:
-                told = f"{state.of[name]!r} in place of {expected!r}"
+            if (saved := state.of.get(name)) != expected:
+                told = f"{saved!r} in place of {expected!r}"
                 differ = (
                     f"are {told}" if len(told) < _TOLD else "differ"
                 )  # a sensor's layers would fill a page

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import SurfacePatch, material, press_body, solid
 from thermograsp.touch import Fingertip, ThermalTouch, prepare
 from thermograsp.touch.contacts import AREA, CLOSED, CONDUCTANCE
@@ -158,6 +159,22 @@ def test_geoms_that_are_one_body_are_felt_as_its_mesh() -> None:
     np.testing.assert_allclose(both[0], both[1], atol=0.02)
 
 
+@pytest.mark.parametrize("size", [(0.003, 0.02), (0.0004, 0.004), (0.02, 0.02)])
+def test_thin_capsules_and_cylinders_are_fused_too(
+    size: tuple[float, float], caplog: pytest.LogCaptureFixture
+) -> None:
+    """Such as the handle of a cup and a wire."""
+    pytest.importorskip("manifold3d")
+    radius, half = size
+    geoms = f'<geom type="box" size=".004 .004 .002" pos="0 0 {-half}"/>'
+    geoms += "".join(
+        f'<geom type="{kind}" size="{radius} {half}" euler="{turn}"/>'
+        for kind, turn in (("capsule", "0 0 0"), ("cylinder", "0 25 70"))
+    )
+    (shape,) = touch_of(of_geoms(geoms, 0.1))._shapes
+    assert shape.solid is not None and not caplog.records
+
+
 def of_geoms(geoms: str, high: float) -> mujoco.MjModel:
     made = spec(mesh("cube"), high).to_xml()
     first, last = made.index("<geom"), made.index("/>", made.index("<geom")) + 2
@@ -226,6 +243,15 @@ def test_a_state_goes_on_bit_for_bit_and_a_reset_begins_again() -> None:
     assert np.array_equal([felt(other, data, 0.2, *move) for move in MOVES[:2]], first)
     balance = touch.balance
     assert balance.objects == pytest.approx(balance.given.sum(axis=0), rel=1e-9)
+
+
+def test_a_state_of_boxes_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As of geoms on a computer where nothing fuses them."""
+    model = spec(mesh("bar"), 0.006).compile()
+    touch = touch_of(model)
+    keep_boxes(monkeypatch)
+    with pytest.raises(InvalidValueError, match=r"shapes are \('box',\) in place of \('own',\)"):
+        touch.set_state(touch_of(model).state())
 
 
 def test_many_worlds_are_single_ones_and_a_material_scales_time() -> None:

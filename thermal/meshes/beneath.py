@@ -93,9 +93,9 @@ class _Column:
         local = (triangles - placed.centre) @ np.stack((*placed.sides, placed.normal)).T
         near = local[_within(local[:, :, :2], _SAMPLES[-1] * placed.half_width)]
         up = np.cross(near[:, 1] - near[:, 0], near[:, 2] - near[:, 0])
-        slope = up[:, 2] / np.linalg.norm(up, axis=1)
-        self._left = _Faces(near[slope > FACING])
-        self._entered = _Faces(near[slope < -FACING])
+        facing = FACING * np.linalg.norm(up, axis=1)  # 0 of triangles without area
+        self._left = _Faces(near[up[:, 2] > facing])
+        self._entered = _Faces(near[up[:, 2] < -facing])
 
     def tops(self, at: np.ndarray) -> np.ndarray:
         return self._left.heights(at)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from importlib.util import find_spec
@@ -22,6 +22,7 @@ from ...thermal import Material, Solid, SolidPart
 from .bodies import BodyShape
 from .faces import mesh_of, rotation
 from .fingertips import PadPlace
+from .names import geom_label
 
 _LOG = logging.getLogger(__name__)
 _DIGITS = 7  # of a corner's m, of which a model has single precision
@@ -74,8 +75,8 @@ def _own(model: mujoco.MjModel, shape: BodyShape) -> BodyShape:
         offset = model.geom_pos[geom]
     try:
         with busy(f"how heat spreads in object {shape.name!r}, once for its shape"):
-            parts = [_surface(model, geom, offset, turn) for geom in shape.geoms]
-            vertices, faces = parts[0] if len(parts) == 1 else _fused(parts)
+            parts = {geom_label(model, geom): _surface(model, geom, offset, turn) for geom in shape.geoms}
+            vertices, faces = next(iter(parts.values())) if len(parts) == 1 else _fused(parts)
             low, high = vertices.min(axis=0), vertices.max(axis=0)
             middle = (low + high) / 2
             solid = Solid((SolidPart(*_welded(vertices - middle, faces), shape.material),))
@@ -102,17 +103,20 @@ def _surface(model: mujoco.MjModel, geom: int, offset: np.ndarray, turn: np.ndar
 
 @lru_cache(maxsize=256)
 def _primitive(kind: int, size: tuple[float, float, float]) -> Surface:
-    """Of a box or a round geom, a polyhedron of its volume."""
+    """Of a box or a round geom, a polyhedron of its volume. Round ones are made large: trimesh leaves small triangles
+    out, without which they are not closed."""
     import trimesh
 
     kinds, (a, b, c) = mujoco.mjtGeom, size
     if kind == kinds.mjGEOM_BOX:
         made, volume = trimesh.creation.box((2 * a, 2 * b, 2 * c)), 8 * a * b * c
     elif kind == kinds.mjGEOM_CYLINDER:
-        made, volume = trimesh.creation.cylinder(a, 2 * b, sections=_AROUND), 2 * np.pi * a * a * b
+        made, volume = trimesh.creation.cylinder(1.0, 1.0, sections=_AROUND), 2 * np.pi * a * a * b
+        made.apply_scale((a, a, 2 * b))
     elif kind == kinds.mjGEOM_CAPSULE:
-        made = trimesh.creation.capsule(2 * b, a, count=[_AROUND, _AROUND // 2])
+        made = trimesh.creation.capsule(2 * b / a, 1.0, count=[_AROUND // 2, _AROUND])
         made.apply_translation(-made.bounds.mean(axis=0))
+        made.apply_scale(a)
         volume = np.pi * a * a * (2 * b + 4 / 3 * a)
     else:
         radii = (a, a, a) if kind == kinds.mjGEOM_SPHERE else size
@@ -121,16 +125,20 @@ def _primitive(kind: int, size: tuple[float, float, float]) -> Surface:
     return np.asarray(made.vertices) * (volume / made.volume) ** (1 / 3), np.asarray(made.faces)
 
 
-def _fused(parts: Sequence[Surface]) -> Surface:
-    """The surface of all of them together. Raises MissingDependencyError, and MeshError where one is not closed."""
+def _fused(parts: Mapping[str, Surface]) -> Surface:
+    """The surface of all geoms together, by name. Raises MissingDependencyError, and MeshError where one is not
+    closed."""
     import trimesh
 
     if find_spec("manifold3d") is None:
         raise MissingDependencyError(f"geoms are fused by manifold3d: {how_to_install('mesh')}")
     grown = []
-    for vertices, faces in parts:
+    for label, (vertices, faces) in parts.items():
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        SolidPart(*_welded(vertices, faces), _ANY)  # raises where it is not closed
+        try:
+            SolidPart(*_welded(vertices, faces), _ANY)  # raises where it is not closed
+        except MeshError as error:
+            raise MeshError(f"geom {label}: {error}") from error
         middle = (low + high) / 2
         grown.append(trimesh.Trimesh(middle + (vertices - middle) * (1 + 2 * _OVERLAP / (high - low)), faces))
     found = trimesh.boolean.union(grown, engine="manifold")

@@ -249,6 +249,19 @@ def test_the_same_places_give_the_same_bits() -> None:
     assert np.array_equal(first.ports, again.ports) and np.array_equal(first.rates, again.rates)
 
 
+def test_triangles_without_area_warn_of_nothing() -> None:
+    """As where many geoms are fused."""
+    cut = trimesh.creation.box(CUBE).subdivide()
+    a, b, c = cut.faces[np.argmax(cut.triangles_center[:, 2])].tolist()
+    halved = len(cut.vertices)
+    corners = np.concatenate((cut.vertices, [(cut.vertices[a] + cut.vertices[b]) / 2]))
+    faces = [face for face in cut.faces.tolist() if face != [a, b, c]]
+    faces += [[a, halved, c], [halved, b, c], [a, b, halved]]
+    body = Solid((SolidPart(corners, np.array(faces), thermal.material("glass")),))
+    with np.errstate(invalid="raise"):
+        assert beneath(body.outside, at(0.0, 0.0, CUBE[2] / 2, normal=(0, 0, 1))).plain
+
+
 def test_what_is_no_solid_or_meets_no_surface_is_refused() -> None:
     one, other = (part(trimesh.creation.box((0.01, 0.01, 0.01)), "glass") for _ in range(2))
     vertices = np.concatenate([one.vertices, other.vertices + [0.05, 0.0, 0.0]])
