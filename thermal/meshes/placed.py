@@ -97,7 +97,7 @@ _EMPTY = _Fineness(_COARSE, _COARSE, 2.7)
 _FILLED = _Fineness(
     MeshGridding(depth=30e-6, side=0.1e-3, growth=0.6, relief=16), replace(_COARSE, relief=8), 1.8
 )
-_FIELDS = 16  # grids of such places, 8 MB each
+_FIELDS = 64  # grids of such places, 2 to 8 MB each: two fingertips in eight worlds have 48
 
 
 @dataclass(frozen=True, slots=True, eq=False)
