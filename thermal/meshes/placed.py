@@ -26,6 +26,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import erf
 
+from thermograsp.errors import MeshError
+
 from ..kernels import (
     FUNCTIONS,
     GRASP,
@@ -280,6 +282,16 @@ def _placed(
     impedance = _impedance(fine.ports[fading].T, fine.rates[fading])
     impedance -= _impedance(slow.held[fading].T, slow.fades[fading])
     return Placed(below, seen, None, impedance)
+
+
+def is_touchable(body: Solid, patch: SurfacePatch, stack: SensorStack, *, cache: bool = True) -> bool:
+    """Whether an empty body has a surface at a patch that can be touched. What is found out about the place is kept for
+    its network."""
+    try:
+        _placed(body, patch, stack, None, _EMPTY, cache)
+    except MeshError:
+        return False
+    return True
 
 
 def _unrolled(body: Solid, below: Beneath, one: Tip, film: Film | None, told: float) -> LocalKernel | None:

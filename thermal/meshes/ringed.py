@@ -10,7 +10,7 @@ P: patches, M: patterns, R: rings, T: times.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -30,6 +30,7 @@ from .placed import (
     bent_room,
     box_beneath,
     face_impedance,
+    is_touchable,
     placed_network,
     ringed_network,
     seen_on_grid,
@@ -83,21 +84,44 @@ def body_in_pads(
     return whole, ports[:, faces:], slow
 
 
-def surface_patch(body: Solid, centre: np.ndarray, outward: np.ndarray, area: float) -> SurfacePatch:
-    """Of m2 on the surface that looks along an outward unit vector, across it: where a line that way through a place
-    (3,) m leaves the body, or at the nearest point where the line meets it far from there."""
-    triangles = body.outside
+def surface_patch(
+    body: Solid, centre: np.ndarray, outward: np.ndarray, stack: SensorStack, *, cache: bool = True
+) -> SurfacePatch:
+    """The sensor's face on the surface that looks along an outward unit vector, across it: where a line that way
+    through a place (3,) m leaves the body, or at the nearest point where the line meets it far from there. Where
+    nothing of the surface there can be touched, since the body covers it or it is too steep, at the nearest point of
+    all the surface, or else where the body reaches farthest that way: simulations touch a mesh's hull, which spans
+    openings."""
+    places = _places(body.outside, centre, outward, stack.width / 2)
+    patch = SurfacePatch(*next(places), stack.face_area)
+    for place in places:
+        if is_touchable(body, patch, stack, cache=cache):
+            break
+        patch = SurfacePatch(*place, stack.face_area)
+    return patch
+
+
+_Triple = tuple[float, float, float]
+
+
+def _places(
+    triangles: np.ndarray, centre: np.ndarray, outward: np.ndarray, half: float
+) -> Iterator[tuple[_Triple, _Triple]]:
+    """Places on the surface and their normals, as surface_patch tries them."""
     across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     facing = triangles[across @ outward > FACING * np.linalg.norm(across, axis=1)]
-    at, normal = nearest_surface(facing if len(facing) else triangles, centre)
+    facing = facing if len(facing) else triangles
+    at, normal = nearest_surface(facing, centre)
     met = crossings(triangles, centre, outward)
     if len(met):
         along = met[np.argmin(np.abs(met))]
-        if abs(along) < _FARTHER * np.linalg.norm(at - centre) + math.sqrt(area) / 2:
+        if abs(along) < _FARTHER * np.linalg.norm(at - centre) + half:
             at, normal = nearest_surface(facing, centre + along * outward)
-    if normal @ outward > _UPRIGHT:
-        normal = outward
-    return SurfacePatch(_triple(at), _triple(normal), area)
+    yield _triple(at), _triple(outward if normal @ outward > _UPRIGHT else normal)
+    at, normal = nearest_surface(triangles, centre)
+    yield _triple(at), _triple(normal)
+    middles = facing.mean(axis=1)
+    yield _triple(middles[np.argmax(middles @ outward)]), _triple(outward)
 
 
 def covered_share(body: Solid, patch: SurfacePatch) -> float:
@@ -111,7 +135,7 @@ def covered_share(body: Solid, patch: SurfacePatch) -> float:
     return sum(bool(len(met) and np.abs(met).min() < half) for met in found) / len(found)
 
 
-def _triple(values: np.ndarray) -> tuple[float, float, float]:
+def _triple(values: np.ndarray) -> _Triple:
     x, y, z = values.tolist()
     return x, y, z
 

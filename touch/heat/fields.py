@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ...thermal import Material, Solid, SurfacePatch
+from ...thermal import Material, SensorStack, Solid, SurfacePatch
 from ...thermal.kernels import Patches, Resolution, Tip, box_side, glued_element, tip
 from ...thermal.numerics import ThermalNetwork
 from ...thermal.padded import RINGS, PaddedTip, box_in_pads, padded_tip, ring_sides
@@ -202,18 +202,18 @@ def _solid_side(
 
     assert shape.solid is not None
     solid, (x, y, z) = shape.solid, shape.size.tolist()
-    found = [_patch(solid, (x, y, z), place, pads[place.fingertip].stack.face_area) for place in places]
-    patches, covered = [patch for patch, _ in found], tuple(share for _, share in found)
     pad = pads[places[0].fingertip]
     with _BLAS.limit(limits=1, user_api="blas"):
+        found = [_patch(solid, (x, y, z), place, pad.stack, cache) for place in places]
+        patches, covered = [patch for patch, _ in found], tuple(share for _, share in found)
         return *body_in_pads(solid, patches, pad.stack, rings_of(pad) or (), cache=cache), covered
 
 
 @lru_cache(maxsize=2048)
 def _patch(
-    solid: Solid, size: tuple[float, float, float], place: Place, area: float
+    solid: Solid, size: tuple[float, float, float], place: Place, stack: SensorStack, cache: bool
 ) -> tuple[SurfacePatch, float]:
-    """Of m2, on a body that is as large as that box; and the share of it where the body is."""
+    """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is."""
     from ...thermal.meshes import covered_share, surface_patch
 
     outward, centre = np.zeros(3), np.zeros(3)
@@ -221,7 +221,7 @@ def _patch(
     outward[axis] = 1.0 if far else -1.0
     across_last = [*(i for i in range(3) if i != axis), axis]
     centre[across_last] = np.array(place.whole) - np.array(size)[across_last] / 2
-    patch = surface_patch(solid, centre, outward, area)
+    patch = surface_patch(solid, centre, outward, stack, cache=cache)
     return patch, covered_share(solid, patch)
 
 

@@ -11,6 +11,7 @@ from thermograsp.thermal import Material, SurfacePatch, Surround, material, sens
 from thermograsp.thermal.kernels import GRASP, Patches
 from thermograsp.thermal.matter import SKINS
 from thermograsp.thermal.meshes import PLACED_LEVEL, body_in_pads, surface_patch
+from thermograsp.thermal.meshes.placed import is_touchable
 from thermograsp.thermal.padded import box_in_pads, padded_tip, ring_sides
 
 STACK = SKINS["filled_silicone"].over(sensor("seed"))
@@ -57,8 +58,29 @@ def test_all_heat_of_a_ring_is_in_the_body(shape: str) -> None:
         "box": trimesh.creation.box((2 * radius, 0.012, 0.03)),
     }[shape]
     body = solid(np.asarray(mesh.vertices), np.asarray(mesh.faces), made)
-    patch = surface_patch(body, np.array([-0.02, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 81e-6)
+    patch = surface_patch(body, np.array([-0.02, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), STACK)
     network, beside, _ = body_in_pads(body, [patch], STACK, SIDES)
     np.testing.assert_allclose(network.outputs["heat"][0] * beside[0], 1.0, rtol=1e-9)
     assert network.outputs["heat"][0] * network.ports[0, 0] == pytest.approx(1.0, rel=1e-9)
     assert (network.rates >= 0).all() and np.isfinite(beside).all()
+
+
+@pytest.mark.parametrize(
+    ("turn", "place", "axis"),
+    [
+        ((0.637, 0.2698, 0.041), (0.01222, -0.02274, 0.02469), 1),
+        ((0.2616, 0.2985, 0.8142), (-0.02342, -0.002057, -0.01958), 0),
+        ((0.2616, 0.2985, 0.8142), (-0.01717, -0.003071, -0.03087), 0),
+    ],
+)
+def test_a_place_is_found_where_a_rim_or_an_opening_is_touched_at_a_slant(
+    turn: tuple[float, float, float], place: tuple[float, float, float], axis: int
+) -> None:
+    """On the hull of a thin cup. What looks along the axis there is below the rest of the cup."""
+    wall = 0.3e-3
+    profile = [(0, 0), (0.02, 0), (0.02, 0.03), (0.02 - wall, 0.03), (0.02 - wall, wall), (0, wall)]
+    cup = trimesh.creation.revolve(profile, sections=24)
+    cup.apply_transform(trimesh.transformations.random_rotation_matrix(np.array(turn)))
+    body = solid(np.asarray(cup.vertices), np.asarray(cup.faces), material("ceramic"))
+    outward = -np.eye(3)[axis]
+    assert is_touchable(body, surface_patch(body, np.array(place), outward, STACK), STACK)
