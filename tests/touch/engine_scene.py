@@ -26,6 +26,9 @@ TIER = pytest.mark.skipif(
 )
 SPECS_TAKE_PLUGINS = hasattr(mujoco.MjSpec, "activate_plugin")
 NEEDS_SPECS = pytest.mark.skipif(not SPECS_TAKE_PLUGINS, reason="specs take plugins from MuJoCo 3.3.2 on")
+NEEDS_RECORDS = pytest.mark.skipif(
+    not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"), reason="this MuJoCo has no contact sensors"
+)
 ROUND_OFF = 1e-9  # K; the two sum in another order
 OBJECTS = {"can": ThermalBody("aluminium", 5.0), "ball": "glass"}
 HEATED, WARM_CORE = heated_stack("heated_thermistor"), heated_stack("biotac_like")

@@ -21,7 +21,7 @@ from thermograsp.thermal import SurfacePatch, material, press_body, solid
 from thermograsp.touch import Fingertip, ThermalTouch, prepare
 from thermograsp.touch.contacts import AREA, CLOSED, CONDUCTANCE
 
-from .engine_scene import keep_boxes
+from .engine_scene import NEEDS_RECORDS, keep_boxes
 
 AREA_OF_FACE = 81e-6  # m2
 CUBE = trimesh.creation.box((0.04, 0.04, 0.04))
@@ -254,6 +254,7 @@ def test_a_state_of_boxes_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         touch.set_state(touch_of(model).state())
 
 
+@NEEDS_RECORDS
 def test_many_worlds_are_single_ones_and_a_material_scales_time() -> None:
     pads, made_of = {"tip": "tip", "other": "other"}, ["steel", "wood"]
     model = prepare(spec(mesh("bar"), 0.006, 2), pads, {"thing": "steel"})
@@ -276,6 +277,7 @@ def test_many_worlds_are_single_ones_and_a_material_scales_time() -> None:
     assert np.abs(alone[0] - alone[1]).min() > 1.0
 
 
+@NEEDS_RECORDS
 def test_fixed_touch_is_the_loop() -> None:
     """While all fingertips are in contact."""
     pads = {"tip": "tip", "other": "other"}

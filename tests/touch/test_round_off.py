@@ -14,6 +14,8 @@ import pytest
 from thermograsp.thermal import Material, SensorStack, material, sensor
 from thermograsp.touch import Fingertip, ThermalBody, ThermalTouch, prepare
 
+from .engine_scene import NEEDS_RECORDS
+
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
 hand = importlib.util.module_from_spec(_spec)
@@ -23,9 +25,6 @@ ROUND_OFF = 1e-9  # K
 SHARE = 1e-15
 WORLDS = 4
 STEP = 0.125 * sensor("seed").width  # m of the grid on which places stand
-NEEDS_RECORDS = pytest.mark.skipif(
-    not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"), reason="this MuJoCo has no contact sensors"
-)
 ORDERS, STEPS = 8, 150
 
 
