@@ -8,7 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import torch
+from thermograsp.errors import MissingDependencyError, install
+
+try:
+    import torch
+except ImportError as error:
+    raise MissingDependencyError(f"thermograsp.mjlab needs mjlab: {install('mjlab')}") from error
 
 _WARM = 3  # runs before a recording, in which libraries allocate and torch.compile compiles
 

@@ -32,10 +32,10 @@ from .heat import WorldsHeat
 try:
     import torch
     from mjlab.sensor import ContactMatch, ContactSensor, ContactSensorCfg, Sensor, SensorCfg
-
-    from .recording import recorded
 except ImportError as error:
     raise MissingDependencyError(f"thermograsp.mjlab needs mjlab: {install('mjlab')}") from error
+
+from .recording import recorded  # behind PyTorch
 
 Worlds = torch.Tensor | slice | None
 
