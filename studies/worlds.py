@@ -70,18 +70,17 @@ class Grasp:
 @dataclass(frozen=True)
 class Way:
     """felt: from sensordata (H, sensordata), the same in every world, to the temperature drop (B, F) K a step later.
-    again: such a step with the last sensordata, whose end it awaits. bytes: that a step must move. kept: what must
-    live, because a graph reads its tensors where they lie."""
+    again: such a step with the last sensordata, whose end it awaits. bytes: that a step must move."""
 
     felt: Callable[[np.ndarray], np.ndarray]
     again: Callable[[], object]
     bytes: int
-    kept: object = None
 
 
 def by_torch(grasp: Grasp, way: str, worlds: int, device: str) -> Way:
     """PyTorch's operations on tensors that stay where they are, as a simulation on a GPU has them."""
     torch = importlib.import_module("torch")
+    recorded = importlib.import_module("thermograsp.mjlab.recording").recorded  # which needs no mjlab
     torch.set_num_threads(1)
     fixed = grasp.fixed(torch.zeros(0, device=device))
     which = torch.arange(worlds, device=device)[:, None] % len(MATERIALS)
@@ -101,20 +100,7 @@ def by_torch(grasp: Grasp, way: str, worlds: int, device: str) -> Way:
         write(state, after)
         drop.copy_(read[0])
 
-    run: Callable[[], object] = step
-    if "graph" in way:
-        graph = torch.cuda.CUDAGraph()
-        beside = torch.cuda.Stream()
-        beside.wait_stream(torch.cuda.current_stream())
-        with torch.cuda.stream(beside):
-            for _ in range(3):  # so that nothing is set up while the graph records
-                step()
-        torch.cuda.current_stream().wait_stream(beside)
-        with torch.cuda.graph(graph):
-            step()
-        write(state, first)
-
-        run = graph.replay
+    run = recorded(step, (*leaves(state), drop)) if "graph" in way else step
 
     def felt(rows: np.ndarray) -> np.ndarray:
         sensed.copy_(torch.as_tensor(rows, dtype=sensed.dtype, device=device).expand_as(sensed))
@@ -127,7 +113,7 @@ def by_torch(grasp: Grasp, way: str, worlds: int, device: str) -> Way:
             torch.cuda.synchronize()
 
     moved = [*leaves(first), *leaves(first), sensed, drop, first.voltage]
-    return Way(felt, again, sum(part.numel() * part.element_size() for part in moved), step)
+    return Way(felt, again, sum(part.numel() * part.element_size() for part in moved))
 
 
 def by_jax(grasp: Grasp, worlds: int, device: str) -> Way:

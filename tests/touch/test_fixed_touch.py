@@ -14,9 +14,9 @@ from thermograsp.errors import InvalidValueError, UnknownNameError
 from thermograsp.thermal import IDEAL, Thermostat, material
 from thermograsp.touch import Fingertip, FixedTouch, ThermalBody, ThermalTouch, grasp_touch, prepare
 
-pytestmark = pytest.mark.skipif(
-    not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"), reason="this MuJoCo has no contact sensors"
-)
+from .engine_scene import NEEDS_RECORDS
+
+pytestmark = NEEDS_RECORDS
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader

@@ -10,6 +10,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ive
 
 from thermograsp.compiled import njit
 
@@ -25,8 +26,10 @@ class Fading(NamedTuple):
 
     def kernel(self, times: np.ndarray) -> np.ndarray:
         """(T, P, P) K/J at times s."""
-        weights = np.zeros((len(times), len(self.moments)))
-        _weights(times * self.fastest / 2, weights)
+        # exp(-z (1 + x)) as a sum over Chebyshev polynomials of x
+        orders = np.arange(len(self.moments))
+        signs = np.where(orders == 0, 1.0, np.where(orders % 2 == 0, 2.0, -2.0))
+        weights = signs * ive(orders, times[:, None] * self.fastest / 2)
         return np.tensordot(weights, self.moments, axes=1)
 
 
@@ -110,28 +113,3 @@ def _moments(diagonal, off, neighbours, x, half, moments):
             moments[2 * m, c] = 2 * even[c] - moments[0, c]
             if m < half:
                 moments[2 * m + 1, c] = 2 * odd[c] - moments[1, c]
-
-
-@njit(cache=True, error_model="numpy")
-def _weights(z, weights):
-    """exp(-z (1 + x)) as a sum over Chebyshev polynomials of x: modified Bessel functions by Miller's recurrence."""
-    count = weights.shape[1]
-    for t in range(len(z)):
-        if z[t] < 1e-8:
-            weights[t, 0] = 1.0
-            continue
-        start = count + 30 + int(z[t] ** 0.5)
-        high, now, total = 0.0, 1e-280, 0.0
-        for k in range(start, -1, -1):
-            # now = I_k, high = I_{k+1}
-            if k < count:
-                weights[t, k] = now
-            total += now if k == 0 else 2 * now
-            low = high + 2 * k / z[t] * now
-            high, now = now, low
-            if now > 1e200:
-                high, now, total = high * 1e-200, now * 1e-200, total * 1e-200
-                for q in range(k, count):
-                    weights[t, q] *= 1e-200
-        for k in range(count):
-            weights[t, k] *= (1.0 if k == 0 else (2.0 if k % 2 == 0 else -2.0)) / total
