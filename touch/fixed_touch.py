@@ -432,11 +432,12 @@ def grasp_touch(
     like: Array,
 ) -> tuple[FixedTouch, int]:
     """Fingertips that touch every object in the middles of two opposite faces of its box, those that look alike in the
-    model's first pose on the same one; and in how many ways. There are three, across the box's sides, or one where all
-    objects are cubes. materials: of each object. A world's number is that of its material times the ways, plus the
-    way. One sample each dt s of so many substeps. Raises InvalidValueError beside thermostats of finite power, heated
-    sensors and glued elements, and for more combinations than MOST_NETWORKS."""
-    cubes = all(np.ptp(shape.size) <= _SAME * shape.size.max() for shape in shapes)
+    model's first pose on the same one; and in how many ways. There are three, across the box's sides, or one where
+    all objects are cubes. An object that has its own shape is touched where that is nearest to those middles.
+    materials: of each object. A world's number is that of its material times the ways, plus the way. One sample each
+    dt s of so many substeps. Raises InvalidValueError beside thermostats of finite power, heated sensors and glued
+    elements, and for more combinations than MOST_NETWORKS."""
+    cubes = all(shape.solid is None and np.ptp(shape.size) <= _SAME * shape.size.max() for shape in shapes)
     ways = 1 if cubes else 3
     combinations = math.prod(len(choices) * ways for choices in materials)
     if combinations > MOST_NETWORKS:
@@ -450,8 +451,9 @@ def grasp_touch(
     side = np.where(looks @ looks[0] < 0, -1.0, 1.0)
     poses = np.zeros((ways, len(pads), len(shapes), 6))
     for o, shape in enumerate(shapes):
-        poses[:, :, o, :3] = shape.centre
-        poses[:, :, o, 3:] = side[:, None] * shape.axes.T[:ways, None]
+        inward = side[:, None] * shape.axes.T[:ways, None]
+        poses[:, :, o, :3] = shape.centre - inward * shape.size[:ways, None, None] / 2
+        poses[:, :, o, 3:] = inward
     first = [shape.of(choices[0]) for shape, choices in zip(shapes, materials, strict=True)]
     heat = JoinedHeat(pads, (), first, worlds=1, dt=dt, tolerance=tolerance, film=air, ambient=ambient)
     most = max(map(len, materials))

@@ -25,7 +25,7 @@ from thermograsp.errors import (
 from thermograsp.thermal import ADS1115, SIGNAL_CHAINS, Material, SignalChain
 from thermograsp.thermal import material as named_material
 from thermograsp.touch import TouchContacts, grasp_touch
-from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, pads, warn_of_boxes, whole_steps
+from thermograsp.touch.scene import BodyShape, Fingertip, bodies, find, own_shapes, pads, whole_steps
 
 from .heat import WorldsHeat
 
@@ -150,9 +150,7 @@ class ThermalTouchSensor(Sensor[ThermalTouchData]):
             sensor.initialize(mj_model, model, data, device)
         shapes = self._shapes(mj_model)
         tips = pads(mj_model, cfg.fingertips, shapes)
-        warn_of_boxes(
-            mj_model, shapes, "worlds on a device have networks of boxes alone; ThermalTouch knows its shape"
-        )
+        shapes = own_shapes(mj_model, shapes, tips)
         worlds = data.time.shape[0]
         like = torch.zeros(worlds, device=device)
         self._fixed, ways = grasp_touch(

@@ -17,8 +17,8 @@ import pytest
 import trimesh
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal import SurfacePatch, material, press_body, solid
-from thermograsp.touch import Fingertip, ThermalTouch, prepare
+from thermograsp.thermal import IDEAL, SurfacePatch, material, press_body, solid
+from thermograsp.touch import Fingertip, ThermalTouch, grasp_touch, prepare
 from thermograsp.touch.contacts import AREA, CLOSED, CONDUCTANCE
 
 from .engine_scene import NEEDS_RECORDS, keep_boxes
@@ -295,6 +295,42 @@ def test_fixed_touch_is_the_loop() -> None:
         state, reading = fixed.advance(state, fixed.contacts(record))
         if n < 10 or n % 10 == 9:
             np.testing.assert_allclose(reading.temperature_drop, drop, atol=1e-6)
+    assert drop.min() > 2.0
+
+
+@NEEDS_RECORDS
+def test_a_grasp_across_the_middle_is_felt_in_its_own_shape() -> None:
+    """As worlds on a device have it: across the third side of a tray, far from what its box would feel."""
+    pads = {"tip": "tip", "other": "other"}
+    model = prepare(spec(mesh("tray"), 0.015, 2), pads, {"thing": "ceramic"})
+    touch = touch_of(model, "ceramic", tips=2, worlds=1, dt=0.01)
+    fixed, ways = grasp_touch(
+        model,
+        touch._pads,
+        touch._shapes,
+        [tuple(map(material, ("wood", "ceramic")))],
+        dt=0.01,
+        substeps=5,
+        tolerance=0.05,
+        ambient=24.0,
+        air=0.0,
+        chain=IDEAL,
+        samples=4,
+        like=np.zeros(0),
+    )
+    assert ways == 3
+    recorder = touch.fixed_touch(np.zeros(0))
+    state = fixed.reset(fixed.start(1), material=np.array([[5]]))
+    data, drop = mujoco.MjData(model), np.zeros(2)
+    data.ctrl[:] = 10.0, 0.0, 8.0, 0.0
+    for _ in range(60):
+        record = np.empty((1, 5, model.nsensordata))
+        for k in range(5):
+            mujoco.mj_step(model, data)
+            record[:, k] = data.sensordata
+        drop = touch.update(record).temperature_drop
+        state, reading = fixed.advance(state, recorder.contacts(record))
+        np.testing.assert_allclose(reading.temperature_drop, drop, atol=1e-3)
     assert drop.min() > 2.0
 
 
