@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from numba.core.dispatcher import Dispatcher
 
-from thermograsp import compiled
 from thermograsp.compiled import compiled_hash, njit
+from thermograsp.compiled.quicker import let_age
 from thermograsp.errors import InvalidValueError
 
 FILES = {
@@ -311,11 +311,11 @@ def test_loaded_code_is_old_at_once_but_what_somebody_froze_stays_frozen() -> No
     try:
         loaded: list[object] = [[]]
         assert age(loaded) == 0
-        compiled._let_age()
+        let_age()
         assert age(loaded) == 2
         gc.freeze()
         young: list[object] = [[]]
-        compiled._let_age()
+        let_age()
         assert age(young) == 0 and gc.get_freeze_count() > 0
     finally:
         gc.unfreeze()

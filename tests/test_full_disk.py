@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from thermograsp.columns import write_csv
-from thermograsp.compiled import _CacheFile, njit
+from thermograsp.compiled import njit
+from thermograsp.compiled.cache_file import CacheFile
 from thermograsp.errors import InvalidValueError, ThermograspError, WriteError
 from thermograsp.figures.film import write_pictures
 from thermograsp.figures.saving import save_figure
@@ -133,10 +134,10 @@ def test_a_cache_that_is_full_costs_a_warning_only(
 
 
 def test_compiled_code_that_cannot_be_kept_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: _CacheFile, name: str, data: object) -> None:
+    def full(self: CacheFile, name: str, data: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(_CacheFile, "_save_data", full)
+    monkeypatch.setattr(CacheFile, "_save_data", full)
 
     @njit(cache=True)
     def doubled(x: float) -> float:

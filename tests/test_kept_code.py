@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from thermograsp import compiled
 from thermograsp.beside import ALONE
-from thermograsp.compiled import _CacheFile, compile_beside, njit
+from thermograsp.compiled import beside, cache, compile_beside, njit
+from thermograsp.compiled.cache_file import CacheFile
 
 KEY, CODE = ("float64",), {"code": b"0123456789" * 100}
 DAMAGES: dict[str, Callable[[bytes], bytes]] = {
@@ -55,22 +55,22 @@ unix = pytest.mark.skipif(sys.platform == "win32", reason="users and modes of fi
 
 
 @pytest.fixture
-def kept(tmp_path: Path) -> _CacheFile:
-    file = _CacheFile(str(tmp_path), "kernel", "stamp")
+def kept(tmp_path: Path) -> CacheFile:
+    file = CacheFile(str(tmp_path), "kernel", "stamp")
     file.save(KEY, CODE)
     return file
 
 
-def test_what_is_kept_is_found_by_who_compiles_the_same(kept: _CacheFile, tmp_path: Path) -> None:
+def test_what_is_kept_is_found_by_who_compiles_the_same(kept: CacheFile, tmp_path: Path) -> None:
     assert kept.load(KEY) == CODE and kept.load(("int64",)) is None
-    assert _CacheFile(str(tmp_path), "kernel", "stamp").load(KEY) == CODE
-    assert _CacheFile(str(tmp_path), "kernel", "another stamp").load(KEY) is None
+    assert CacheFile(str(tmp_path), "kernel", "stamp").load(KEY) == CODE
+    assert CacheFile(str(tmp_path), "kernel", "another stamp").load(KEY) is None
 
 
 @pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
 def test_a_damaged_file_is_as_good_as_none(
-    kept: _CacheFile, tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]
+    kept: CacheFile, tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]
 ) -> None:
     (path,) = tmp_path.glob(f"*{suffix}")
     path.write_bytes(damage(path.read_bytes()))
@@ -79,7 +79,7 @@ def test_a_damaged_file_is_as_good_as_none(
     assert kept.load(KEY) == CODE
 
 
-def test_an_index_of_another_numba_is_not_read(kept: _CacheFile, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_index_of_another_numba_is_not_read(kept: CacheFile, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kept, "_version", "0.0")
     assert kept.load(KEY) is None
 
@@ -128,7 +128,7 @@ def fill(others: Path) -> None:
 
 
 def test_numba_has_its_places_in_this_order() -> None:
-    places = [place.__name__.removeprefix("_") for place in (compiled._Chosen, compiled._BesideSource)]
+    places = [place.__name__.removeprefix("_") for place in (cache._Chosen, cache._BesideSource)]
     assert places == ["UserProvidedCacheLocator", "InTreeCacheLocator"]
 
 
@@ -160,7 +160,7 @@ def test_what_others_have_not_compiled_is_kept_in_the_user_s_own_folder(others: 
 
 def test_code_of_text_that_was_executed_is_kept_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[str] = []
-    monkeypatch.setattr(compiled, "start_beside", lambda module, folder: started.append(module))
+    monkeypatch.setattr(beside, "start_beside", lambda module, folder: started.append(module))
     names: dict[str, Any] = {}
     exec("def doubled(x):\n    return 2.0 * x\n", names)
     doubled = njit(cache=True)(names["doubled"])
