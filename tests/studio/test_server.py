@@ -6,7 +6,8 @@ import multiprocessing
 import os
 import signal
 import time
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -258,6 +259,28 @@ def test_two_visitors_have_a_simulation_each_and_one_that_is_killed_says_so() ->
     within(act())
 
 
+class Forked:
+    """Forks this process, with what is replaced in it; as from the fork server, the new one holds no other's ends."""
+
+    def __init__(self) -> None:
+        self._context = multiprocessing.get_context("fork")
+        self._ends: list[Connection] = []
+
+    def Pipe(self, duplex: bool = True) -> tuple[Connection, Connection]:
+        ends = self._context.Pipe(duplex)
+        self._ends += ends
+        return ends
+
+    def Process(self, *, target: Callable[..., None], args: tuple[Any, ...], daemon: bool) -> Any:
+        def run() -> None:
+            for end in self._ends:
+                if end not in args:
+                    end.close()
+            target(*args)
+
+        return self._context.Process(target=run, daemon=daemon)
+
+
 class Noting:
     """Stands in for a session, and notes when it is closed."""
 
@@ -267,6 +290,7 @@ class Noting:
         self._file = file
 
     def handle(self, message: Any) -> None:
+        self._file.write_text("busy")
         time.sleep(message["seconds"])
 
     def advance(self, seconds: float) -> None:
@@ -290,10 +314,13 @@ def test_a_session_is_closed_before_its_process_ends(
 
     file = tmp_path / "closed"
     monkeypatch.setattr(session, "Session", lambda stock, choices: Noting(file), raising=False)
-    monkeypatch.setattr("thermograsp.studio.web.worker._context", lambda: multiprocessing.get_context("fork"))
+    monkeypatch.setattr("thermograsp.studio.web.worker._context", Forked)
     worker = Worker(Stock(), Choices())
     assert worker.exchange([]) == []
     worker._pipe.send([{"seconds": seconds}])
+    until = time.monotonic() + PATIENCE
+    while not file.exists() and time.monotonic() < until:
+        time.sleep(0.01)
     worker.stop()
     assert worker._process.exitcode in (0, 128 + signal.SIGTERM)
     assert file.read_text() == "closed"
@@ -323,7 +350,7 @@ def test_time_begins_when_a_grasp_is_set_up(monkeypatch: pytest.MonkeyPatch) -> 
     from thermograsp.studio import session
 
     monkeypatch.setattr(session, "Session", lambda stock, choices: Prepared(), raising=False)
-    monkeypatch.setattr("thermograsp.studio.web.worker._context", lambda: multiprocessing.get_context("fork"))
+    monkeypatch.setattr("thermograsp.studio.web.worker._context", Forked)
     worker = Worker(Stock(), Choices())
     worker.exchange([])
     (late,) = worker.exchange([])
