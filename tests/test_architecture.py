@@ -15,7 +15,19 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 
-LEAVES = ("errors", "notice", "sources", "files", "columns", "plant", "doors", "beside", "compiled", "opengl")
+LEAVES = (
+    "errors",
+    "notice",
+    "sources",
+    "files",
+    "columns",
+    "plant",
+    "doors",
+    "beside",
+    "compiled",
+    "lanes",
+    "opengl",
+)
 """Modules and rooms of the root package that everybody may import; each may import those before it."""
 
 FOLDERS = {

@@ -126,7 +126,7 @@ WHERE_INSTALLED = {
 """The benchmark leaves its rows out elsewhere; of geoms that are not fused a warning in the log names the extra."""
 BY_NUMBA = {
     ("touch/pointers.py", "llvmlite"),
-    ("touch/heat/lanes.py", "llvmlite"),
+    ("core/lanes.py", "llvmlite"),
     ("touch/wrappers/clock.py", "llvmlite"),
 }
 """numba cannot be installed without it."""

@@ -20,6 +20,16 @@ from typing import NamedTuple
 import numpy as np
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import (
+    LANES,
+    add_products,
+    add_sum,
+    dot,
+    put,
+    put_sum,
+    solve_symmetric,
+    take_products,
+)
 
 from ..kernels import BodyResidues, Resolution
 from ..network import POLES, WEIGHTS
@@ -39,9 +49,10 @@ _RATE_ROWS = (
 )  # of a rate: itself, how it fades in a step, how it is seen and pushed at the poles
 HELD = _RATE_ROWS  # of the slowest state of a box: sqrt(J K) of heat in it
 _PORT, _DROP, POLE_HEAT = _RATE_ROWS, _RATE_ROWS + 1, _RATE_ROWS + 2  # of an element's pole
-RATES, POLES_KEPT, LANES = len(SHARED), 8, 4
-"""Of a level, and at most of an element's slow poles and of the step's poles: loops of a length that the compiler knows
-are faster, and what is left over is zero."""
+RATES, POLES_KEPT = len(SHARED), 8
+"""Of a level, and at most of an element's slow poles: loops of a length that the compiler knows are faster, and what is
+left over is zero. So are lanes (thermograsp/lanes.py), in which the step's poles and a level's rates are taken."""
+_BLOCKS = RATES // LANES
 USED, AIRED, WHERE = 0, 1, 2  # of FixedTables.links; then a fingertip's place each, then its element
 
 
@@ -53,7 +64,8 @@ class FixedTables(NamedTuple):
     follows the thermostat of either. slow (B, 15 + N): of a box's slowest state the same, its heat, and its ports.
     body (B, N N + N + 1, K): residues of the places under fingertips by those of all, heat rows u, heat of what follows
     the air J/K. gram (B, F P, F P, 2, LANES): real and imaginary K/J of all that is in touch at the poles. links
-    (B, 2 + 2 F): places used, whether the air takes any heat, each fingertip's place (-1 for none) and element.
+    (B, 2 + 2 F): places used, whether the air takes any heat, each fingertip's place (-1 for none) and element. seen
+    (K, 2, LANES): real and imaginary parts of how rates are seen at the poles, as in `rates`.
     """
 
     dt: float
@@ -66,6 +78,7 @@ class FixedTables(NamedTuple):
     body: np.ndarray
     gram: np.ndarray
     links: np.ndarray
+    seen: np.ndarray
 
     @property
     def states(self) -> int:
@@ -101,8 +114,10 @@ def fixed_tables(
         np.zeros((rows, ports * ports + ports + 1, RATES)),
         np.zeros((rows, fingertips * patterns, fingertips * patterns, 2, LANES)),
         np.full((rows, WHERE + 2 * fingertips), -1),
+        np.zeros((RATES, 2, LANES)),
     )
     tables.links[:, WHERE + fingertips :] = 0
+    tables.seen[:, :, :_PAIRS] = tables.rates[_SEEN:_PUSHED].reshape(2, _PAIRS, RATES).transpose(2, 0, 1)
     tables.tips[0] = tip_residues(whole)
     return tables
 
@@ -120,6 +135,7 @@ def no_fixed_tables(dt: float) -> FixedTables:
         np.zeros((0, 3, RATES)),
         np.zeros((0, 1, 1, 2, LANES)),
         np.zeros((0, WHERE + 2), int),
+        np.zeros((RATES, 2, LANES)),
     )
 
 
@@ -364,34 +380,32 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
     slope = -slow[0] * (x[0] - slow[HELD] * around)
     before = _held(slow, body, heats, still, x, used, aired) if aired else 0.0
 
+    poled, row, seen = 2 * LANES, 2 * LANES * flows.shape[0], tables.seen
+    of_element = (square + 2 * patterns + 2) * count
     touching = 0
     for f in range(fingertips):
         reading.flow[b, k, f] = 0.0
         if conductance[f] <= 0.0:
             continue
-        element = index[WHERE + fingertips + f]
+        first = index[WHERE + fingertips + f] * of_element
         tip = first_tip + f * of_tip
         for p in range(patterns):
-            j = index[WHERE + f] * patterns + p
-            difference_left = 0.0
+            j, at, held = index[WHERE + f] * patterns + p, touching * count, tip + lasting
+            residues, heat = first + p * patterns * count, first + (square + patterns + p) * count
+            difference_left = slow[HELD + 1 + j] * x[0]
             for r in range(RATES):
-                moved[touching, r] = -tips[element, square + patterns + p, r] * x[tip + lasting + r]
+                moved[touching, r] = 0.0
             if aired:
                 for r in range(RATES):
-                    moved[touching, r] += body[heats + j, r] * (x[z + r] - around)
+                    moved[touching, r] = body[heats + j, r] * (x[z + r] - around)
                     difference_left += body[heats + j, r] * around
-            for other in range(used):
-                start = fields + other * count
-                for r in range(RATES):
-                    moved[touching, r] += body[j * most + other, r] * x[start + r]
-            for other in range(patterns):
-                start = tip + lasting + (1 + other) * count
-                for r in range(RATES):
-                    moved[touching, r] -= tips[element, p * patterns + other, r] * x[start + r]
+            for n in range(0, count, LANES):
+                add_products(moved, at + n, body, j * most * count + n, x, fields + n, count, used)
+                take_products(moved, at + n, tips, residues + n, x, held + count + n, count, patterns)
+                take_products(moved, at + n, tips, heat + n, x, held + n, count, 1)
             for r in range(RATES):
                 difference_left += moved[touching, r]
                 moved[touching, r] *= -rates[0, r]
-            difference_left += slow[HELD + 1 + j] * x[0]
             if p == 0:
                 difference_left -= difference[f]
                 for r in range(POLES_KEPT):
@@ -408,29 +422,33 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
         for p in range(patterns):
             push = slow[HELD + 1 + index[WHERE + f] * patterns + p] * slope
             for part in range(2):
-                flows[a, part, LANES - 1] = 0.0
+                lane = part * LANES
+                put_sum(flows, a * poled + lane, seen, lane, poled, moved, a * count, count)
                 for q in range(_PAIRS):
-                    at = _SEEN + part * _PAIRS + q
-                    heard = slow[at] * push
-                    for r in range(RATES):
-                        heard += rates[at, r] * moved[a, r]
+                    heard = flows[a, part, q] + slow[_SEEN + part * _PAIRS + q] * push
                     if p == 0:
                         for r in range(POLES_KEPT):
-                            heard += poles[at, r] * poles[_PORT, r] * poles[0, r] * x[tip + r]
+                            heard += (
+                                poles[_SEEN + part * _PAIRS + q, r]
+                                * poles[_PORT, r]
+                                * poles[0, r]
+                                * x[tip + r]
+                            )
                     flows[a, part, q] = (flow0[a] if part == 0 else 0.0) - heard
             c = 0
             for g in range(fingertips):
                 if conductance[g] <= 0.0:
                     continue
                 for r in range(patterns):
-                    for part in range(2):
-                        for q in range(LANES):
-                            matrix[a, c, part, q] = gram[f * patterns + p, g * patterns + r, part, q]
+                    if c >= a:
+                        known = ((f * patterns + p) * fingertips * patterns + g * patterns + r) * poled
+                        put(matrix, a * row + c * poled, gram, known)
+                        put(matrix, a * row + c * poled + LANES, gram, known + LANES)
                     c += 1
             for q in range(LANES):
                 matrix[a, a, 0, q] += weight[a]
             a += 1
-    _solve_symmetric(matrix, flows, factors, touching)
+    solve_symmetric(matrix, row, flows, factors, touching)
 
     for r in range(RATES):
         x[z + r] = around + rates[_FADING, r] * (x[z + r] - around)
@@ -455,15 +473,15 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
         for p in range(patterns):
             j = index[WHERE + f] * patterns + p
             start, under = fields + j * count, tip + lasting + (1 + p) * count
-            for r in range(RATES):
-                moved[a, r] = 0.0
+            for n in range(0, count, LANES):
+                real, imag = _PUSHED * count + n, (_PUSHED + _PAIRS) * count + n
+                put_sum(moved, a * count + n, rates, real, count, flows, a * poled, _PAIRS)
+                add_sum(moved, a * count + n, rates, imag, count, flows, a * poled + LANES, 1, _PAIRS)
             mean, into = 0.0, 0.0
             for q in range(_PAIRS):
                 real, imag = flows[a, 0, q], flows[a, 1, q]
                 mean -= 2 * (_LAGS[q].real * real - _LAGS[q].imag * imag)
                 into += slow[_PUSHED + q] * real + slow[_PUSHED + _PAIRS + q] * imag
-                for r in range(RATES):
-                    moved[a, r] += rates[_PUSHED + q, r] * real + rates[_PUSHED + _PAIRS + q, r] * imag
             for r in range(RATES):
                 x[start + r] += moved[a, r]
                 x[under + r] -= moved[a, r]
@@ -487,36 +505,26 @@ def advance_fixed(tables, i, x, conductance, difference, around, room, reading, 
     reading.object_heat[b, k] = now
     reading.air_loss[b, k] = taken - (now - before) / dt if aired else 0.0
     for f in range(fingertips):
-        element = index[WHERE + fingertips + f]
+        first = index[WHERE + fingertips + f] * of_element
         tip = first_tip + f * of_tip
-        drop, heat, rise = 0.0, 0.0, 0.0
+        states = tip + lasting + count
+        drop = dot(tips, first + square * count, x, states, patterns * _BLOCKS)
+        heat = dot(tips, first + (square + patterns) * count, x, states, patterns * _BLOCKS)
+        rise = dot(tips, first, x, states, patterns * _BLOCKS)
         for r in range(POLES_KEPT):
             drop += poles[_DROP, r] * x[tip + r]
             heat += poles[POLE_HEAT, r] * x[tip + r]
             rise += poles[_PORT, r] * x[tip + r]
-        start = tip + lasting
-        for r in range(RATES):
-            drop += tips[element, square + 2 * patterns, r] * x[start + r]
-            heat += tips[element, square + 2 * patterns + 1, r] * x[start + r]
-            rise += tips[element, square + patterns, r] * x[start + r]
-        for p in range(patterns):
-            start = tip + lasting + (1 + p) * count
-            for r in range(RATES):
-                drop += tips[element, square + p, r] * x[start + r]
-                heat += tips[element, square + patterns + p, r] * x[start + r]
-                rise += tips[element, p, r] * x[start + r]
+        drop += dot(tips, first + (square + 2 * patterns) * count, x, states - count, _BLOCKS)
+        heat += dot(tips, first + (square + 2 * patterns + 1) * count, x, states - count, _BLOCKS)
+        rise += dot(tips, first + (square + patterns) * count, x, states - count, _BLOCKS)
         reading.drop[b, k, f], reading.element_heat[b, k, f] = drop, heat
         reading.sensor_rise[b, k, f] = rise
         above, j = now / (slow[HELD] * slow[HELD]), index[WHERE + f] * patterns
         if j >= 0:
-            above = slow[HELD + 1 + j] * x[0]
+            above = slow[HELD + 1 + j] * x[0] + dot(body, j * most * count, x, fields, used * _BLOCKS)
             if aired:
-                for r in range(RATES):
-                    above += body[heats + j, r] * x[z + r]
-            for other in range(used):
-                start = fields + other * count
-                for r in range(RATES):
-                    above += body[j * most + other, r] * x[start + r]
+                above += dot(body, (heats + j) * count, x, z, _BLOCKS)
         reading.object_rise[b, k, f] = above
 
 
@@ -528,45 +536,6 @@ def _held(slow, body, heats, still, x, used, aired):
     """J in a box, above its first temperature."""
     total = slow[HELD] * x[0]
     if aired:
-        for r in range(RATES):
-            total += body[still, r] * x[1 + r]
-        for other in range(used):
-            start = 1 + (1 + other) * RATES
-            for r in range(RATES):
-                total += body[heats + other, r] * x[start + r]
+        total += dot(body, still * RATES, x, 1, _BLOCKS)
+        total += dot(body, heats * RATES, x, 1 + RATES, used * _BLOCKS)
     return total
-
-
-@njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _solve_symmetric(matrix, flows, factors, m):
-    """Solves matrix x = flows at all poles at once, the leading m of each, in place, without pivoting: the matrix is
-    symmetric, of which the upper half is looked at, and its numerical range lies in a half plane (step.py)."""
-    for c in range(m):
-        for q in range(LANES):
-            real, imag = matrix[c, c, 0, q], matrix[c, c, 1, q]
-            size = 1 / (real * real + imag * imag)
-            matrix[c, c, 0, q], matrix[c, c, 1, q] = real * size, -imag * size
-        for r in range(c + 1, m):
-            for q in range(LANES):
-                real, imag = matrix[c, r, 0, q], matrix[c, r, 1, q]
-                factors[r, 0, q] = real * matrix[c, c, 0, q] - imag * matrix[c, c, 1, q]
-                factors[r, 1, q] = real * matrix[c, c, 1, q] + imag * matrix[c, c, 0, q]
-            for s in range(r, m):
-                for q in range(LANES):
-                    real, imag = matrix[c, s, 0, q], matrix[c, s, 1, q]
-                    matrix[r, s, 0, q] -= factors[r, 0, q] * real - factors[r, 1, q] * imag
-                    matrix[r, s, 1, q] -= factors[r, 0, q] * imag + factors[r, 1, q] * real
-            for q in range(LANES):
-                real, imag = flows[c, 0, q], flows[c, 1, q]
-                flows[r, 0, q] -= factors[r, 0, q] * real - factors[r, 1, q] * imag
-                flows[r, 1, q] -= factors[r, 0, q] * imag + factors[r, 1, q] * real
-    for c in range(m - 1, -1, -1):
-        for s in range(c + 1, m):
-            for q in range(LANES):
-                real, imag = flows[s, 0, q], flows[s, 1, q]
-                flows[c, 0, q] -= matrix[c, s, 0, q] * real - matrix[c, s, 1, q] * imag
-                flows[c, 1, q] -= matrix[c, s, 0, q] * imag + matrix[c, s, 1, q] * real
-        for q in range(LANES):
-            real, imag = flows[c, 0, q], flows[c, 1, q]
-            flows[c, 0, q] = real * matrix[c, c, 0, q] - imag * matrix[c, c, 1, q]
-            flows[c, 1, q] = real * matrix[c, c, 1, q] + imag * matrix[c, c, 0, q]

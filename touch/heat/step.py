@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import LANES, add_sum, dot, put, put_sum, solve_symmetric
 
 from ...thermal.network import POLES, WEIGHTS
-from .lanes import LANES, add_sum, dot, invert, put, put_product, put_sum, take_product
 
 CONTACTS, FIELDS, PORTS, GRAM, HEADER = range(5)
 """Of a group's integers, the first: contacts and fields, and where its ports and its gram begin. Behind them its
@@ -144,7 +144,7 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
                 solved[real] = -heard[q * columns + c * wide + p]
                 solved[imag] = -heard[(_PAIRS + q) * columns + c * wide + p]
                 solved[real] += differs
-    _solve(matrix, solved, room.factors, m)
+    solve_symmetric(matrix, row, solved, room.factors, m)
     for c in range(contacts):
         for p in range(patterns):
             flow[c * patterns + p] = 0.0
@@ -178,22 +178,3 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
             row += PACE
         listed = paced + 1 + rates
     return lost
-
-
-@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
-def _solve(matrix, flows, factors, m):
-    """Solves matrix x = flows at all poles at once, the leading m of each, in place, without pivoting: the matrix is
-    symmetric, of which the upper half is looked at, and its numerical range lies in a half plane (batch/step.py)."""
-    one, row = 2 * LANES, 2 * LANES * m
-    for c in range(m):
-        pivot = c * row + c * one
-        invert(matrix, pivot)
-        for r in range(c + 1, m):
-            put_product(factors, r * one, matrix, c * row + r * one, matrix, pivot)
-            for s in range(r, m):
-                take_product(matrix, r * row + s * one, factors, r * one, matrix, c * row + s * one)
-            take_product(flows, r * one, factors, r * one, flows, c * one)
-    for c in range(m - 1, -1, -1):
-        for s in range(c + 1, m):
-            take_product(flows, c * one, matrix, c * row + s * one, flows, s * one)
-        put_product(flows, c * one, flows, c * one, matrix, c * row + c * one)

@@ -16,9 +16,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from thermograsp.lanes import LANES
+
 from ...thermal.kernels import Tip
 from .fields import BodyField
-from .lanes import LANES
 from .step import PACE, gram, lanes, pace
 
 Pair = tuple[int, int]

@@ -14,6 +14,8 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from thermograsp.compiled import njit
+
 LANES = 4
 _ONCE = ("contract",)
 
@@ -62,6 +64,33 @@ def _sum(builder: Any, begun: Any, first: Any, stride: Any, factor: Any, ahead: 
         product = builder.fmul(lane, _spread(builder, number), flags=_ONCE)
         builder.store(builder.fadd(builder.load(total), product, flags=_ONCE), total)
     return builder.load(total)
+
+
+def _add_products(typingctx, out, i, a, j, b, k, stride, count):
+    """out[i:i + 4] += the sum over n < count of the four of a at j + n stride times those of b at k + n stride."""
+    return types.void(out, i, a, j, b, k, stride, count), _products("fadd")
+
+
+def _take_products(typingctx, out, i, a, j, b, k, stride, count):
+    """The same, taken from them."""
+    return types.void(out, i, a, j, b, k, stride, count), _products("fsub")
+
+
+def _products(join: str) -> Any:
+    """Joins products to what stands there, each by that instruction."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        to, first, second = (_place(context, builder, signature, values, n) for n in (0, 2, 4))
+        total = cgutils.alloca_once_value(builder, _load(builder, to))
+        with cgutils.for_range(builder, values[7]) as loop:
+            at = builder.mul(loop.index, values[6])
+            one, other = (_load(builder, _ahead(builder, place, at)) for place in (first, second))
+            product = builder.fmul(one, other, flags=_ONCE)
+            builder.store(getattr(builder, join)(builder.load(total), product, flags=_ONCE), total)
+        _store(builder, builder.load(total), to)
+        return context.get_dummy_value()
+
+    return code
 
 
 def _dot(typingctx, a, i, b, j, count):
@@ -201,7 +230,29 @@ def _product(builder: Any, real: Any, imag: Any, other_real: Any, other_imag: An
 put: Any = intrinsic(_put)
 put_sum: Any = intrinsic(_put_sum)
 add_sum: Any = intrinsic(_add_sum)
+add_products: Any = intrinsic(_add_products)
+take_products: Any = intrinsic(_take_products)
 dot: Any = intrinsic(_dot)
 put_product: Any = intrinsic(_put_product)
 take_product: Any = intrinsic(_take_product)
 invert: Any = intrinsic(_invert)
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
+def solve_symmetric(matrix, row, solved, factors, m):
+    """Solves matrix x = solved for four complex lanes at once, in place, without pivoting: the matrix is symmetric, of
+    which the upper half is looked at, and its numerical range lies in a half plane (thermal/batch/step.py). matrix: the
+    leading m of each of its rows, which are so many numbers apart. solved, factors: (m,) complex lanes."""
+    one = 2 * LANES
+    for c in range(m):
+        pivot = c * row + c * one
+        invert(matrix, pivot)
+        for r in range(c + 1, m):
+            put_product(factors, r * one, matrix, c * row + r * one, matrix, pivot)
+            for s in range(r, m):
+                take_product(matrix, r * row + s * one, factors, r * one, matrix, c * row + s * one)
+            take_product(solved, r * one, factors, r * one, solved, c * one)
+    for c in range(m - 1, -1, -1):
+        for s in range(c + 1, m):
+            take_product(solved, c * one, matrix, c * row + s * one, solved, s * one)
+        put_product(solved, c * one, solved, c * one, matrix, c * row + c * one)
