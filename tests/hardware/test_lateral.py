@@ -16,9 +16,9 @@ from thermograsp.hardware.errors import DeviceError
 from thermograsp.hardware.plant import serial
 from thermograsp.plant import Command
 
+from .hand import WIDTH, Hand, fresh, in_step, on_ports
 from .serving import nothing_left
 from .test_lift import BREAKS, Arm, failing
-from .test_serial_plant import WIDTH, Hand, fresh, in_step, on_ports
 
 RATE = 0.1  # m/s
 URL = "serial:///dev/tips?gripper=robotiq:///dev/gripper"

@@ -14,8 +14,8 @@ from thermograsp.hardware.errors import DeviceError, StoppedError
 from thermograsp.hardware.plant import serial
 from thermograsp.plant import Command
 
+from .hand import CLOSE, WIDTH, Hand, Stubborn, eventually, fresh, in_step
 from .serving import nothing_left
-from .test_serial_plant import CLOSE, WIDTH, Hand, Stubborn, eventually, fresh, in_step
 
 RATE = 0.05  # m/s
 

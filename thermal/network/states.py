@@ -12,7 +12,7 @@ P: modes of one contact, K: states of a body, S: samples.
 from __future__ import annotations
 
 import re
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -37,7 +37,8 @@ class Orders:
     odd: int | None = None
 
     def __str__(self) -> str:
-        return "/".join(str(order) for order in astuple(self) if order is not None)
+        orders = self.modes, self.sensor, self.even, self.odd
+        return "/".join(str(order) for order in orders if order is not None)
 
     @classmethod
     def parse(cls, text: str) -> Orders:
