@@ -35,32 +35,28 @@ from ...thermal import (
     material,
     materials,
 )
-from ...thermal.matter import USUAL_SKIN
 from ...thermal.matter import skin as named_skin
-from ...thermal.matter import surround as named_surround
-from ...thermal.stack import HeatedStack, any_sensor, converter, heated_core, highest_voltage
+from ...thermal.stack import HeatedStack, any_sensor, converter, heated_core
 from ..bodies import ObjectSpec, scaled
-from ..footprint import PAD, GraspBody
+from ..footprint import GraspBody
 from ..grippers import SHIPPED_GRIPPER, GripperModel
-from ..limits import MOST_VOLTAGE, SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
+from ..limits import SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
 from ..mechanics import SHIPPED, SolverSettings
+from .fingertips import AUTO, check_touched_by_pad, checked_heated, pad_around, usual_skin
 from .objects import all_plain_boxes, check_objects, drawn_objects, scene_objects
 from .randomization import (
     Cause,
     Delay,
-    ObjectTemperature,
     Size,
-    ThermostatError,
     checked,
     draw,
 )
+from .temperatures import check_drawn_temperatures, most_difference
 
 if TYPE_CHECKING:
     from ..footprint import Taxels
     from ..readout import FaceTemperature
 
-AUTO = "auto"
-"""A skin where one is needed, heat that knows where it enters where that matters; see SimulationConfig."""
 _ROOM = 0.002  # m between a sensor's face and a box's edge, from which on the edge is not felt
 
 
@@ -145,7 +141,11 @@ class SimulationConfig:
             "objects", [self.objects] if isinstance(self.objects, str | ObjectSpec) else self.objects
         )
         check_objects("scene", self.scene)
-        object.__setattr__(self, "skin", self._chosen_skin())
+        if isinstance(self.skin, str) and self.skin == AUTO:
+            plain = all_plain_boxes(self.objects if self.scene is None else self.scene)
+            object.__setattr__(self, "skin", usual_skin(self.mode, self.sensor, plain))
+        else:
+            object.__setattr__(self, "skin", named_skin(self.skin, self.mode))
         _ = self.tactile  # checks it
         if self.face_temperature is not None:
             self._check_face()
@@ -177,34 +177,11 @@ class SimulationConfig:
         """The fingertips' skin."""
         return named_skin(self.skin)
 
-    def _chosen_skin(self) -> Skin | None:
-        """Raises UnknownNameError, and InvalidValueError for what is none or cannot be worn."""
-        if not isinstance(self.skin, str) or self.skin != AUTO:
-            return named_skin(self.skin, self.mode)
-        if (
-            all_plain_boxes(self.objects if self.scene is None else self.scene)
-            or self.mode == "O"
-            or isinstance(any_sensor(self.sensor), HeatedStack)
-        ):
-            return None
-        return named_skin(USUAL_SKIN)
-
     @cached_property
     def around(self) -> Surround | None:
         """The pad around the sensor, with its depth. Raises UnknownNameError for a name that is none, and
         InvalidValueError for a pad that is none or that cannot be around the sensor."""
-        found, stack = named_surround(self.surround, self.mode), any_sensor(self.sensor)
-        if found is None:
-            return None
-        if isinstance(stack, HeatedStack):
-            raise InvalidValueError(
-                f"sensor {stack.name!r} has a heater of its own, which goes with no surround: leave surround out"
-            )
-        if found.width > PAD.width * (1 + 1e-9):
-            raise InvalidValueError(
-                f"surround is {found.width:g} m wide, and the pad {PAD.width:g} m: give Surround(width=) at most that"
-            )
-        return found.around(stack)
+        return pad_around(self.surround, self.mode, any_sensor(self.sensor))
 
     def _check_surround(self) -> None:
         """Raises InvalidValueError for what has no pad around the sensor."""
@@ -215,13 +192,7 @@ class SimulationConfig:
         ):
             if given:
                 raise InvalidValueError(f"surround {self.surround!r} does not go with {why}")
-        for shape in (*self.shapes, *self.others):
-            if shape.parts or shape.reservoir is not None:
-                what = "parts" if shape.parts else "contents"
-                raise InvalidValueError(
-                    f"surround {self.surround!r}: object {shape.name!r} has {what}, and the heat of a pad around the "
-                    "sensor is known on objects of one material: leave surround out, or give these"
-                )
+        check_touched_by_pad(self.surround, (*self.shapes, *self.others))
 
     @cached_property
     def padded(self) -> bool:
@@ -244,24 +215,11 @@ class SimulationConfig:
     def heated(self) -> HeatedStack | None:
         """The sensor, where it has a heater of its own. Raises UnknownNameError for a name that is none, and
         InvalidValueError for what it cannot be together with."""
-        found = self._sensor
-        if not isinstance(found, HeatedStack):
-            return None
-        if self.mode == "O" or self.thermostat is not None:
-            raise InvalidValueError(
-                f"sensor {found.name!r} has a heater of its own: leave thermostat out, and mode at 'T'"
-            )
-        if self.face_temperature is not None:
-            raise InvalidValueError(
-                f"sensor {found.name!r}: face_temperature maps an element on a thermostat; leave it out"
-            )
-        if highest_voltage(found) > MOST_VOLTAGE:
-            raise InvalidValueError(
-                f"sensor {found.name!r}: its divider sends up to {highest_voltage(found):.3g} V, and observations hold "
-                f"{MOST_VOLTAGE:g} V: give the divider a supply of "
-                f"{found.divider.supply * MOST_VOLTAGE / highest_voltage(found):.2g} V"
-            )
-        return found
+        return checked_heated(
+            self._sensor,
+            on_thermostat=self.mode == "O" or self.thermostat is not None,
+            mapped=self.face_temperature is not None,
+        )
 
     @property
     def room(self) -> float:
@@ -429,7 +387,9 @@ class SimulationConfig:
             own = [shape.material for shape in (*self.shapes, *self.others) if shape.material is not None]
             for touched in (*self.choices, *own):
                 Surface.of(material(touched))
-        self._check_drawn_temperatures()
+        own_temperatures = {shape.temperature for shape in (*self.shapes, *self.others)}
+        starts = [self.object_temperature if own is None else own for own in own_temperatures]
+        check_drawn_temperatures(self.randomize, starts, self.sensor_temperatures)
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         sizes = [1.0, *(factor for some in factors for factor in some)]
@@ -441,18 +401,6 @@ class SimulationConfig:
         for body in bodies:
             body.check_felt()
         return bodies
-
-    def _check_drawn_temperatures(self) -> None:
-        """Raises InvalidValueError for a draw that would make an object or a thermostat too cold or too hot to be."""
-        own = [shape.temperature for shape in (*self.shapes, *self.others)]
-        starts = {self.object_temperature if given is None else given for given in own}
-        for cause in self.randomize:
-            varied = {ObjectTemperature: starts, ThermostatError: self.sensor_temperatures}.get(
-                type(cause), ()
-            )
-            for start in varied:
-                for shift in (cause.low, cause.high):  # pyright: ignore[reportAttributeAccessIssue]
-                    celsius(f"{start:g} °C with randomize's {cause}", start + shift)
 
     def gripper_for(self, bodies: Sequence[GraspBody]) -> GripperModel:
         """The gripper, read. Raises GripperError for what is none, and InvalidValueError for a body that it cannot
@@ -522,23 +470,12 @@ class SimulationConfig:
 
     def _most_difference(self, shape: ObjectSpec) -> float:
         """K between a sensor and the object or the air, at most."""
-        shifts, errors = [0.0], [0.0]
-        for cause in self.randomize:
-            if isinstance(cause, ObjectTemperature):
-                shifts += [cause.low, cause.high]
-            elif isinstance(cause, ThermostatError):
-                errors += [cause.low, cause.high]
         start = self.object_temperature if shape.temperature is None else shape.temperature
-        around = [start + shift for shift in shifts]
-        if self.air > 0:
-            fixed = self.ambient_temperature is not None
-            around += [self.room + shift for shift in ([0.0] if fixed else shifts)]
-        return max(
-            abs(sensor + error - celsius)
-            for sensor in self.sensor_temperatures
-            for error in errors
-            for celsius in around
-        )
+        if self.air == 0:
+            return most_difference(self.randomize, self.sensor_temperatures, (start,))
+        if self.ambient_temperature is None:
+            return most_difference(self.randomize, self.sensor_temperatures, (start, self.room))
+        return most_difference(self.randomize, self.sensor_temperatures, (start,), (self.room,))
 
 
 def check_fields(plant: str, given: Iterable[str], *more: str) -> None:

@@ -12,7 +12,7 @@ P: modes of one contact, K: states of a body, S: samples.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Literal
 
 import numpy as np
@@ -37,8 +37,7 @@ class Orders:
     odd: int | None = None
 
     def __str__(self) -> str:
-        orders = self.modes, self.sensor, self.even, self.odd
-        return "/".join(str(order) for order in orders if order is not None)
+        return "/".join(str(order) for order in astuple(self) if order is not None)
 
     @classmethod
     def parse(cls, text: str) -> Orders:
