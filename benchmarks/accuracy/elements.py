@@ -2,7 +2,7 @@
 
 Quarter symmetry; triquadratic hexahedra on a tensor mesh; the contact is a conductance between coinciding nodes; in O
 mode the element shares the nodes of its bond with the object. Much coarser, and plainer in time, than the project's
-independent reference in studies/fem.py.
+independent reference in studies/elements/fem.py.
 """
 
 from __future__ import annotations

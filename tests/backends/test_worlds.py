@@ -12,7 +12,7 @@ import pytest
 @pytest.mark.parametrize(("way", "package"), [("one by one", "torch"), ("jax.jit", "jax")])
 def test_worlds_feel_what_numpy_feels(way: str, package: str) -> None:
     pytest.importorskip(package, reason="make test-backends installs it")
-    module = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "worlds.py"))
+    module = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "speed" / "worlds.py"))
     arguments = argparse.Namespace(device="cpu", repeats=1, bandwidth=100.0)
     grasp = module["Grasp"]()
     assert grasp.drop[-1, 0].min() > 2 * grasp.drop[-1, 1].max() > 0

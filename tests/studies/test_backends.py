@@ -12,7 +12,7 @@ import pytest
 
 @pytest.mark.parametrize("one_network", [False, True])
 def test_numba_and_numpy_take_the_same_step(one_network: bool) -> None:
-    module = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "backends.py"))
+    module = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "speed" / "backends.py"))
     arguments = Namespace(rows=8, one_network=one_network, dtype="float64", device="cpu")
     runs, moved = module["ways"](arguments, set())
     state, reading = runs["numba"]()

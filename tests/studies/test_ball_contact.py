@@ -18,9 +18,9 @@ FORCES = (1.0, 10.0, 30.0)
 
 @pytest.fixture(scope="module")
 def study() -> Iterator[ModuleType]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "contact"))
     yield importlib.import_module("ball_contact")
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "contact"))
     del sys.modules["ball_contact"]
 
 

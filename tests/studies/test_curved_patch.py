@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-STUDY = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "curved_patch.py"))
+STUDY = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "contact" / "curved_patch.py"))
 
 
 @pytest.mark.parametrize("name", ["steel", "glass"])

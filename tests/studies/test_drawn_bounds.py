@@ -16,9 +16,9 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def study() -> Iterator[ModuleType]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "agents"))
     yield importlib.import_module("drawn_bounds")
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "agents"))
     del sys.modules["drawn_bounds"]
 
 

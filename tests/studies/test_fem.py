@@ -22,7 +22,8 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def fem():
-    spec = importlib.util.spec_from_file_location("thermograsp_benchmarks_fem", ROOT / "studies" / "fem.py")
+    path = ROOT / "studies" / "elements" / "fem.py"
+    spec = importlib.util.spec_from_file_location("thermograsp_benchmarks_fem", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module

@@ -1,4 +1,4 @@
-"""The ladder's promise over a few random scenes; studies/ladder.py runs a thousand."""
+"""The ladder's promise over a few random scenes; studies/networks/ladder.py runs a thousand."""
 
 import importlib.util
 import sys
@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def outcomes():
-    path = ROOT / "studies" / "ladder.py"
+    path = ROOT / "studies" / "networks" / "ladder.py"
     spec = importlib.util.spec_from_file_location("thermograsp_benchmarks_ladder", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

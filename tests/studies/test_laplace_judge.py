@@ -25,9 +25,9 @@ TIMES = np.array([0.2, 2.0, 10.0])
 
 @pytest.fixture(scope="module")
 def judge() -> Iterator[ModuleType]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "networks"))
     yield importlib.import_module("laplace_judge")
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "networks"))
     del sys.modules["laplace_judge"]
 
 

@@ -17,9 +17,9 @@ BOUND = 0.09  # K of 12
 
 @pytest.fixture(scope="module")
 def study() -> Iterator[ModuleType]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "scenes"))
     yield importlib.import_module("placed_patches")
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "scenes"))
     del sys.modules["placed_patches"]
 
 

@@ -18,10 +18,10 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def benchmarks() -> Iterator[dict[str, ModuleType]]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "elements"))
     names = ("fem", "face_map", "second_touch")
     yield {name: importlib.import_module(name) for name in names}
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "elements"))
     for name in names:
         del sys.modules[name]
 

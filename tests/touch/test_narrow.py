@@ -167,7 +167,7 @@ PATCHES = {
 def test_a_contact_at_an_edge_is_that_of_volumes(
     patch: str, made_of: str, expected: tuple[float, float]
 ) -> None:
-    """The drop of a skinned fingertip after .5 and 2 s, K, by studies/placed_patches.py."""
+    """The drop of a skinned fingertip after .5 and 2 s, K, by studies/scenes/placed_patches.py."""
     model = mujoco.MjModel.from_xml_string("""
     <mujoco><worldbody>
       <body name="block"><geom type="box" size=".02 .02 .02"/></body>

@@ -353,5 +353,7 @@ def test_an_object_keeps_its_field_when_places_are_forgotten(monkeypatch: pytest
 @pytest.mark.slow
 def test_the_edge_of_a_mesh_is_felt_as_by_finite_volumes() -> None:
     """It is narrower than the sensor's face."""
-    judged = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "touch_volumes.py"))["judged"]
+    judged = runpy.run_path(str(Path(__file__).parents[2] / "studies" / "scenes" / "touch_volumes.py"))[
+        "judged"
+    ]
     assert judged("rim", "glass").error < 0.04

@@ -116,7 +116,7 @@ ELEMENTS = (
     ("aluminium", None, (0.016, 0.01), (7.723, 9.07, 9.368, 8.968, 8.303)),
     ("wood", "filled_silicone", (0.016, 0.001), (0.874, 1.159, 1.408, 1.339, 0.822)),
 )
-"""Drops K of a difference of 12 K at TIMES by studies/pad_square.py: drops(Touch(material, skin, size=(width,
+"""Drops K of a difference of 12 K at TIMES by studies/surround/pad_square.py: drops(Touch(material, skin, size=(width,
 thickness), conductances=(1e4, 1e4)))."""
 
 

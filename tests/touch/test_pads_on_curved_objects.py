@@ -168,7 +168,7 @@ ELEMENTS = (
     ("aluminium", (0.004, 0.004), (1.498, 2.406, 3.505, 4.69, 5.04)),
     ("glass", (0.004, 0.004), (0.555, 0.787, 1.031, 1.248, 1.26)),
 )
-"""Drops K of a difference of 12 K at TIMES by studies/pad_square.py: drops(Touch(material, "filled_silicone",
+"""Drops K of a difference of 12 K at TIMES by studies/surround/pad_square.py: drops(Touch(material, "filled_silicone",
 conductances=(2e4, 2e4), spot=sides))."""
 
 

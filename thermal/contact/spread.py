@@ -9,8 +9,8 @@ face, W/K, and g' that of the same gas with 1/b = l (1/k + 1/k') of both bodies 
 and evenly g/A loses as much to the bodies' resistance as the gas does: little where b is large, so that the patch is
 wide under wood and narrow under copper. The contact itself is as large as it is, and the patch is the mean of both
 areas, weighted by what they conduct. l is how deep heat has come into the body in a second, but 0.8 mm at most, since
-it spreads sideways by then: a fit to finite volumes of the contact place by place (studies/curved_patch.py), balls of
-5, 20 and 50 mm of five materials.
+it spreads sideways by then: a fit to finite volumes of the contact place by place (studies/contact/curved_patch.py),
+balls of 5, 20 and 50 mm of five materials.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ face.
 Those of a place follow from what lies on its two sides, at a few moments and conductances: how much of the sensor's
 face is covered, which edges of it and of the box are near, the box's thickness and material. Those of any place are
 found once per coverage, for four materials, sheets and edges together; they serve where a fingertip must keep its
-states whatever it touches, at some three times the error (studies/laplace_judge.py).
+states whatever it touches, at some three times the error (studies/networks/laplace_judge.py).
 
 P: patterns known (patterns.py), M: kept, N: contacts.
 """

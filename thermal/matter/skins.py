@@ -22,7 +22,7 @@ _THINNEST, _THICKEST = 1e-6, 5e-3  # m; a thicker one feels nothing
 _POISSON = 0.3  # where a material has none, as of its surface
 _RUBBER_BULK = 2e9  # Pa, of rubbers, whose Poisson ratio tables round to 0.5
 _HALF_WIDTH = 1.5e-3  # m, of the contact with a ball of 20 mm radius at 10 N
-_BULGING = 3.4, 0.07  # of a layer that keeps its volume, fitted to studies/ball_contact.py
+_BULGING = 3.4, 0.07  # of a layer that keeps its volume, fitted to studies/contact/ball_contact.py
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,11 +63,11 @@ LEVEL = Resolution(12, 3, slowest=3e-3)
 PLACED_SHARE = 3.2e-3
 """Error of the drop of a touch, as a share of the first difference, at most: 0.034 K of 12 K in 181 touches of blocks,
 bars, sheets, cylinders, balls, cones, rings, mugs and cans of wood, ceramic, steel and aluminium, and of bodies of two
-materials, at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/mesh_places.py)."""
+materials, at 1e3 to 1e5 W/(m2 K) in the first 6 s (studies/meshes/mesh_places.py)."""
 FILLED_SHARE = 4.4e-3
 """The same with contents: 0.44 % in 144 drawn touches of twelve vessels behind films of 50 to 1e4 W/(m2 K), at 1e3 to
 1e4 W/(m2 K) in the first 20 s, nine of ten within 0.2 %; behind films of up to 500 W/(m2 K) all within 0.26 %
-(studies/mesh_places.py --vessels). At 1e5 W/(m2 K) all were within 0.47 %."""
+(studies/meshes/mesh_places.py --vessels). At 1e5 W/(m2 K) all were within 0.47 %."""
 _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
 _TOLD = 3.0  # over the last mode's rate above the first one's, likewise

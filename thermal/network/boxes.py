@@ -20,10 +20,10 @@ from .trim import trimmed
 
 LEVELS = ((Resolution(8, 2), 1e-2), (Resolution(10, 3), 3.2e-3), (Resolution(16, 4), 2.4e-3))
 """Of networks of fixed rates, cheapest first, and the largest error of the drop from FIRST to 30 s after a touch, a
-share of the difference: measured over drawn boxes (benchmarks/kernels.py, and studies/laplace_judge.py, which shares no
-code with them) for conductances up to STRONGEST, with a margin. They hold for contacts of one area in the middle of
-faces: elsewhere on the box, or with a part of the sensor's face on it, the judge saw up to 4.3e-2 for the first and
-1.8e-2 for finer ones."""
+share of the difference: measured over drawn boxes (benchmarks/kernels.py, and studies/networks/laplace_judge.py, which
+shares no code with them) for conductances up to STRONGEST, with a margin. They hold for contacts of one area in the
+middle of faces: elsewhere on the box, or with a part of the sensor's face on it, the judge saw up to 4.3e-2 for the
+first and 1.8e-2 for finer ones."""
 DETAILS = ((Detail(8, 3), 30.0), (Detail(10, 3, 1 / 600), 600.0))
 """Of networks of one touch, and the longest s after it for which they are made."""
 PADDED_DETAILS = ((Detail(12, 3), 30.0), (Detail(14, 3, 1 / 600), 600.0))
@@ -34,7 +34,7 @@ measured as for LEVELS."""
 STRONGEST = 1e5  # W/(m2 K)
 PADDED_SHARE = 3.25e-3
 """The same with a pad around the element (concentric squares, three rings beside the face), beside three-dimensional
-finite elements (studies/pad_square.py --press), most of it on metals half a second after the touch."""
+finite elements (studies/surround/pad_square.py --press), most of it on metals half a second after the touch."""
 PADDED_STRONGEST = 3e5
 """W/(m2 K), as of skins on smooth faces: no other network serves there."""
 _AIR = 1.25, 1e-4

@@ -3,7 +3,7 @@
 Fields that depend on depth and on max(|x|, |y|) alone are a subspace of those of the square element in its square pad:
 volumes, the area of the element's sides and heat are exact, isotherms are squares. What the bond between element and
 pad changes is the difference between two such bodies, bonded and cut apart, in which what the subspace leaves out of
-either one nearly cancels; each apart is known exactly (fingertip.py). studies/pad_square.py compares with
+either one nearly cancels; each apart is known exactly (fingertip.py). studies/surround/pad_square.py compares with
 three-dimensional finite elements.
 
 S: moments, X: cells from the middle outward, Z: cells from the thermostat to the front, R: rings of the pad's front

@@ -156,7 +156,7 @@ ELEMENTS = (
     ("cotton", "filled_silicone", 3136.275, 1629.785, (0.1632, 0.218, 0.2714, 0.3017, 0.2747)),
 )
 """Material, skin, W/(m2 K) of the face and of the pad under 10 N, and drops K of a difference of 12 K at TIMES, by
-studies/pad_square.py: drops(Touch(material, skin)), whose through() tells the conductances by rough_faces.py."""
+studies/surround/pad_square.py: drops(Touch(material, skin)), whose through() tells conductances by rough_faces.py."""
 
 
 @pytest.mark.parametrize(("name", "skin", "face", "pad", "elements"), ELEMENTS)
@@ -225,7 +225,7 @@ def test_a_bar_that_the_pad_stands_over(
 
 
 def test_a_pad_that_does_not_touch_warms_its_sensor_alone() -> None:
-    """Of glass: studies/pad_heat.py has it as the silicone that touches the sensor alone."""
+    """Of glass: studies/surround/pad_heat.py has it as the silicone that touches the sensor alone."""
     apart = _press("glass", surround="silicone", surround_conductance=0.0)
     alone = _press("glass")
     change = (apart.temperature_drop - alone.temperature_drop)[[20, 40, 100, 200]]

@@ -8,7 +8,7 @@ import pytest
 from thermograsp.thermal.stack import heated_stack
 
 _SPEC = importlib.util.spec_from_file_location(
-    "fingertip_ranges", Path(__file__).parents[3] / "studies/fingertip_ranges.py"
+    "fingertip_ranges", Path(__file__).parents[3] / "studies/sensors/fingertip_ranges.py"
 )
 assert _SPEC is not None and _SPEC.loader is not None
 STUDY = importlib.util.module_from_spec(_SPEC)

@@ -1,7 +1,7 @@
 """What the heat model costs: build, cache, press and batch step, with ratios to plain NumPy and to the 3-D grid.
 
-    python studies/cost.py             a table
-    python studies/cost.py --json
+    python studies/speed/cost.py             a table
+    python studies/speed/cost.py --json
 
 Times are the shortest of several repeats in this one run; they drift with the machine, the ratios hold better.
 """

@@ -1,7 +1,7 @@
 """What it changes that heat in a mesh flows in its own shape: ThermalTouch beside a solid box of the same volume.
 
-    python studies/own_shapes.py
-    python studies/own_shapes.py mug egg --materials ceramic wood --conductance 2000 --json
+    python studies/meshes/own_shapes.py
+    python studies/meshes/own_shapes.py mug egg --materials ceramic wood --conductance 2000 --json
 
 The whole face of one sensor, 12 K warmer, touches an object of the library at the height of its file's origin. `press`
 is thermal.press_body at the same place: a grid that is fine there, other states and no kernel of the place.

@@ -1,9 +1,9 @@
 """How far networks from heat kernels are off a semi-analytic solution of the same contact in the Laplace domain.
 
-    python studies/laplace_judge.py                 the touches that plates did not serve, then 20 drawn scenes
-    python studies/laplace_judge.py --no-known --centred --scenes 60
-    python studies/laplace_judge.py --scenes 100 --seed 7 --json
-    python studies/laplace_judge.py --no-known --resolution coarse --seed 2026 --scenes 1000
+    python studies/networks/laplace_judge.py                 the touches that plates did not serve, then 20 drawn scenes
+    python studies/networks/laplace_judge.py --no-known --centred --scenes 60
+    python studies/networks/laplace_judge.py --scenes 100 --seed 7 --json
+    python studies/networks/laplace_judge.py --no-known --resolution coarse --seed 2026 --scenes 1000
 
 Fingertips touch rectangles anywhere on the low and high faces of a box, each the part of a sensor's face that the box
 covers. The heat flow is even on each of graded strips' products; element and box are sums over eigenfunctions (cosines,

@@ -5,8 +5,8 @@ thickness: a conductance between coinciding nodes of the two meshes, weighted wi
 element and the object share the nodes of their bond. Time: TR-BDF2 (Bank et al. 1985, IEEE Trans. Electron Devices 32,
 1992), second order and L-stable, with steps that grow fourfold, each factored once.
 
-    python studies/fem.py                    every case of the reference table, two meshes and their extrapolation
-    python studies/fem.py glass --json       cases whose name contains "glass", as JSON
+    python studies/elements/fem.py                 every case of the reference table, two meshes and their extrapolation
+    python studies/elements/fem.py glass --json    cases whose name contains "glass", as JSON
 
 Needs scikit-fem.
 """
@@ -33,7 +33,7 @@ from skfem.helpers import dot
 from thermograsp.thermal.matter import material, sensor
 from thermograsp.thermal.rungs import PressProblem
 
-REFERENCE = Path(__file__).resolve().parent.parent / "tests" / "data" / "press_3d.json"
+REFERENCE = Path(__file__).resolve().parents[2] / "tests" / "data" / "press_3d.json"
 GAMMA = 2 - np.sqrt(2)
 EDGE_CELL = 5e-3
 """Smallest cell over half the side of the contact, at its edge, where the flux is nearly singular; refine = 1."""

@@ -3,8 +3,8 @@
 Half of the element and of an object beside its symmetry plane are two meshes of triquadratic hexahedra, joined by a
 conductance that differs from place to place (see fem.py). The object may end under the face.
 
-    python studies/face_map.py               every case, two meshes
-    python studies/face_map.py half --json   cases whose name contains "half", as JSON
+    python studies/elements/face_map.py               every case, two meshes
+    python studies/elements/face_map.py half --json   cases whose name contains "half", as JSON
 
 Needs scikit-fem.
 """

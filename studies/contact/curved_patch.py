@@ -5,8 +5,8 @@ in the environments. Where the ball touches, rough faces conduct at Hertz's mean
 gap. Heat is constricted by itself: the cells are a sixth of the contact's radius in the middle. The other run is of the
 same grid with one conductance over a disc of `even_patch`'s area, whose product is `conduction`'s.
 
-    python studies/curved_patch.py                  steel, copper, glass, plastic and wood
-    python studies/curved_patch.py glass --json
+    python studies/contact/curved_patch.py                  steel, copper, glass, plastic and wood
+    python studies/contact/curved_patch.py glass --json
 """
 
 from __future__ import annotations

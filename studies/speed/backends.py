@@ -1,8 +1,8 @@
 """What a thermal step costs in NumPy, PyTorch and JAX, as a ratio to the compiled kernel in the same run.
 
-    python studies/backends.py                                   numpy, torch and jax on the CPU
-    python studies/backends.py --device cuda --rows 65536 --dtype float32 --bandwidth 4800
-    python studies/backends.py --one-network --json
+    python studies/speed/backends.py                                   numpy, torch and jax on the CPU
+    python studies/speed/backends.py --device cuda --rows 65536 --dtype float32 --bandwidth 4800
+    python studies/speed/backends.py --one-network --json
 
 Ways that take turns; the shortest of several repeats each. On the CPU all take one thread, and its time is counted, so
 that other programs on the machine matter little; on other devices it is the wall's, with the device waited for. Bytes

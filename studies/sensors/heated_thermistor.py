@@ -1,6 +1,6 @@
 """Fits the preset `heated_thermistor` to metal and wood of runs 1 to 12, and leaves out each part of its structure.
 
-    python studies/heated_thermistor.py --out BUILD/heated_thermistor.json [--parts]
+    python studies/sensors/heated_thermistor.py --out BUILD/heated_thermistor.json [--parts]
 
 Cold wood and runs 13 to 20 are predicted, never fitted. The document holds the values with their intervals, and for
 every structure how far it is off; --parts takes some ten minutes more. Values go into assets/sensors.toml by hand.

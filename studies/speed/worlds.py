@@ -1,8 +1,8 @@
 """What the heat of many worlds costs for each control step, in PyTorch and JAX: touch.FixedTouch on recorded sensors.
 
-    python studies/worlds.py                                              on one thread of the CPU
-    python studies/worlds.py --device cuda --worlds 64 512 4096 32768 --bandwidth 3350
-    python studies/worlds.py --ways "one by one" graph --json
+    python studies/speed/worlds.py                                              on one thread of the CPU
+    python studies/speed/worlds.py --device cuda --worlds 64 512 4096 32768 --bandwidth 3350
+    python studies/speed/worlds.py --ways "one by one" graph --json
 
 Two fingertips hold a cube of aluminium or of wood, with contacts of four substeps. Ways: PyTorch's operations one by
 one; the same recorded as a CUDA graph (on a GPU only); compiled by torch.compile, and that as a graph; JAX's jit. The

@@ -5,10 +5,10 @@ its face's area in a pad of silicone as deep, which lies on the same thermostat 
 covers both. Beside it the same elements without the pad. Flat faces, conductances by the package's law of contact;
 the object is a disc, by itself and without air. Biquadratic elements, a conductance between the two meshes, SDIRK2.
 
-    python studies/pad_heat.py           the change of the temperature drop, K of 12, for five materials
-    python studies/pad_heat.py --all     the largest change for every material
-    python studies/pad_heat.py --cases   by force, width of the pad, size of the object, pads that start cooler
-    python studies/pad_heat.py --json    the first of these as one JSON object
+    python studies/surround/pad_heat.py           the change of the temperature drop, K of 12, for five materials
+    python studies/surround/pad_heat.py --all     the largest change for every material
+    python studies/surround/pad_heat.py --cases   by force, width of the pad, size of the object, pads that start cooler
+    python studies/surround/pad_heat.py --json    the first of these as one JSON object
 
 Needs scikit-fem.
 """

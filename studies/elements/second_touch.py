@@ -4,8 +4,8 @@ The fingertip is pressed for WARMING s, released for RELEASED s, and pressed for
 both of the sensor's face. Half of the element and of the bar are meshes as in fem.py; the element meets the bar's nodes
 at one place or the other.
 
-    python studies/second_touch.py           glass, stainless steel and aluminium
-    python studies/second_touch.py glass --json
+    python studies/elements/second_touch.py           glass, stainless steel and aluminium
+    python studies/elements/second_touch.py glass --json
 
 Needs scikit-fem.
 """

@@ -5,8 +5,8 @@ The finite volumes here take these numbers and nothing else from the package's h
 grids of cells (a cylinder in its own coordinates), joined face to face where they touch, stepped by TR-BDF2 (Bank et
 al. 1985). Two grids tell what the volumes themselves are good to.
 
-    python studies/touch_volumes.py             every scene
-    python studies/touch_volumes.py regrasp --json
+    python studies/scenes/touch_volumes.py             every scene
+    python studies/scenes/touch_volumes.py regrasp --json
 """
 
 # pyright: reportAttributeAccessIssue=false

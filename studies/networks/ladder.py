@@ -1,7 +1,7 @@
 """The ladder's promise over random scenes: the rung chosen keeps the tolerance, and no much cheaper one would have.
 
-    python studies/ladder.py                         1,000 scenes
-    python studies/ladder.py --scenes 40 --seed 7 --json
+    python studies/networks/ladder.py                         1,000 scenes
+    python studies/networks/ladder.py --scenes 40 --seed 7 --json
 
 Every scene is a press of a random material, size, contact, horizon and tolerance. Its error is the largest difference
 in temperature drop, from 0.05 s on, between the rung that press(rung="auto") takes and the network of full order; some

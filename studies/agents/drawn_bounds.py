@@ -7,8 +7,8 @@ mean and covariance of other episodes. For Grasp-v0, with nothing and with every
 the force that is right with the highest probability, and it is counted how often that force is right. None of these
 is an exact limit: samples enter as agents get them, and the best of three regularisations is printed.
 
-    python studies/drawn_bounds.py                                            5 minutes
-    python studies/drawn_bounds.py --episodes 20 --examples 200 --json
+    python studies/agents/drawn_bounds.py                                            5 minutes
+    python studies/agents/drawn_bounds.py --episodes 20 --examples 200 --json
 """
 
 from __future__ import annotations

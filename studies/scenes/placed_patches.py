@@ -6,8 +6,8 @@ block's. The heat of ThermalTouch takes the rectangle as its columns tell it; th
 conduct from each cell of the fingertip's face that lies on the rectangle into the block's cell below it, and nowhere
 else. Compared is the temperature drop after TIMES s; two grids tell what the volumes are good to.
 
-    python studies/placed_patches.py               every case, some minutes
-    python studies/placed_patches.py half --json
+    python studies/scenes/placed_patches.py               every case, some minutes
+    python studies/scenes/placed_patches.py half --json
 """
 
 # pyright: reportAttributeAccessIssue=false

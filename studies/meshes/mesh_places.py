@@ -7,11 +7,11 @@ CONDUCTANCES over TIMES. Mugs with contents that are held at its first temperatu
 with a grid that is finer still, whose states are fields with that film. So are drawn places of the
 library's vessels, at FELT over LONG.
 
-    python studies/mesh_places.py                  every case, some minutes
-    python studies/mesh_places.py rim --json       those with "rim" in their name
-    python studies/mesh_places.py --filled         places of mugs with contents instead
-    python studies/mesh_places.py --vessels        drawn places of the library's vessels with contents instead
-    python studies/mesh_places.py --times          how long modes and networks take instead
+    python studies/meshes/mesh_places.py                  every case, some minutes
+    python studies/meshes/mesh_places.py rim --json       those with "rim" in their name
+    python studies/meshes/mesh_places.py --filled         places of mugs with contents instead
+    python studies/meshes/mesh_places.py --vessels        drawn places of the library's vessels with contents instead
+    python studies/meshes/mesh_places.py --times          how long modes and networks take instead
 """
 
 # pyright: reportAttributeAccessIssue=false

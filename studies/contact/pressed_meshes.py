@@ -5,8 +5,8 @@ the tables: each triangle's height at points of the pad, the depth at which the 
 the contact law at the pressure of each point. Compared are the area on the sensor's face, the conductance, and the
 temperature drop that ThermalTouch's network has after TIME s with such a contact.
 
-    python studies/pressed_meshes.py                  every mesh, half a minute
-    python studies/pressed_meshes.py thread --json
+    python studies/contact/pressed_meshes.py                  every mesh, half a minute
+    python studies/contact/pressed_meshes.py thread --json
 """
 
 # pyright: reportAttributeAccessIssue=false

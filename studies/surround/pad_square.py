@@ -3,9 +3,9 @@
 As pad_heat.py has it, but of the sensor's square face in a square pad, on a box, in place of discs of equal area: a
 quarter of them, as they are symmetric. Triquadratic elements, a conductance between the two meshes, SDIRK2.
 
-    python studies/pad_square.py [MATERIAL ...]   the change of the temperature drop, K of 12, beside that of the discs
-    python studies/pad_square.py --thickness .001 [MATERIAL ...]   on an object of 1 mm
-    python studies/pad_square.py --press   how far `press(surround="silicone")` is off the elements
+    python studies/surround/pad_square.py [MATERIAL ...]   the change of the drop, K of 12, beside that of the discs
+    python studies/surround/pad_square.py --thickness .001 [MATERIAL ...]   on an object of 1 mm
+    python studies/surround/pad_square.py --press   how far `press(surround="silicone")` is off the elements
 
 Needs scikit-fem, and half a minute for each material, bare and with a skin.
 """

@@ -1,6 +1,6 @@
 """What the assumed numbers of the preset `biotac_like` make of its reading: the table of docs/validation.md.
 
-python studies/fingertip_ranges.py
+python studies/sensors/fingertip_ranges.py
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ the nodes of the face give its compliance; the nodes that press are those where 
 enters the layer (active sets). The ball is rigid: its own yielding is in the modulus of the half-space, where that
 matters. Heat: the conductance of rough faces by pressure where it presses, of gas by the gap beside it, place by place.
 
-    python studies/ball_contact.py           every case: forces, contact radii, pressures, conductances
-    python studies/ball_contact.py --json
+    python studies/contact/ball_contact.py           every case: forces, contact radii, pressures, conductances
+    python studies/contact/ball_contact.py --json
 
 Needs scikit-fem.
 """
