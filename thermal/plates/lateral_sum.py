@@ -30,19 +30,25 @@ Response = Callable[[np.ndarray, np.ndarray], np.ndarray]  # (s (S, 1), kappa2 (
 
 @dataclass(frozen=True, slots=True)
 class LateralSum:
-    """kappa2: (M,) 1/m2 at which a response is needed. axes: products of overlaps, (N, L left, L right), of x and y on
-    a rectangle, of the radius on a disc. left, right: (L**axes, C) patterns in terms of those of the axes."""
+    """kappa2: (M,) 1/m2 at which a response is needed. places: in kappa2, of each pair of the axes' nodes on a rectangle,
+    of each node on a disc. axes: products of overlaps, (N, L left, L right), of x and y on a rectangle, of the radius on
+    a disc. left, right: (L**axes, C) patterns in terms of those of the axes."""
 
     kappa2: np.ndarray
+    places: np.ndarray | slice
     axes: tuple[np.ndarray, ...]
     left: np.ndarray
     right: np.ndarray
 
     def __call__(self, response: Response, s: np.ndarray) -> np.ndarray:
         """(S, C left, C right) of the response at s (S,)."""
-        parts = [
-            self._sum(response(s[i : i + _SAMPLES, None], self.kappa2)) for i in range(0, len(s), _SAMPLES)
-        ]
+        parts = []
+        for i in range(0, len(s), _SAMPLES):
+            values = response(s[i : i + _SAMPLES, None], self.kappa2)[:, self.places]
+            if np.iscomplexobj(values):  # products of real numbers, which are half as many
+                parts.append(self._sum(values.real) + 1j * self._sum(values.imag))
+            else:
+                parts.append(self._sum(values))
         return np.concatenate(parts)
 
     def _sum(self, values: np.ndarray) -> np.ndarray:
@@ -66,18 +72,27 @@ def lateral_sum(section: Section, left: Patch, right: Patch) -> LateralSum:
         kappa2, over_left = section.modes(left, kappa_max)
         _, over_right = section.modes(right, kappa_max)
         kappa, products = _gathered(np.sqrt(kappa2), over_left, over_right)
-        return LateralSum(kappa**2, (products,), np.eye(over_left.shape[1]), np.eye(over_right.shape[1]))
+        return LateralSum(
+            kappa**2, slice(None), (products,), np.eye(over_left.shape[1]), np.eye(over_right.shape[1])
+        )
     assert isinstance(left, SquarePatch) and isinstance(right, SquarePatch)
     kx, x = _along(section.half_x, left, right)
-    ky, y = (kx, x) if section.half_y == section.half_x else _along(section.half_y, left, right)
+    if section.half_y == section.half_x:  # a response is the same where x and y change places
+        lower = np.tril_indices(len(kx))
+        places = np.empty((len(kx), len(kx)), int)
+        places[lower] = places.T[lower] = np.arange(len(lower[0]))
+        kappa2 = kx[lower[0]] ** 2 + kx[lower[1]] ** 2
+        return LateralSum(kappa2, places.ravel(), (x, x), left.symmetrize, right.symmetrize)
+    ky, y = _along(section.half_y, left, right)
     kappa2 = (kx[:, None] ** 2 + ky**2).ravel()
-    return LateralSum(kappa2, (x, y), left.symmetrize, right.symmetrize)
+    return LateralSum(kappa2, slice(None), (x, y), left.symmetrize, right.symmetrize)
 
 
 def _along(half_width: float, left: SquarePatch, right: SquarePatch) -> tuple[np.ndarray, np.ndarray]:
     finest = min(np.diff(left.edges).min(), np.diff(right.edges).min())
     kappa = np.arange(int(_REACH / finest * half_width / np.pi) + 1) * np.pi / half_width
-    return _gathered(kappa, _overlaps(kappa, half_width, left), _overlaps(kappa, half_width, right))
+    over_left = _overlaps(kappa, half_width, left)
+    return _gathered(kappa, over_left, over_left if right == left else _overlaps(kappa, half_width, right))
 
 
 def _overlaps(kappa: np.ndarray, half_width: float, patch: SquarePatch) -> np.ndarray:
