@@ -18,6 +18,8 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import eigh_tridiagonal
 
+from thermograsp.compiled import njit
+
 
 def graded_cells(
     breaks: Sequence[float], fine: Mapping[float, float], growth: float, largest: float, resolution: int = 1
@@ -140,6 +142,20 @@ class Body:
         return 1 / (self.half_resistance[:-1] + self.half_resistance[1:])
 
     @cached_property
+    def _layer(self) -> np.ndarray:
+        """(D, 1, 1) W/K along a layer of cells as wide as it is long."""
+        return (self.conductivity * np.diff(self.edges))[:, None, None]
+
+    @cached_property
+    def _links(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """W/K between neighbours in depth (D - 1, I, J) and along either axis."""
+        return (
+            self._depth_links[:, None, None] * self.area,
+            self._layer * np.outer(self.first.links, self.second.volumes),
+            self._layer * np.outer(self.first.volumes, self.second.links),
+        )
+
+    @cached_property
     def _surface_films(self) -> tuple[float, float]:
         """W/(m2 K) from the middles of the top and bottom cells to the surroundings."""
         top, bottom = (
@@ -166,18 +182,8 @@ class Body:
         surroundings: temperatures above and below; the sides' is 0. Also returns the heat (3,) W that enters through
         top, bottom and sides.
         """
-        heat = np.zeros_like(u)
-        layer = (self.conductivity * np.diff(self.edges))[:, None, None]
-        flux = (self._depth_links[:, None, None] * self.area) * np.diff(u, axis=0)
-        heat[:-1] += flux
-        heat[1:] -= flux
-        flux = (layer * np.outer(self.first.links, self.second.volumes)) * np.diff(u, axis=1)
-        heat[:, :-1] += flux
-        heat[:, 1:] -= flux
-        if u.shape[2] > 1:
-            flux = (layer * np.outer(self.first.volumes, self.second.links)) * np.diff(u, axis=2)
-            heat[:, :, :-1] += flux
-            heat[:, :, 1:] -= flux
+        heat = np.empty(u.shape)
+        _conduct(np.ascontiguousarray(u), *self._links, heat)
         entering = np.zeros(3)
         for n, (row, film) in enumerate(zip((0, -1), self._surface_films, strict=True)):
             if film:
@@ -190,7 +196,7 @@ class Body:
         for axis, last in ((self.first, np.s_[:, -1, :]), (self.second, np.s_[:, :, -1])):
             if axis.end:
                 other = self.second if axis is self.first else self.first
-                flux = -axis.end * layer[:, :, 0] * other.volumes * u[last]
+                flux = -axis.end * self._layer[:, :, 0] * other.volumes * u[last]
                 heat[last] += flux
                 entering[2] += flux.sum()
         return heat, entering
@@ -246,17 +252,10 @@ class FactoredBody:
 
     def eliminate(self, modes: np.ndarray) -> np.ndarray:
         """Temperatures (D, I, J) of the modes from their heat (tridiagonal in depth)."""
-        x = np.empty_like(modes)
-        x[0] = modes[0]
-        for n, link in enumerate(self._links):
-            np.multiply(self._pivots[n], link, out=x[n + 1])
-            x[n + 1] *= x[n]
-            x[n + 1] += modes[n + 1]
-        x[-1] *= self._pivots[-1]
-        for n in range(len(self._links) - 1, -1, -1):
-            x[n] += self._links[n] * x[n + 1]
-            x[n] *= self._pivots[n]
-        return x
+        flat = np.ascontiguousarray(modes).reshape(len(modes), -1)
+        x = np.empty_like(flat)
+        _eliminate(flat, self._links, self._pivots.reshape(flat.shape), x)
+        return x.reshape(modes.shape)
 
     def response(
         self, into: int, at: int, into_cells: tuple[int, int], at_cells: tuple[int, int]
@@ -270,3 +269,42 @@ class FactoredBody:
         second = (self._second[:ja, None] * self._second[None, :jb]).reshape(ja * jb, -1)
         product = (first @ gain @ second.T).reshape(ia, ib, ja, jb)
         return product.transpose(0, 2, 1, 3).reshape(ia * ja, ib * jb)
+
+
+@njit(cache=True, error_model="numpy")
+def _conduct(u, in_depth, along_first, along_second, heat):
+    """Writes to heat (D, I, J) what flows into each cell from its neighbours."""
+    depth, rows, columns = u.shape
+    for n in range(depth):
+        for i in range(rows):
+            for j in range(columns):
+                into, here = 0.0, u[n, i, j]
+                if n < depth - 1:
+                    into += in_depth[n, i, j] * (u[n + 1, i, j] - here)
+                if n > 0:
+                    into -= in_depth[n - 1, i, j] * (here - u[n - 1, i, j])
+                if i < rows - 1:
+                    into += along_first[n, i, j] * (u[n, i + 1, j] - here)
+                if i > 0:
+                    into -= along_first[n, i - 1, j] * (here - u[n, i - 1, j])
+                if j < columns - 1:
+                    into += along_second[n, i, j] * (u[n, i, j + 1] - here)
+                if j > 0:
+                    into -= along_second[n, i, j - 1] * (here - u[n, i, j - 1])
+                heat[n, i, j] = into
+
+
+@njit(cache=True, error_model="numpy")
+def _eliminate(modes, links, pivots, x):
+    """Writes to x (D, M) the solution of a tridiagonal system for each mode, pivots being those of its factors."""
+    depth, count = x.shape
+    for m in range(count):
+        x[0, m] = modes[0, m]
+    for n in range(depth - 1):
+        for m in range(count):
+            x[n + 1, m] = pivots[n, m] * links[n] * x[n, m] + modes[n + 1, m]
+    for m in range(count):
+        x[depth - 1, m] *= pivots[depth - 1, m]
+    for n in range(depth - 2, -1, -1):
+        for m in range(count):
+            x[n, m] = (x[n, m] + links[n] * x[n + 1, m]) * pivots[n, m]

@@ -30,9 +30,9 @@ Response = Callable[[np.ndarray, np.ndarray], np.ndarray]  # (s (S, 1), kappa2 (
 
 @dataclass(frozen=True, slots=True)
 class LateralSum:
-    """kappa2: (M,) 1/m2 at which a response is needed. places: in kappa2, of each pair of the axes' nodes on a rectangle,
-    of each node on a disc. axes: products of overlaps, (N, L left, L right), of x and y on a rectangle, of the radius on
-    a disc. left, right: (L**axes, C) patterns in terms of those of the axes."""
+    """kappa2: (M,) 1/m2 at which a response is needed. places: in kappa2, of each pair of the axes' nodes on a
+    rectangle, of each node on a disc. axes: products of overlaps, (N, L left, L right), of x and y on a rectangle, of
+    the radius on a disc. left, right: (L**axes, C) patterns in terms of those of the axes."""
 
     kappa2: np.ndarray
     places: np.ndarray | slice
