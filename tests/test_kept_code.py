@@ -84,13 +84,23 @@ def test_an_index_of_another_numba_is_not_read(kept: CacheFile, monkeypatch: pyt
     assert kept.load(KEY) is None
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def others() -> Iterator[Path]:
-    """A folder with a kernel's module and an empty cache, which every user may read and this one may write."""
+    """A folder with kernels' module and a cache with one of them, for one kind of argument, which every user may read
+    and this one may write."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "kernels.py").write_text(KERNELS)
         folder.chmod(0o755)
+        subprocess.run(
+            [sys.executable, "-c", "import kernels; kernels.doubled(1.5)"],
+            env=os.environ
+            | {
+                "NUMBA_CACHE_DIR": str(folder / "cache"),
+                "PYTHONPATH": os.pathsep.join([str(folder), *sys.path]),
+            },
+            check=True,
+        )
         yield folder
 
 
@@ -117,16 +127,6 @@ def run_as_reader(others: Path, home: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
-def fill(others: Path) -> None:
-    """One kernel, for one kind of argument."""
-    subprocess.run(
-        [sys.executable, "-c", "import kernels; kernels.doubled(1.5)"],
-        env=os.environ
-        | {"NUMBA_CACHE_DIR": str(others / "cache"), "PYTHONPATH": os.pathsep.join([str(others), *sys.path])},
-        check=True,
-    )
-
-
 def test_numba_has_its_places_in_this_order() -> None:
     places = [place.__name__.removeprefix("_") for place in (cache._Chosen, cache._BesideSource)]
     assert places == ["UserProvidedCacheLocator", "InTreeCacheLocator"]
@@ -134,7 +134,6 @@ def test_numba_has_its_places_in_this_order() -> None:
 
 @unix
 def test_what_others_have_compiled_is_read_where_it_cannot_be_written(others: Path) -> None:
-    fill(others)
     said = run_as_reader(others, others / "no home")
     assert said[:3] == ["doubled(1.5): found", "doubled(1): compiled", "tripled(1.5): compiled"]
     (warning,) = said[3:]
@@ -143,7 +142,6 @@ def test_what_others_have_compiled_is_read_where_it_cannot_be_written(others: Pa
 
 @unix
 def test_what_others_have_not_compiled_is_kept_in_the_user_s_own_folder(others: Path) -> None:
-    fill(others)
     home = others / "home"
     home.mkdir()
     if os.geteuid() == 0:

@@ -160,7 +160,7 @@ def test_fingers_and_actuators_that_are_no_names() -> None:
 
 
 def test_samples_that_are_no_numbers() -> None:
-    identifier = Identifier(TouchSetup(), ["glass"], cache=False)
+    identifier = Identifier(TouchSetup(), ["glass"])
     with pytest.raises(InvalidValueError, match="t and voltage must be arrays of numbers"):
         identifier.update(np.arange(3.0), "abc")  # pyright: ignore[reportArgumentType]
 
