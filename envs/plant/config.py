@@ -44,13 +44,7 @@ from ..limits import SAMPLE_PERIOD, SUBSTEPS, THERMOSTAT
 from ..mechanics import SHIPPED, SolverSettings
 from .fingertips import AUTO, check_touched_by_pad, checked_heated, pad_around, usual_skin
 from .objects import all_plain_boxes, check_objects, drawn_objects, scene_objects
-from .randomization import (
-    Cause,
-    Delay,
-    Size,
-    checked,
-    draw,
-)
+from .randomization import Cause, Delay, Size, checked, draw
 from .temperatures import check_drawn_temperatures, most_difference
 
 if TYPE_CHECKING:

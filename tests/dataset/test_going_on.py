@@ -8,9 +8,7 @@ import pytest
 
 from thermograsp import dataset
 from thermograsp.dataset.plan import installed_versions
-from thermograsp.errors import (
-    InvalidValueError,
-)
+from thermograsp.errors import InvalidValueError
 
 from .plan import PLAN, contents, copied
 

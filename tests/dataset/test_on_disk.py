@@ -8,9 +8,7 @@ from pathlib import Path
 import pytest
 
 from thermograsp import dataset
-from thermograsp.errors import (
-    WriteError,
-)
+from thermograsp.errors import WriteError
 from thermograsp.files import atomic_write
 
 from .plan import PLAN, contents

@@ -9,12 +9,7 @@ import pytest
 from thermograsp import dataset
 from thermograsp.dataset.shards import read_plan
 from thermograsp.envs import ObjectSpec, Roughness
-from thermograsp.errors import (
-    InvalidValueError,
-    SimulationError,
-    ThermograspError,
-    UnknownNameError,
-)
+from thermograsp.errors import InvalidValueError, SimulationError, ThermograspError, UnknownNameError
 from thermograsp.thermal import material
 
 from .plan import MATERIALS, PLAN, contents

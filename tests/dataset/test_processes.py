@@ -17,11 +17,7 @@ import pytest
 from thermograsp import dataset
 from thermograsp.cli import main
 from thermograsp.dataset import in_processes
-from thermograsp.errors import (
-    InvalidValueError,
-    MissingDependencyError,
-    ThermograspError,
-)
+from thermograsp.errors import InvalidValueError, MissingDependencyError, ThermograspError
 
 from .plan import PLAN, contents
 

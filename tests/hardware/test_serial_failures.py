@@ -7,12 +7,7 @@ import pytest
 
 import thermograsp  # noqa: F401  (registers the environments)
 from thermograsp.errors import InvalidValueError
-from thermograsp.hardware import (
-    DeviceModel,
-    Feel,
-    Fingertips,
-    PtyDevice,
-)
+from thermograsp.hardware import DeviceModel, Feel, Fingertips, PtyDevice
 from thermograsp.hardware.errors import DeviceError
 from thermograsp.hardware.plant import SerialConfig
 from thermograsp.hardware.plant.serial import SerialPlant

@@ -8,10 +8,7 @@ import numpy as np
 import pytest
 
 import thermograsp  # noqa: F401  (registers the environments)
-from thermograsp.hardware import (
-    Fingertips,
-    RobotiqGripper,
-)
+from thermograsp.hardware import Fingertips, RobotiqGripper
 from thermograsp.hardware.plant import SerialConfig
 from thermograsp.hardware.plant.serial import SerialPlant, serial_plant
 

@@ -8,11 +8,7 @@ from pathlib import Path
 import pytest
 
 import thermograsp  # noqa: F401  (registers the environments)
-from thermograsp.hardware import (
-    Fingertips,
-    GripperStatus,
-    VirtualLine,
-)
+from thermograsp.hardware import Fingertips, GripperStatus, VirtualLine
 from thermograsp.hardware.errors import StoppedError
 from thermograsp.hardware.plant import SerialConfig
 from thermograsp.hardware.plant.pacing import VirtualTime
