@@ -46,7 +46,7 @@ class LateralSum:
         for i in range(0, len(s), _SAMPLES):
             values = response(s[i : i + _SAMPLES, None], self.kappa2)[:, self.places]
             if np.iscomplexobj(values):  # products of real numbers, which are half as many
-                parts.append(self._sum(values.real) + 1j * self._sum(values.imag))
+                parts.append(self._sum(np.real(values)) + 1j * self._sum(np.imag(values)))
             else:
                 parts.append(self._sum(values))
         return np.concatenate(parts)
