@@ -122,9 +122,10 @@ def _nearly_covered(part: tuple[float, float], width: float) -> tuple[float, flo
     length = min(max(round((high - low) / width / _COVERED), 1) * _COVERED, 1.0) * width
     if low <= 0:
         return 0.0, length
-    return (
-        (width - length, width) if high >= width else ((low + high - length) / 2, (low + high + length) / 2)
-    )
+    if high >= width:
+        return width - length, width
+    begun = min(max((low + high - length) / 2, 0.0), width - length)  # a little longer, it could end beyond the face
+    return begun, begun + length
 
 
 def _gap(gap: float, width: float) -> float:
