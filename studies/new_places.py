@@ -1,12 +1,14 @@
 """What a touch costs that is new in all: ms of processor time a place of a sensor on a box, in a warm process.
 
 Episodes that start with new boxes touch them at new places: boxes of drawn sizes, conductivities and heat capacities
-between two fingertips, with 16 rows starting at once, or one alone. Nothing is read from disk, and whatever is kept of
-earlier boxes and places is forgotten before each start: what belongs to the sensor alone stays. On one thread.
+between two fingertips, with 16 rows starting at once, or one alone, one start after the other. Nothing is read from
+disk, and all runs on one thread. What is kept of boxes, places and their patterns of flow is forgotten before each
+start; what is kept of the sensor's face is as the starts before have left it.
 
     whole     the whole face touches in the middle of wide boxes, 20 to 60 mm
     anywhere  on boxes of 4 to 60 mm, each fingertip anywhere, a part of the face covered
-    known     anywhere, but the elements under the contacts are known from earlier boxes; only the box is new
+    known     the same, but the elements under the contacts are known; only the boxes are new
+    drawn     anywhere, and nothing is forgotten: places on new boxes whose patterns were found before share these
 
     python studies/new_places.py             the table in docs/benchmarks.md
     python studies/new_places.py --json
@@ -27,34 +29,31 @@ from thermograsp import thermal
 from thermograsp.envs import GraspBody, ObjectSpec
 from thermograsp.envs.sensing import boxes
 from thermograsp.envs.sensing.boxes import BoxHeat
-from thermograsp.thermal.kernels.alone import each_alone
 from thermograsp.thermal.kernels.contact import tip_at
-from thermograsp.thermal.kernels.coverage import _patterns_of
-from thermograsp.thermal.kernels.element import seen_side
-from thermograsp.thermal.kernels.excited import shown_element
-from thermograsp.thermal.kernels.samples import element_rule, grasp_rule, rough_rule
-from thermograsp.thermal.kernels.touched import _free, _jumps, _weight
+from thermograsp.thermal.kernels.coverage import _patterns_of_both, spot_patterns
+from thermograsp.thermal.kernels.samples import grasp_rule
+from thermograsp.thermal.kernels.touched import _free, _jumps, _shares, _weight
 
 STACK, GLASS = thermal.sensor("seed"), thermal.material("glass")
 FILM = 5.0  # W/(m2 K)
-OF_BOXES: tuple[Any, ...] = (_free, boxes._under, grasp_rule)
+OF_BOXES: tuple[Any, ...] = (boxes._under, grasp_rule)
 """What is kept of boxes whose places are known."""
 OF_PLACES: tuple[Any, ...] = (
     *OF_BOXES,
-    each_alone,
     boxes._element,
     boxes._tip,
     tip_at,
-    _patterns_of,
-    seen_side,
-    shown_element,
-    element_rule,
-    rough_rule,
+    spot_patterns,
+    _patterns_of_both,
+    _free,
     _jumps,
+    _shares,
     _weight,
 )
 """What is kept of places."""
-CASES = ("whole", "anywhere", "known")
+CASES = ("whole", "anywhere", "known", "drawn")
+WARM = 12
+"""Starts with other boxes, after which a process is warm."""
 
 
 class Start(NamedTuple):
@@ -94,44 +93,40 @@ def touches(start: Start) -> tuple[Callable[[], int], BoxHeat]:
     return run, heat
 
 
-def cost(start: Start, known: bool, again: int) -> float:
-    """ms of processor time a place, the least of so many equal starts. known: the elements under the contacts are."""
-    best = np.inf
-    for _ in range(again):
-        for each in OF_PLACES:
-            each.cache_clear()
-        if known:
+def measured(case: str, rows: int, starts: int, rng: np.random.Generator) -> float:
+    """ms a place, the median of so many starts, after WARM others."""
+    costs = []
+    for number in range(WARM + starts):
+        start = drawn(rng, rows, case == "whole")
+        if case != "drawn":
+            forget(OF_PLACES)
+        if case == "known":
             touches(start)[0]()
-            for each in OF_BOXES:
-                each.cache_clear()
+            forget(OF_BOXES)
         run, _ = touches(start)
         begun = time.process_time()
         places = run()
-        best = min(best, 1e3 * (time.process_time() - begun) / places)
-    return best
+        if number >= WARM:
+            costs.append(1e3 * (time.process_time() - begun) / places)
+    return float(np.median(costs))
 
 
-def measured(rows: int, starts: int, again: int, seed: int) -> dict[str, float]:
-    """ms a place by case, the median of so many starts."""
-    found = {}
-    for case in CASES:
-        rng = np.random.default_rng(seed)
-        each = [cost(drawn(rng, rows, case == "whole"), case == "known", again) for _ in range(starts)]
-        found[case] = float(np.median(each))
-    return found
+def forget(kept: tuple[Any, ...]) -> None:
+    """Empties these."""
+    for each in kept:
+        each.cache_clear()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description="ms of processor time a new place on a new box.")
     parser.add_argument("--rows", type=int, nargs="+", default=[16, 1], help="rows that start at once (16 1)")
-    parser.add_argument("--starts", type=int, default=12, help="drawn starts, of which the median counts (12)")
-    parser.add_argument("--again", type=int, default=8, help="times that each is made, of which the least counts (8)")
+    parser.add_argument("--starts", type=int, default=60, help="of which the median counts (60)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--json", action="store_true", help="one JSON object")
     options = parser.parse_args(arguments)
     found = {
-        str(rows): measured(rows, options.starts if rows > 1 else 2 * options.starts, options.again, options.seed)
+        rows: {case: measured(case, rows, options.starts, np.random.default_rng(options.seed)) for case in CASES}
         for rows in options.rows
     }
     if options.json:

@@ -23,7 +23,7 @@ import numpy as np
 from ..matter import SensorStack
 from .box import Patches
 from .element import Rectangle
-from .excited import CONDUCTANCES, excited, shown_box, shown_element
+from .excited import CONDUCTANCES, Face, excited, shown_box, shown_element, shown_face
 from .patterns import EVENNESS, GRAM
 from .samples import SHOWN
 
@@ -117,14 +117,17 @@ class Spot:
 
 
 def _nearly_covered(part: tuple[float, float], width: float) -> tuple[float, float]:
-    """As much of a side of the sensor's face in steps, from where it begins or to where it ends."""
+    """As much of a side of the sensor's face in steps, from where it begins or to where it ends, or in half such steps
+    from there."""
     low, high = part
     length = min(max(round((high - low) / width / _COVERED), 1) * _COVERED, 1.0) * width
     if low <= 0:
         return 0.0, length
     if high >= width:
         return width - length, width
-    begun = min(max((low + high - length) / 2, 0.0), width - length)  # a little longer, it could end beyond the face
+    step = width * _COVERED / 2
+    begun = step * round((low + high - length) / 2 / step)
+    begun = min(max(begun, 0.0), width - length)  # a little longer, it could end beyond the face
     return begun, begun + length
 
 
@@ -196,32 +199,34 @@ def contact_patterns(stack: SensorStack, covered: Rectangle, kept: int) -> np.nd
     return _patterns(stack, (steps[0], steps[1]), kept)
 
 
+@lru_cache(maxsize=1024)
 def spot_patterns(stack: SensorStack, spot: Spot, kept: int) -> np.ndarray:
     """(P, M) orthonormal combinations of the patterns, the even one first, of that place on that box. In a thin sheet
     they end where the opposite fingertip does."""
-    pair = (spot.contact,)
-    if spot.opposite is not None and spot.depth < THIN * stack.width:
-        # one order for both of them, so that they are found together
-        pair = (min(spot.contact, spot.opposite), max(spot.contact, spot.opposite))
-    made = spot.conductivity, spot.heat_capacity
-    return _patterns_of(stack, made, (*spot.sides, spot.depth), pair, kept)[pair.index(spot.contact)]
+    made, contact = (spot.conductivity, spot.heat_capacity), spot.contact
+    if spot.opposite is None or spot.depth >= THIN * stack.width:
+        centre, half = contact.centre, contact.half
+        box = shown_face(Face(spot.sides, spot.depth, centre, half), *made)
+        area = np.array([4 * half[0] * half[1]])
+        return excited(box, shown_element(stack, contact.covered)[None], area, kept)[0]
+    # one order for both of them, so that they are found together
+    pair = min(contact, spot.opposite), max(contact, spot.opposite)
+    return _patterns_of_both(stack, made, (*spot.sides, spot.depth), pair, kept)[pair.index(contact)]
 
 
 @lru_cache(maxsize=256)
-def _patterns_of(
+def _patterns_of_both(
     stack: SensorStack,
     made: tuple[float, float],
     size: tuple[float, float, float],
-    touched: tuple[Footprint, ...],
+    touched: tuple[Footprint, Footprint],
     kept: int,
-) -> list[np.ndarray]:
-    """Of one or of two on opposite faces. made: W/(m K) and J/(m3 K)."""
+) -> np.ndarray:
+    """Of two on opposite faces. made: W/(m K) and J/(m3 K)."""
     centre, half = np.array([each.centre for each in touched]), np.array([each.half for each in touched])
-    patches = Patches(_OPPOSITE[: len(touched)], centre, half)
+    patches = Patches(_OPPOSITE, centre, half)
     elements = np.array([shown_element(stack, each.covered) for each in touched])
-    found = excited(shown_box(size, *made, patches), elements, patches.areas, kept)
-    found.setflags(write=False)
-    return list(found)
+    return excited(shown_box(size, *made, patches), elements, patches.areas, kept)
 
 
 @lru_cache(maxsize=4096)

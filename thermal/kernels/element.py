@@ -35,6 +35,7 @@ from .samples import (
     TIMES,
     TO_MOMENTS,
     TO_SLOPES,
+    USUALLY_SOONER,
     before,
     element_rule,
     times_sooner,
@@ -133,26 +134,38 @@ def element(stack: SensorStack) -> Element:
 
 class SeenSide(NamedTuple):
     """A rectangle of the face along one axis, as the functions along it see it. within: (F, F, T) m of the first
-    layer's half-space at element_rule's times and below: (F, F, R) m of the lateral eigenfunctions' sums."""
+    layer's half-space at element_rule's times, and below: (F, F, R) m of the
+    lateral eigenfunctions' sums."""
 
     within: np.ndarray
     below: np.ndarray
 
 
-@lru_cache(maxsize=1024)
-def seen_side(stack: SensorStack, low: float, high: float, sooner: int) -> SeenSide:
-    """low, high: m from the face's edge. sooner: times_sooner of the rectangle."""
-    known, diffusivity = element(stack), stack.layers[-1].diffusivity
-    centre, half, functions = (low + high) / 2, (high - low) / 2, len(JUMPS)
-    taus = diffusivity * element_rule(diffusivity, sooner, shown=False).times
-    early = int(taus.searchsorted(SWITCH * stack.width * stack.width, "right"))
-    count = min(int(known.nodes[-1]) + 1, int(_REACH / (half * _FINEST) * stack.width / math.pi) + 1)
+@lru_cache(maxsize=2048)
+def seen_side(known: Element, low: float, high: float, sooner: int) -> SeenSide:
+    """low, high: m from the face's edge. sooner: element_rule's."""
+    width, half = known.stack.width, (high - low) / 2
+    count = min(int(known.nodes[-1]) + 1, int(_REACH / (half * _FINEST) * width / math.pi) + 1)
+    return SeenSide(*along_face(width, (low + high) / 2, half, _taus(known, sooner), _sums(known, count)))
+
+
+@lru_cache(maxsize=64)
+def _taus(known: Element, sooner: int) -> np.ndarray:
+    diffusivity = known.stack.layers[-1].diffusivity
+    return diffusivity * element_rule(diffusivity, sooner, shown=False).times
+
+
+def along_face(
+    length: float, centre: float, half: float, taus: np.ndarray, sums: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(F, F, T) m of the kernel along an axis with adiabatic ends between the functions of a patch there, at taus (T,)
+    m2, and (F, F, R) m of sums (W, R) of as many of its eigenfunctions. length, centre, half: m."""
+    early, functions = int(taus.searchsorted(SWITCH * length * length, "right")), len(JUMPS)
     within = np.zeros((functions, functions, len(taus)))
     within[..., :early] = alone(np.array([half]), EACH_FUNCTION[:1], taus[:early])[0]
-    sums = _sums(known, count)
     below = np.zeros((functions, functions, sums.shape[1]))
-    _within(stack.width, taus, early, centre, half, NODES, JUMPS, sums, within, below)
-    return SeenSide(within, below)
+    _within(length, taus, early, centre, half, NODES, JUMPS, sums, within, below)
+    return within, below
 
 
 def face_impedance(
@@ -166,28 +179,28 @@ def face_impedance(
     """(S, M, M) K/W between combinations of the patterns on a rectangle of the face, m from its corner: functions of
     shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
     their products' means. At SHOWN, or at GRASP."""
-    layer, ((x0, x1), (y0, y1)) = stack.layers[-1], covered
-    sooner = times_sooner(min(x1 - x0, y1 - y0) / 2)
-    first, second = seen_side(stack, x0, x1, sooner), seen_side(stack, y0, y1, sooner)
-    rule = element_rule(layer.diffusivity, sooner, shown)
-    # copies are all of one kind, for which it is compiled once
+    layer, ((x0, x1), (y0, y1)), known = stack.layers[-1], covered, element(stack)
+    x, y = x1 - x0, y1 - y0
+    sooner, diffusivity = times_sooner(min(x, y) / 2), layer.diffusivity
+    of_sides = max(sooner, USUALLY_SOONER)
     return _impedance(
-        np.array([(x1 - x0) / 2, (y1 - y0) / 2]),
-        np.array([first.within, second.within]),
-        np.array([first.below, second.below]),
-        _few(stack, shown),
-        shares.copy(),
+        x * y,
+        *seen_side(known, x0, x1, of_sides),
+        *seen_side(known, y0, y1, of_sides),
+        of_sides - sooner,
+        _few(known, shown),
+        shares,
         terms,
-        gram.copy(),
-        *rule,
+        gram,
+        *element_rule(diffusivity, sooner, shown),
         layer.conductivity,
-        layer.diffusivity,
+        diffusivity,
     )
 
 
 @lru_cache(maxsize=64)
-def _few(stack: SensorStack, shown: bool) -> np.ndarray:
-    return element(stack).few[SHOWN if shown else OF_GRASP].copy()
+def _few(known: Element, shown: bool) -> np.ndarray:
+    return known.few[SHOWN if shown else OF_GRASP].copy()
 
 
 def _sums(known: Element, count: int) -> np.ndarray:
@@ -374,18 +387,35 @@ def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below)
                 below[g, f, r] = below[f, g, r]
 
 
-@njit(cache=True, short_loops=True, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _impedance(
-    half, within, below, few, shares, terms, gram, times, to_moments, early, conductivity, diffusivity
+    area,
+    within,
+    below,
+    across_within,
+    across_below,
+    first,
+    few,
+    shares,
+    terms,
+    gram,
+    begun,
+    times,
+    to_moments,
+    early,
+    conductivity,
+    diffusivity,
 ):
-    """face_impedance of a rectangle of half widths half (2,) m. within: (2, F, F, T) and below: (2, F, F, R) of its
-    SeenSides. few: (S, R, R) of the element. conductivity, diffusivity: W/(m K) and m2/s of the first layer. The rest
-    as in face_impedance and Rule."""
+    """face_impedance of a rectangle of m2. within, below: of its SeenSide along the first axis; across_within,
+    across_below: along the second. first: the number of the first of their times that is told. few: (S, R, R) of the
+    element. conductivity, diffusivity: W/(m K) and m2/s of the
+    first layer. The rest as in face_impedance and Rule."""
     moments, sums, kept = len(early), few.shape[1], len(terms)
     functions, known = shares.shape[1], shares.shape[2]
     own = np.zeros((2, functions, functions, len(times)))
     lower = np.zeros((2, functions, functions, sums))
     for axis in range(2):
+        inside, beneath = (within, below) if axis == 0 else (across_within, across_below)
         for f in range(functions):
             for g in range(f + 1):
                 for i in range(known):
@@ -394,20 +424,19 @@ def _impedance(
                         if share == 0.0:
                             continue
                         for t in range(len(times)):
-                            own[axis, f, g, t] += share * within[axis, i, j, t]
+                            own[axis, f, g, t] += share * inside[i, j, first + t]
                         for r in range(sums):
-                            lower[axis, f, g, r] += share * below[axis, i, j, r]
+                            lower[axis, f, g, r] += share * beneath[i, j, r]
                 for t in range(len(times)):
                     own[axis, g, f, t] = own[axis, f, g, t]
                 for r in range(sums):
                     lower[axis, g, f, r] = lower[axis, f, g, r]
-    area = 4 * half[0] * half[1]
     capacity = conductivity / diffusivity
     depth = np.empty(len(times))
     for t in range(len(times)):
         depth[t] = 1 / (math.sqrt(math.pi * diffusivity * times[t]) * capacity * area * area)
     # before the first time it is on a half-space
-    begun = 1 / (math.sqrt(math.pi * diffusivity * times[0]) * capacity * area)
+    falling = 1 / (math.sqrt(math.pi * begun) * capacity * area)
     crossed = np.empty((moments, functions, functions, sums))
     for s in range(moments):
         for f in range(functions):
@@ -431,6 +460,6 @@ def _impedance(
             for t in range(len(times)):
                 kernel[t] *= depth[t]
             for s in range(moments):
-                found[s, i, j] += early[s] * begun * gram[i, j] + dot(to_moments[s], kernel)
+                found[s, i, j] += early[s] * falling * gram[i, j] + dot(to_moments[s], kernel)
                 found[s, j, i] = found[s, i, j]
     return found

@@ -7,56 +7,95 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from thermograsp.compiled import njit
 
 from ..matter import SensorStack
-from ..numerics import factor, solve_factored
+from ..numerics import dot, factor, solve_factored
 from .alone import each_alone
-from .axis import SWITCH
+from .axis import MODES, SWITCH
 from .box import Patches, box_kernel
-from .element import Rectangle, face_impedance
+from .element import Rectangle, along_face, face_impedance
 from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
-from .samples import MOMENTS, ROUGH_SPACING, SHOWN, at_moments, rough_rule
+from .samples import MOMENTS, MOST_ROUGH, ROUGH_SPACING, SHOWN, at_moments, rough_rule
 
 CONDUCTANCES = (3e3, 3e4)  # W/(m2 K)
 _CONDUCTANCES = np.array(CONDUCTANCES)
 _MOMENTS = MOMENTS[SHOWN].copy()
 _ORTHONORMAL = np.ascontiguousarray(np.linalg.inv(EVENNESS.T))
+_GRAM, _EVENNESS = GRAM.copy(), EVENNESS.copy()  # arrays of one kind, for which code is compiled once
+_STEPS = np.exp(ROUGH_SPACING * np.arange(MOST_ROUGH))
+_NO_SUMS = np.zeros((MODES, 0))
+_NOTHING = 40.0  # exp(-40) counts for nothing
 _EACH_JUMPS, _EACH_TERM = np.tile(JUMPS, (2, 2, 1, 1)), ALONG[:, None].copy()
 _AT_ONCE = 4  # steps in which a patch's kernel by itself is told for few times or many
 _DOUBLED = 6  # powers of a matrix, to the 64th
 _LEAST_UNEVEN = 1e-12  # beside flows of size 1, what counts as none, squared
 
 
+class Face(NamedTuple):
+    """A rectangle on a face of a box. sides: m of the face, and depth: m of the box behind it. centre, half: m along
+    the sides, from the face's corner."""
+
+    sides: tuple[float, float]
+    depth: float
+    centre: tuple[float, float]
+    half: tuple[float, float]
+
+
 def excited(box: np.ndarray, elements: np.ndarray, areas: np.ndarray, kept: int) -> np.ndarray:
     """(N, P, M) orthonormal combinations of the patterns, the even one first, of each of the contacts, that hold most
     of what flows. box: (S, N P, N P) K/W and elements: (N, S, P, P) K/W at SHOWN. areas: (N,) m2."""
-    return _excited(box, elements, areas, _CONDUCTANCES, GRAM, EVENNESS, _ORTHONORMAL, kept)
+    return _excited(box, elements, areas, _CONDUCTANCES, _GRAM, _EVENNESS, _ORTHONORMAL, kept)
 
 
 @lru_cache(maxsize=1024)
 def shown_element(stack: SensorStack, covered: Rectangle) -> np.ndarray:
     """(S, P, P) K/W of an element at SHOWN."""
-    return face_impedance(stack, covered, EACH_FUNCTION, _EACH_TERM, GRAM, shown=True)
+    return face_impedance(stack, covered, EACH_FUNCTION, _EACH_TERM, _GRAM, shown=True)
+
+
+def shown_face(touched: Face, conductivity: float, heat_capacity: float) -> np.ndarray:
+    """(S, P, P) K/W of a box under one patch at SHOWN. What the air takes changes no pattern to speak of."""
+    rule = rough_rule(conductivity / heat_capacity)
+    (first, second), (x, y), (half_x, half_y) = touched.sides, touched.centre, touched.half
+    return _of_face(
+        _along(first, x, half_x, rule.begun),
+        _along(second, y, half_y, rule.begun),
+        4 * half_x * half_y,
+        first * second,
+        touched.depth,
+        heat_capacity,
+        conductivity / heat_capacity,
+        _GRAM,
+        ALONG,
+        *rule,
+        _MOMENTS,
+    )
+
+
+@lru_cache(maxsize=2048)
+def _along(side: float, centre: float, half: float, begun: float) -> np.ndarray:
+    """(F, F, T) m along a face's axis, at rough_rule's times for any material, from begun m2 on. In steps, as patterns
+    are asked for, there are few of these, which boxes of all sizes and materials share."""
+    return along_face(side, centre, half, begun * _STEPS, _NO_SUMS)[0]
 
 
 def shown_box(
     size: tuple[float, float, float], conductivity: float, heat_capacity: float, patches: Patches
 ) -> np.ndarray:
-    """(S, N P, N P) K/W of a box at SHOWN. What the air takes changes no pattern to speak of."""
+    """The same (S, N P, N P) under several patches."""
     diffusivity, count = conductivity / heat_capacity, len(patches.face)
     rule = rough_rule(diffusivity)
-    taus = diffusivity * rule.times
-    begun = float(taus[0])
-    images = int(taus.searchsorted(SWITCH * max(size) ** 2, "right"))  # times at which these serve
-    many = _AT_ONCE * (images // _AT_ONCE + 1)
+    images = int((diffusivity * rule.times).searchsorted(SWITCH * max(size) ** 2, "right"))
+    many = _AT_ONCE * (images // _AT_ONCE + 1)  # times at which these serve
     free = np.empty((count, 2, len(JUMPS), len(JUMPS), many))
     for n, half in enumerate(patches.half.tolist()):
         for axis, side in enumerate(half):
-            free[n, axis] = each_alone(side, begun, ROUGH_SPACING, many)
+            free[n, axis] = each_alone(side, rule.begun, ROUGH_SPACING, many)
     kernel, rate, port, _, heat = box_kernel(
         size,
         conductivity,
@@ -69,8 +108,52 @@ def shown_box(
         rule.times,
         free=free,
     )
-    first = 1 / (heat_capacity * math.sqrt(math.pi * begun) * patches.areas)
-    return _with_slowest(kernel, port, first, GRAM, rule.to_moments, rule.early, _MOMENTS, rate)
+    first = 1 / (heat_capacity * math.sqrt(math.pi * rule.begun) * patches.areas)
+    return _with_slowest(kernel, port, first, _GRAM, rule.to_moments, rule.early, _MOMENTS, rate)
+
+
+@njit(cache=True, error_model="numpy")
+def _of_face(
+    first,
+    second,
+    area,
+    face,
+    depth,
+    heat_capacity,
+    diffusivity,
+    gram,
+    along,
+    begun,
+    times,
+    to_moments,
+    early,
+    moments,
+):
+    """shown_face of a patch of m2 on a face of m2. first, second: (F, F, T) m along its axes. along: (P, 2), as ALONG.
+    The rest as in shown_face and Rule."""
+    known, count = len(gram), len(times)
+    found, deep, kernel = np.empty((len(moments), known, known)), np.empty(count), np.empty(count)
+    for t in range(count):
+        # of the heat at the face that it flows into, by images of it or by eigenfunctions of the depth
+        tau, n, total = diffusivity * times[t], 1, 0.0
+        soon = tau < depth * depth / math.pi
+        step = depth * depth / tau if soon else math.pi * math.pi * tau / (depth * depth)
+        while n * n * step < _NOTHING:
+            total += 2 * math.exp(-n * n * step)
+            n += 1
+        deep[t] = (1 + total) / (math.sqrt(math.pi * tau) if soon else depth) / (heat_capacity * area * area)
+    falling = 1 / (heat_capacity * math.sqrt(math.pi * begun) * area)
+    for i in range(known):
+        for j in range(i + 1):
+            # all of the box as warm
+            slowest = gram[0, i] * gram[0, j] / (heat_capacity * face * depth)
+            one, other = first[along[i, 0], along[j, 0]], second[along[i, 1], along[j, 1]]
+            for t in range(count):
+                kernel[t] = one[t] * other[t] * deep[t] - slowest
+            for s in range(len(moments)):
+                value = early[s] * falling * gram[i, j] + slowest / moments[s]
+                found[s, i, j] = found[s, j, i] = value + dot(to_moments[s], kernel)
+    return found
 
 
 @njit(cache=True, error_model="numpy")

@@ -49,9 +49,6 @@ ALONG = np.array(
 """(P, 2): the functions along the two axes whose product a pattern is; the even pattern comes first."""
 
 
-_OF_AXIS = np.zeros((2, len(FUNCTIONS), len(ALONG)))
-_OF_AXIS[0, :, : len(FUNCTIONS)] = _OF_AXIS[1, :, -len(FUNCTIONS) :] = np.eye(len(FUNCTIONS))
-_OF_AXIS[1, 0] = 0.0  # the even pattern is along the first
 _EVEN = np.eye(len(FUNCTIONS))[0]
 
 
@@ -83,7 +80,9 @@ def basis_jumps(basis: np.ndarray) -> np.ndarray:
 
 def basis_shares(basis: np.ndarray) -> np.ndarray:
     """(2, M, F) of FUNCTIONS in one patch's combinations' functions along its two axes, the even one first."""
-    shares = (_OF_AXIS @ basis).transpose(0, 2, 1)
+    functions = len(FUNCTIONS)
+    shares = np.zeros((2, basis.shape[1], functions))
+    shares[0], shares[1, :, 1:] = basis[:functions].T, basis[functions:].T  # the even pattern is along the first
     shares[:, 0] = _EVEN
     return shares
 

@@ -45,11 +45,16 @@ _FIRST, _LAST = (
 _BEFORE = 40  # times before the first that count
 
 
-class Rule(NamedTuple):
-    """Times (T,) s, equally spaced in ln t, at which a kernel is needed; (S, T) its transform at some moments by the
-    trapezoidal rule, as if it had its first value before; (S,) s of what it has more then if it falls as
-    1 / sqrt(t)."""
+MOST_ROUGH = math.ceil(math.log(_LAST / MOMENTS[SHOWN][0] / _FIRST) / ROUGH_SPACING) + 1
+"""Times of rough_rule, of the best conductor."""
 
+
+class Rule(NamedTuple):
+    """Times (T,) s, equally spaced in ln t, at which a kernel is needed, from begun m2 over the diffusivity on; (S, T)
+    its transform at some moments by the trapezoidal rule, as if it had its first value before; (S,) s of what it has
+    more then if it falls as 1 / sqrt(t)."""
+
+    begun: float
     times: np.ndarray
     to_moments: np.ndarray
     early: np.ndarray
@@ -58,38 +63,54 @@ class Rule(NamedTuple):
 @lru_cache(maxsize=512)
 def grasp_rule(diffusivity: float) -> Rule:
     """Of kernels of m2/s, at GRASP."""
-    return _rule(diffusivity, GRASP, FEW_SPACING, _UNFELT)
+    return _rule(diffusivity, GRASP, FEW_SPACING, max(_FIRST * diffusivity, _UNFELT))
 
 
 def times_sooner(half: float) -> int:
-    """How much sooner, in ln t, a patch of half width m along its shorter side has to be told."""
-    return max(math.ceil(2 * math.log(_WIDE / half)), 0)
+    """How many times more, sooner ones, a patch of half width m along its shorter side has to be told at."""
+    return max(math.ceil(2 * math.log(_WIDE / half) / _ELEMENT_SPACING), 0)
+
+
+USUALLY_SOONER = 7
+"""Of most patches at most: sides of a sensor's face are told at one set of times for all of these."""
 
 
 @lru_cache(maxsize=512)
 def element_rule(diffusivity: float, sooner: int, shown: bool) -> Rule:
-    """The same of an element, closer, since all that it touches is told beside it, and so much sooner; at SHOWN its
-    times are the first ones of those at GRASP."""
+    """The same of an element, closer, since all that it touches is told beside it, and so many times more; at SHOWN
+    the last ones of those at GRASP are left out."""
     moments = MOMENTS[SHOWN] if shown else GRASP
-    return _rule(diffusivity, moments, _ELEMENT_SPACING, _UNFELT * math.exp(-sooner))
+    return _rule(diffusivity, moments, _ELEMENT_SPACING, _UNFELT * math.exp(-_ELEMENT_SPACING * sooner))
 
 
 @lru_cache(maxsize=512)
 def rough_rule(diffusivity: float) -> Rule:
     """The same at SHOWN, of what only decides on patterns of flow, at fewer times."""
-    return _rule(diffusivity, MOMENTS[SHOWN], ROUGH_SPACING, _UNFELT)
+    return _rule(diffusivity, MOMENTS[SHOWN], ROUGH_SPACING, max(_FIRST * diffusivity, _UNFELT))
 
 
-def _rule(diffusivity: float, moments: np.ndarray, spacing: float, unfelt: float) -> Rule:
-    first = max(_FIRST, unfelt / diffusivity)
-    count = math.ceil(math.log(_LAST / moments[0] / first) / spacing) + 1
-    times = first * np.exp(spacing * np.arange(-_BEFORE, count))
-    rule = spacing * times * np.exp(-moments[:, None] * times)
-    sooner, to_moments = rule[:, :_BEFORE], np.ascontiguousarray(rule[:, _BEFORE:])
-    flat = sooner.sum(axis=1)
-    to_moments[:, 0] += flat
-    early = (sooner * np.sqrt(first / times[:_BEFORE])).sum(axis=1) - flat
-    return Rule(times[_BEFORE:], to_moments, early)
+def _rule(diffusivity: float, moments: np.ndarray, spacing: float, begun: float) -> Rule:
+    count = math.ceil(math.log(_LAST / moments[0] / (begun / diffusivity)) / spacing) + 1
+    return Rule(begun, *_trapezoidal(begun / diffusivity, np.ascontiguousarray(moments), spacing, count))
+
+
+@njit(cache=True, error_model="numpy")
+def _trapezoidal(first, moments, spacing, count):
+    """So many times from the first on, to_moments and early of a Rule."""
+    times, to_moments, early = np.empty(count), np.empty((len(moments), count)), np.zeros(len(moments))
+    step, rise = math.exp(-spacing), math.exp(spacing / 2)
+    for t in range(count):
+        times[t] = first * math.exp(spacing * t)
+    for s in range(len(moments)):
+        for t in range(count):
+            to_moments[s, t] = spacing * times[t] * math.exp(-moments[s] * times[t])
+        time, risen = first, 1.0
+        for _ in range(_BEFORE):
+            time, risen = time * step, risen * rise
+            sooner = spacing * time * math.exp(-moments[s] * time)
+            to_moments[s, 0] += sooner
+            early[s] += sooner * (risen - 1)
+    return times, to_moments, early
 
 
 def before(diffusivity: float) -> float:

@@ -25,7 +25,7 @@ from .alone import alone
 from .axis import SWITCH
 from .box import Patches, box_kernel
 from .contact import Resolution, Tip, fades
-from .patterns import basis_jumps, basis_shares, basis_terms
+from .patterns import JUMPS, basis_shares, basis_terms
 from .samples import FEW_SPACING, GRASP, at_moments, grasp_rule
 
 _AT_ONCE = 6  # steps in which a patch's kernel by itself is told for few times or many
@@ -72,14 +72,14 @@ class UnderTips(NamedTuple):
 
 class _Kernel(NamedTuple):
     """kernel (T, A M, L M) K/J of what is touched and heat (T, L M) J/J, both less the slowest eigenfunction's part;
-    that one's rate, port (N M,) and held. times (T,) s; to_grasp, early: grasp_rule's."""
+    that one's rate, port (N M,) and held. begun m2, to_grasp, early: grasp_rule's."""
 
     kernel: np.ndarray
     heat: np.ndarray
     rate: float
     port: np.ndarray
     held: float
-    times: np.ndarray
+    begun: float
     to_grasp: np.ndarray
     early: np.ndarray
 
@@ -129,7 +129,7 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
     known, material, fit = _kernel_of(box, 0), box.material, _fit(level)
     capacity = material.volumetric_heat_capacity
     # before the first time a patch by itself is on a half-space
-    alone = 1 / (capacity * math.sqrt(math.pi * material.conductivity / capacity * known.times[0]))
+    alone = 1 / (capacity * math.sqrt(math.pi * known.begun))
     port, held = known.port, known.held
     rest, warmth, weight, rate, opened, returned = _samples(
         known.kernel,
@@ -170,9 +170,8 @@ def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
     capacity = material.volumetric_heat_capacity
     jumps, terms = np.array([_jumps(one) for one in tips]), basis_terms(tips[0].basis.shape[1])
     diffusivity, free = material.conductivity / capacity, None
-    times, to_grasp, early = grasp_rule(diffusivity)
+    begun, times, to_grasp, early = grasp_rule(diffusivity)
     if first == 0:
-        begun = diffusivity * float(times[0])
         images = math.log(SWITCH * max(size) ** 2 / begun) / FEW_SPACING  # times at which these serve, about
         count = _AT_ONCE * (max(int(images) + 2, 0) // _AT_ONCE + 1)
         halves = zip(tips, patches.half.tolist(), strict=True)
@@ -181,12 +180,17 @@ def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
         size, material.conductivity, capacity, film, patches, jumps, terms, touched, times, first, free
     )
     heat = np.zeros((len(times), kernel.shape[2])) if heat is None else heat
-    return _Kernel(kernel, heat, rate, port, held, times, to_grasp, early)
+    return _Kernel(kernel, heat, rate, port, held, begun, to_grasp, early)
 
 
 @lru_cache(maxsize=1024)
 def _jumps(one: Tip) -> np.ndarray:
-    return basis_jumps(one.basis)
+    return _shares(one) @ JUMPS
+
+
+@lru_cache(maxsize=1024)
+def _shares(one: Tip) -> np.ndarray:
+    return basis_shares(one.basis)
 
 
 @lru_cache(maxsize=1024)
@@ -198,7 +202,7 @@ def _weight(one: Tip) -> np.ndarray:
 def _free(one: Tip, half: tuple[float, float], begun: float, count: int) -> np.ndarray:
     """What box_kernel takes of one patch, at so many times from begun m2 on."""
     taus = begun * np.exp(FEW_SPACING * np.arange(count))
-    return alone(np.array(half), basis_shares(one.basis), taus)
+    return alone(np.array(half), _shares(one), taus)
 
 
 @njit(cache=True, error_model="numpy")
