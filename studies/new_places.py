@@ -32,7 +32,7 @@ from thermograsp.envs.sensing.boxes import BoxHeat
 from thermograsp.thermal.kernels.contact import tip_at
 from thermograsp.thermal.kernels.coverage import _patterns_of_both, spot_patterns
 from thermograsp.thermal.kernels.samples import grasp_rule
-from thermograsp.thermal.kernels.touched import _free, _jumps, _shares, _weight
+from thermograsp.thermal.kernels.touched import _free
 
 STACK, GLASS = thermal.sensor("seed"), thermal.material("glass")
 FILM = 5.0  # W/(m2 K)
@@ -41,14 +41,10 @@ OF_BOXES: tuple[Any, ...] = (boxes._under, grasp_rule)
 OF_PLACES: tuple[Any, ...] = (
     *OF_BOXES,
     boxes._element,
-    boxes._tip,
     tip_at,
     spot_patterns,
     _patterns_of_both,
     _free,
-    _jumps,
-    _shares,
-    _weight,
 )
 """What is kept of places."""
 CASES = ("whole", "anywhere", "known", "drawn")

@@ -383,12 +383,7 @@ def _print(
         None if behind is None else _footprint(behind, size, stack.width),
     )
     # few are made anew: a later touch nearly as far from the ends shares its element with this one
-    return _Print(place, behind, foot, _tip(stack, foot.covered, spot.alike(stack.width)))
-
-
-@lru_cache(maxsize=1024)
-def _tip(stack: SensorStack, covered: Rectangle, spot: Spot) -> Tip:
-    return tip_at(stack, spot, FIXED_LEVEL, covered)
+    return _Print(place, behind, foot, tip_at(stack, spot.alike(stack.width), FIXED_LEVEL, foot.covered))
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:

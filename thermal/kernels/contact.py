@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -24,8 +24,8 @@ from ..matter import Material, SensorStack
 from ..numerics import ThermalNetwork, least_row, output_row, passive_residues, port_residues, turn_diagonal
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
-from .element import POLES, element, face_impedance
-from .patterns import basis_shares, basis_terms
+from .element import POLES, Element, element, face_impedance
+from .patterns import JUMPS, basis_shares, basis_terms
 from .samples import GRASP, OF_GRASP
 
 _WEIGHED = 3e4  # W/(m2 K) of the contact beside which errors of impedances are weighed
@@ -56,7 +56,7 @@ def _decay(count: int, slowest: float, fastest: float) -> np.ndarray:
     return rates
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Tip:
     """A fingertip's element under a contact of m2 area: basis (P, M) of the patterns kept and even (M,), the net heat
     of each; impedance (S,) K/W of the even one; side: its network, outputs "drop" (K) and "element" (J)."""
@@ -74,10 +74,20 @@ class Tip:
         heat = self.side.outputs["element"]
         return np.where(np.arange(len(heat)) < POLES, heat, 0.0)
 
-    @property
+    @cached_property
     def weight(self) -> np.ndarray:
         """(S,) W/K, what an error of an object's impedance counts at most."""
         return contact_weight(self.impedance, self.area)
+
+    @cached_property
+    def shares(self) -> np.ndarray:
+        """(2, M, F) of the functions along the patch's axes, as basis_shares has them."""
+        return basis_shares(self.basis)
+
+    @cached_property
+    def jumps(self) -> np.ndarray:
+        """(2, M, E) of these."""
+        return self.shares @ JUMPS
 
 
 def contact_weight(impedance: np.ndarray, area: float) -> np.ndarray:
@@ -88,19 +98,21 @@ def contact_weight(impedance: np.ndarray, area: float) -> np.ndarray:
 @lru_cache(maxsize=1024)
 def tip(stack: SensorStack, covered: Rectangle, level: Resolution) -> Tip:
     """The element under a contact that covers that rectangle of its face, m from the face's corner, wherever it is."""
-    return _tip(stack, covered, level, contact_patterns(stack, covered, level.patterns))
+    return _tip(element(stack), covered, level, contact_patterns(stack, covered, level.patterns))
 
 
 @lru_cache(maxsize=1024)
 def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle | None = None) -> Tip:
     """The element under a contact, on the patterns of that place. covered: what it covers of its face, where that is
     only nearly as much as there."""
-    return _tip(stack, covered or spot.contact.covered, level, spot_patterns(stack, spot, level.patterns))
+    known = element(stack)
+    return _tip(known, covered or spot.contact.covered, level, spot_patterns(known, spot, level.patterns))
 
 
-def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
-    known, kept, columns = element(stack), basis.shape[1], _fades(level)
-    rest = face_impedance(stack, covered, basis_shares(basis), basis_terms(kept), _unit(kept), shown=False)
+def _tip(known: Element, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
+    kept, (columns, decay) = basis.shape[1], _rates(level)
+    unit, (drop_rest, heat_rest) = _unit(kept), _rest(known)
+    rest = face_impedance(known, covered, basis_shares(basis), basis_terms(kept), unit, shown=False)
     (x0, x1), (y0, y1) = covered
     area, alone = (x1 - x0) * (y1 - y0), rest[:, 0, 0].copy()
     rest[:, 0, 0] -= known.slow
@@ -109,29 +121,34 @@ def _tip(stack: SensorStack, covered: Rectangle, level: Resolution, basis: np.nd
         port_residues(columns, rest, weight),
         weight,
         GRASP,
-        level.decay,
+        decay,
         level.least,
         known.rates,
         known.ports,
         known.drop,
         known.heat,
-        known.drop_rest[OF_GRASP],
-        known.heat_rest[OF_GRASP],
+        drop_rest,
+        heat_rest,
     )
-    side = ThermalNetwork(rates, ports, outputs={"drop": drop, "element": heat})
-    return Tip(area, basis, _unit(kept)[0], alone, side)
+    side = ThermalNetwork.of_rates(rates, ports, {"drop": drop, "element": heat})
+    return Tip(area, basis, unit[0], alone, side)
 
 
 @lru_cache(maxsize=16)
 def _unit(kept: int) -> np.ndarray:
-    matrix = np.eye(kept)
-    matrix.setflags(write=False)
-    return matrix
+    return np.eye(kept)
 
 
 @lru_cache(maxsize=64)
-def _fades(level: Resolution) -> np.ndarray:
-    return fades(level.decay)
+def _rates(level: Resolution) -> tuple[np.ndarray, np.ndarray]:
+    """fades of them, and themselves."""
+    return fades(level.decay), level.decay
+
+
+@lru_cache(maxsize=64)
+def _rest(known: Element) -> tuple[np.ndarray, np.ndarray]:
+    """An element's drop_rest and heat_rest at GRASP."""
+    return known.drop_rest[OF_GRASP], known.heat_rest[OF_GRASP]
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")

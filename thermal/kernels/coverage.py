@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from bisect import bisect
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -22,7 +21,7 @@ import numpy as np
 
 from ..matter import SensorStack
 from .box import Patches
-from .element import Rectangle
+from .element import Element, Rectangle, element
 from .excited import CONDUCTANCES, Face, excited, shown_box, shown_element, shown_face
 from .patterns import EVENNESS, GRAM
 from .samples import SHOWN
@@ -52,8 +51,7 @@ class Footprint(NamedTuple):
     half: tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
+class Spot(NamedTuple):
     """Where a fingertip touches a box. conductivity: W/(m K) and heat_capacity: J/(m3 K) of it. sides: m of the face,
     whichever it is, and depth: m of the box behind it. opposite: what such a fingertip touches of the face behind, from
     the same corner; None for nothing."""
@@ -87,7 +85,8 @@ class Spot:
         self, axis: int, width: float, exact: bool
     ) -> tuple[float, float, float, tuple[float, float]]:
         """Middle, side, half width and what is covered along an axis of such a one."""
-        middle, half, part = self.contact.centre[axis], self.contact.half[axis], self.contact.covered[axis]
+        contact = self.contact
+        middle, half, part = contact.centre[axis], contact.half[axis], contact.covered[axis]
         low, high = _gap(middle - half, width), _gap(self.sides[axis] - middle - half, width)
         if not exact:
             part = _nearly_covered(part, width)
@@ -196,27 +195,27 @@ def contact_patterns(stack: SensorStack, covered: Rectangle, kept: int) -> np.nd
         last = max(round(high / stack.width * STEPS), first + 1)
         shift = max(last - STEPS, 0)
         steps.append((first - shift, last - shift))
-    return _patterns(stack, (steps[0], steps[1]), kept)
+    return _patterns(element(stack), (steps[0], steps[1]), kept)
 
 
 @lru_cache(maxsize=1024)
-def spot_patterns(stack: SensorStack, spot: Spot, kept: int) -> np.ndarray:
+def spot_patterns(known: Element, spot: Spot, kept: int) -> np.ndarray:
     """(P, M) orthonormal combinations of the patterns, the even one first, of that place on that box. In a thin sheet
     they end where the opposite fingertip does."""
     made, contact = (spot.conductivity, spot.heat_capacity), spot.contact
-    if spot.opposite is None or spot.depth >= THIN * stack.width:
-        centre, half = contact.centre, contact.half
-        box = shown_face(Face(spot.sides, spot.depth, centre, half), *made)
+    if spot.opposite is None or spot.depth >= THIN * known.stack.width:
+        half = contact.half
+        box = shown_face(Face(spot.sides, spot.depth, contact.centre, half), *made)
         area = np.array([4 * half[0] * half[1]])
-        return excited(box, shown_element(stack, contact.covered)[None], area, kept)[0]
+        return excited(box, shown_element(known, contact.covered)[None], area, kept)[0]
     # one order for both of them, so that they are found together
     pair = min(contact, spot.opposite), max(contact, spot.opposite)
-    return _patterns_of_both(stack, made, (*spot.sides, spot.depth), pair, kept)[pair.index(contact)]
+    return _patterns_of_both(known, made, (*spot.sides, spot.depth), pair, kept)[pair.index(contact)]
 
 
 @lru_cache(maxsize=256)
 def _patterns_of_both(
-    stack: SensorStack,
+    known: Element,
     made: tuple[float, float],
     size: tuple[float, float, float],
     touched: tuple[Footprint, Footprint],
@@ -225,16 +224,16 @@ def _patterns_of_both(
     """Of two on opposite faces. made: W/(m K) and J/(m3 K)."""
     centre, half = np.array([each.centre for each in touched]), np.array([each.half for each in touched])
     patches = Patches(_OPPOSITE, centre, half)
-    elements = np.array([shown_element(stack, each.covered) for each in touched])
+    elements = np.array([shown_element(known, each.covered) for each in touched])
     return excited(shown_box(size, *made, patches), elements, patches.areas, kept)
 
 
 @lru_cache(maxsize=4096)
-def _patterns(stack: SensorStack, steps: tuple[tuple[int, int], tuple[int, int]], kept: int) -> np.ndarray:
-    width = stack.width
+def _patterns(known: Element, steps: tuple[tuple[int, int], tuple[int, int]], kept: int) -> np.ndarray:
+    width = known.stack.width
     half = np.array([(last - first) / STEPS * width / 2 for first, last in steps])
     (x0, x1), (y0, y1) = (((first / STEPS) * width, (last / STEPS) * width) for first, last in steps)
-    across = shown_element(stack, ((x0, x1), (y0, y1)))
+    across = shown_element(known, ((x0, x1), (y0, y1)))
     area = float(4 * half[0] * half[1])
     size, middle = list(_BLOCK), np.zeros(2)
     for axis, (first, last) in enumerate(steps):

@@ -169,7 +169,7 @@ def along_face(
 
 
 def face_impedance(
-    stack: SensorStack,
+    known: Element,
     covered: Rectangle,
     shares: np.ndarray,
     terms: np.ndarray,
@@ -179,7 +179,7 @@ def face_impedance(
     """(S, M, M) K/W between combinations of the patterns on a rectangle of the face, m from its corner: functions of
     shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
     their products' means. At SHOWN, or at GRASP."""
-    layer, ((x0, x1), (y0, y1)), known = stack.layers[-1], covered, element(stack)
+    layer, ((x0, x1), (y0, y1)) = known.stack.layers[-1], covered
     x, y = x1 - x0, y1 - y0
     sooner, diffusivity = times_sooner(min(x, y) / 2), layer.diffusivity
     of_sides = max(sooner, USUALLY_SOONER)

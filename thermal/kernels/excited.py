@@ -13,12 +13,11 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..matter import SensorStack
 from ..numerics import dot, factor, solve_factored
 from .alone import each_alone
 from .axis import MODES, SWITCH
 from .box import Patches, box_kernel
-from .element import Rectangle, along_face, face_impedance
+from .element import Element, Rectangle, along_face, face_impedance
 from .patterns import ALONG, EACH_FUNCTION, EVENNESS, GRAM, JUMPS
 from .samples import MOMENTS, MOST_ROUGH, ROUGH_SPACING, SHOWN, at_moments, rough_rule
 
@@ -53,9 +52,9 @@ def excited(box: np.ndarray, elements: np.ndarray, areas: np.ndarray, kept: int)
 
 
 @lru_cache(maxsize=1024)
-def shown_element(stack: SensorStack, covered: Rectangle) -> np.ndarray:
+def shown_element(known: Element, covered: Rectangle) -> np.ndarray:
     """(S, P, P) K/W of an element at SHOWN."""
-    return face_impedance(stack, covered, EACH_FUNCTION, _EACH_TERM, _GRAM, shown=True)
+    return face_impedance(known, covered, EACH_FUNCTION, _EACH_TERM, _GRAM, shown=True)
 
 
 def shown_face(touched: Face, conductivity: float, heat_capacity: float) -> np.ndarray:

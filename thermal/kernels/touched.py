@@ -25,7 +25,7 @@ from .alone import alone
 from .axis import SWITCH
 from .box import Patches, box_kernel
 from .contact import Resolution, Tip, fades
-from .patterns import JUMPS, basis_shares, basis_terms
+from .patterns import basis_terms
 from .samples import FEW_SPACING, GRASP, at_moments, grasp_rule
 
 _AT_ONCE = 6  # steps in which a patch's kernel by itself is told for few times or many
@@ -143,7 +143,7 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
         known.rate,
         held,
         box.film,
-        np.array([_weight(one) for one in box.tips]),
+        np.array([one.weight for one in box.tips]),
     )
     found = (mirrored_residues if _mirrored(box) else port_residues)(fit.fades, rest, weight)
     if box.film > 0:
@@ -168,7 +168,7 @@ def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
     """Of a box with its film on the patches too, by those from number `first` on."""
     material, size, film, patches, tips, touched = box
     capacity = material.volumetric_heat_capacity
-    jumps, terms = np.array([_jumps(one) for one in tips]), basis_terms(tips[0].basis.shape[1])
+    jumps, terms = np.array([one.jumps for one in tips]), basis_terms(tips[0].basis.shape[1])
     diffusivity, free = material.conductivity / capacity, None
     begun, times, to_grasp, early = grasp_rule(diffusivity)
     if first == 0:
@@ -184,25 +184,14 @@ def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
 
 
 @lru_cache(maxsize=1024)
-def _jumps(one: Tip) -> np.ndarray:
-    return _shares(one) @ JUMPS
-
-
-@lru_cache(maxsize=1024)
-def _shares(one: Tip) -> np.ndarray:
-    return basis_shares(one.basis)
-
-
-@lru_cache(maxsize=1024)
-def _weight(one: Tip) -> np.ndarray:
-    return one.weight
-
-
-@lru_cache(maxsize=1024)
 def _free(one: Tip, half: tuple[float, float], begun: float, count: int) -> np.ndarray:
     """What box_kernel takes of one patch, at so many times from begun m2 on."""
-    taus = begun * np.exp(FEW_SPACING * np.arange(count))
-    return alone(np.array(half), _shares(one), taus)
+    return alone(np.array(half), one.shares, begun * _steps(count))
+
+
+@lru_cache(maxsize=64)
+def _steps(count: int) -> np.ndarray:
+    return np.exp(FEW_SPACING * np.arange(count))
 
 
 @njit(cache=True, error_model="numpy")

@@ -56,6 +56,20 @@ class ThermalNetwork:
             object.__setattr__(self, name, value)
         object.__setattr__(self, "outputs", outputs)
 
+    @classmethod
+    def of_rates(
+        cls, rates: np.ndarray, ports: np.ndarray, outputs: Mapping[str, np.ndarray]
+    ) -> ThermalNetwork:
+        """One without a direct term, of rates that are known to be passive and arrays that fit: only what is not
+        finite is looked for. For callers who make thousands."""
+        if not math.isfinite(ports.sum()):
+            raise InvalidValueError("ports must be finite")
+        made = object.__new__(cls)
+        for name, value in (("rates", rates), ("ports", ports), ("outputs", outputs)):
+            object.__setattr__(made, name, value)
+        object.__setattr__(made, "direct", np.zeros((ports.shape[1],) * 2))
+        return made
+
     @property
     def order(self) -> int:
         """Number of states."""

@@ -35,7 +35,7 @@ from thermograsp.thermal.kernels.axis import (
     overlaps,
     wave_numbers,
 )
-from thermograsp.thermal.kernels.element import element_samples, face_impedance
+from thermograsp.thermal.kernels.element import element, element_samples, face_impedance
 from thermograsp.thermal.kernels.patterns import EACH_FUNCTION, EVENNESS, basis_shares
 from thermograsp.thermal.kernels.samples import SHOWN
 from thermograsp.thermal.matter import Layer
@@ -73,10 +73,10 @@ def test_few_times_and_sums_tell_an_element(stack: SensorStack, covered) -> None
     """Of combinations at a grasp's moments, and of all patterns at those where a touch is shown."""
     whole = element_samples(stack, covered).value
     basis = contact_patterns(stack, covered, 3)
-    few = face_impedance(stack, covered, basis_shares(basis), basis_terms(3), np.eye(3), shown=False)
+    few = face_impedance(element(stack), covered, basis_shares(basis), basis_terms(3), np.eye(3), shown=False)
     wanted = basis.T @ whole[OF_GRASP] @ basis
     assert (np.abs(few - wanted) / wanted[:, :1, :1]).max() < 1e-3
-    shown = face_impedance(stack, covered, EACH_FUNCTION, ALONG[:, None], GRAM, shown=True)
+    shown = face_impedance(element(stack), covered, EACH_FUNCTION, ALONG[:, None], GRAM, shown=True)
     own = np.sqrt(np.einsum("sii->si", whole[SHOWN]))
     error = (np.abs(shown - whole[SHOWN]) / (own[:, :, None] * own[:, None])).max()
     assert error < (0.025 if covered == SLIVER else 4e-3)  # it decides on patterns alone

@@ -83,8 +83,7 @@ def impedances(name: str):
     """Of patches under fingertips, with the heat's; and the kernel of others."""
     box = touched(name, 15.0, 2)
     under, areas = touched_module._kernel_of(box, 0), box.patches.areas
-    capacity, conductivity = box.material.volumetric_heat_capacity, box.material.conductivity
-    alone = 1 / (areas * np.sqrt(np.pi * conductivity * capacity * under.times[0]))
+    alone = 1 / (areas * box.material.volumetric_heat_capacity * np.sqrt(np.pi * under.begun))
     own = samples_module.at_moments(
         under.kernel, under.heat, under.port, alone, np.eye(3), under.to_grasp, under.early
     )
