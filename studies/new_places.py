@@ -67,7 +67,14 @@ def drawn(rng: np.random.Generator, rows: int, wide: bool) -> Start:
         conductivity, capacity = np.exp(rng.uniform(*np.log([(0.1, 1e6), (300.0, 4e6)]))).tolist()
         made = replace(GLASS, conductivity=conductivity, specific_heat=capacity / GLASS.density)
         bodies.append(
-            GraspBody(ObjectSpec(size=tuple(size.tolist()), mass=0.1, friction=0.8), made, 24.0, "T", STACK, anywhere=True)
+            GraspBody(
+                ObjectSpec(size=tuple(size.tolist()), mass=0.1, friction=0.8),
+                made,
+                24.0,
+                "T",
+                STACK,
+                anywhere=True,
+            )
         )
         middles[row, :, 0] = -size[0] / 2, size[0] / 2
         reach = np.full(2, 1e-3) if wide else size[1:] / 2 + 0.4 * STACK.width
@@ -122,7 +129,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--json", action="store_true", help="one JSON object")
     options = parser.parse_args(arguments)
     found = {
-        rows: {case: measured(case, rows, options.starts, np.random.default_rng(options.seed)) for case in CASES}
+        rows: {
+            case: measured(case, rows, options.starts, np.random.default_rng(options.seed)) for case in CASES
+        }
         for rows in options.rows
     }
     if options.json:

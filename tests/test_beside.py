@@ -158,12 +158,12 @@ inner, entries = [advance_row, workspace], []
 BOXES = """
 from thermograsp.envs.sensing.kernel import advance_boxes as step, advance_fixed, fixed_room
 from thermograsp.envs.sensing.places import strayed
-from thermograsp.thermal.batch import fixed_rates
+from thermograsp.thermal.batch import remembered, residues
 from thermograsp.thermal.kernels import axis, touched
 from thermograsp.thermal.numerics.passive_residues import _residues, free_residues
 inner = [advance_fixed, fixed_room]
 entries = [_residues, free_residues, strayed]
-entries += [fixed_rates._gram, fixed_rates._body, fixed_rates._box_heat, fixed_rates._warmth]
+entries += [residues._gram, residues._body, remembered._box_heat, remembered._warmth]
 entries += [touched._samples, touched._warmed, touched._beside, axis.free_kernels]
 """
 

@@ -8,27 +8,10 @@ if TYPE_CHECKING:
     from .carry import LEAST_STATES, TipRows, carry_matrix, tip_rows
     from .face import CELLS, FaceField, cosine_means, face_field, face_means, face_state, step_face
     from .fingertips import ArrayFingertips, FingertipState, array_fingertips
-    from .fixed_rates import (
-        FIXED_LEVEL,
-        HELD,
-        POLE_HEAT,
-        RATES,
-        SHARED,
-        WHERE,
-        FixedTables,
-        advance_fixed,
-        fixed_heat,
-        fixed_room,
-        fixed_tables,
-        fixed_tip_heat,
-        fixed_tip_rows,
-        fixed_warmth,
-        forget_fixed,
-        no_fixed_tables,
-        set_body,
-        set_gram,
-        tip_residues,
-    )
+    from .fixed_rates import FIXED_LEVEL, HELD, POLE_HEAT, RATES, SHARED, WHERE, FixedTables, no_fixed_tables
+    from .fixed_step import advance_fixed, fixed_room, forget_fixed
+    from .remembered import fixed_heat, fixed_tip_heat, fixed_tip_rows, fixed_warmth
+    from .residues import fixed_tables, set_body, set_gram, tip_residues
     from .rows import (
         RESERVOIR,
         HeatReading,

@@ -82,7 +82,10 @@ def basis_shares(basis: np.ndarray) -> np.ndarray:
     """(2, M, F) of FUNCTIONS in one patch's combinations' functions along its two axes, the even one first."""
     functions = len(FUNCTIONS)
     shares = np.zeros((2, basis.shape[1], functions))
-    shares[0], shares[1, :, 1:] = basis[:functions].T, basis[functions:].T  # the even pattern is along the first
+    shares[0], shares[1, :, 1:] = (
+        basis[:functions].T,
+        basis[functions:].T,
+    )  # the even pattern is along the first
     shares[:, 0] = _EVEN
     return shares
 
