@@ -67,31 +67,27 @@ class Spot(NamedTuple):
         """One of few whose patterns serve this one as well, for a sensor of that width, m: what is near is nearly as
         near, the box as deep, the material as good a conductor, and as much of the sensor's face is covered; exactly as
         much where something touches a thin box from behind."""
-        thin = self.depth < THIN * width
-        exact = thin and self.opposite is not None
-        x, first, half_x, part_x = self._alike_along(0, width, exact)
-        y, second, half_y, part_y = self._alike_along(1, width, exact)
-        contact = Footprint((part_x, part_y), (x, y), (half_x, half_y))
+        conductivity, heat_capacity, sides, depth, contact, opposite = self
+        thin = depth < THIN * width
+        exact = thin and opposite is not None
+        along = []
+        for side, middle, half, part in zip(sides, contact.centre, contact.half, contact.covered, strict=True):
+            low = width * _GAPS[bisect(_BETWEEN, (middle - half) / width)]
+            high = width * _GAPS[bisect(_BETWEEN, (side - middle - half) / width)]
+            if not exact:
+                part = _nearly_covered(part, width)
+                half = (part[1] - part[0]) / 2
+            along.append((part, low + half, half, low + high + 2 * half))
+        (part_x, x, half_x, first), (part_y, y, half_y, second) = along
+        near = Footprint((part_x, part_y), (x, y), (half_x, half_y))
         return Spot(
-            _rounded(self.conductivity, _PROPERTIES),
-            _rounded(self.heat_capacity, _PROPERTIES),
+            _rounded(conductivity, _PROPERTIES),
+            _rounded(heat_capacity, _PROPERTIES),
             (first, second),
-            _rounded(min(self.depth, width), _STEPS_OF_DEPTH),
-            contact,
-            self._behind(contact, (first, second), width) if thin else None,
+            _rounded(depth if depth < width else width, _STEPS_OF_DEPTH),
+            near,
+            self._behind(near, (first, second), width) if exact else None,
         )
-
-    def _alike_along(
-        self, axis: int, width: float, exact: bool
-    ) -> tuple[float, float, float, tuple[float, float]]:
-        """Middle, side, half width and what is covered along an axis of such a one."""
-        contact = self.contact
-        middle, half, part = contact.centre[axis], contact.half[axis], contact.covered[axis]
-        low, high = _gap(middle - half, width), _gap(self.sides[axis] - middle - half, width)
-        if not exact:
-            part = _nearly_covered(part, width)
-            half = (part[1] - part[0]) / 2
-        return low + half, low + high + 2 * half, half, part
 
     def _behind(self, contact: Footprint, sides: Sequence[float], width: float) -> Footprint | None:
         """The opposite one in steps from this one, which has moved."""
@@ -119,19 +115,17 @@ def _nearly_covered(part: tuple[float, float], width: float) -> tuple[float, flo
     """As much of a side of the sensor's face in steps, from where it begins or to where it ends, or in half such steps
     from there."""
     low, high = part
-    length = min(max(round((high - low) / width / _COVERED), 1) * _COVERED, 1.0) * width
+    step = width * _COVERED
+    length = round((high - low) / step) * step
+    if not step <= length < width:
+        length = step if length < width else width
     if low <= 0:
         return 0.0, length
     if high >= width:
         return width - length, width
-    step = width * _COVERED / 2
-    begun = step * round((low + high - length) / 2 / step)
+    begun = step / 2 * round((low + high - length) / step)
     begun = min(max(begun, 0.0), width - length)  # a little longer, it could end beyond the face
     return begun, begun + length
-
-
-def _gap(gap: float, width: float) -> float:
-    return width * _GAPS[bisect(_BETWEEN, gap / width)]
 
 
 def _rounded(value: float, steps: int) -> float:

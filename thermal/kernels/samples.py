@@ -42,7 +42,8 @@ _FIRST, _LAST = (
     3e-6,
     40.0,
 )  # s; and its product with the slowest moment, after which kernels count for nothing
-_BEFORE = 40  # times before the first that count
+_POWERS = 16  # of moment times first time, which is below 1
+_MOST = 64  # times
 
 
 MOST_ROUGH = math.ceil(math.log(_LAST / MOMENTS[SHOWN][0] / _FIRST) / ROUGH_SPACING) + 1
@@ -90,27 +91,28 @@ def rough_rule(diffusivity: float) -> Rule:
 
 
 def _rule(diffusivity: float, moments: np.ndarray, spacing: float, begun: float) -> Rule:
-    count = math.ceil(math.log(_LAST / moments[0] / (begun / diffusivity)) / spacing) + 1
-    return Rule(begun, *_trapezoidal(begun / diffusivity, np.ascontiguousarray(moments), spacing, count))
+    first = begun / diffusivity
+    count = math.ceil(math.log(_LAST / float(moments[0]) / first) / spacing) + 1
+    steps, sooner = _steps(spacing)
+    times = first * steps[:count]
+    turned = moments[:, None] * times
+    to_moments = spacing * times * np.exp(-turned)
+    # each power of moment times first time, of what comes before
+    powers = np.full((len(moments), len(sooner)), first)
+    powers[:, 1:] = turned[:, :1]
+    flat, early = (np.multiply.accumulate(powers, axis=1) @ sooner).T
+    to_moments[:, 0] += flat
+    return Rule(begun, times, to_moments, early.copy())
 
 
-@njit(cache=True, error_model="numpy")
-def _trapezoidal(first, moments, spacing, count):
-    """So many times from the first on, to_moments and early of a Rule."""
-    times, to_moments, early = np.empty(count), np.empty((len(moments), count)), np.zeros(len(moments))
-    step, rise = math.exp(-spacing), math.exp(spacing / 2)
-    for t in range(count):
-        times[t] = first * math.exp(spacing * t)
-    for s in range(len(moments)):
-        for t in range(count):
-            to_moments[s, t] = spacing * times[t] * math.exp(-moments[s] * times[t])
-        time, risen = first, 1.0
-        for _ in range(_BEFORE):
-            time, risen = time * step, risen * rise
-            sooner = spacing * time * math.exp(-moments[s] * time)
-            to_moments[s, 0] += sooner
-            early[s] += sooner * (risen - 1)
-    return times, to_moments, early
+@lru_cache(maxsize=8)
+def _steps(spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times over the first; and (n, 2) coefficients, by powers of moment times first time, of the trapezoidal sums
+    before the first over it: of 1, and of what 1 / sqrt(t) is more than at the first."""
+    n = np.arange(_POWERS)
+    series = spacing * np.array([(-1) ** k / math.factorial(k) for k in n.tolist()])
+    flat, falling = (1 / np.expm1(spacing * (n + power)) for power in (1.0, 0.5))
+    return np.exp(spacing * np.arange(_MOST)), np.stack((series * flat, series * (falling - flat)), axis=1)
 
 
 def before(diffusivity: float) -> float:
