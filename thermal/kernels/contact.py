@@ -111,8 +111,8 @@ def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle
 
 def _tip(known: Element, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
     kept, (columns, decay) = basis.shape[1], _rates(level)
-    unit, (drop_rest, heat_rest) = _unit(kept), _rest(known)
-    rest = face_impedance(known, covered, basis_shares(basis), basis_terms(kept), unit, shown=False)
+    unit, shares, (drop_rest, heat_rest) = _unit(kept), basis_shares(basis), _rest(known)
+    rest = face_impedance(known, covered, shares, basis_terms(kept), unit, shown=False)
     (x0, x1), (y0, y1) = covered
     area, alone = (x1 - x0) * (y1 - y0), rest[:, 0, 0].copy()
     rest[:, 0, 0] -= known.slow
@@ -131,7 +131,9 @@ def _tip(known: Element, covered: Rectangle, level: Resolution, basis: np.ndarra
         heat_rest,
     )
     side = ThermalNetwork.of_rates(rates, ports, {"drop": drop, "element": heat})
-    return Tip(area, basis, unit[0], alone, side)
+    made = Tip(area, basis, unit[0], alone, side)
+    vars(made).update(weight=weight, shares=shares)  # they need not be found once more
+    return made
 
 
 @lru_cache(maxsize=16)

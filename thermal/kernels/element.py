@@ -423,8 +423,9 @@ def _impedance(
                         share = shares[axis, f, i] * shares[axis, g, j]
                         if share == 0.0:
                             continue
+                        seen = inside[i, j, first:]
                         for t in range(len(times)):
-                            own[axis, f, g, t] += share * inside[i, j, first + t]
+                            own[axis, f, g, t] += share * seen[t]
                         for r in range(sums):
                             lower[axis, f, g, r] += share * beneath[i, j, r]
                 for t in range(len(times)):

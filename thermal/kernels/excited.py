@@ -166,7 +166,7 @@ def _with_slowest(kernel, port, begun, gram, to_moments, early, moments, rate):
     return found
 
 
-@njit(cache=True, short_loops=True, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _excited(box, elements, areas, conductances, gram, evenness, orthonormal, kept):
     """The same. orthonormal: (P, P), from orthonormal patterns' coefficients to those of the patterns."""
     count, moments, known = elements.shape[:3]
@@ -203,12 +203,14 @@ def _excited(box, elements, areas, conductances, gram, evenness, orthonormal, ke
 def _joined(both, box, elements, first, count, conducts, gram):
     """Fills both with the impedance K/W that contacts first .. first + count - 1 see, of W/K each."""
     known = len(gram)
-    for i in range(count * known):
-        n = first + i // known
-        for j in range(count * known):
-            both[i, j] = box[first * known + i, first * known + j]
-            if first + j // known == n:
-                both[i, j] += elements[n, i % known, j % known] + gram[i % known, j % known] / conducts[n]
+    for n in range(count):
+        for i in range(known):
+            row, of_box = both[n * known + i], box[(first + n) * known + i]
+            for j in range(count * known):
+                row[j] = of_box[first * known + j]
+            own = row[n * known :]
+            for j in range(known):
+                own[j] += elements[first + n, i, j] + gram[i, j] / conducts[first + n]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -251,16 +253,13 @@ def _leading_vector(matrix, power, square, vectors, m):
         largest = 0.0
         for i in range(count):
             largest = max(largest, power[i, i])
+        scale = 1 / (largest * largest)
         for i in range(count):
-            for j in range(count):
-                square[i, j] = 0.0
-            for k in range(count):
-                share = power[i, k] / (largest * largest)
-                for j in range(count):
-                    square[i, j] += share * power[k, j]
+            for j in range(i + 1):
+                square[i, j] = scale * dot(power[i], power[j])
         for i in range(count):
-            for j in range(count):
-                power[i, j] = square[i, j]
+            for j in range(i + 1):
+                power[i, j] = power[j, i] = square[i, j]
     best = 0
     for i in range(count):
         if power[i, i] > power[best, best]:
