@@ -3,15 +3,15 @@
 Episodes that start with new boxes touch them at new places: boxes of drawn sizes, conductivities and heat capacities
 between two fingertips, with 16 rows starting at once, or one alone, one start after the other. Nothing is read from
 disk, and all runs on one thread. What is kept of boxes, places and their patterns of flow is forgotten before each
-start; what is kept of the sensor's face is as the starts before have left it.
+start; what is kept of the sensor's face is as the starts before have left it. The median of the starts counts, and of
+each start the least of several equal runs.
 
     whole     the whole face touches in the middle of wide boxes, 20 to 60 mm
     anywhere  on boxes of 4 to 60 mm, each fingertip anywhere, a part of the face covered
     known     the same, but the elements under the contacts are known; only the boxes are new
-    drawn     anywhere, and nothing is forgotten: places on new boxes whose patterns were found before share these
 
-    python studies/new_places.py             the table in docs/benchmarks.md
-    python studies/new_places.py --json
+    python studies/new_places.py             the figures in docs/benchmarks.md, a minute
+    python studies/new_places.py --rows 16 --json
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ OF_PLACES: tuple[Any, ...] = (
     _patterns_of_both,
     _free,
 )
-"""What is kept of places."""
+"""What is kept of places, and of patterns of flow there."""
 OF_FACES: tuple[Any, ...] = (seen_side, shown_element, _along)
 """What is kept of the sensor's face and of faces of boxes in steps."""
-CASES = ("whole", "anywhere", "known", "drawn")
+CASES = ("whole", "anywhere", "known")
 WARM = 12
 """Starts with other boxes, after which a process is warm."""
 
@@ -70,16 +70,8 @@ def drawn(rng: np.random.Generator, rows: int, wide: bool) -> Start:
         size = np.exp(rng.uniform(*np.log((0.02, 0.06) if wide else (0.004, 0.06)), 3))
         conductivity, capacity = np.exp(rng.uniform(*np.log([(0.1, 1e6), (300.0, 4e6)]))).tolist()
         made = replace(GLASS, conductivity=conductivity, specific_heat=capacity / GLASS.density)
-        bodies.append(
-            GraspBody(
-                ObjectSpec(size=tuple(size.tolist()), mass=0.1, friction=0.8),
-                made,
-                24.0,
-                "T",
-                STACK,
-                anywhere=True,
-            )
-        )
+        spec = ObjectSpec(size=tuple(size.tolist()), mass=0.1, friction=0.8)
+        bodies.append(GraspBody(spec, made, 24.0, "T", STACK, anywhere=True))
         middles[row, :, 0] = -size[0] / 2, size[0] / 2
         reach = np.full(2, 1e-3) if wide else size[1:] / 2 + 0.4 * STACK.width
         middles[row, :, 1:] = rng.uniform(-reach, reach, (2, 2))
@@ -101,7 +93,7 @@ def touches(start: Start) -> tuple[Callable[[], int], BoxHeat]:
 
 
 def measured(case: str, rows: int, starts: int, again: int, seed: int) -> float:
-    """ms a place: the median of so many starts after WARM others, each the least of so many equal processes' times."""
+    """ms a place: the median of so many starts after WARM others, each the least of so many equal runs."""
     least = np.full(WARM + starts, np.inf)
     for _ in range(again):
         rng = np.random.default_rng(seed)
@@ -113,8 +105,7 @@ def measured(case: str, rows: int, starts: int, again: int, seed: int) -> float:
 
 def cost(case: str, start: Start) -> float:
     """ms a place of one start."""
-    if case != "drawn":
-        forget(OF_PLACES)
+    forget(OF_PLACES)
     if case == "known":
         touches(start)[0]()
         forget(OF_BOXES)

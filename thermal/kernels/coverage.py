@@ -71,7 +71,9 @@ class Spot(NamedTuple):
         thin = depth < THIN * width
         exact = thin and opposite is not None
         along = []
-        for side, middle, half, part in zip(sides, contact.centre, contact.half, contact.covered, strict=True):
+        for side, middle, half, part in zip(
+            sides, contact.centre, contact.half, contact.covered, strict=True
+        ):
             low = width * _GAPS[bisect(_BETWEEN, (middle - half) / width)]
             high = width * _GAPS[bisect(_BETWEEN, (side - middle - half) / width)]
             if not exact:

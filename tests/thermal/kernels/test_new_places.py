@@ -36,6 +36,7 @@ from thermograsp.thermal.kernels.axis import (
     wave_numbers,
 )
 from thermograsp.thermal.kernels.element import element, element_samples, face_impedance
+from thermograsp.thermal.kernels.excited import Face, shown_box, shown_face
 from thermograsp.thermal.kernels.patterns import EACH_FUNCTION, EVENNESS, basis_shares
 from thermograsp.thermal.kernels.samples import SHOWN
 from thermograsp.thermal.matter import Layer
@@ -153,3 +154,26 @@ def test_what_is_left_inside_is_what_eigenfunctions_hold(film: float) -> None:
     left_inside(nodes, 1.0, film, SWITCH, inside)
     wanted = (found * np.exp(-(waves**2) * SWITCH)) @ whole[0]
     np.testing.assert_allclose(JUMPS @ inside, wanted, rtol=1e-6)
+
+
+@pytest.mark.parametrize("side", [0.0041, 0.0063, 0.00895])
+def test_a_face_narrower_than_the_sensor_is_nearly_covered_on_the_sensor(side: float) -> None:
+    """What is covered in steps, a little more or less, does not end beyond the sensor's face."""
+    for begun in np.linspace(0.0, WIDTH - side, 41).tolist():
+        part = begun, begun + side
+        spot = Spot(1.0, 2e6, (side, side), 0.02, Footprint((part, part), (side / 2,) * 2, (side / 2,) * 2))
+        for low, high in spot.alike(WIDTH).contact.covered:
+            assert 0 <= low < high <= WIDTH * (1 + 1e-12)
+            assert high - low == pytest.approx(side, abs=WIDTH / 17)
+        assert np.isfinite(tip_at(SEED, spot.alike(WIDTH), Resolution(12, 3)).side.ports).all()
+
+
+@pytest.mark.parametrize("spot", SPOTS[:3])
+def test_a_face_in_steps_is_its_box(spot: Spot) -> None:
+    """From kernels along its axes, beside the box's own at as few times."""
+    centre, half = np.array([spot.contact.centre]), np.array([spot.contact.half])
+    patches, made = Patches(np.array([5]), centre, half), (spot.conductivity, spot.heat_capacity)
+    found = shown_face(Face(spot.sides, spot.depth, spot.contact.centre, spot.contact.half), *made)
+    wanted = shown_box((*spot.sides, spot.depth), *made, patches)
+    own = np.sqrt(np.einsum("sii->si", wanted))
+    assert (np.abs(found - wanted) / (own[:, :, None] * own[:, None])).max() < 1e-7
