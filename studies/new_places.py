@@ -67,7 +67,8 @@ def drawn(rng: np.random.Generator, rows: int, wide: bool) -> Start:
     """wide: the whole face touches, in the middle."""
     bodies, middles = [], np.zeros((rows, 2, 3))
     for row in range(rows):
-        size = np.exp(rng.uniform(*np.log((0.02, 0.06) if wide else (0.004, 0.06)), 3))
+        least = 0.02 if wide else 0.004
+        size = np.exp(rng.uniform(np.log(least), np.log(0.06), 3))
         conductivity, capacity = np.exp(rng.uniform(*np.log([(0.1, 1e6), (300.0, 4e6)]))).tolist()
         made = replace(GLASS, conductivity=conductivity, specific_heat=capacity / GLASS.density)
         spec = ObjectSpec(size=tuple(size.tolist()), mass=0.1, friction=0.8)

@@ -95,7 +95,7 @@ def shown_box(
     for n, half in enumerate(patches.half.tolist()):
         for axis, side in enumerate(half):
             free[n, axis] = each_alone(side, rule.begun, ROUGH_SPACING, many)
-    kernel, rate, port, _, heat = box_kernel(
+    kernel, rate, port, _, _ = box_kernel(
         size,
         conductivity,
         heat_capacity,
@@ -108,7 +108,8 @@ def shown_box(
         free=free,
     )
     first = 1 / (heat_capacity * math.sqrt(math.pi * rule.begun) * patches.areas)
-    return _with_slowest(kernel, port, first, _GRAM, rule.to_moments, rule.early, _MOMENTS, rate)
+    found, _ = at_moments(kernel, kernel[:, 0].copy(), port, first, _GRAM, rule.to_moments, rule.early)
+    return found + np.outer(port, port) / (_MOMENTS[:, None, None] + rate)
 
 
 @njit(cache=True, error_model="numpy")
@@ -152,17 +153,6 @@ def _of_face(
             for s in range(len(moments)):
                 value = early[s] * falling * gram[i, j] + slowest / moments[s]
                 found[s, i, j] = found[s, j, i] = value + dot(to_moments[s], kernel)
-    return found
-
-
-@njit(cache=True, error_model="numpy")
-def _with_slowest(kernel, port, begun, gram, to_moments, early, moments, rate):
-    """at_moments with the slowest eigenfunction's part, whose rate 1/s and port (N P,) these are."""
-    found, _ = at_moments(kernel, kernel[:, 0], port, begun, gram, to_moments, early)
-    for s in range(len(moments)):
-        for i in range(len(port)):
-            for j in range(len(port)):
-                found[s, i, j] += port[i] * port[j] / (moments[s] + rate)
     return found
 
 
