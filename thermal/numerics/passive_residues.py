@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import LANES, add_products, put_sum
 
 from .symmetric import turn_diagonal
 
@@ -42,37 +43,41 @@ def mirrored_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarra
 @njit(cache=True, error_model="numpy")
 def _residues(columns, wanted, weight, mirrored):
     """port_residues, or mirrored_residues, whose two problems end together."""
-    samples, rates = columns.shape
+    samples, wide = (
+        len(columns),
+        -(-columns.shape[1] // LANES) * LANES,
+    )  # columns of zeros fill the last lanes
     groups, half = 1, len(wanted[0])
     if mirrored:
         groups, half = 2, half // 2
-    scaled, size, inverse = np.empty((samples, rates)), np.empty(rates), np.empty((2, rates, rates))
+    scaled, size, inverse = np.zeros((samples, wide)), np.ones(wide), np.empty((2, wide, wide))
     _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
-    shape = half, half, groups * rates
-    seen, inside = np.zeros(shape), np.zeros(shape)
+    rates, values = groups * wide, np.empty(samples)
+    seen, inside = np.zeros((half, half, rates)), np.zeros((half, half, rates))
     for group in range(groups):
         opposite = 1.0 - 2.0 * group
         for i in range(half):
             for j in range(i + 1):
-                its_seen = seen[i, j, group * rates : (group + 1) * rates]
+                at = (i * half + j) * rates + group * wide
                 for s in range(samples):
                     value = wanted[s, i, j]
                     if mirrored:
                         own = value + wanted[s, half + i, half + j]
                         across = wanted[s, i, half + j] + wanted[s, half + i, j]
                         value = (own + opposite * across) / 2
-                    value *= weight[s]
-                    for k in range(rates):
-                        its_seen[k] += value * scaled[s, k]
-                _added(inverse[0], its_seen, inside[i, j, group * rates : (group + 1) * rates])
+                    values[s] = value * weight[s]
+                for n in range(0, wide, LANES):
+                    put_sum(seen, at + n, scaled, n, wide, values, 0, samples)
+                for n in range(0, wide, LANES):
+                    put_sum(inside, at + n, inverse, n, wide, seen, at, wide)
     _in_cone(inverse[1], seen, inside)
-    found = np.empty((groups * half, groups * half, rates))
+    found = np.empty((groups * half, groups * half, columns.shape[1]))
     for i in range(half):
         for j in range(i + 1):
-            for k in range(rates):
+            for k in range(columns.shape[1]):
                 own, across = inside[i, j, k] / size[k], 0.0
                 if mirrored:
-                    other = inside[i, j, rates + k] / size[k]
+                    other = inside[i, j, wide + k] / size[k]
                     own, across = (own + other) / 2, (own - other) / 2
                 for m in range(groups):  # either half sees its own flows, and the other's
                     to, beside = m * half, (groups - 1 - m) * half
@@ -101,9 +106,9 @@ def free_residues(columns, weight):
 @njit(cache=True, inner=True, error_model="numpy")
 def _inverses(columns, weight, ridges, scaled, size, inverse):
     """Fills scaled (S, K) with the columns (S, K) by weight (S,) at unit length, size (K,) with their lengths, and
-    inverse (n, K, K) with those of the normal equations with each ridge."""
+    inverse (n, K, K) with those of the normal equations with each ridge. Columns beyond those that there are stay."""
     samples, rates = columns.shape
-    normal = np.zeros((rates, rates))
+    normal = np.zeros((len(size), len(size)))
     for k in range(rates):
         square = 0.0
         for s in range(samples):
@@ -149,6 +154,7 @@ def _in_cone(solve, seen, inside):
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
     turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
     pulled, free, room = np.empty(rates), np.empty(rates), np.empty((4, rates))
+    row = ports * rates
     for i in range(ports):
         turn[i, i] = 1.0
     for _ in range(_STEPS):
@@ -156,22 +162,19 @@ def _in_cone(solve, seen, inside):
             for j in range(i + 1):
                 for k in range(rates):
                     pulled[k] = seen[i, j, k] + _PENALTY * (inside[i, j, k] - dual[i, j, k])
-                    free[k] = 0.0
-                _added(solve, pulled[:each], free[:each])
-                if each < rates:
-                    _added(solve, pulled[each:], free[each:])
+                for first in range(0, rates, each):
+                    for n in range(0, each, LANES):
+                        put_sum(free, first + n, solve, n, each, pulled, first, each)
                 for k in range(rates):
                     value = _RELAXED * free[k] + (1 - _RELAXED) * inside[i, j, k] + dual[i, j, k]
                     dual[i, j, k] = dual[j, i, k] = value
         # seen from the last step's eigenvectors it is nearly diagonal
-        _product(dual, turn, half)
+        for m in range(ports):
+            for i in range(ports):
+                _put_products(half, m * row + i * rates, dual, i * row, turn, m * row, rates, rates, ports)
         for i in range(ports):
             for j in range(i + 1):
-                for k in range(rates):
-                    moved[i, j, k] = 0.0
-                for m in range(ports):
-                    for k in range(rates):
-                        moved[i, j, k] += turn[i, m, k] * half[j, m, k]
+                _put_products(moved, i * row + j * rates, turn, i * row, half, j * row, rates, rates, ports)
         turn_diagonal(moved, turn, room)
         for m in range(ports):
             for i in range(ports):
@@ -180,11 +183,7 @@ def _in_cone(solve, seen, inside):
         moving = 0.0
         for i in range(ports):
             for j in range(i + 1):
-                for k in range(rates):
-                    free[k] = 0.0
-                for m in range(ports):
-                    for k in range(rates):
-                        free[k] += turn[m, i, k] * half[m, j, k]
+                _put_products(free, 0, turn, i * rates, half, j * rates, row, rates, ports)
                 for k in range(rates):
                     pulled[k] = abs(free[k] - inside[i, j, k])
                     inside[i, j, k] = free[k]
@@ -200,21 +199,9 @@ def _in_cone(solve, seen, inside):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
-def _added(solve, pulled, free):
-    """Adds a symmetric matrix' (K, K) product with pulled (K,) to free (K,)."""
-    for m in range(len(pulled)):
-        for k in range(len(free)):
-            free[k] += solve[m, k] * pulled[m]
-
-
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def _product(first, second, out):
-    """out[m, i] = sum over r of first[i, r] second[m, r], of matrices (N, N, K)."""
-    ports, rates = first.shape[1], first.shape[2]
-    for m in range(ports):
-        for i in range(ports):
-            for k in range(rates):
-                out[m, i, k] = 0.0
-            for r in range(ports):
-                for k in range(rates):
-                    out[m, i, k] += first[i, r, k] * second[m, r, k]
+def _put_products(out, at, first, i, second, j, apart, rates, count):
+    """out at `at` is the sum of `count` rows of first, from i on, times those of second, from j on: rows of so many
+    rates, the next of either that far apart."""
+    for n in range(0, rates, LANES):
+        put_sum(out, at + n, first, i + n, 0, second, j + n, 0)  # zeros
+        add_products(out, at + n, first, i + n, second, j + n, apart, count)
