@@ -161,7 +161,8 @@ def test_a_face_narrower_than_the_sensor_is_nearly_covered_on_the_sensor(side: f
     """What is covered in steps, a little more or less, does not end beyond the sensor's face."""
     for begun in np.linspace(0.0, WIDTH - side, 41).tolist():
         part = begun, begun + side
-        spot = Spot(1.0, 2e6, (side, side), 0.02, Footprint((part, part), (side / 2,) * 2, (side / 2,) * 2))
+        half = side / 2, side / 2
+        spot = Spot(1.0, 2e6, (side, side), 0.02, Footprint((part, part), half, half))
         for low, high in spot.alike(WIDTH).contact.covered:
             assert 0 <= low < high <= WIDTH * (1 + 1e-12)
             assert high - low == pytest.approx(side, abs=WIDTH / 17)
