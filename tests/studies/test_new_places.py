@@ -17,9 +17,9 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def study() -> Iterator[ModuleType]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "speed"))
     yield importlib.import_module("new_places")
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "speed"))
     del sys.modules["new_places"]
 
 

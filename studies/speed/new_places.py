@@ -10,8 +10,8 @@ each start the least of several equal runs.
     anywhere  on boxes of 4 to 60 mm, each fingertip anywhere, a part of the face covered
     known     the same, but the elements under the contacts are known; only the boxes are new
 
-    python studies/new_places.py             the figures in docs/benchmarks.md, a minute
-    python studies/new_places.py --rows 16 --json
+    python studies/speed/new_places.py             the figures in docs/benchmarks.md, a minute
+    python studies/speed/new_places.py --rows 16 --json
 """
 
 from __future__ import annotations
