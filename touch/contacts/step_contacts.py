@@ -4,11 +4,15 @@ each pad feels.
 F: fingertips, N: what a pad may meet, C: contacts.
 """
 
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import math
 
 import mujoco
+
 from thermograsp.compiled import njit
 
 from ...thermal.contact import CURVED_TABLE
