@@ -112,8 +112,8 @@ def _layout() -> np.ndarray:
 
 @cache
 def _places() -> tuple[int, ...] | None:
-    """Words of an mjData in which the addresses of contacts, forces and types stand; None where this MuJoCo's bindings do
-    not tell where an mjData is."""
+    """Words of an mjData in which the addresses of contacts, forces and types stand; None where this MuJoCo's bindings
+    do not tell where an mjData is."""
     data = _pressed()
     first = getattr(data, "_address", None)
     if first is None or ctypes.c_uint64.from_address(first).value != data.narena:
