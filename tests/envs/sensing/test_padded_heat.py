@@ -172,6 +172,18 @@ def test_a_mesh_is_felt_as_the_box_that_it_is(
     np.testing.assert_allclose(found[4:], box[4:], atol=0.06)
 
 
+@pytest.mark.parametrize("force", [3.0, 25.0])
+def test_a_bare_rod_s_mesh_is_felt_as_the_rod(force: float, tmp_path: Path) -> None:
+    """At all forces: the strip that a rigid face touches is narrower than the one of a soft pad, and as long."""
+    file = tmp_path / "rod.stl"
+    trimesh.creation.cylinder(ROD.size[0] / 2, ROD.size[2], sections=96).export(file)
+    mesh = ObjectSpec(name="rod", shape="mesh", mesh=str(file))
+    found, expected = (
+        held(heat_of(body_of("aluminium", spec, None)), ROD, 50, force)[0, -1, 0] for spec in (mesh, ROD)
+    )
+    assert found == pytest.approx(expected, abs=0.1)
+
+
 @pytest.mark.slow
 def test_a_mesh_forgets_less_than_a_box_where_a_pad_returns_to(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
