@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -393,13 +394,18 @@ class SimulationConfig:
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         sizes = [1.0, *(factor for some in factors for factor in some)]
-        bodies = [
-            self.body(stack, first, shape, {**plain, "size_factor": size})
-            for shape in self.shapes
-            for size in sizes
-        ]
-        for body in bodies:
-            body.check_felt()
+        bodies = []
+        for shape, size in product(self.shapes, sizes):
+            try:
+                bodies.append(self.body(stack, first, shape, {**plain, "size_factor": size}))
+                bodies[-1].check_felt()
+            except InvalidValueError as error:
+                if size == 1.0:
+                    raise
+                raise InvalidValueError(
+                    f"object {shape.name!r} cannot be {size:g} times as large, which randomize's Size may draw: "
+                    f"narrow its range ({error})"
+                ) from error
         return bodies
 
     def gripper_for(self, bodies: Sequence[GraspBody]) -> GripperModel:
