@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -29,6 +30,7 @@ from thermograsp.thermal import (
 _MOMENTS = 40
 _SHOWN = 0.03  # probability that a material reaches at some time to have a curve of its own
 _MOST = 6
+_LINE = 120  # characters of the title that fit above the three axes
 
 
 def plot_identification(
@@ -48,12 +50,18 @@ def plot_identification(
     with style():
         figure = Figure(figsize=(11.5, 3.9), layout="constrained")
         curve, chance, density = figure.subplots(1, 3, width_ratios=(1, 1.15, 1))
-        figure.suptitle(found[-1].message, x=0.01, ha="left", size=10.5, weight="semibold")
+        title(figure, found[-1].message)
         _voltage(curve, t, voltage, found[-1])
         _chance(chance, np.array(moments), found, candidates)
         _effusivity(density, found[-1], candidates)
         with atomic_write(path) as temporary:
             figure.savefig(temporary)
+
+
+def title(figure: Figure, message: str) -> None:
+    """Writes the message above the axes, a line for each of its clauses, or two for a long one."""
+    lines = [textwrap.fill(clause, _LINE) for clause in message.split("; ")]
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", size=10.5, weight="semibold")
 
 
 def _voltage(axes: Axes, t: np.ndarray, voltage: np.ndarray, last: Identification) -> None:

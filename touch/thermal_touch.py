@@ -49,7 +49,9 @@ from .scene import (
     own_shapes,
     pads,
     refuse_overlap,
+    refuse_sleep,
     samples_in,
+    warn_of_fixed_bodies,
     whole_steps,
 )
 
@@ -123,6 +125,8 @@ class ThermalTouch:
         self._sample_steps = self._substeps // self._samples
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
+        warn_of_fixed_bodies(model, fingertips, self._pads, self._shapes)
+        refuse_sleep(model, self._pads, self._shapes)
         self._shapes = own_shapes(model, self._shapes, self._pads)
         self._glued = glued_elements(model, self._shapes, ambient)
         self._many, count = worlds is not None, int(worlds or 1)

@@ -362,7 +362,9 @@ class GraspBody:
             for ring, each in zip(rings, closed.rings, strict=True)
         ]
         lying = closed.lying
-        if any(step):
+        if bare is not None:  # the pads that align themselves are soft, and what they touch is broader
+            lying = mesh.lying_at(step, self.skin, self.touched)
+        elif any(step):
             lies, lay = (mesh.lying_at(each, self.skin, self.touched) for each in (step, (0, 0, 0, 0, 0)))
             lying = lying + lies - lay
             lying[:, 1:] = np.clip(lying[:, 1:], 0.0, 1.0)

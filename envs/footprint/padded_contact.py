@@ -1,4 +1,4 @@
-"""What a fingertip with a pad around its sensor touches of an object: the sensor's face, and each ring of the pad.
+"""What a fingertip touches of an object: the sensor's face, and each ring of the pad around it where heat knows one.
 
 Boxes have closed forms, balls and cylinders tables of face and rings by force and place (thermal/pressed), and meshes
 tables by force, made anew where they slip (slipped_mesh.py).
@@ -46,7 +46,7 @@ class PadContact(NamedTuple):
     """What touch_pads takes of an object. law: (1,) FOOTPRINT_LAW of the face, and beside: (1,) CONTACT_LAW of a flat
     object under the pad. tables: (1 + RINGS, CURVED_TABLE) of face and rings on a ball or a cylinder, none of others.
     rings: (RINGS,) FOOTPRINT_LAW on a mesh, and lying: (9, 5) of it, see GraspBody.around_face. halves: (RINGS,) m,
-    half the rings' outer sides."""
+    half the rings' outer sides. Without a pad there are none of rings, and halves is empty."""
 
     law: np.ndarray
     beside: np.ndarray
@@ -57,12 +57,13 @@ class PadContact(NamedTuple):
 
 
 def pad_contact(body: GraspBody, step: tuple[int, ...] = (0, 0, 0, 0, 0)) -> PadContact:
-    """Of an object that a fingertip with a surround is to touch. step: of a mesh, see slipped_mesh.py."""
-    assert body.surround is not None
+    """Of an object that a fingertip is to touch. step: of a mesh, see slipped_mesh.py."""
     law, beside = np.zeros(1, FOOTPRINT_LAW), np.zeros(1, CONTACT_LAW)
     law[0], beside[0] = body.slipped_law(step) if any(step) else body.law, body.pad_law
-    made, sides = material(body.surround.material), ring_sides(body.stack.width, body.surround)
-    rings = [Ring(made, *each) for each in pairwise((body.stack.width, *sides))]
+    rings, sides = [], ()
+    if body.surround is not None:
+        made, sides = material(body.surround.material), ring_sides(body.stack.width, body.surround)
+        rings = [Ring(made, *each) for each in pairwise((body.stack.width, *sides))]
     tables, laws, lying = np.zeros((0, CURVED_TABLE)), np.zeros(RINGS, FOOTPRINT_LAW), np.zeros((9, 5))
     if body.contact_shape in ("cylinder", "sphere"):
         radius, length = body.spec.size[0] / 2, body.spec.size[2]
@@ -70,7 +71,8 @@ def pad_contact(body: GraspBody, step: tuple[int, ...] = (0, 0, 0, 0, 0)) -> Pad
         every = (curved_table(*of_body), *(_table(RoundRing(*of_body, ring)) for ring in rings))
         tables = np.stack(every)
     elif body.closed_mesh is not None:
-        laws[:], lying = body.around_face(step, rings)
+        around, lying = body.around_face(step, rings)
+        laws[: len(rings)] = around
     return PadContact(law, beside, tables, laws, lying, np.array(sides) / 2)
 
 
@@ -105,7 +107,7 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                 aside = math.sqrt(at[0] * at[0] + at[1] * at[1])
                 conducts, area, long = curved_contact(tables[0], force, aside, at[2])
                 curved_shares(tables[0], force, aside, at[2], shares)
-                for ring in range(RINGS):
+                for ring in range(len(halves)):
                     through[ring], areas[ring], _ = curved_contact(tables[1 + ring], force, aside, at[2])
             elif law[0].shape == TABLE:
                 area, load = footprint(law[0], force, at)
@@ -117,16 +119,17 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                         lying[k + 1, 1 + side] - lying[k, 1 + side]
                     )
                 long = (lying[k, 0] + (step - k) * (lying[k + 1, 0] - lying[k, 0])) * math.sqrt(area)
-                for ring in range(RINGS):
+                for ring in range(len(halves)):
                     areas[ring], load = footprint(rings[ring], force, at)
                     through[ring] = solid_conduction(rings[ring], areas[ring], load)
             else:
                 area, load = footprint(law[0], force, at)
                 conducts = solid_conduction(law[0], area, load) + gas_conduction(law[0], force, at)
                 long = flat_patch(law[0], area, at, shares) if area > 0.0 else 0.0
-                even = beside_face(beside[0], halves, force, at, areas)
-                for ring in range(RINGS):
-                    through[ring] = even * areas[ring]
+                if len(halves) > 0:
+                    even = beside_face(beside[0], halves, force, at, areas)
+                    for ring in range(len(halves)):
+                        through[ring] = even * areas[ring]
             for k in range(s * samples // substeps, samples):  # as kernel.py's _share
                 part = min((s + 1) * samples, (k + 1) * substeps) - max(s * samples, k * substeps)
                 if part <= 0:
@@ -139,7 +142,7 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                     touch[CLOSED] += weight
                     for side in range(4):
                         touch[ASIDE + side] += weight * area * shares[side]
-                for ring in range(RINGS):
+                for ring in range(len(halves)):
                     if through[ring] > 0.0:
                         touch[BESIDE + 3 * ring] += weight * through[ring]
                         touch[BESIDE + 3 * ring + 1] += weight * areas[ring]

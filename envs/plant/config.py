@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -69,7 +70,8 @@ class SimulationConfig:
     and degree; the object lies within +- these of its own place, drawn per episode. randomize: what else differs from
     episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one). anywhere:
     heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; False: each patch is
-    the middle of a face; "auto": it knows on boxes whose edges may come within 2 mm of a sensor's face. gripper: an
+    the middle of a face; "auto": it knows on boxes whose edges may come within 2 mm of a sensor's face. Only True has
+    the true size of round contacts at each force, see docs/physics.md (The contact). gripper: an
     MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None for the shipped one. solver: MuJoCo's
     time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10 ms samples.
     threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a name of
@@ -189,15 +191,20 @@ class SimulationConfig:
         check_touched_by_pad(self.surround, (*self.shapes, *self.others))
 
     @cached_property
-    def padded(self) -> bool:
-        """Whether sensors have a pad around them which may touch more than the middle of boxes' faces, so that heat has
-        fields of its own for it."""
+    def by_fields(self) -> bool:
+        """Whether heat flows in the fields of ThermalTouch, which know where it enters and how broad a contact is at
+        each force: round objects and meshes with `anywhere`, and all that a pad around the sensor may touch beside the
+        middle of boxes' faces."""
         sizes = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         least = min((1.0, *(factor for some in sizes for factor in some)))
         every = (*(scaled(shape, least) for shape in self.shapes), *self.others)
-        return self.surround is not None and any(
-            shape.shape != "box" or self._anywhere(shape) for shape in every
-        )
+        if self.surround is not None:
+            return any(shape.shape != "box" or self._anywhere(shape) for shape in every)
+        if self.anywhere is not True or self.mode == "O" or self.heated is not None:
+            return False
+        plain = not any(shape.parts or shape.reservoir is not None for shape in every)
+        ideal = self.thermostat is None and self.face_temperature is None
+        return plain and ideal and any(shape.shape != "box" for shape in every)
 
     @property
     def _sensor(self) -> SensorStack | HeatedStack:
@@ -368,7 +375,7 @@ class SimulationConfig:
             self.fingertips,
             drawn["roughness_factor"],
             usual if room is None else room,
-            self._anywhere(spec) and (self.surround is None or self.padded),
+            self._anywhere(spec) and (self.surround is None or self.by_fields),
             self.any_size,
             self.worn,
             self.around,
@@ -387,13 +394,18 @@ class SimulationConfig:
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         sizes = [1.0, *(factor for some in factors for factor in some)]
-        bodies = [
-            self.body(stack, first, shape, {**plain, "size_factor": size})
-            for shape in self.shapes
-            for size in sizes
-        ]
-        for body in bodies:
-            body.check_felt()
+        bodies = []
+        for shape, size in product(self.shapes, sizes):
+            try:
+                bodies.append(self.body(stack, first, shape, {**plain, "size_factor": size}))
+                bodies[-1].check_felt()
+            except InvalidValueError as error:
+                if size == 1.0:
+                    raise
+                raise InvalidValueError(
+                    f"object {shape.name!r} cannot be {size:g} times as large, which randomize's Size may draw: "
+                    f"narrow its range ({error})"
+                ) from error
         return bodies
 
     def gripper_for(self, bodies: Sequence[GraspBody]) -> GripperModel:

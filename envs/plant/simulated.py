@@ -30,7 +30,7 @@ from .truth import INFO, Truth
 
 if TYPE_CHECKING:
     from ..readout import FaceTemperatureState
-    from ..sensing import PaddedHeatState, SceneHeatState, SceneHeatStep
+    from ..sensing import FieldHeatState, SceneHeatState, SceneHeatStep
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class PlantState:
     with nowhere else, by keyword."""
 
     mechanics: MechanicsState
-    heat: HeatState | SceneHeatState | PaddedHeatState
+    heat: HeatState | SceneHeatState | FieldHeatState
     electronics: ElectronicsState
     thermostats: tuple[np.ndarray, ...]
     faces: FaceTemperatureState | None
@@ -58,7 +58,7 @@ class SimulatedPlant:
     scenes; None for the config's objects or scene. scenes: each environment's objects."""
 
     def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
-        if not config.padded:
+        if not config.by_fields:
             start_compiling(boxes=config.by_kernels)
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = whole_number("num_envs", num_envs, 1), config, config.stack
@@ -265,10 +265,10 @@ class SimulatedPlant:
     def _heat(self) -> Any:
         """What computes it; nothing that pads or several objects need is loaded without them."""
         rows, objects, settings = self.num_envs, len(self.layout.specs), self.config.heat
-        if self.config.padded:
-            from ..sensing import PaddedHeat, PaddedScenes
+        if self.config.by_fields:
+            from ..sensing import FieldHeat, FieldScenes
 
-            return PaddedHeat(rows, **settings) if self._alone else PaddedScenes(rows, objects, **settings)
+            return FieldHeat(rows, **settings) if self._alone else FieldScenes(rows, objects, **settings)
         if self._alone:
             return GraspHeat(rows, **settings)
         from ..sensing import SceneHeat

@@ -7,8 +7,8 @@ from thermograsp.doors import opened
 if TYPE_CHECKING:
     from .ahead import start_compiling
     from .boxes import served_anywhere, served_in_the_middle
+    from .field_heat import FieldHeat, FieldHeatState, FieldScenes
     from .heat import GraspHeat, HeatState, HeatStep
-    from .padded_heat import PaddedHeat, PaddedHeatState, PaddedScenes
     from .rows import EVENTS, NEW_PATCH, OVER_TEMPERATURE
     from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
 
@@ -19,9 +19,9 @@ __all__ = [
     "GraspHeat",
     "HeatState",
     "HeatStep",
-    "PaddedHeat",
-    "PaddedHeatState",
-    "PaddedScenes",
+    "FieldHeat",
+    "FieldHeatState",
+    "FieldScenes",
     "SceneHeat",
     "SceneHeatState",
     "SceneHeatStep",

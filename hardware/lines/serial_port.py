@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import logging
 import os
+import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ from ..errors import (
 _LOG = logging.getLogger(__name__)
 BAUD = 500_000  # a 16 MHz AVR meets it exactly; 115200 is 2.1 % off there
 _READ_WITHIN = 0.02  # s; to change it later costs several system calls each time
+_OLD_WITHIN = 0.05  # s after the opening, in which bytes that waited have come
 _WRITE_WITHIN = 0.25  # s, for a frame that takes about 1 ms
 _BY_ID = Path("/dev/serial/by-id")
 
@@ -61,6 +63,11 @@ class SerialPort:
         except (*self._lost, ValueError) as error:
             raise _open_error(path, baud, error) from error
         self._ask_for_low_latency()
+        try:
+            self._discard()
+        except LinkLostError:
+            self.close()
+            raise
 
     def read(self, timeout: float) -> bytes:
         """See Transport; never waits longer than 0.02 s, nor, unless timeout is 0, for less."""
@@ -86,6 +93,12 @@ class SerialPort:
         """See Transport."""
         with suppress(*self._lost):
             self._port.close()
+
+    def _discard(self) -> None:
+        """Drops what came while nobody listened and waits in the adapter or the system: its samples would seem new."""
+        until = time.monotonic() + _OLD_WITHIN
+        while time.monotonic() < until:
+            self.read(_READ_WITHIN)
 
     def _ask_for_low_latency(self) -> None:
         """An FTDI adapter holds bytes back for 16 ms otherwise; most others have no such mode."""

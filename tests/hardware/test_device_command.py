@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -148,6 +149,15 @@ def test_record_through_a_bad_line_is_not_a_success(served: PtyDevice, tmp_path:
     file = str(tmp_path / "line.tgr")
     assert main(["device", "record", served.path, file, "--seconds", "0.8", "--json"]) == 1
     assert replay(file).counts.lost > 0
+
+
+def test_a_record_that_ends_on_a_lost_line_is_not_a_success(served: PtyDevice, tmp_path: Path) -> None:
+    """It has what came before, and was told as a success."""
+    unplugging, file = threading.Timer(1.0, served.unplug), str(tmp_path / "unplugged.tgr")
+    unplugging.start()
+    assert main(["device", "record", served.path, file, "--seconds", "2.0"]) == 1
+    unplugging.join()
+    assert len(replay(file).samples) > 10
 
 
 def test_record_leaves_no_file_where_there_is_no_device(

@@ -59,6 +59,20 @@ def attended(tips: Fingertips, line: VirtualLine, seconds: float) -> Samples:
     return tips.take()
 
 
+def test_what_came_while_nobody_listened_is_not_taken_for_new(tmp_path: Path) -> None:
+    """A device goes on when its host is gone, and adapters and systems keep what they have room for."""
+    pytest.importorskip("serial")
+    with serving(tmp_path, EmulatedFingertips(ramp)) as served:
+        driver(served, rate=1000).close()
+        time.sleep(1.0)
+        begun = served.now
+        with driver(served, rate=1000) as tips:
+            samples = tips.wait(40, 1.0)
+            statistics = tips.statistics()
+    assert samples.device_time[0] > begun
+    assert abs(statistics.drift) < 0.05 and statistics.rejected == 0
+
+
 def test_a_kilohertz_without_a_loss(tmp_path: Path) -> None:
     pytest.importorskip("serial")
     seconds = size(1.5, 60.0)

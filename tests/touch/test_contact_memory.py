@@ -41,8 +41,10 @@ def test_addresses_are_those_of_the_bindings_arrays() -> None:
     _, data, _ = pressed(200)
     assert data.ncon > 3
     table, found = memory.ContactMemory(data).table, data.contact
-    first, force = (np.ctypeslib.as_array((ctypes.c_int64 * 1).from_address(int(at)))[0] for at in table[:2])
-    assert force == data.efc_force.ctypes.data
+    first, force, kind = (
+        np.ctypeslib.as_array((ctypes.c_int64 * 1).from_address(int(at)))[0] for at in table[:3]
+    )
+    assert (force, kind) == (data.efc_force.ctypes.data, data.efc_type.ctypes.data)
     for name, column in (
         ("pos", memory.POS),
         ("frame", memory.FRAME),
@@ -52,6 +54,16 @@ def test_addresses_are_those_of_the_bindings_arrays() -> None:
         array = getattr(found, name)
         assert first + table[column] * array.itemsize == array.ctypes.data
         assert array.strides[0] == table[memory.STRIDE]
+
+
+def test_friction_cones_may_change_at_any_time() -> None:
+    """A normal force of pyramids is the sum of their edges, of an elliptic cone its first number; with the
+    cones that the model began with, fingers of 8 N were read as 2 N."""
+    model, data, touch = pressed(200)
+    for cone in (mujoco.mjtCone.mjCONE_PYRAMIDAL, mujoco.mjtCone.mjCONE_ELLIPTIC):
+        model.opt.cone = cone
+        go(model, data, touch, 40)
+        np.testing.assert_allclose(touch.reading.force + touch.reading.beside, 8.0, rtol=0.01)
 
 
 def test_a_copy_reads_its_own_contacts() -> None:

@@ -132,8 +132,8 @@ def _message(result: Identification) -> str:
     share = f"{result.best.replace('_', ' ')} ({100 * result.probability.max():.0f} %)"
     low, high = result.effusivity.interval()
     object_ = (
-        f"its effusivity is {result.effusivity.median:.0f} W s^0.5/(m2 K), and from {low:.0f} to {high:.0f} with a "
-        "probability of 90 %"
+        f"its effusivity is {result.effusivity.median:.0f} W s^0.5/(m2 K), with 90 % probability between {low:.0f} and "
+        f"{high:.0f}"
     )
     mean, deviation = result.difference
     several = result.likely()

@@ -16,9 +16,11 @@ from functools import cache
 import mujoco
 import numpy as np
 
-CONTACTS, FORCES, XPOS, XMAT, GEOM_XPOS, GEOM_XMAT, STRIDE, POS, FRAME, GEOM, DIM, EFC, WORDS = range(13)
-"""Of a table: addresses of the places where the addresses of mjContact and of efc_force stand, addresses of poses;
-mjContact's size in bytes, and where its fields are, in numbers of their own size."""
+CONTACTS, FORCES, TYPES, XPOS, XMAT, GEOM_XPOS, GEOM_XMAT, STRIDE, POS, FRAME, GEOM, DIM, EFC, WORDS = range(
+    14
+)
+"""Of a table: addresses of the places where the addresses of mjContact, of efc_force and of efc_type stand, addresses
+of poses; mjContact's size in bytes, and where its fields are, in numbers of their own size."""
 _WORD = 8
 _FIELDS = (("pos", POS), ("frame", FRAME), ("geom", GEOM), ("dim", DIM), ("efc_address", EFC))
 _MOST = 1 << 16  # words of an mjData
@@ -33,7 +35,7 @@ class ContactMemory:
     """Of one MjData. table: (WORDS,) integers, as the constants say; it holds while the MjData lives."""
 
     def __init__(self, data: mujoco.MjData) -> None:
-        self._data, self._said = data, np.zeros(2, np.int64)
+        self._data, self._said = data, np.zeros(XPOS, np.int64)
         self.table = np.zeros(WORDS, np.int64)
         for column, array in zip(
             (XPOS, XMAT, GEOM_XPOS, GEOM_XMAT),
@@ -48,10 +50,10 @@ class ContactMemory:
         clock = None if places is None else _clock()
         self.clock = None if clock is None else (data._address + clock[0], data._address + clock[1])
         """Addresses of the data's time s, and of the number of contacts, 32 bits; None where they are not known."""
-        words = self._said.ctypes.data + _WORD * np.arange(2)
+        words = self._said.ctypes.data + _WORD * np.arange(XPOS)
         self.address = self.table.ctypes.data
         """Of the table; it holds as long as this does."""
-        self.table[:2] = words if places is None else data._address + _WORD * np.array(places)
+        self.table[:XPOS] = words if places is None else data._address + _WORD * np.array(places)
 
     def __reduce__(self) -> tuple[type[ContactMemory], tuple[mujoco.MjData]]:
         """A copy is of a copy of the MjData, which is elsewhere."""
@@ -59,7 +61,7 @@ class ContactMemory:
 
     def refresh(self) -> None:
         """Says where the contacts of the step that was just taken are."""
-        self._said[:] = _contacts(self._data), self._data.efc_force.ctypes.data
+        self._said[:] = _addresses(self._data)
 
 
 def clock_of(data: mujoco.MjData) -> int | None:
@@ -68,10 +70,10 @@ def clock_of(data: mujoco.MjData) -> int | None:
     return None if clock is None else data._address + clock[0]
 
 
-def _contacts(data: mujoco.MjData) -> int:
-    """The address of the first mjContact."""
-    found = data.contact
-    return found.pos.ctypes.data - _WORD * int(_layout()[POS - STRIDE])
+def _addresses(data: mujoco.MjData) -> tuple[int, int, int]:
+    """Of the first mjContact, of efc_force and of efc_type."""
+    contacts = data.contact.pos.ctypes.data - _WORD * int(_layout()[POS - STRIDE])
+    return contacts, data.efc_force.ctypes.data, data.efc_type.ctypes.data
 
 
 @cache
@@ -109,22 +111,22 @@ def _layout() -> np.ndarray:
 
 
 @cache
-def _places() -> tuple[int, int] | None:
-    """Words of an mjData in which the addresses of contacts and forces stand; None where this MuJoCo's bindings do not
-    tell where an mjData is."""
+def _places() -> tuple[int, ...] | None:
+    """Words of an mjData in which the addresses of contacts, forces and types stand; None where this MuJoCo's bindings
+    do not tell where an mjData is."""
     data = _pressed()
     first = getattr(data, "_address", None)
     if first is None or ctypes.c_uint64.from_address(first).value != data.narena:
         return None
     found = []
-    for wanted in (_contacts(data), data.efc_force.ctypes.data):
+    for wanted in _addresses(data):
         at = next(
             (n for n in range(_MOST) if ctypes.c_uint64.from_address(first + _WORD * n).value == wanted), None
         )
         if at is None:
             return None
         found.append(at)
-    return found[0], found[1]
+    return tuple(found)
 
 
 @cache

@@ -131,7 +131,7 @@ class ContactReader:
         self._point()
 
     def _point(self) -> None:
-        """Says where the first world's arrays are, and whether the model's friction cones are pyramids now."""
+        """Says where the first world's arrays are."""
         first = self._which[0]
         self._first_laws, self._first_curved = self._laws[first], self._curved[first]
         self._first_tilts = self._tilts[first]
@@ -141,8 +141,7 @@ class ContactReader:
             *(self._frames, self._spot, self._first_tilts, self._views),
         )
         self._places = None
-        pyramidal = int(self._model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL)
-        sizes = len(self._role), *self.touches.shape[1:3], len(self._parts), pyramidal, len(self._tables)
+        sizes = len(self._role), *self.touches.shape[1:3], len(self._parts), len(self._tables)
         sizes += self._views.shape[1], ctypes.cast(self._make, ctypes.c_void_p).value or 0
         self._table = table(arrays, sizes)
         self._table_address = self._table.ctypes.data
@@ -188,11 +187,10 @@ class ContactReader:
         return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables), *make, 0))
 
     def clear(self) -> None:
-        """Sums start anew, with the model's kind of friction cones as it is now."""
+        """Sums start anew."""
         self.touches[:] = 0.0
         self.beside[:] = 0.0
         self.substeps = 0
-        self._point()
 
     @property
     def substeps(self) -> int:

@@ -4,9 +4,14 @@ each pad feels.
 F: fingertips, N: what a pad may meet, C: contacts.
 """
 
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import math
+
+import mujoco
 
 from thermograsp.compiled import njit
 
@@ -26,6 +31,7 @@ from .memory import (
     GEOM_XPOS,
     POS,
     STRIDE,
+    TYPES,
     WORDS,
     XMAT,
     XPOS,
@@ -35,15 +41,17 @@ from .sensors import FORCE_AT, PLACE_AT
 from .tilt import TILT
 from .views import VIEW
 
+_PYRAMID = int(mujoco.mjtConstraint.mjCNSTR_CONTACT_PYRAMIDAL)
+
 
 @njit(cache=True, borrows=True, error_model="numpy", short_loops=True)
 def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite or a table could not be made."""
-    memory, entries = words(memory_at, WORDS), words(entries_at, 23)
+    memory, entries = words(memory_at, WORDS), words(entries_at, 22)
     tips, targets, part_count = entries[16], entries[17], entries[18]
-    pyramidal, sides = entries[19], entries[21]
+    sides = entries[20]
     role = words(entries[0], entries[15])
     pads = floats(entries[1], (tips, PAD))
     parts = words(entries[2], (part_count, 4))
@@ -54,7 +62,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     beside = floats(entries[7], tips)
     law = laws(entries[8], (tips, part_count, 6))
     curved = words(entries[9], (tips, part_count, sides, 1 + RINGS))
-    tables = floats(entries[10], (entries[20], CURVED_TABLE))
+    tables = floats(entries[10], (entries[19], CURVED_TABLE))
     frames, spot = floats(entries[11], (tips, PLACED)), floats(entries[12], SPOT)
     tilts = floats(entries[13], (tips, part_count, 3, TILT))
     views = floats(entries[14], (part_count, sides, VIEW))
@@ -62,6 +70,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
     numbers = floats(place, (count, memory[STRIDE] // 8))
     whole = integers(place, (count, memory[STRIDE] // 4))
     efc = floats(words(memory[FORCES], 1)[0], 0)  # as many as MuJoCo says
+    kind = integers(words(memory[TYPES], 1)[0], 0)
     xpos, xmat = floats(memory[XPOS], (1, 3)), floats(memory[XMAT], (1, 9))
     geom_xpos = floats(memory[GEOM_XPOS], (1, 3))
     geom_xmat = floats(memory[GEOM_XMAT], (1, 9))
@@ -79,7 +88,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
         if first >= tips:
             continue
         force = efc[address[c]]
-        if pyramidal == 1 and dim[c] > 1:
+        if kind[address[c]] == _PYRAMID:
             for k in range(1, 2 * (dim[c] - 1)):
                 force += efc[address[c] + k]
         if not math.isfinite(force):
@@ -107,7 +116,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
             beside[first] += weight * force
     if any_touch and not feel(
         xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, tilts, bend, curve, pushed,
-        touches, weight, spot, views, entries[22],
+        touches, weight, spot, views, entries[21],
     ):  # fmt: skip
         return 0
     return 1

@@ -18,8 +18,10 @@ from ..scene import (
     bodies,
     glued_elements,
     pads,
+    refuse_sleep,
     samples_in,
     warn_of_boxes,
+    warn_of_fixed_bodies,
     whole_steps,
 )
 from .library import load_plugin
@@ -73,6 +75,8 @@ def install(
     substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
+    warn_of_fixed_bodies(model, fingertips, found, shapes)
+    refuse_sleep(model, found, shapes)
     for pad in found:
         if pad.surround is not None:
             raise InvalidValueError(

@@ -4,9 +4,11 @@ from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodi
 from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
+from .fixed_bodies import warn_of_fixed_bodies
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
 from .own_shape import own_shapes, warn_of_boxes
+from .sleeping import refuse_sleep
 from .steps import LONGEST, samples_in, whole_steps
 
 __all__ = [
@@ -32,9 +34,11 @@ __all__ = [
     "own_shapes",
     "pads",
     "refuse_overlap",
+    "refuse_sleep",
     "rotation",
     "samples_in",
     "triangles",
     "warn_of_boxes",
+    "warn_of_fixed_bodies",
     "whole_steps",
 ]

@@ -56,9 +56,9 @@ def run(args: argparse.Namespace) -> int:
             recorder.close()
             file.unlink()
             raise
+        broken = ""
         with tips, output.progress(seconds) as advance:
             begun = last = time.monotonic()
-            broken = ""
             try:
                 while not recorder.failure and (seconds is None or last - begun < seconds):
                     time.sleep(min(_PERIOD, seconds or _PERIOD))
@@ -80,4 +80,4 @@ def run(args: argparse.Namespace) -> int:
     output.document(
         {"file": str(file), "bytes": recorder.bytes, "seconds": last - begun, **link_document(statistics)}
     )
-    return 1 if statistics.lost or statistics.reconnects or not statistics.samples else 0
+    return 1 if broken or statistics.lost or statistics.reconnects or not statistics.samples else 0

@@ -175,6 +175,10 @@ def test_a_saved_state_keeps_what_was_drawn():
         ({"randomize": ["mass"]}, "is not a randomisation"),
         ({"randomize": [Mass(), Mass()]}, "given twice"),
         ({"randomize": [Size((3.0,))]}, "wide"),
+        (
+            {"objects": "apple", "randomize": [Size((0.8, 1.2))]},
+            "cannot be 1.2 times as large.*narrow its range",
+        ),
         ({"objects": []}, "at least one"),
         ({"substeps": 7}, "whole number"),
         ({"randomize": [ObjectTemperature(-500.0, 0.0)]}, "24 °C with randomize's ObjectTemperature.*-476"),

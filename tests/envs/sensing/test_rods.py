@@ -80,5 +80,6 @@ def test_a_rod_s_mesh_is_felt_as_the_rod_touched_anywhere(skin: str | None, tmp_
     trimesh.creation.cylinder(0.015, 0.05, sections=96).export(tmp_path / "rod.stl")
     rod = ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05))
     mesh = ObjectSpec(shape="mesh", mesh=str(tmp_path / "rod.stl"), size=(0.03, 0.03, 0.05))
-    found = environment("aluminium", skin, mesh)
+    found = environment("aluminium", skin, mesh, anywhere=True)
     assert found == pytest.approx(environment("aluminium", skin, rod, anywhere=True), abs=0.12)
+    assert found == pytest.approx(environment("aluminium", skin, mesh), abs=0.3)

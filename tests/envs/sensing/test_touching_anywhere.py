@@ -330,9 +330,17 @@ def test_cubes_and_cylinders_are_touched_anywhere_where_that_is_asked():
     round_one = ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05))
     box = GraspBatch(1, material="glass", task=ENDLESS)
     plain = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one)
-    requested = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one, anywhere=True, tolerance=0.1)
+    words = {"material": "glass", "task": ENDLESS, "objects": round_one, "anywhere": True, "tolerance": 0.1}
+    requested, mapped = GraspBatch(1, **words), GraspBatch(1, **words, face_temperature=(3, 3))
     cube = GraspBatch(1, material="glass", task=ENDLESS, anywhere=True, tolerance=0.05)
-    for batch, rung in ((box, "network:"), (cube, "kernels:"), (plain, "network:"), (requested, "body:")):
+    every = (
+        (box, "network:"),
+        (cube, "kernels:"),
+        (plain, "network:"),
+        (requested, "fields:"),
+        (mapped, "body:"),
+    )
+    for batch, rung in every:
         batch.reset([0], [np.random.default_rng(0)])
         step = batch.step(action_of(0.085, 10.0, 0.0)[None])
         assert step.info(0)["rung"].startswith(rung)

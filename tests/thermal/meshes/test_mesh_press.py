@@ -9,6 +9,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.thermal.meshes import press as press_module
 from thermograsp.thermal.meshes.press import press_body
 from thermograsp.thermal.meshes.touched import touched_body
+from thermograsp.thermal.network import Demand
 from thermograsp.thermal.numerics.laplace import invert
 from thermograsp.thermal.rungs.layered import Column
 from thermograsp.thermal.surfaces.solid import (
@@ -164,6 +165,17 @@ def test_what_is_told_of_the_error_was_measured(cold):
         assert f"measured {network:.2g} K off" in press.rung.reason
     difference = np.abs(coarse.temperature_drop - cold.temperature_drop)[1:].max()
     assert difference < coarse.rung.error + cold.rung.error
+
+
+def test_where_states_left_out_are_missed_all_of_them_stay():
+    """A tolerance near to rounding is kept by the whole network; it ended an episode with an error."""
+    body, stack = of(trimesh.creation.box(BLOCK), "aluminium"), thermal.sensor("seed")
+    fine, usual = (
+        touched_body(body, [SMALL], stack, Demand(tolerance, 12.0, (1e5,), 3.0), fingertips=1, cache=False)
+        for tolerance in (1e-9, 0.1)
+    )
+    assert fine.error == 0.0 < usual.error <= 0.05
+    assert fine.object.order > usual.object.order and fine.sensor.order > usual.sensor.order
 
 
 def test_what_a_press_in_air_leaves_unmeasured_is_told(monkeypatch):

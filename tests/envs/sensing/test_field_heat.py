@@ -1,5 +1,5 @@
-"""The pad around the sensor on round objects, on meshes and anywhere: beside ThermalTouch and a box of the same shape,
-books of heat, states, and environments."""
+"""Fingertips in fields, with a pad around the sensor or none, on round objects, on meshes and anywhere: beside
+ThermalTouch and a box of the same shape, books of heat, states, and environments."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -20,7 +20,7 @@ import trimesh
 
 import thermograsp.envs  # noqa: F401  (registers the environments)
 from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size
-from thermograsp.envs.sensing import GraspHeat, PaddedHeat, PaddedScenes
+from thermograsp.envs.sensing import FieldHeat, FieldScenes, GraspHeat
 from thermograsp.thermal import material
 from thermograsp.touch import Fingertip, ThermalTouch
 from thermograsp.touch.heat import fields, joined
@@ -46,8 +46,8 @@ def body_of(name: str, spec: ObjectSpec, skin: str | None = SKIN, **words: Any):
     return config.body(config.stack, material(name), spec, {**plain, "object_temperature_shift": 0.0})
 
 
-def heat_of(*bodies: Any, air: float = 0.0) -> PaddedHeat:
-    heat = PaddedHeat(len(bodies), air=air, **SETTINGS)
+def heat_of(*bodies: Any, air: float = 0.0) -> FieldHeat:
+    heat = FieldHeat(len(bodies), air=air, **SETTINGS)
     heat.reset(list(range(len(bodies))), bodies)
     return heat
 
@@ -111,9 +111,12 @@ def test_a_round_object_is_felt_as_by_thermal_touch(spec: ObjectSpec, name: str,
 
 
 @pytest.mark.parametrize("force", [2.0, 30.0])
-def test_at_any_force(force: float) -> None:
-    drop = held(heat_of(body_of("glass", ROD)), ROD, 100, force)[0, :, 0]
-    np.testing.assert_allclose(drop[5:], touched(ROD, "glass", SKIN, "silicone", force)[5:], atol=0.02)
+@pytest.mark.parametrize("surround", ["silicone", None])
+def test_at_any_force(force: float, surround: str | None) -> None:
+    """Networks of one patch feel a ball of aluminium at 2 N and at 30 N as at 10 N: 1.2 K too much and too little."""
+    for name, spec in (("glass", ROD), ("aluminium", BALL)):
+        drop = held(heat_of(body_of(name, spec, surround=surround, anywhere=True)), spec, 100, force)[0, :, 0]
+        np.testing.assert_allclose(drop[5:], touched(spec, name, SKIN, surround, force)[5:], atol=0.02)
 
 
 def test_a_pad_changes_the_drop_by_as_much_as_in_thermal_touch() -> None:
@@ -143,7 +146,7 @@ MOVES = (
 """N, and m of both pads along a face: held, let go, elsewhere, sliding, and back."""
 
 
-def felt(heat: PaddedHeat, spec: ObjectSpec, moves: Any = MOVES) -> np.ndarray:
+def felt(heat: FieldHeat, spec: ObjectSpec, moves: Any = MOVES) -> np.ndarray:
     """(samples, 2) K; heat that flows is in the object."""
     found = []
     for force, (y, z) in moves:
@@ -170,6 +173,18 @@ def test_a_mesh_is_felt_as_the_box_that_it_is(
     box = felt(heat_of(body_of(name, PLATE, anywhere=True, **words)), PLATE, moves)
     found = felt(heat_of(body_of(name, mesh, **words)), PLATE, moves)
     np.testing.assert_allclose(found[4:], box[4:], atol=0.06)
+
+
+@pytest.mark.parametrize("force", [3.0, 25.0])
+def test_a_bare_rod_s_mesh_is_felt_as_the_rod(force: float, tmp_path: Path) -> None:
+    """At all forces: the strip that a rigid face touches is narrower than the one of a soft pad, and as long."""
+    file = tmp_path / "rod.stl"
+    trimesh.creation.cylinder(ROD.size[0] / 2, ROD.size[2], sections=96).export(file)
+    mesh = ObjectSpec(name="rod", shape="mesh", mesh=str(file))
+    found, expected = (
+        held(heat_of(body_of("aluminium", spec, None)), ROD, 50, force)[0, -1, 0] for spec in (mesh, ROD)
+    )
+    assert found == pytest.approx(expected, abs=0.1)
 
 
 @pytest.mark.slow
@@ -237,7 +252,7 @@ def test_one_row_is_as_alone() -> None:
 
 
 def test_a_fingertip_takes_its_warmth_from_one_object_to_the_next() -> None:
-    scenes = PaddedScenes(1, 2, air=0.0, **SETTINGS)
+    scenes = FieldScenes(1, 2, air=0.0, **SETTINGS)
     scenes.reset([0], [[body_of("aluminium", BALL), body_of("glass", ROD)]], np.full((1, 2), 36.0))
     normal, place = np.zeros((1, 2, 10, 2)), np.stack([places(BALL), places(ROD)])[None]
     normal[0, 0], step = 10.0, scenes.rest()
@@ -261,16 +276,18 @@ def test_a_fingertip_takes_its_warmth_from_one_object_to_the_next() -> None:
         {"objects": BALL, "material": "glass", "randomize": [Size((0.8, 1.2))]},
         {"anywhere": True, "material": "steel"},
         {"scene": [BALL, ObjectSpec(name="other", position=(0.0, 0.1))], "material": "glass"},
+        {"objects": BALL, "material": "glass", "surround": None, "anywhere": True},
     ],
-    ids=["ball", "drawn sizes", "anywhere", "scene"],
+    ids=["ball", "drawn sizes", "anywhere", "scene", "without a pad"],
 )
 def test_environments_take_it(words: dict[str, Any]) -> None:
-    env = gymnasium.make("thermograsp/Grasp-v0", surround="silicone", tolerance=0.06, **words).unwrapped
+    words = {"surround": "silicone", "tolerance": 0.06, **words}
+    env = gymnasium.make("thermograsp/Grasp-v0", **words).unwrapped
     for seed in (4, 5):
         observation, info = env.reset(seed=seed)
         for _ in range(60):
             observation, *_, info = env.step(np.array([-1.0, -0.5, 0.0]))
-    assert np.abs(info["temperature_drop"]).max() > 0.1
+    assert np.abs(info["temperature_drop"]).max() > 0.1 and "fields" in str(info["rung"])
     assert all(np.isfinite(np.ravel(each)).all() for each in observation.values())
     env.close()
 
@@ -279,10 +296,10 @@ def test_boxes_whose_edges_come_near_know_where_they_are_touched() -> None:
     """Also where only the smallest that is drawn does."""
     words: dict[str, Any] = {"material": "glass", "surround": "silicone"}
     slim = ObjectSpec(size=(0.02, 0.02, 0.04))
-    assert not SimulationConfig(objects=slim, **words).padded
-    assert SimulationConfig(objects=slim, randomize=[Size((0.7, 1.2))], **words).padded
-    assert not SimulationConfig(objects=slim, anywhere=False, randomize=[Size((0.7, 1.2))], **words).padded
-    assert SimulationConfig(objects=ObjectSpec(size=(0.012, 0.012, 0.04)), **words).padded
+    assert not SimulationConfig(objects=slim, **words).by_fields
+    assert SimulationConfig(objects=slim, randomize=[Size((0.7, 1.2))], **words).by_fields
+    assert not SimulationConfig(objects=slim, anywhere=False, randomize=[Size((0.7, 1.2))], **words).by_fields
+    assert SimulationConfig(objects=ObjectSpec(size=(0.012, 0.012, 0.04)), **words).by_fields
 
 
 def test_several_environments_are_as_each_alone() -> None:

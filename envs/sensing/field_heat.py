@@ -1,6 +1,7 @@
-"""Heat of grasps whose sensors have pads around them, wherever these touch: the fields of ThermalTouch.
+"""Heat of grasps wherever fingertips touch, at each force: the fields of ThermalTouch, with or without a pad around the
+sensor.
 
-A box that is touched in the middle of its faces has a network of its own with a pad (heat.py). All else is here: a
+A box that is touched in the middle of its faces has a network of its own (heat.py), also with a pad. Here a
 round body is a box of its volume and proportions, a mesh as it is, a fingertip touches them where it is, narrow
 contacts spread their heat, and fingertips keep theirs as they go from object to object (touch/heat).
 
@@ -39,7 +40,7 @@ _BOXES = {
 
 
 @dataclass(frozen=True, slots=True)
-class PaddedHeatState:
+class FieldHeatState:
     """Everything that the heat of some environments remembers; picklable. rows: (n, O) HEAT_ROW records. scenes: each
     one's objects. fields: of each, what flows in it. owner: (n, 2) each fingertip's object."""
 
@@ -63,7 +64,7 @@ class _Row:
     air: float
 
 
-class PaddedScenes:
+class FieldScenes:
     """The thermal side of `num_envs` grasps with so many objects each, in T mode. Keywords as GraspHeat's."""
 
     def __init__(
@@ -140,17 +141,17 @@ class PaddedScenes:
             self._tell_temperatures(row)
         return self._step(np.zeros((len(self._rows), self._samples, 2)))
 
-    def state(self, rows: Sequence[int]) -> PaddedHeatState:
+    def state(self, rows: Sequence[int]) -> FieldHeatState:
         """A copy of what the rows remember."""
         chosen = list(rows)
-        return PaddedHeatState(
+        return FieldHeatState(
             self._rows[chosen],
             tuple(self._scenes[row] for row in chosen),
             tuple(self._heats[row].heat.state() for row in chosen),
             self._owner[chosen],
         )
 
-    def set_state(self, rows: Sequence[int], state: PaddedHeatState) -> None:
+    def set_state(self, rows: Sequence[int], state: FieldHeatState) -> None:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
             self._place(row, state.scenes[k], state.rows[k, 0]["sensor_temperature"])
@@ -257,11 +258,11 @@ class PaddedScenes:
         return SceneHeatStep(HeatStep(drop, of_fingertips(objects, owner)), objects, owner)
 
 
-class PaddedHeat:
-    """PaddedScenes of one object each, with GraspHeat's methods."""
+class FieldHeat:
+    """FieldScenes of one object each, with GraspHeat's methods."""
 
     def __init__(self, num_envs: int, **settings: Any) -> None:
-        self._scenes = PaddedScenes(num_envs, 1, **settings)
+        self._scenes = FieldScenes(num_envs, 1, **settings)
 
     def reset(
         self, rows: Sequence[int], bodies: Sequence[GraspBody], sensor_temperatures: np.ndarray | None = None
@@ -283,11 +284,11 @@ class PaddedHeat:
         """What a step would tell of a batch in which nothing has touched yet."""
         return self._scenes.rest().fingertips
 
-    def state(self, rows: Sequence[int]) -> PaddedHeatState:
+    def state(self, rows: Sequence[int]) -> FieldHeatState:
         """A copy of what the rows remember."""
         return self._scenes.state(rows)
 
-    def set_state(self, rows: Sequence[int], state: PaddedHeatState) -> None:
+    def set_state(self, rows: Sequence[int], state: FieldHeatState) -> None:
         """Puts the rows into a state taken by `state`."""
         self._scenes.set_state(rows, state)
 
