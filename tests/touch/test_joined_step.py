@@ -8,7 +8,7 @@ from thermograsp.thermal.kernels import Tip
 from thermograsp.thermal.network import propagator
 from thermograsp.thermal.network import step as reference
 from thermograsp.thermal.numerics import ThermalNetwork
-from thermograsp.touch.heat.fields import BodyField, Place
+from thermograsp.touch.heat.places import BodyField, Place
 from thermograsp.touch.heat.step import room_of, room_size, step
 from thermograsp.touch.heat.systems import SystemPool
 

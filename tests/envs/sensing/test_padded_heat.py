@@ -23,7 +23,7 @@ from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig
 from thermograsp.envs.sensing import GraspHeat, PaddedHeat, PaddedScenes
 from thermograsp.thermal import material
 from thermograsp.touch import Fingertip, ThermalTouch
-from thermograsp.touch.heat import fields, joined
+from thermograsp.touch.heat import joined
 
 BALL = ObjectSpec(name="ball", shape="sphere")
 ROD = ObjectSpec(name="rod", shape="cylinder", size=(0.04, 0.04, 0.08))
@@ -183,8 +183,7 @@ def test_a_mesh_forgets_less_than_a_box_where_a_pad_returns_to(
         return [felt(heat_of(body_of("glass", spec, **words)), PLATE) for spec in specs]
 
     shipped = both()
-    for module in (fields, joined):
-        monkeypatch.setattr(module, "MOST_PLACES", 12)
+    monkeypatch.setattr(joined, "MOST_PLACES", 12)
     box, mesh = both()
     np.testing.assert_allclose(mesh[4:], box[4:], atol=0.02)
     by_box, by_mesh = (np.abs(each - box)[4:].max() for each in shipped)
