@@ -5,11 +5,10 @@ from .fixed import FixedNetworks, FixedPlaces, network_tables
 from .joined import JoinedHeat
 from .march import sample
 from .narrow import narrow_tables
-from .places import AFTERWARDS, TipField, resolution, tip_field, untouched
+from .places import TipField, resolution, tip_field, untouched
 from .records import HeatBalance, HeatState
 
 __all__ = [
-    "AFTERWARDS",
     "ArrayNarrow",
     "FixedNetworks",
     "FixedPlaces",

@@ -35,6 +35,7 @@ from .places import (
     KnownFields,
     Place,
     carried_states,
+    forgotten,
     near,
     resolution,
     rings_of,
@@ -175,8 +176,8 @@ class JoinedHeat:
             self._touches_at = self._touches.ctypes.data
         before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
         if sample(self._address(), self._touches_at, substeps, 0):
-            for w, f, o in np.argwhere(self._new_faces >= 0).tolist():
-                self._settle(w, f, o)
+            for w, o in np.argwhere((self._new_faces >= 0).any(axis=1)).tolist():
+                self._settle(w, o, np.flatnonzero(self._new_faces[w, :, o] >= 0).tolist())
             while self._stale.any():
                 for w in np.flatnonzero(self._stale).tolist():
                     self._stale[w] = False
@@ -454,18 +455,38 @@ class JoinedHeat:
         elif wide < 0:
             self._fade = np.pad(self._fade, ((0, 0), (0, -wide)))
 
-    def _settle(self, w: int, f: int, o: int) -> None:
-        """The pair's place: one that is known near there, or a new one."""
-        place = Place.on_grid(f, int(self._new_faces[w, f, o]), self._new_middles[w, f, o])
-        known = self._fields[w][o].places
-        for number, one in enumerate(known):
-            if near(one, place, NEAR * float(self._widths[f])):
-                self._current[w, f, o] = number
-                break
-        else:
-            self._add(w, o, place)
-        self._place(w, f, o)
-        self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.whole
+    def _settle(self, w: int, o: int, fingertips: Sequence[int]) -> None:
+        """Those fingertips of an object are on places that are known near there, or on new ones; others are forgotten
+        where there would be too many."""
+        before, current = self._fields[w][o], self._current[w, :, o]
+        places = list(before.places)
+        wanted = {
+            f: Place.on_grid(f, self._new_faces[w, f, o], self._new_middles[w, f, o]) for f in fingertips
+        }
+        for f, place in wanted.items():
+            reach = NEAR * float(self._widths[f])
+            known = (number for number, one in enumerate(places) if near(one, place, reach))
+            current[f] = next(known, len(places))
+            if current[f] == len(places):
+                places.append(place)
+        used = {number for number in current.tolist() if number >= 0}
+        idle = [number for number in range(len(before.places)) if number not in used]
+        held, patterns = self._x[w, o, : len(before.rates)], self._level.patterns
+        gone = forgotten(before, patterns, held, idle, len(idle) - MOST_PLACES)
+        kept = [number for number in range(len(places)) if number not in gone]
+        whole = tuple(number in used for number in kept)
+        after = self._known.field(o, self._materials[w][o], tuple(places[number] for number in kept), whole)
+        if after is not before:
+            heat = carried_states(before, after, patterns, held)
+            current[:] = [kept.index(known) if known >= 0 else -1 for known in current.tolist()]
+            self._fields[w][o] = after
+            self._renumber(w)
+            self._x[w, o] = 0.0
+            self._x[w, o, : len(heat)] = heat
+        for f in range(len(self._pads)):
+            self._place(w, f, o)
+        for f, place in wanted.items():
+            self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.whole
         self._stale[w] = True
 
     def _place(self, w: int, f: int, o: int) -> None:
@@ -483,29 +504,6 @@ class JoinedHeat:
         field = self._fields[w][o]
         at = int(self._current[w, f, o])
         self._pairs.spread(w, f, o, seen_of(self._materials[w][o], field.covered[at]))
-
-    def _add(self, w: int, o: int, place: Place) -> None:
-        """A new place of an object; the one that was in use the longest ago goes where there would be too many."""
-        before = self._fields[w][o]
-        current = self._current[w, :, o]
-        used = {int(number) for number in current if number >= 0}
-        used.discard(int(current[place.fingertip]))
-        kept = list(range(len(before.places)))
-        idle = [number for number in kept if number not in used]
-        if len(idle) > MOST_PLACES:
-            kept.remove(idle[0])
-        after = self._known.field(
-            o, self._materials[w][o], (*(before.places[number] for number in kept), place)
-        )
-        heat = carried_states(before, after, self._level.patterns, self._x[w, o, : len(before.rates)])
-        current[:] = [kept.index(known) if known in kept else -1 for known in current.tolist()]
-        current[place.fingertip] = len(after.places) - 1
-        self._fields[w][o] = after
-        self._renumber(w)
-        self._x[w, o] = 0.0
-        self._x[w, o, : len(heat)] = heat
-        for f in range(len(self._pads)):
-            self._place(w, f, o)
 
     def _join(self, w: int) -> None:
         """The systems of a world's closed contacts."""

@@ -28,8 +28,8 @@ from .places import FixedPlaces, fixed_places
 class JoinedWorld:
     """As joined.py has it. number: its own. pads, tips: of the fingertips. names: of objects. boxes: (O, BOX) of
     march.py. widths: (F,) m. fields, materials: of the objects, and field: makes one of an object, by number, of its
-    material and places. current: (F, O) each pair's place among its object's, -1 for none. closed: (F, T) contacts.
-    states: (T, K). warm: (F,) K of the thermostats above the air. narrow: (F, T, K)."""
+    material and places, and which of these wholly. current: (F, O) each pair's place among its object's, -1 for none.
+    closed: (F, T) contacts. states: (T, K). warm: (F,) K of the thermostats above the air. narrow: (F, T, K)."""
 
     number: int
     dt: float
@@ -41,7 +41,7 @@ class JoinedWorld:
     widths: np.ndarray
     fields: Sequence[BodyField]
     materials: Sequence[Material]
-    field: Callable[[int, Material, tuple[Place, ...]], BodyField]
+    field: Callable[[int, Material, tuple[Place, ...], tuple[bool, ...]], BodyField]
     current: np.ndarray
     closed: np.ndarray
     states: np.ndarray
@@ -102,13 +102,16 @@ def world_networks(
         for f, o in np.argwhere(world.current < 0).tolist():
             current[f, o] = len(known[o])
             known[o].append(expected[f][o])
+    whole = [
+        tuple(n in current[:, o].tolist() for n in range(len(known))) for o, known in enumerate(places[0])
+    ]
     after = [
-        [world.field(o, one, tuple(way[o])) for one in choices for way in places]
+        [world.field(o, one, tuple(way[o]), whole[o]) for one in choices for way in places]
         for o, choices in enumerate(materials)
     ]
     states = []
     for o, before in enumerate(world.fields):
-        field = world.field(o, world.materials[o], tuple(places[0][o]))
+        field = world.field(o, world.materials[o], tuple(places[0][o]), whole[o])
         held = world.states[o, : len(before.rates)]
         states.append(held if field is before else carried_states(before, field, level.patterns, held))
     states += [world.states[objects + f, : len(tip.side.rates)] for f, tip in enumerate(world.tips)]

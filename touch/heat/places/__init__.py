@@ -1,14 +1,14 @@
 """Where fingertips touch objects, and the heat fields that are seen there."""
 
 from .bodies import BodyField, untouched
-from .carry import AFTERWARDS, carried_states
+from .carry import carried_states
+from .forgetting import MOST_PLACES, forgotten
 from .known import KnownFields
-from .place import ACROSS, MOST_PLACES, NEAR, Place, near
+from .place import ACROSS, NEAR, Place, near
 from .tips import TipField, resolution, rings_of, tip_field
 
 __all__ = [
     "ACROSS",
-    "AFTERWARDS",
     "MOST_PLACES",
     "NEAR",
     "BodyField",
@@ -16,6 +16,7 @@ __all__ = [
     "Place",
     "TipField",
     "carried_states",
+    "forgotten",
     "near",
     "resolution",
     "rings_of",

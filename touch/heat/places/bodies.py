@@ -24,13 +24,15 @@ _BLAS = ThreadpoolController()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyField:
-    """An object's network of the places where it is touched. rates: (n,) 1/s. ports: (n, N M) sqrt(K/J). heat: (n,) J
-    and loss: (n,) W of a state; only the first one, the mean temperature's, has any. beside: (n, N RINGS) ports
-    under the pads around the elements, no columns where no fingertip has one. own: how many of the states, the first
-    ones, are the object's wherever it is touched. covered: of each place the share of the sensor's face under which the
-    object is; from less than all the network knows how heat spreads."""
+    """An object's network of the places where it is touched. whole: of each place whether it has all ports, or the
+    even one alone, which tells what has flowed where nothing touches now, and zeros for the others. rates: (n,) 1/s.
+    ports: (n, N M) sqrt(K/J). heat: (n,) J and loss: (n,) W of a state; only the first one, the mean temperature's, has
+    any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. own: how
+    many of the states, the first ones, are the object's wherever it is touched. covered: of each place the share of the
+    sensor's face under which the object is; from less than all the network knows how heat spreads."""
 
     places: tuple[Place, ...]
+    whole: tuple[bool, ...]
     rates: np.ndarray
     ports: np.ndarray
     heat: np.ndarray
@@ -53,23 +55,24 @@ def untouched(shape: BodyShape, film: float) -> BodyField:
     capacity = shape.heat_capacity
     held = np.array([np.sqrt(capacity)])
     rate = np.array([film * shape.surface / capacity])
-    return BodyField((), rate, np.zeros((1, 0)), held, held * rate)
+    return BodyField((), (), rate, np.zeros((1, 0)), held, held * rate)
 
 
 def touched(
     shape: BodyShape,
     film: float,
     places: tuple[Place, ...],
+    whole: tuple[bool, ...],
     pads: tuple[PadPlace, ...],
     tips: tuple[Tip, ...],
     level: Resolution,
     cache: bool,
 ) -> BodyField:
-    """An object and its places. pads, tips: of all fingertips, by number. cache: keep on disk what takes long. The air
-    takes heat from the object's mean temperature."""
+    """An object and its places. whole: as in BodyField. pads, tips: of all fingertips, by number. cache: keep on disk
+    what takes long. The air takes heat from the object's mean temperature."""
     bare = untouched(shape, film)
     if shape.solid is not None:
-        side, beside, own, covered = _solid_side(shape, places, pads, cache)
+        side, beside, own, covered = _solid_side(shape, places, whole, pads, cache)
         # the body's mean, by its own heat capacity
         side.ports[0] *= side.outputs["heat"][0] / bare.heat[0]
         beside[0] *= side.outputs["heat"][0] / bare.heat[0]
@@ -78,7 +81,8 @@ def touched(
         at = tuple((place.face, place.middle) for place in places)
         seen = tuple(tips[place.fingertip] for place in places)
         around = tuple(rings_of(pads[place.fingertip]) for place in places)
-        side, beside = _side(shape.material, (x, y, z), at, seen, around, level)
+        with _BLAS.limit(limits=1, user_api="blas"):
+            side, beside = _side(shape.material, (x, y, z), at, whole, seen, around, level)
         widths = [pads[place.fingertip].stack.width for place in places]
         own = 1
         covered = tuple(_under((x, y, z), place, width) for place, width in zip(places, widths, strict=True))
@@ -86,7 +90,7 @@ def touched(
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
     heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
-    return BodyField(places, rates, side.ports, heat, loss, beside, own, covered)
+    return BodyField(places, whole, rates, side.ports, heat, loss, beside, own, covered)
 
 
 def _under(size: tuple[float, float, float], place: Place, width: float) -> float:
@@ -96,7 +100,11 @@ def _under(size: tuple[float, float, float], place: Place, width: float) -> floa
 
 
 def _solid_side(
-    shape: BodyShape, places: tuple[Place, ...], pads: tuple[PadPlace, ...], cache: bool
+    shape: BodyShape,
+    places: tuple[Place, ...],
+    whole: tuple[bool, ...],
+    pads: tuple[PadPlace, ...],
+    cache: bool,
 ) -> tuple[ThermalNetwork, np.ndarray, int, tuple[float, ...]]:
     """As _side's, of a body of any shape; how many of its states are its own, and how much of each
     face is on it."""
@@ -108,7 +116,8 @@ def _solid_side(
     with _BLAS.limit(limits=1, user_api="blas"):
         found = [_patch(solid, (x, y, z), place, pad.stack, cache) for place in places]
         patches, covered = [patch for patch, _ in found], tuple(share for _, share in found)
-        return *body_in_pads(solid, patches, pad.stack, rings_of(pad) or (), cache=cache), covered
+        rings = rings_of(pad) or ()
+        return *body_in_pads(solid, patches, pad.stack, rings, whole=whole, cache=cache), covered
 
 
 @lru_cache(maxsize=2048)
@@ -132,6 +141,7 @@ def _side(
     material: Material,
     size: tuple[float, float, float],
     at: tuple[tuple[int, tuple[float, float]], ...],
+    whole: tuple[bool, ...],
     seen: tuple[Tip, ...],
     around: tuple[Rings | None, ...],
     level: Resolution,
@@ -144,6 +154,8 @@ def _side(
         row[:] = [min(np.sqrt(tip_.area), side) / 2 for side in others]
     patches = Patches(np.array([face for face, _ in at]), np.array([middle for _, middle in at]), half)
     if any(sides is not None for sides in around):
-        return box_in_pads(material, size, patches, seen, around, level)
-    side = box_side(material, size, 0.0, patches, seen, level)
+        return box_in_pads(material, size, patches, seen, around, level, whole)
+    told = np.repeat(whole, level.patterns)
+    told[:: level.patterns] = True
+    side = box_side(material, size, 0.0, patches, seen, level, told)
     return side, np.zeros((len(side.rates), 0))

@@ -10,8 +10,6 @@ import numpy as np
 NEAR = 0.25 + 1e-6
 """Of the sensor's width: a pad that is as near to a known place is on it. A little more than two steps of the grid
 (march.py), so that round-off does not decide between places that are two steps apart."""
-MOST_PLACES = 2
-"""Of an object that are remembered besides those in use."""
 ACROSS = 0.25
 """What a step across a face counts for one along it: pads sink in, and walls of one object are far from each other."""
 
