@@ -139,7 +139,8 @@ def test_after_long_slides_its_voltages_are_still_those_of_thermal_touch(
         assert furthest(model, data, touch) < ROUND_OFF
         places.update(place for field in touch._heat._fields[0] for place in field.places)
         most = max(most, *(len(field.places) for field in touch._heat._fields[0]))
-    assert most == len(PADS) + MOST_PLACES and len(places) > most + len(PADS)  # many have been forgotten
+    if skin is None:
+        assert most == len(PADS) + MOST_PLACES and len(places) > most + len(PADS)  # many have been forgotten
 
 
 @NEEDS_SPECS
