@@ -68,7 +68,7 @@ const char* heat_parse(Numbers* n, const char* text) {
   n->faces = elements ? 2 : 1;
   n->targets = tips + objects;
   n->places = tips + IDLE;
-  n->states = 1 + n->rates * (patterns * tips + IDLE);
+  n->states = 1 + n->rates * (2 * patterns * tips + IDLE);
   struct {
     const double** part;
     size_t size;

@@ -72,14 +72,19 @@ bool heat_valid(const Numbers* numbers, const State* state) {
     }
     for (int f = 0; f < numbers->tips; f++)
       if (!whole(state->current[f * numbers->objects + o], -1, (int)state->used[o] - 1)) return false;
-    for (int n = 0; n < state->used[o]; n++)
-      if (state->places[(o * numbers->places + n) * SLOT + ALL] != in_use(numbers, state, o, n)) return false;
+    int wholly = 0; /* of which networks have room for two of each fingertip */
+    for (int n = 0; n < state->used[o]; n++) {
+      double all = state->places[(o * numbers->places + n) * SLOT + ALL];
+      if (!whole(all, in_use(numbers, state, o, n), 1)) return false;
+      wholly += all != 0;
+    }
+    if (wholly > 2 * numbers->tips) return false;
   }
   return true;
 }
 
 size_t heat_carry_room(const Numbers* numbers) {
-  size_t wide = (size_t)numbers->tips * numbers->patterns + IDLE, patterns = numbers->patterns;
+  size_t wide = 2 * (size_t)numbers->tips * numbers->patterns + IDLE, patterns = numbers->patterns;
   size_t forgets = 3 * wide * wide + 2 * patterns * patterns + 2 * wide, carries = numbers->states + wide + 2 * wide * wide;
   return carries > forgets ? carries : forgets;
 }
@@ -302,32 +307,37 @@ static void on_grid(const Numbers* numbers, int f, int o, int face, const double
   }
 }
 
-/* Brings those fingertips of an object that have a face in faces to their places: such as are known near there, or new ones.
-Where more than IDLE would be remembered besides those in use, others are forgotten. */
+/* Brings those fingertips of an object that have a face in faces to their places: such as are known near there, or new ones;
+touch/heat/places/moves.py. Where more than IDLE would be remembered besides those in use, others are forgotten. */
 static void move(const Numbers* numbers, Work* work, State* state, int o, const int* faces, double (*middles)[2]) {
   int tips = numbers->tips, objects = numbers->objects, before = (int)state->used[o], count = before, kept = 0, over = -IDLE;
   double *own = state->places + o * numbers->places * SLOT, places[(numbers->places + tips) * SLOT];
-  bool idle[numbers->places + tips], gone[numbers->places + tips];
+  bool any = false, idle[numbers->places + tips], gone[numbers->places + tips], left[numbers->places + tips];
   Network* old = &work->networks[numbers->targets];
   heat_copy_network(numbers, network_of(numbers, work, state, o), old);
   memcpy(places, own, sizeof(double) * before * SLOT);
+  memset(left, 0, sizeof left);
   for (int f = 0; f < tips; f++) {
     if (faces[f * objects + o] < 0) continue;
     double width = numbers->pads[f * PAD + WIDTH], *place = places + count * SLOT;
     on_grid(numbers, f, o, faces[f * objects + o], middles[f * objects + o], place);
-    int at = 0;
+    int at = 0, last = (int)state->current[f * objects + o];
     for (; at < count; at++) {
       const double* known = places + at * SLOT;
       double apart = greater(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
       if (known[FACE] == place[FACE] && known[TIP] == place[TIP] && apart <= NEAR * width) break;
     }
-    state->current[f * objects + o] = at;
     count += at == count;
+    if (at == last) continue;
+    if (last >= 0) left[last] = true;
+    any = true;
+    state->current[f * objects + o] = at;
   }
+  if (!any) return;
   for (int n = 0; n < count; n++) {
     gone[n] = false;
     idle[n] = !in_use(numbers, state, o, n);
-    places[n * SLOT + ALL] = !idle[n];
+    places[n * SLOT + ALL] = !idle[n] || left[n];
     over += idle[n];
   }
   for (; over > 0; over--) gone[heat_forgotten(numbers, old, state->x + o * numbers->states, idle, gone, work->room)] = true;

@@ -35,8 +35,7 @@ from .places import (
     KnownFields,
     Place,
     carried_states,
-    forgotten,
-    near,
+    moved,
     resolution,
     rings_of,
     tip_field,
@@ -456,29 +455,18 @@ class JoinedHeat:
             self._fade = np.pad(self._fade, ((0, 0), (0, -wide)))
 
     def _settle(self, w: int, o: int, fingertips: Sequence[int]) -> None:
-        """Those fingertips of an object are on places that are known near there, or on new ones; others are forgotten
-        where there would be too many."""
-        before, current = self._fields[w][o], self._current[w, :, o]
-        places = list(before.places)
+        """Those fingertips of an object are on places that are known near there, or on new ones."""
+        before, patterns = self._fields[w][o], self._level.patterns
         wanted = {
             f: Place.on_grid(f, self._new_faces[w, f, o], self._new_middles[w, f, o]) for f in fingertips
         }
-        for f, place in wanted.items():
-            reach = NEAR * float(self._widths[f])
-            known = (number for number, one in enumerate(places) if near(one, place, reach))
-            current[f] = next(known, len(places))
-            if current[f] == len(places):
-                places.append(place)
-        used = {number for number in current.tolist() if number >= 0}
-        idle = [number for number in range(len(before.places)) if number not in used]
-        held, patterns = self._x[w, o, : len(before.rates)], self._level.patterns
-        gone = forgotten(before, patterns, held, idle, len(idle) - MOST_PLACES)
-        kept = [number for number in range(len(places)) if number not in gone]
-        whole = tuple(number in used for number in kept)
-        after = self._known.field(o, self._materials[w][o], tuple(places[number] for number in kept), whole)
+        held = self._x[w, o, : len(before.rates)]
+        current = self._current[w, :, o].tolist()
+        move = moved(before, current, wanted, self._widths, patterns, held, MOST_PLACES)
+        after = self._known.field(o, self._materials[w][o], move.places, move.whole)
+        self._current[w, :, o] = move.current
         if after is not before:
             heat = carried_states(before, after, patterns, held)
-            current[:] = [kept.index(known) if known >= 0 else -1 for known in current.tolist()]
             self._fields[w][o] = after
             self._renumber(w)
             self._x[w, o] = 0.0

@@ -2,9 +2,10 @@
 
 from .bodies import BodyField, untouched
 from .carry import carried_states
-from .forgetting import MOST_PLACES, forgotten
+from .forgetting import MOST_PLACES
 from .known import KnownFields
-from .place import ACROSS, NEAR, Place, near
+from .moves import moved
+from .place import ACROSS, NEAR, Place
 from .tips import TipField, resolution, rings_of, tip_field
 
 __all__ = [
@@ -16,8 +17,7 @@ __all__ = [
     "Place",
     "TipField",
     "carried_states",
-    "forgotten",
-    "near",
+    "moved",
     "resolution",
     "rings_of",
     "tip_field",

@@ -25,7 +25,7 @@ _BLAS = ThreadpoolController()
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyField:
     """An object's network of the places where it is touched. whole: of each place whether it has all ports, or the
-    even one alone, which tells what has flowed where nothing touches now, and zeros for the others. rates: (n,) 1/s.
+    even one alone, which tells what flowed there a while ago, and zeros for the others. rates: (n,) 1/s.
     ports: (n, N M) sqrt(K/J). heat: (n,) J and loss: (n,) W of a state; only the first one, the mean temperature's, has
     any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. own: how
     many of the states, the first ones, are the object's wherever it is touched. covered: of each place the share of the
