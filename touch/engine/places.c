@@ -7,7 +7,7 @@ which places are remembered, and how an object's field survives a change of them
 
 #include "heat.h"
 
-#define NEAR 0.250001 /* of the sensor's width: a pad that is as near to a known place is on it */
+#define NEAR 0.187501 /* of the sensor's width: a pad that is as near to a known place is on it */
 #define GRID 0.125    /* of the sensor's width, on which places stand */
 #define LEAST 0.03    /* singular values below that share of the largest are left out */
 #define GROWTH 1.1    /* times what a field's states are, the root of what they store: a new network has no more */

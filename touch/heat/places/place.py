@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-NEAR = 0.25 + 1e-6
-"""Of the sensor's width: a pad that is as near to a known place is on it. A little more than two steps of the grid
-(march.py), so that round-off does not decide between places that are two steps apart."""
+NEAR = 0.1875 + 1e-6
+"""Of the sensor's width: a pad that is as near to a known place is on it. A little more than one and a half steps of
+the grid (march.py): the next place of a pad that slides is two steps on, half a step before it when it gets there.
+Round-off does not decide between places, which are whole steps apart."""
 ACROSS = 0.25
 """What a step across a face counts for one along it: pads sink in, and walls of one object are far from each other."""
 
@@ -29,7 +30,7 @@ class Place:
     def on_grid(cls, fingertip: int, face: int, middle: Sequence[float] | np.ndarray) -> Place:
         """middle: (3,) m along the face's axes and across it."""
         along, beside, across = map(float, middle)
-        return cls(face, (along, beside), fingertip, across)
+        return cls(int(face), (along, beside), fingertip, across)
 
     @property
     def whole(self) -> tuple[float, float, float]:
