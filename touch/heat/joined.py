@@ -44,7 +44,7 @@ from .records import HeatBalance, HeatState
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
-MOST_SYSTEMS = 4096
+MOST_SYSTEMS = 1024
 """That are kept; beyond, those that no world uses are forgotten."""
 
 

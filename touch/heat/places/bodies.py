@@ -136,7 +136,7 @@ def _patch(
     return patch, covered_share(solid, patch)
 
 
-@lru_cache(maxsize=2048)
+@lru_cache(maxsize=512)
 def _side(
     material: Material,
     size: tuple[float, float, float],
