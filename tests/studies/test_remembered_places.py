@@ -15,9 +15,9 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def study() -> Iterator[ModuleType]:
-    sys.path.insert(0, str(ROOT / "studies"))
+    sys.path.insert(0, str(ROOT / "studies" / "scenes"))
     yield importlib.import_module("remembered_places")
-    sys.path.remove(str(ROOT / "studies"))
+    sys.path.remove(str(ROOT / "studies" / "scenes"))
     for name in ("remembered_places", "touch_volumes"):
         del sys.modules[name]
 

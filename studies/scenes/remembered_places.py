@@ -5,10 +5,10 @@ Each journey holds, lets go, slides and comes back. `all places` is the same net
 before it begins, so that nothing is carried or forgotten. The finite volumes of touch_volumes.py share no heat model
 with the package; their grids are uniform along the slide, and the face moves by whole cells.
 
-    python studies/remembered_places.py                                 every journey on three materials
-    python studies/remembered_places.py slow fast --materials glass --most 2 4 6 8 12
-    python studies/remembered_places.py --volumes                       slides at 1 and 10 mm/s beside finite volumes
-    python studies/remembered_places.py --cost                          us an update, ms of a new place
+    python studies/scenes/remembered_places.py                                 every journey on three materials
+    python studies/scenes/remembered_places.py slow fast --materials glass --most 2 4 6 8 12
+    python studies/scenes/remembered_places.py --volumes                       slides at 1 and 10 mm/s beside finite volumes
+    python studies/scenes/remembered_places.py --cost                          us an update, ms of a new place
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What it would change that heat in a ball, cylinder, capsule or ellipsoid flowed in its own shape, where ThermalTouch
 has a box of its volume: a flat pad pressed on it in MuJoCo.
 
-    python studies/round_geoms.py
-    python studies/round_geoms.py sphere --materials rubber --force 30 --surround silicone
+    python studies/scenes/round_geoms.py
+    python studies/scenes/round_geoms.py sphere --materials rubber --force 30 --surround silicone
 """
 
 # mujoco ships no type stubs for its compiled names
