@@ -7,7 +7,7 @@ with the package; their grids are uniform along the slide, and the face moves by
 
     python studies/scenes/remembered_places.py                                 every journey on three materials
     python studies/scenes/remembered_places.py slow fast --materials glass --most 2 4 6 8 12
-    python studies/scenes/remembered_places.py --volumes                       slides at 1 and 10 mm/s beside finite volumes
+    python studies/scenes/remembered_places.py --volumes                       slides beside finite volumes
     python studies/scenes/remembered_places.py --cost                          us an update, ms of a new place
 """
 
