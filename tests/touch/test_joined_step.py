@@ -8,7 +8,7 @@ from thermograsp.thermal.kernels import Tip
 from thermograsp.thermal.network import propagator
 from thermograsp.thermal.network import step as reference
 from thermograsp.thermal.numerics import ThermalNetwork
-from thermograsp.touch.heat.fields import BodyField, Place
+from thermograsp.touch.heat.places import BodyField, Place
 from thermograsp.touch.heat.step import room_of, room_size, step
 from thermograsp.touch.heat.systems import SystemPool
 
@@ -54,7 +54,14 @@ def test_it_is_that_of_the_whole_system(pairs: tuple, patterns: int) -> None:
         rates = np.concatenate(([1e-3], np.sort(rng.choice([1e-3, 0.3, 40.0], 11))))
         loss = np.append(3.0, np.zeros(11)) * rates
         places = tuple(Place(0, (0.0, 0.0), f) for f in on)
-        fields[o] = BodyField(places, rates, rng.normal(size=(12, patterns * len(on))), loss / rates, loss)
+        fields[o] = BodyField(
+            places,
+            (True,) * len(places),
+            rates,
+            rng.normal(size=(12, patterns * len(on))),
+            loss / rates,
+            loss,
+        )
     pool = SystemPool(tips, faces, OBJECTS, patterns, DT)
     number = pool.number(pairs, fields, current)
     stride, count = 12, OBJECTS + 3

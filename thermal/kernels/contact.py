@@ -192,9 +192,10 @@ def box_side(
     patches: Patches,
     tips: tuple[Tip, ...],
     level: Resolution,
+    told: np.ndarray | None = None,
 ) -> ThermalNetwork:
     """The box's network, M ports a patch, its slowest state first; outputs "object" (J in it) and "loss" (W to the
-    air). size: m. film: W/(m2 K). tips: on the patches."""
+    air). size: m. film: W/(m2 K), 0 where not all ports are told. tips: on the patches. told: as in at_rates."""
     kept, bases = level.patterns, [one.basis for one in tips]
     box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, patches, bases)
     port, rest = box.port, box.impedance[OF_GRASP]
@@ -206,8 +207,8 @@ def box_side(
     rate, heat = box.rate, None
     if film > 0:
         rate, rest, heat = _shielded(box, film, rest, tips)
-    fast, ports = at_rates(rest, level, weight)
-    rates = np.concatenate(([rate], fast))
+    fast, ports = at_rates(rest, level, weight, told)
+    rates, port = np.concatenate(([rate], fast)), port if told is None else np.where(told, port, 0.0)
     held = np.zeros(len(rates))
     if heat is None:
         held[0] = box.held
@@ -222,10 +223,18 @@ def box_side(
     )
 
 
-def at_rates(impedance: np.ndarray, level: Resolution, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def at_rates(
+    impedance: np.ndarray, level: Resolution, weight: np.ndarray, told: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
-    at GRASP. weight: (S,) W/K of its errors."""
-    return states(impedance, level.decay, weight, level.least / weight[-1])
+    at GRASP. weight: (S,) W/K of its errors. told: (N,) bool, the ports that the network has; zeros for the others, by
+    which it has fewer states. None: all of them."""
+    if told is None or told.all():
+        return states(impedance, level.decay, weight, level.least / weight[-1])
+    rates, few = at_rates(impedance[:, told][:, :, told], level, weight)
+    ports = np.zeros((len(rates), len(told)))
+    ports[:, told] = few
+    return rates, ports
 
 
 def _shielded(

@@ -80,6 +80,7 @@ _TAKEN = 0.2  # the slowest rate behind a film over heat's along a cell, from wh
 _FELT = 6e-3  # m between patches, across which heat goes before the modes tell
 _STILL = 1e-12  # m2, diffusivity times time before which heat has gone nowhere
 _KEPT = 256  # places
+_PAIRS = 4096  # of places, 3 kB each
 _CORNER = 6e-3  # m beyond a patch, within which the wall of a hollow may go on round its face's end
 
 
@@ -131,17 +132,19 @@ def placed_network(
     stack: SensorStack,
     film: float = 0.0,
     *,
+    told: np.ndarray | None = None,
     cache: bool = True,
 ) -> PlacedNetwork:
-    """film: W/K between the walls of the body's hollow, if it has one, and contents. Raises MeshError where a patch
-    meets no surface, or the body is no solid in one piece."""
+    """film: W/K between the walls of the body's hollow, if it has one, and contents. told: (P M,) bool, the ports whose
+    heat has states that fade sooner than the body's own; None: all of them. Raises MeshError where a patch meets no
+    surface, or the body is no solid in one piece."""
     inside = film_of(body, film)
     found = face_impedance(body, patches, stack, inside, cache)
     seen = np.concatenate([place.seen for place in found.places])
     slow = _slow(found.modes, seen, inside)
     level = _EMPTY if inside is None else _FILLED
     return PlacedNetwork(
-        _fitted(found, slow, found.impedance, level),
+        _fitted(found, slow, found.impedance, level, told),
         [place.below for place in found.places],
         len(slow.fades),
     )
@@ -172,7 +175,8 @@ def face_impedance(
     kernel = _faded(seen, modes.rates, taus)
     over = _over(_told_by(body, modes))[:, None, None]
     if len(body.parts) == 1:
-        local = _local(below, one, taus, body.parts[0].material.conductivity, inside) / modes.capacity
+        conductivity = body.parts[0].material.conductivity
+        local = _local(below, one, modes.diffusivity, conductivity, inside) / modes.capacity
         kernel = over * kernel + (1 - over) * local
     count, early = LEVEL.patterns, over[:, 0, 0] < 1
     at = [slice(n * count, (n + 1) * count) for n in range(len(places))]
@@ -198,11 +202,16 @@ def face_impedance(
 
 
 def ringed_network(
-    found: FaceImpedance, seen: np.ndarray, kernel: np.ndarray, early: np.ndarray
+    found: FaceImpedance,
+    seen: np.ndarray,
+    kernel: np.ndarray,
+    early: np.ndarray,
+    told: np.ndarray | None = None,
 ) -> tuple[ThermalNetwork, int]:
     """Of an empty body's faces and of J other ports behind them, of even flows; and how many of its states are slow.
     seen: (J, R) of the modes by these. kernel: (T, P M + J, P M + J) 1/J K of the boxes beneath, at TIMES, before the
-    modes tell; that of faces is known better. early: (J,) K/W of these before then."""
+    modes tell; that of faces is known better. early: (J,) K/W of these before then. told: (P M + J,), as in
+    placed_network."""
     modes, faces = found.modes, found.impedance.shape[1]
     every = np.concatenate((*(place.seen for place in found.places), seen))
     slow = _slow(modes, every, None, len(seen))
@@ -214,10 +223,12 @@ def ringed_network(
     others = np.arange(faces, len(every))
     impedance[:, others, others] += early
     impedance[:, :faces, :faces] = found.impedance
-    return _fitted(found, slow, impedance, _EMPTY), len(slow.fades)
+    return _fitted(found, slow, impedance, _EMPTY, told), len(slow.fades)
 
 
-def _fitted(found: FaceImpedance, slow: _Slow, impedance: np.ndarray, level: _Fineness) -> ThermalNetwork:
+def _fitted(
+    found: FaceImpedance, slow: _Slow, impedance: np.ndarray, level: _Fineness, told: np.ndarray | None
+) -> ThermalNetwork:
     """The slow states and what fades sooner, of an impedance less that of the former: of the faces, then of others."""
     modes, one, count = found.modes, found.one, LEVEL.patterns
     faces = slice(0, len(found.places) * count, count)
@@ -225,7 +236,7 @@ def _fitted(found: FaceImpedance, slow: _Slow, impedance: np.ndarray, level: _Fi
     weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(found.places))], axis=0)
     slowest = max(modes.diffusivity * modes.rates[: _told(modes)][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(level.pitch)) + 1)
-    fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
+    fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight, told)
     none = np.zeros(len(fading))
     return ThermalNetwork(
         np.concatenate((slow.network.rates, fading)),
@@ -454,31 +465,41 @@ def face_patterns(one: Tip) -> PatchPatterns:
 
 
 def _local(
-    below: Sequence[Beneath], one: Tip, taus: np.ndarray, conductivity: float, film: Film | None
+    below: Sequence[Beneath], one: Tip, diffusivity: float, conductivity: float, film: Film | None
 ) -> np.ndarray:
-    """(T, P M, P M) 1/m3, of unit material: of patches by themselves and of those on the faces of one box; zero where
-    no box stands for the body. conductivity: W/(m K)."""
-    count = LEVEL.patterns
+    """(T, P M, P M) 1/m3 at TIMES, of unit material: of patches by themselves and of those on the faces of one box;
+    zero where no box stands for the body. diffusivity: m2/s. conductivity: W/(m K)."""
+    count, taus = LEVEL.patterns, diffusivity * TIMES
     kernel = np.zeros((len(taus), len(below) * count, len(below) * count))
     at = [slice(n * count, (n + 1) * count) for n in range(len(below))]
     for n, each in enumerate(below):
         if not each.plain:
             continue
-        bent, on = bent_room(each, taus), each.on_box(each.placed)
+        bent = bent_room(each, taus)
         if each.wet and film is not None:
             through = film.conductance / film.area / conductivity
             round_ = each.depth * each.curvature.sum()
             through *= (1 - round_) / (1 - round_ / 2)  # what is wet of a round wall, by its middle
             bent = bent * filmed(taus, each.depth, through)[:, None, None]
-        assert on is not None
-        kernel[:, at[n], at[n]] = bent * box_beneath(each, [on], one, taus)
         for m, other in enumerate(below):
-            far = each.on_box(other.placed)
-            if m == n or far is None or (other.plain and m > n):
+            if (other.plain and m > n) or (met := _met(each, other, one, diffusivity)) is None:
                 continue
-            pair = bent * box_beneath(each, [on, far], one, taus)[:, :count, count:]
+            pair = bent * met
             kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     return kernel
+
+
+@lru_cache(maxsize=_PAIRS)
+def _met(each: Beneath, other: Beneath, one: Tip, diffusivity: float) -> np.ndarray | None:
+    """(T, M, M) 1/m3 at TIMES of two patches on the box beneath the first, or of that one by itself; None where the
+    second is not on it."""
+    on, far = each.on_box(each.placed), each.on_box(other.placed)
+    if on is None or far is None:
+        return None
+    count, taus = LEVEL.patterns, diffusivity * TIMES
+    if other is each:
+        return box_beneath(each, [on], one, taus)
+    return box_beneath(each, [on, far], one, taus)[:, :count, count:]
 
 
 def box_beneath(

@@ -83,10 +83,12 @@ def box_in_pads(
     tips: Sequence[Tip],
     rings: Sequence[tuple[float, ...] | None],
     level: Resolution,
+    whole: Sequence[bool] | None = None,
 ) -> tuple[ThermalNetwork, np.ndarray]:
     """The box's network of N M ports, as box_side makes it without a film, and (n, N RINGS) ports of even flows into
     what rings cover of its faces; 0 where they cover nothing. size: m. faces: under the elements. rings: ring_sides of
-    each, None for an element without a pad."""
+    each, None for an element without a pad. whole: whether all ports of a place are told, or the face's even one alone
+    and zeros for the others; None: all of them."""
     kept, padded, count = level.patterns, [n for n, sides in enumerate(rings) if sides is not None], len(tips)
     around = _around(size, faces, [(n, side) for n in padded for side in rings[n] or ()])
     bases = [tip.basis for tip in tips]
@@ -114,7 +116,13 @@ def box_in_pads(
         1 / (1 / tip.weight + rest[:, f * kept, f * kept] + port[f * kept] ** 2 / (GRASP + box.rate))
         for f, tip in enumerate(tips)
     ]
-    fast, ports = at_rates(rest, level, np.min(weights, axis=0))
+    told = None
+    if whole is not None:
+        told = np.repeat(whole, kept)
+        told[::kept] = True
+        told = np.concatenate((told, np.repeat(whole, RINGS)))
+        port = np.where(told, port, 0.0)
+    fast, ports = at_rates(rest, level, np.min(weights, axis=0), told)
     rates, ports = np.concatenate(([box.rate], fast)), np.concatenate((port[None], ports))
     held = np.zeros(len(rates))
     held[0] = box.held

@@ -112,8 +112,23 @@ static void project(int patterns, const double* left, double table[PATTERNS][PAT
   }
 }
 
-/* rest (MOMENTS, W, W) K/W between the patches' patterns, less the mean temperature's part, and its port (W,) */
-static void impedance(const Numbers* numbers, int object, const Network* network, double* port, double* rest, double* room) {
+/* What is kept of an object's last network: how many places, these, and rest of `impedance`. */
+size_t heat_impedances(const Numbers* numbers) {
+  size_t wide = (size_t)numbers->places * numbers->patterns;
+  return 1 + numbers->places * SLOT + MOMENTS * wide * wide;
+}
+
+/* Which of them a place is, -1 for none. */
+static int kept_at(const double* kept, const double* place) {
+  for (int n = 0; n < (int)kept[0]; n++)
+    if (!memcmp(kept + 1 + n * SLOT, place, PLACED * sizeof(double))) return n;
+  return -1;
+}
+
+/* rest (MOMENTS, W, W) K/W between the patches' patterns, less the mean temperature's part, and its port (W,); what is
+kept of it is taken from there, and kept for the next time */
+static void impedance(const Numbers* numbers, int object, const Network* network, double* kept, double* port, double* rest,
+                      double* room) {
   const double* box = numbers->boxes + object * BOX;
   int count = network->count, patterns = numbers->patterns, wide = count * patterns;
   double capacity = box[CAPACITY], area[count];
@@ -147,7 +162,19 @@ static void impedance(const Numbers* numbers, int object, const Network* network
   }
   for (int n = 0; n < count; n++) {
     const double* left = numbers->tip_basis + (size_t)network->places[n * SLOT + TIP] * PATTERNS * patterns;
+    int row = kept_at(kept, network->places + n * SLOT), old = (int)kept[0] * patterns;
+    bool alone = true;
     for (int m = 0; m <= n; m++) {
+      int column = kept_at(kept, network->places + m * SLOT);
+      if (row >= 0 && column >= 0 && column <= row) { /* summed in the same order */
+        const double* from = kept + 1 + numbers->places * SLOT;
+        for (int s = 0; s < MOMENTS; s++)
+          for (int p = 0; p < patterns; p++)
+            memcpy(rest + ((size_t)s * wide + n * patterns + p) * wide + m * patterns,
+                   from + ((size_t)s * old + row * patterns + p) * old + column * patterns, sizeof(double) * patterns);
+        alone = alone && m < n;
+        continue;
+      }
       const double* right = numbers->tip_basis + (size_t)network->places[m * SLOT + TIP] * PATTERNS * patterns;
       double block[patterns * patterns];
       for (int t = 0; t < TIMES; t++) {
@@ -172,6 +199,7 @@ static void impedance(const Numbers* numbers, int object, const Network* network
                 numbers->to_moments[s * TIMES + t] * block[i];
       }
     }
+    if (!alone) continue;
     double even[PATTERNS][PATTERNS];
     memcpy(even, numbers->gram, sizeof even);
     for (int s = 0; s < MOMENTS; s++)
@@ -181,6 +209,9 @@ static void impedance(const Numbers* numbers, int object, const Network* network
   for (int s = 0; s < MOMENTS; s++)
     for (int i = 0; i < wide; i++)
       for (int j = 0; j < i; j++) rest[((size_t)s * wide + j) * wide + i] = rest[((size_t)s * wide + i) * wide + j];
+  kept[0] = count;
+  memcpy(kept + 1, network->places, sizeof(double) * count * SLOT);
+  memcpy(kept + 1 + numbers->places * SLOT, rest, sizeof(double) * MOMENTS * wide * wide);
 }
 
 /* inside (K, W, W) positive semidefinite, whose sum with the columns (MOMENTS, K) is nearest to wanted (MOMENTS, W, W):
@@ -272,17 +303,27 @@ void heat_copy_network(const Numbers* numbers, const Network* from, Network* to)
   memcpy(to->places, from->places, sizeof(double) * size);
 }
 
-/* Makes the network of the places that stand in it. */
-void heat_network(const Numbers* numbers, int object, Network* network, double* room) {
+/* The ports that a network has, by number: of a place all patterns, or the even one alone. Returns how many. */
+int heat_told(const Numbers* numbers, const Network* network, int* ports) {
+  int few = 0;
+  for (int n = 0; n < network->count; n++)
+    for (int p = 0; p < numbers->patterns; p++)
+      if (p == 0 || network->places[n * SLOT + ALL] != 0) ports[few++] = n * numbers->patterns + p;
+  return few;
+}
+
+/* Makes the network of the places that stand in it. impedances: what is kept of the object's last one. */
+void heat_network(const Numbers* numbers, int object, Network* network, double* impedances, double* room) {
   const double* box = numbers->boxes + object * BOX;
-  int count = network->count, patterns = numbers->patterns, wide = count * patterns, rates = numbers->rates;
+  int count = network->count, patterns = numbers->patterns, wide = count * patterns, rates = numbers->rates, told[wide + 1];
   size_t square = (size_t)wide * wide;
   double *port = room + 3 * (size_t)count * (sizeof(Along) / sizeof(double) + 1), *rest = port + wide;
   double *weight = rest + MOMENTS * square, *columns = weight + MOMENTS, *found = columns + MOMENTS * rates;
   network->n = 1;
   network->rates[0] = box[LOSS];
   if (count) {
-    impedance(numbers, object, network, port, rest, room);
+    impedance(numbers, object, network, impedances, port, rest, room);
+    int few = heat_told(numbers, network, told);
     for (int s = 0; s < MOMENTS; s++) {
       double moment = numbers->moments[s], most = INFINITY;
       for (int n = 0; n < count; n++) {
@@ -293,24 +334,29 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
       }
       weight[s] = most;
       for (int k = 0; k < rates; k++) columns[s * rates + k] = most / (moment + numbers->decay[k]);
-      for (size_t i = 0; i < square; i++) rest[s * square + i] *= most;
     }
-    residues(rates, wide, columns, rest, found, found + rates * square);
+    for (int s = 0; s < MOMENTS; s++) /* in place: nothing is written where it is still to be read */
+      for (int a = 0; a < few; a++)
+        for (int b = 0; b < few; b++)
+          rest[((size_t)s * few + a) * few + b] = rest[((size_t)s * wide + told[a]) * wide + told[b]] * weight[s];
+    square = (size_t)few * few;
+    residues(rates, few, columns, rest, found, found + rates * square);
     double *turn = found + rates * square, least = numbers->least / weight[MOMENTS - 1];
-    for (int j = 0; j < wide; j++) network->ports[(size_t)j * numbers->states] = port[j];
+    memset(network->ports, 0, sizeof(double) * wide * numbers->states);
+    for (int j = 0; j < few; j++) network->ports[(size_t)told[j] * numbers->states] = port[told[j]];
     for (int k = 0; k < rates; k++) {
       double* own = found + k * square;
-      for (int i = 0; i < wide * wide; i++) turn[i] = i % (wide + 1) == 0;
-      heat_diagonalise(wide, 1, own, turn);
-      for (int m = 0; m < wide; m++) {
-        double value = own[m * wide + m], left = value - pow(least * numbers->decay[k], 2) / value;
+      for (int i = 0; i < few * few; i++) turn[i] = i % (few + 1) == 0;
+      heat_diagonalise(few, 1, own, turn);
+      for (int m = 0; m < few; m++) {
+        double value = own[m * few + m], left = value - pow(least * numbers->decay[k], 2) / value;
         if (!(value > 0 && left > 0)) continue;
         network->rates[network->n] = numbers->decay[k];
-        for (int j = 0; j < wide; j++)
-          network->ports[(size_t)j * numbers->states + network->n] = turn[m * wide + j] * sqrt(left);
+        for (int j = 0; j < few; j++)
+          network->ports[(size_t)told[j] * numbers->states + network->n] = turn[m * few + j] * sqrt(left);
         network->n++;
       }
     }
   }
-  heat_pace(numbers, network);
+  heat_pace(numbers, network, false);
 }

@@ -20,8 +20,10 @@ enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, AREA, LENGTH, ASIDE, C
 enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
 /* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air, first state, early K s^.5 */
 enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, FIRST, EARLY, BOX };
-/* a place: face of the box, middle m along its two axes, fingertip */
-enum { FACE, MIDDLE, TIP = 3, SLOT = 4 };
+/* a place: face of the box, middle m along its two axes, fingertip; and 1 where the fingertip is or has just left for
+   another, whose patterns are all told, 0 where the even one alone is */
+enum { FACE, MIDDLE, TIP = 3, PLACED, ALL = PLACED, SLOT };
+enum { IDLE = 12 }; /* places that an object remembers besides those in use */
 enum { SHAPE_CYLINDER = 1 };
 /* an element that is glued on: object, resistance m K/W of a small contact, W/K of the glue */
 enum { ON, SMALL, BOND, GLUED };
@@ -60,8 +62,7 @@ enum {
   POLES = 3,      /* pairs, of a step */
   SERIES = 13,    /* terms of the separation of rough faces */
   WIDTHS = 13,    /* widths in a table of narrow contacts */
-  SPREAD = 4 * WIDTHS * WIDTHS, /* and contacts of which it tells */
-  AFTERWARDS = 15 /* times over which a field is followed to a new place */
+  SPREAD = 4 * WIDTHS * WIDTHS /* and contacts of which it tells */
 };
 
 typedef struct {
@@ -85,7 +86,7 @@ typedef struct {
   const double *views, *viewed;  /* VIEW of each thing by its side, and how many: 0 of what is no mesh */
   const double* tilts;           /* TILT each, alike */
   const double *bent, *grid;     /* CURVED each; logarithms of their first force and of the next one's ratio, least W/K */
-  const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights, *afterwards;
+  const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights;
   const double *separation, *separation_range;
   double* all; /* what the others point into */
   size_t length; /* of all */
@@ -112,6 +113,7 @@ typedef struct {
 typedef struct {
   Network* networks; /* of every target, one for the network before a new place, and those that objects have aside */
   int aside, *turn;  /* of each object: how many, and the next one; worlds that share an mjData come in turns */
+  double* impedances; /* of each object, as heat_network keeps them */
   size_t ports;
   Complex* matrix;
   double *room, *kept, *grown;   /* of the states of narrow contacts in a sample: what stays, and s, what a flow leaves */
@@ -156,11 +158,14 @@ double heat_curved(const double* table, const double grid[3], double force, doub
 
 void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches);
 
-void heat_pace(const Numbers* numbers, Network* network);
-void heat_network(const Numbers* numbers, int object, Network* network, double* room);
+void heat_pace(const Numbers* numbers, Network* network, bool tip);
+void heat_network(const Numbers* numbers, int object, Network* network, double* impedances, double* room);
+size_t heat_impedances(const Numbers* numbers);
 void heat_copy_network(const Numbers* numbers, const Network* from, Network* to);
 size_t heat_network_room(const Numbers* numbers);
+int heat_told(const Numbers* numbers, const Network* network, int* ports);
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room);
+int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone, double* room);
 size_t heat_carry_room(const Numbers* numbers);
 
 void heat_diagonalise(int n, int count, double* matrix, double* turn);

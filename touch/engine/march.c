@@ -77,19 +77,21 @@ static inline Complex told(int n, const double* port, const double* x, const Com
   return all;
 }
 
-/* How all ports of a network hear one another. */
-static void hear(const Numbers* numbers, const Network* network) {
-  int wide = network->count * numbers->patterns;
+/* How the ports of a network hear one another where something may touch: of an object, whose places stand in the
+network, those that are in use. */
+static void hear(const Numbers* numbers, const Network* network, bool tip) {
+  int patterns = numbers->patterns, wide = network->count * patterns;
   for (int p = 0; p < wide; p++) {
     const double* port = network->ports + (size_t)p * network->stride;
+    if (!tip && network->places[p / patterns * SLOT + ALL] == 0) continue;
     for (int r = 0; r <= p; r++)
-      network->gram[p * wide + r] = network->gram[r * wide + p] =
+      if (tip || network->places[r / patterns * SLOT + ALL] != 0) network->gram[p * wide + r] = network->gram[r * wide + p] =
           told(network->n, port, network->ports + (size_t)r * network->stride, network->scale);
   }
 }
 
-/* What a network's step needs besides its ports. */
-void heat_pace(const Numbers* numbers, Network* network) {
+/* What a network's step needs besides its ports. tip: whether it is a fingertip's. */
+void heat_pace(const Numbers* numbers, Network* network, bool tip) {
   Complex poles = at_poles(numbers->poles, 1), weights = at_poles(numbers->weights, 0);
   for (int i = 0; i < network->n; i++) {
     double rate = numbers->dt * network->rates[i];
@@ -97,7 +99,7 @@ void heat_pace(const Numbers* numbers, Network* network) {
     network->kept[i] = 1 + 2 * rate * sum(times(weights, network->scale[i]).real);
     network->fade[i] = exp(-rate);
   }
-  hear(numbers, network);
+  hear(numbers, network, tip);
 }
 
 /* Room for a step of m ports. Returns false where there is no memory. */

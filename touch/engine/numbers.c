@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 9, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 10, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
        MOST_SPREADS = 2 * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
@@ -67,8 +67,8 @@ const char* heat_parse(Numbers* n, const char* text) {
   if (elements < 0) return "the attribute \"numbers\" has more fingertips than sensors";
   n->faces = elements ? 2 : 1;
   n->targets = tips + objects;
-  n->places = tips + 2;
-  n->states = 1 + n->rates * patterns * n->places;
+  n->places = tips + IDLE;
+  n->states = 1 + n->rates * (2 * patterns * tips + IDLE);
   struct {
     const double** part;
     size_t size;
@@ -113,7 +113,6 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->gram, PATTERNS * PATTERNS},
       {&n->poles, 2 * POLES},
       {&n->weights, 2 * POLES},
-      {&n->afterwards, AFTERWARDS},
       {&n->grid, 3},
       {&n->separation, SERIES},
       {&n->separation_range, 4},

@@ -19,11 +19,11 @@ from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
 from ..contacts import BOND, GluedContacts, bends, curves, pair_laws
-from ..heat import AFTERWARDS, TipField, narrow_tables, resolution, tip_field, untouched
+from ..heat import TipField, narrow_tables, resolution, tip_field, untouched
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 9
+_VERSION = 10
 
 
 def packed(
@@ -92,7 +92,7 @@ def packed(
         *(tip.weight for tip in tips),
         level.decay,
         *(TIMES, TO_MOMENTS[OF_GRASP], GRASP, NODES, JUMPS, ALONG, GRAM),
-        *(_pairs(POLES), _pairs(WEIGHTS), AFTERWARDS),
+        *(_pairs(POLES), _pairs(WEIGHTS)),
         (FIRST_FORCE, FORCE_STEP, LEAST_CURVED),
         *(SEPARATION, (2 / (HIGH - LOW), (HIGH + LOW) / (HIGH - LOW), LOG_LEAST, LOG_MOST)),
     )

@@ -1,5 +1,5 @@
-/* Places of objects, as touch/heat/fields.py, joined.py and the first half of march.py: where a pad is on an object's box,
-and how an object's field survives a new place. */
+/* Places of objects, as touch/heat/places, joined.py and the first half of march.py: where a pad is on an object's box,
+which places are remembered, and how an object's field survives a change of them. */
 
 #include <float.h>
 #include <math.h>
@@ -7,13 +7,15 @@ and how an object's field survives a new place. */
 
 #include "heat.h"
 
-#define NEAR 0.250001 /* of the sensor's width: a pad that is as near to a known place is on it */
+#define NEAR 0.187501 /* of the sensor's width: a pad that is as near to a known place is on it */
 #define GRID 0.125    /* of the sensor's width, on which places stand */
-#define LEAST 7e-4    /* singular values below that share of the largest are left out */
+#define LEAST 0.03    /* singular values below that share of the largest are left out */
 #define GROWTH 1.1    /* times what a field's states are, the root of what they store: a new network has no more */
 #define TIE 1e-6      /* round-off does not decide where a pad is in the middle, between faces or points of the grid */
 #define ANOTHER 0.1   /* by which another face of the box must look more at the pad than the one in use */
-enum { IDLE = 2 };    /* places that an object remembers besides those in use */
+#define SOON 0.5      /* s, from when on what is lost with a place counts */
+#define RIDGE 1e-4    /* of a port's mean square */
+#define ALIKE 1e-6    /* relative: round-off does not decide between places of which as much would be lost */
 
 size_t heat_states(const Numbers* numbers) {
   size_t tips = numbers->tips, objects = numbers->objects, fields = numbers->targets;
@@ -46,6 +48,13 @@ void heat_reset(const Numbers* numbers, double* at) {
 
 static bool whole(double value, int least, int most) { return value >= least && value <= most && value == floor(value); }
 
+/* Whether a fingertip is on that place of an object. */
+static bool in_use(const Numbers* numbers, const State* state, int o, int n) {
+  for (int f = 0; f < numbers->tips; f++)
+    if (state->current[f * numbers->objects + o] == n) return true;
+  return false;
+}
+
 /* Whether it can have been left by this plugin: whoever holds an mjData may have written anything. */
 bool heat_valid(const Numbers* numbers, const State* state) {
   if (!whole(*state->count, 0, numbers->sample_steps - 1)) return false;
@@ -63,54 +72,35 @@ bool heat_valid(const Numbers* numbers, const State* state) {
     }
     for (int f = 0; f < numbers->tips; f++)
       if (!whole(state->current[f * numbers->objects + o], -1, (int)state->used[o] - 1)) return false;
+    int wholly = 0; /* of which networks have room for two of each fingertip */
+    for (int n = 0; n < state->used[o]; n++) {
+      double all = state->places[(o * numbers->places + n) * SLOT + ALL];
+      if (!whole(all, in_use(numbers, state, o, n), 1)) return false;
+      wholly += all != 0;
+    }
+    if (wholly > 2 * numbers->tips) return false;
   }
   return true;
 }
 
-/* rows of temperatures at some places, afterwards: (n - 1, rows), a state's `stride` behind the one before */
-static void future(const Numbers* numbers, const Network* network, int common, const int* at, double* out,
-                   int stride) {
-  int patterns = numbers->patterns, columns = network->n - 1;
-  for (int p = 0; p < common * patterns; p++) {
-    const double* port = network->ports + (size_t)(at[p / patterns] * patterns + p % patterns) * numbers->states + 1;
-    for (int l = 0; l < AFTERWARDS; l++) {
-      double later = numbers->afterwards[l], weight = sqrt(greater(later, numbers->afterwards[1]));
-      for (int i = 0; i < columns; i++)
-        out[(size_t)i * stride + p * AFTERWARDS + l] = port[i] * exp(-network->rates[i + 1] * later) * weight;
-    }
-  }
-}
-
 size_t heat_carry_room(const Numbers* numbers) {
-  size_t rows = (size_t)numbers->places * numbers->patterns * AFTERWARDS, columns = numbers->states;
-  return rows * columns + columns * columns + rows + 2 * columns;
+  size_t wide = 2 * (size_t)numbers->tips * numbers->patterns + IDLE, patterns = numbers->patterns;
+  size_t forgets = 3 * wide * wide + 2 * patterns * patterns + 2 * wide, carries = numbers->states + wide + 2 * wide * wide;
+  return carries > forgets ? carries : forgets;
 }
 
-/* The field x on the states of a network with other places, nearest to what both see alike from then on: by the singular
-values of what is seen, found by one-sided rotations of its columns (Hestenes). Where the states but the mean would grow
-by more than GROWTH, they are made smaller: from place to place a field must not grow without end. */
-void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room) {
-  int from[before->count + 1], to[before->count + 1], common = 0;
-  from[0] = to[0] = 0;
-  for (int n = 0; n < before->count; n++) {
-    for (int m = 0; m < after->count; m++) {
-      if (memcmp(before->places + n * SLOT, after->places + m * SLOT, SLOT * sizeof(double))) continue;
-      from[common] = n;
-      to[common++] = m;
-      break;
-    }
-  }
-  int columns = after->n - 1, rows = common * numbers->patterns * AFTERWARDS, old = before->n - 1;
-  int stride = rows + columns; /* behind what is seen of a state stands how it is turned */
-  double *wanted = room, *seen = wanted + rows, stored = 0, now = 0;
-  for (int i = 0; i < old; i++) stored += x[i + 1] * x[i + 1];
-  future(numbers, before, common, from, seen, rows);
-  memset(wanted, 0, sizeof(double) * rows);
-  for (int i = 0; i < old; i++)
-    for (int r = 0; r < rows; r++) wanted[r] += seen[(size_t)i * rows + r] * x[i + 1];
-  memset(x + 1, 0, sizeof(double) * (numbers->states - 1));
-  if (!common) return;
-  future(numbers, after, common, to, seen, stride);
+/* The first state of a network after that one at whose rate it fades. */
+static int next_rate(const Network* network, int first) {
+  int i = first;
+  while (i < network->n && network->rates[i] == network->rates[first]) i++;
+  return i;
+}
+
+/* The states x of one rate by which some ports see what they saw, `wanted`: nearest to it and else the smallest, by the
+singular values of what is seen, found by one-sided rotations of its columns (Hestenes). seen: of each state its row of
+that, and behind it how it is turned. */
+static void nearest(int columns, int rows, const double* wanted, double* seen, double* x) {
+  int stride = rows + columns;
   double largest = 0;
   for (int i = 0; i < columns * columns; i++) seen[(size_t)(i / columns) * stride + rows + i % columns] = i % (columns + 1) == 0;
   for (int sweep = 0; sweep < 30; sweep++) {
@@ -150,12 +140,101 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
       double left = size - LEAST * LEAST * largest;
       if (pass == 0) largest = greater(largest, size);
       else if (left > 0)
-        for (int i = 0; i < columns; i++) x[i + 1] += column[rows + i] * met * left / (size * size);
+        for (int i = 0; i < columns; i++) x[i] += column[rows + i] * met * left / (size * size);
     }
   }
-  for (int i = 0; i < columns; i++) now += x[i + 1] * x[i + 1];
+}
+
+/* The field x on the states of a network with other places: of each rate those by which the common places see what they saw.
+Where the states but the mean would grow by more than GROWTH, they are made smaller: from place to place a field must not
+grow without end. */
+void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room) {
+  int patterns = numbers->patterns, wide = before->count * patterns, from[wide + 1], to[wide + 1], rows = 0, old = before->n;
+  for (int n = 0; n < before->count; n++) {
+    for (int m = 0; m < after->count; m++) {
+      const double *one = before->places + n * SLOT, *other = after->places + m * SLOT;
+      if (memcmp(one, other, PLACED * sizeof(double))) continue;
+      for (int p = 0; p < (one[ALL] != 0 && other[ALL] != 0 ? patterns : 1); p++) {
+        from[rows] = n * patterns + p;
+        to[rows++] = m * patterns + p;
+      }
+      break;
+    }
+  }
+  double *was = room, *wanted = was + numbers->states, *seen = wanted + rows, stored = 0, now = 0;
+  memcpy(was, x, sizeof(double) * old);
+  for (int i = 1; i < old; i++) stored += x[i] * x[i];
+  memset(x + 1, 0, sizeof(double) * (numbers->states - 1));
+  for (int first = 1, last; first < after->n; first = last) {
+    int begun = 1;
+    last = next_rate(after, first);
+    while (begun < old && before->rates[begun] != after->rates[first]) begun++;
+    if (begun == old) continue;
+    int ended = next_rate(before, begun), columns = last - first;
+    for (int r = 0; r < rows; r++) {
+      wanted[r] = 0;
+      for (int i = begun; i < ended; i++) wanted[r] += before->ports[(size_t)from[r] * numbers->states + i] * was[i];
+      for (int i = 0; i < columns; i++)
+        seen[(size_t)i * (rows + columns) + r] = after->ports[(size_t)to[r] * numbers->states + first + i];
+    }
+    nearest(columns, rows, wanted, seen, x + first);
+  }
+  for (int i = 1; i < after->n; i++) now += x[i] * x[i];
   double most = GROWTH * sqrt(stored), size = sqrt(now);
-  for (int i = 0; size > most && i < columns; i++) x[i + 1] *= most / size;
+  for (int i = 1; size > most && i < after->n; i++) x[i] *= most / size;
+}
+
+/* The idle place, not gone yet, without which the field x changes least: touch/heat/places/forgetting.py. Of such as good as
+each other the first. */
+int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone,
+                   double* room) {
+  int patterns = numbers->patterns, told[network->count * patterns + 1], few = heat_told(numbers, network, told);
+  int alive[few + 1], left = 0;
+  for (int a = 0; a < few; a++)
+    if (!gone[told[a] / patterns]) alive[left++] = a;
+  double *gram = room, *own = gram + few * few, *inverse = own + left * left, *block = inverse + left * left;
+  double *turned = block + patterns * patterns, *hears = turned + patterns * patterns, *flows = hears + few;
+  double lost[network->count + 1], least = INFINITY;
+  memset(lost, 0, sizeof lost);
+  for (int first = 1, last; first < network->n; first = last) {
+    last = next_rate(network, first);
+    double ridge = 0, share = exp(-2 * network->rates[first] * SOON);
+    for (int a = 0; a < few; a++) {
+      const double* port = network->ports + (size_t)told[a] * numbers->states;
+      hears[a] = 0;
+      for (int i = first; i < last; i++) hears[a] += port[i] * x[i];
+      for (int b = 0; b < few; b++) {
+        gram[a * few + b] = 0;
+        for (int i = first; i < last; i++)
+          gram[a * few + b] += port[i] * network->ports[(size_t)told[b] * numbers->states + i];
+      }
+      ridge += RIDGE * gram[a * few + a] / few;
+    }
+    for (int a = 0; a < left; a++)
+      for (int b = 0; b < left; b++) own[a * left + b] = gram[alive[a] * few + alive[b]] + (a == b ? ridge : 0);
+    heat_inverse(left, own, inverse);
+    for (int a = 0; a < left; a++) {
+      flows[a] = 0;
+      for (int b = 0; b < left; b++) flows[a] += inverse[a * left + b] * hears[alive[b]];
+    }
+    for (int a = 0, end; a < left; a = end) {
+      int n = told[alive[a]] / patterns;
+      for (end = a; end < left && told[alive[end]] / patterns == n; end++) continue;
+      if (!idle[n]) continue;
+      int size = end - a;
+      for (int i = 0; i < size * size; i++) block[i] = inverse[(a + i / size) * left + a + i % size];
+      heat_inverse(size, block, turned);
+      for (int i = 0; i < size * size; i++) lost[n] += share * flows[a + i / size] * turned[i] * flows[a + i % size];
+    }
+  }
+  for (int n = 0; n < network->count; n++)
+    if (idle[n] && !gone[n]) least = lesser(least, lost[n]);
+  int first = -1;
+  for (int n = network->count - 1; n >= 0; n--) /* any number may have been written to the state */
+    if (idle[n] && !gone[n] && !(lost[n] > least * (1 + ALIKE))) first = n;
+  for (int n = network->count - 1; n >= 0 && !isfinite(least); n--)
+    if (idle[n] && !gone[n]) first = n;
+  return first;
 }
 
 /* The network of the places that an object has now; made where it is neither in use nor aside, in place of that aside which
@@ -179,33 +258,8 @@ static Network* network_of(const Numbers* numbers, Work* work, const State* stat
 #undef IS_OF
   network->count = count;
   memcpy(network->places, places, count * SLOT * sizeof(double));
-  heat_network(numbers, o, network, work->room);
+  heat_network(numbers, o, network, work->impedances + o * heat_impedances(numbers), work->room);
   return network;
-}
-
-/* A new place of an object; of those that are idle the oldest goes where there would be too many. */
-static void add(const Numbers* numbers, Work* work, State* state, int o, const double* place) {
-  int count = (int)state->used[o], idle = 0, oldest = -1, objects = numbers->objects, tip = (int)place[TIP];
-  double* places = state->places + o * numbers->places * SLOT;
-  for (int n = count - 1; n >= 0; n--) {
-    bool used = false;
-    for (int f = 0; f < numbers->tips; f++) used |= f != tip && state->current[f * objects + o] == n;
-    if (!used) oldest = n, idle++;
-  }
-  Network *network = network_of(numbers, work, state, o), *before = &work->networks[numbers->targets];
-  heat_copy_network(numbers, network, before);
-  if (idle > IDLE || count == numbers->places) {
-    memmove(places + oldest * SLOT, places + (oldest + 1) * SLOT, sizeof(double) * SLOT * (count - oldest - 1));
-    count--;
-    for (int f = 0; f < numbers->tips; f++) {
-      double* current = &state->current[f * objects + o];
-      *current = *current == oldest ? -1 : *current > oldest ? *current - 1 : *current;
-    }
-  }
-  memcpy(places + count * SLOT, place, sizeof(double) * SLOT);
-  state->used[o] = count + 1;
-  state->current[tip * objects + o] = count;
-  heat_carry(numbers, before, network_of(numbers, work, state, o), state->x + o * numbers->states, work->room);
 }
 
 /* Where a closed contact is: false where it is still at its place, else the face and where on the box, (2,) m. */
@@ -238,7 +292,69 @@ static bool moved(const Numbers* numbers, const State* state, int f, int o, int*
   return *face != known || apart > NEAR * width;
 }
 
-/* Brings every closed contact to its place: one that is known near there, or a new one. */
+/* The place of the grid that is nearest to a middle on a face. */
+static void on_grid(const Numbers* numbers, int f, int o, int face, const double middle[2], double* place) {
+  double width = numbers->pads[f * PAD + WIDTH];
+  place[FACE] = face;
+  place[TIP] = f;
+  place[ALL] = 1;
+  for (int axis = 0, j = 0; axis < 3; axis++) {
+    if (axis == face / 2) continue;
+    double size = numbers->boxes[o * BOX + axis], room = greater(size - width, 0) / 2, spacing = GRID * width;
+    double steps = rint((middle[j] - size / 2) / spacing * (1 - TIE));
+    place[MIDDLE + j] = size / 2 + lesser(greater(steps * spacing, -room), room);
+    j++;
+  }
+}
+
+/* Brings those fingertips of an object that have a face in faces to their places: such as are known near there, or new ones;
+touch/heat/places/moves.py. Where more than IDLE would be remembered besides those in use, others are forgotten. */
+static void move(const Numbers* numbers, Work* work, State* state, int o, const int* faces, double (*middles)[2]) {
+  int tips = numbers->tips, objects = numbers->objects, before = (int)state->used[o], count = before, kept = 0, over = -IDLE;
+  double *own = state->places + o * numbers->places * SLOT, places[(numbers->places + tips) * SLOT];
+  bool any = false, idle[numbers->places + tips], gone[numbers->places + tips], left[numbers->places + tips];
+  Network* old = &work->networks[numbers->targets];
+  heat_copy_network(numbers, network_of(numbers, work, state, o), old);
+  memcpy(places, own, sizeof(double) * before * SLOT);
+  memset(left, 0, sizeof left);
+  for (int f = 0; f < tips; f++) {
+    if (faces[f * objects + o] < 0) continue;
+    double width = numbers->pads[f * PAD + WIDTH], *place = places + count * SLOT;
+    on_grid(numbers, f, o, faces[f * objects + o], middles[f * objects + o], place);
+    int at = 0, last = (int)state->current[f * objects + o];
+    for (; at < count; at++) {
+      const double* known = places + at * SLOT;
+      double apart = greater(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
+      if (known[FACE] == place[FACE] && known[TIP] == place[TIP] && apart <= NEAR * width) break;
+    }
+    count += at == count;
+    if (at == last) continue;
+    if (last >= 0) left[last] = true;
+    any = true;
+    state->current[f * objects + o] = at;
+  }
+  if (!any) return;
+  for (int n = 0; n < count; n++) {
+    gone[n] = false;
+    idle[n] = !in_use(numbers, state, o, n);
+    places[n * SLOT + ALL] = !idle[n] || left[n];
+    over += idle[n];
+  }
+  for (; over > 0; over--) gone[heat_forgotten(numbers, old, state->x + o * numbers->states, idle, gone, work->room)] = true;
+  for (int n = 0; n < count; n++) {
+    if (gone[n]) continue;
+    memcpy(own + kept * SLOT, places + n * SLOT, sizeof(double) * SLOT);
+    for (int f = 0; f < tips; f++) /* no number is looked at again: they only get smaller */
+      if (state->current[f * objects + o] == n) state->current[f * objects + o] = kept;
+    kept++;
+  }
+  state->used[o] = kept;
+  const Network* network = network_of(numbers, work, state, o);
+  if (kept == before && !memcmp(own, old->places, sizeof(double) * kept * SLOT)) return;
+  heat_carry(numbers, old, network, state->x + o * numbers->states, work->room);
+}
+
+/* Brings every closed contact to its place. */
 void heat_settle(const Numbers* numbers, Work* work, State* state) {
   int tips = numbers->tips, objects = numbers->objects, faces[tips * objects];
   double middles[tips * objects][2];
@@ -247,24 +363,10 @@ void heat_settle(const Numbers* numbers, Work* work, State* state) {
     bool closed = state->touches[(f * numbers->targets + o) * COLUMNS + CONDUCTANCE] > 0;
     if (!closed || !moved(numbers, state, f, o, &faces[i], middles[i])) faces[i] = -1;
   }
-  for (int i = 0; i < tips * objects; i++) {
-    if (faces[i] < 0) continue;
-    int o = i % objects, at = -1;
-    double width = numbers->pads[i / objects * PAD + WIDTH], place[SLOT] = {faces[i], 0, 0, i / objects};
-    for (int axis = 0, j = 0; axis < 3; axis++) {
-      if (axis == faces[i] / 2) continue;
-      double size = numbers->boxes[o * BOX + axis], room = greater(size - width, 0) / 2, spacing = GRID * width;
-      double steps = rint((middles[i][j] - size / 2) / spacing * (1 - TIE));
-      place[MIDDLE + j] = size / 2 + lesser(greater(steps * spacing, -room), room);
-      j++;
-    }
-    for (int n = 0; n < (int)state->used[o] && at < 0; n++) {
-      const double* known = state->places + (o * numbers->places + n) * SLOT;
-      double apart = greater(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
-      if (known[FACE] == place[FACE] && known[TIP] == place[TIP] && apart <= NEAR * width) at = n;
-    }
-    if (at >= 0) state->current[i] = at;
-    else add(numbers, work, state, o, place);
+  for (int o = 0; o < objects; o++) {
+    bool any = false;
+    for (int f = 0; f < tips; f++) any = any || faces[f * objects + o] >= 0;
+    if (any) move(numbers, work, state, o, faces, middles);
+    network_of(numbers, work, state, o);
   }
-  for (int o = 0; o < objects; o++) network_of(numbers, work, state, o);
 }

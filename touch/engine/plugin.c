@@ -53,6 +53,7 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
     PART(network->ports, (tip ? n->faces : n->places) * n->patterns * states, double);
   }
   PART(work->turn, n->objects, int);
+  PART(work->impedances, n->objects * heat_impedances(n), double);
   PART(work->kept, n->rates, double);
   PART(work->grown, n->rates, double);
   PART(work->role, m->ngeom, int);
@@ -148,7 +149,7 @@ static int init(const mjModel* m, mjData* d, int instance) {
     int states = network->n = n->tip_states, ports = n->faces * n->patterns * states;
     memcpy(network->rates, n->tip_rates + f * states, sizeof(double) * states);
     memcpy(network->ports, n->tip_ports + f * ports, sizeof(double) * ports);
-    heat_pace(n, network);
+    heat_pace(n, network, true);
   }
   for (int k = 0; k < n->rates; k++) {
     heat->work.kept[k] = exp(-n->dt * n->decay[k]);

@@ -1,15 +1,14 @@
 """Heat of fingertips and objects as separate passive fields that contacts join."""
 
 from .array_narrow import ArrayNarrow, array_narrow
-from .fields import AFTERWARDS, TipField, resolution, tip_field, untouched
-from .fixed_networks import FixedNetworks
-from .fixed_places import FixedPlaces, network_tables
-from .joined import HeatBalance, HeatState, JoinedHeat
+from .fixed import FixedNetworks, FixedPlaces, network_tables
+from .joined import JoinedHeat
 from .march import sample
 from .narrow import narrow_tables
+from .places import TipField, resolution, tip_field, untouched
+from .records import HeatBalance, HeatState
 
 __all__ = [
-    "AFTERWARDS",
     "ArrayNarrow",
     "FixedNetworks",
     "FixedPlaces",

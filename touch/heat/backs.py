@@ -17,7 +17,7 @@ from ...thermal import ThermostatState, settled_thermostat, thermostat_step
 from ...thermal.readout import thermostat_at
 from ...thermal.stack import CoreState, heated_core
 from ..scene import PadPlace
-from .fields import TipField
+from .places import TipField
 
 _State = TypeVar("_State", CoreState, ThermostatState)
 

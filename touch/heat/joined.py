@@ -11,8 +11,7 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact (objects, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,64 +20,32 @@ from thermograsp.errors import InvalidValueError
 from ...thermal import Material
 from ...thermal.numerics import Array
 from ...thermal.padded import RINGS, ring_shares
-from ..contacts import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE, GluedContacts
+from ..contacts import FORCE, GluedContacts
 from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
-from .fields import (
+from .fixed import FixedNetworks, FixedPlaces, JoinedWorld, world_networks, world_places
+from .march import TABLE, sample
+from .narrow import STEPS, seen_of
+from .narrow_pairs import NarrowPairs
+from .places import (
     MOST_PLACES,
     NEAR,
     BodyField,
+    KnownFields,
     Place,
     carried_states,
-    near,
+    moved,
     resolution,
     rings_of,
     tip_field,
-    touched,
-    untouched,
 )
-from .fixed_networks import FixedNetworks, fixed_networks
-from .fixed_places import FixedPlaces, fixed_places
-from .march import TABLE, sample, settle
-from .narrow import STEPS, narrow_tables, seen_of
-from .narrow_pairs import NarrowPairs
+from .records import HeatBalance, HeatState
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
-MOST_SYSTEMS = 4096
+MOST_SYSTEMS = 1024
 """That are kept; beyond, those that no world uses are forgotten."""
-
-
-class HeatBalance(NamedTuple):
-    """J since the start. given (F, O): from each fingertip to each object, and passed (F, F): from each to each later
-    fingertip. air: from all objects to the air. elements (F,) and objects (O,): gained, an object with what is glued on
-    it."""
-
-    given: np.ndarray
-    passed: np.ndarray
-    air: float
-    elements: np.ndarray
-    objects: np.ndarray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class HeatState:
-    """What the heat remembers. fields: (W, O) the objects' networks; materials: (W, O); current (W, F, O): each pair's
-    place among its object's, -1 for none yet. states: (W, T, K). started: (W, O) J in the objects at the start, counted
-    from the air's temperature. narrow: (W, F, T, K) sqrt(J K) of narrow contacts. given (W, F, T) and air (W,): J so
-    far. drop: (W, F) K. backs: of the fingertips with thermostats of finite power or heaters of their own."""
-
-    fields: tuple[tuple[BodyField, ...], ...]
-    materials: tuple[tuple[Material, ...], ...]
-    current: np.ndarray
-    states: np.ndarray
-    started: np.ndarray
-    narrow: np.ndarray
-    given: np.ndarray
-    air: np.ndarray
-    drop: np.ndarray
-    backs: tuple[tuple[Any, np.ndarray], ...]
 
 
 class JoinedHeat:
@@ -99,10 +66,10 @@ class JoinedHeat:
         ambient: float,
         cache: bool = True,
     ) -> None:
-        pads, self._cache = (*fingertips, *glued), cache
+        pads = (*fingertips, *glued)
         self._pads, self._shapes = pads, tuple(shapes)
         self._glued = GluedContacts(fingertips, glued, len(shapes), worlds) if glued else None
-        self._dt, self._film, self._ambient = dt, film, ambient
+        self._dt, self._ambient = dt, ambient
         padded = any(pad.surround is not None for pad in pads)
         self._level = resolution(tolerance, padded, any(shape.solid is not None for shape in shapes))
         self._tip_fields = tuple(tip_field(pad, self._level) for pad in pads)
@@ -125,9 +92,9 @@ class JoinedHeat:
         )
         count, objects, fields = len(pads), len(shapes), len(shapes) + len(pads)
         contacts, lanes = len(self._owners), len(self._widths)
-        self._known: dict[tuple[int, Material, tuple[Place, ...]], BodyField] = {}
+        self._known = KnownFields(self._shapes, pads, self._tips, self._level, film, cache)
         self._materials = [tuple(shape.material for shape in shapes)] * worlds
-        bare = self._bare(self._materials[0])
+        bare = self._known.bare(self._materials[0])
         self._held_by = np.tile([field.heat[0] for field in bare], (worlds, 1))
         self._warm = np.tile(np.array([pad.temperature for pad in pads]) - ambient, (worlds, 1))
         self._rows = _padded([tip.side.outputs["drop"] for tip in self._tips])
@@ -172,7 +139,7 @@ class JoinedHeat:
     def reset(self, worlds: Sequence[int], temperatures: np.ndarray) -> None:
         """Those worlds' fields at their first temperatures; the objects' (rows, O) in °C."""
         for w, celsius in zip(worlds, temperatures, strict=True):
-            self._fields[w] = self._bare(self._materials[w])
+            self._fields[w] = self._known.bare(self._materials[w])
             self._held_by[w] = [field.heat[0] for field in self._fields[w]]
             self._x[w] = 0.0
             self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by[w]
@@ -208,8 +175,8 @@ class JoinedHeat:
             self._touches_at = self._touches.ctypes.data
         before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
         if sample(self._address(), self._touches_at, substeps, 0):
-            for w, f, o in np.argwhere(self._new_faces >= 0).tolist():
-                self._settle(w, f, o)
+            for w, o in np.argwhere((self._new_faces >= 0).any(axis=1)).tolist():
+                self._settle(w, o, np.flatnonzero(self._new_faces[w, :, o] >= 0).tolist())
             while self._stale.any():
                 for w in np.flatnonzero(self._stale).tolist():
                     self._stale[w] = False
@@ -275,43 +242,7 @@ class JoinedHeat:
     def fixed_places(self, w: int, like: Array) -> FixedPlaces:
         """World w's fingertips on the places that they have, and on other fingertips that they touch."""
         self._refuse_backs()
-        objects, patterns = len(self._shapes), self._level.patterns
-        at = np.concatenate((self._current[w] >= 0, self._closed[w, :, objects:]), axis=1)
-        pairs: list[Pair] = [(f, t) for f, t in np.argwhere(at).tolist()]
-        if not pairs:
-            raise InvalidValueError(
-                f"no fingertip of world {w} has touched anything: there are no places yet"
-            )
-        used = sorted({t for _, t in pairs} | {objects + f for f, _ in pairs})
-        rates = [
-            self._tips[b - objects].side.rates if b >= objects else self._fields[w][b].rates for b in used
-        ]
-        begin = dict(zip(used, np.cumsum([0, *map(len, rates)]).tolist(), strict=False))
-        flat = np.concatenate(rates)
-        ports, drop = np.zeros((len(flat), patterns * len(pairs))), np.zeros((len(pairs), len(flat)))
-        for n, (f, t) in enumerate(pairs):
-            in_port, first = slice(n * patterns, (n + 1) * patterns), begin[objects + f]
-            side = self._tips[f].side
-            ports[first : first + len(side.rates), in_port] = -side.ports
-            drop[n, first : first + len(side.rates)] = side.outputs["drop"]
-            taking = (
-                self._fields[w][t].port(int(self._current[w, f, t]), patterns)
-                if t < objects
-                else self._tips[t - objects].side.ports
-            )
-            ports[begin[t] : begin[t] + len(taking), in_port] = taking
-        names = (*(shape.name for shape in self._shapes), *(pad.label for pad in self._pads))
-        warm = np.append(np.zeros(objects), self._warm[w])
-        return fixed_places(
-            [(self._pads[f].label, names[t]) for f, t in pairs],
-            flat,
-            ports,
-            drop,
-            np.array([warm[objects + f] - warm[t] for f, t in pairs]),
-            np.concatenate([self._x[w, b, : len(r)] for b, r in zip(used, rates, strict=True)]),
-            self._dt,
-            like,
-        )
+        return world_places(self._world(w), like)
 
     def fixed_networks(
         self, w: int, materials: Sequence[Sequence[Material]], poses: np.ndarray
@@ -321,76 +252,33 @@ class JoinedHeat:
         NORMAL on every object (contacts/columns.py), in each way of touching it; every material comes once a way, and
         the state is that of the first."""
         self._refuse_backs()
-        tips, objects = self._current.shape[1:]
-        pads, level = self._pads[:tips], self._level
-        current = self._current[w].copy()
-        places = [[list(field.places) for field in self._fields[w]] for _ in poses]
-        for known, expected in zip(places, map(self._expected, poses), strict=True):
-            for f, o in np.argwhere(self._current[w] < 0).tolist():
-                current[f, o] = len(known[o])
-                known[o].append(expected[f][o])
-        after = [
-            [self._field(o, one, tuple(way[o])) for one in choices for way in places]
-            for o, choices in enumerate(materials)
-        ]
-        states = []
-        for o, before in enumerate(self._fields[w]):
-            field = self._field(o, self._materials[w][o], tuple(places[0][o]))
-            held = self._x[w, o, : len(before.rates)]
-            states.append(held if field is before else carried_states(before, field, level.patterns, held))
-        states += [self._x[w, objects + f, : len(tip.side.rates)] for f, tip in enumerate(self._tips)]
-        most = max(map(len, materials))
-        kinds = [
-            [choices[min(v, len(choices) - 1)] for v in range(most) for _ in poses] for choices in materials
-        ]
-        # as `after` has them, of which an object may have fewer
-        fields = [[known[min(v, len(known) - 1)] for v in range(most * len(poses))] for known in after]
-        pairs = [
-            (pad, seen_of(one, field.covered[int(current[f, o])]))
-            for f, pad in enumerate(pads)
-            for o, each in enumerate(kinds)
-            for one, field in zip(each, fields[o], strict=True)
-        ]
-        tables, number = narrow_tables(pairs, level)
-        return fixed_networks(
+        return world_networks(self._world(w), materials, poses)
+
+    def _world(self, w: int) -> JoinedWorld:
+        tips = self._current.shape[1]
+        return JoinedWorld(
+            w,
             self._dt,
-            level.patterns,
+            self._level,
+            self._pads[:tips],
             self._tips[:tips],
-            after,
-            current,
+            [shape.name for shape in self._shapes],
+            self._boxes,
+            self._widths[:tips],
+            self._fields[w],
+            self._materials[w],
+            self._known.field,
+            self._current[w],
+            self._closed[w, :tips],
+            self._x[w],
             self._warm[w],
-            tables,
-            number,
-            np.repeat(self._widths[:tips], objects),
-            level.decay,
-            states,
-            self._narrow[w, :, :objects].reshape(tips * objects, -1),
+            self._narrow[w, :tips],
         )
 
     @property
     def touched(self) -> bool:
         """Whether any fingertip has touched an object in any world."""
         return bool((self._current >= 0).any())
-
-    def _expected(self, poses: np.ndarray) -> list[list[Place]]:
-        """(F, O) places of pads in those poses (F, O, 6)."""
-        tips, objects = poses.shape[:2]
-        touches = np.zeros((1, tips, objects, COLUMNS))
-        touches[..., CONDUCTANCE] = 1.0
-        touches[0, :, :, PLACE : PLACE + 3], touches[0, :, :, NORMAL : NORMAL + 3] = (
-            poses[..., :3],
-            poses[..., 3:],
-        )
-        faces, middles = np.full((1, tips, objects), -1), np.zeros((1, tips, objects, 3))
-        new = faces.copy(), middles.copy()
-        closed, stale = np.zeros((1, tips, objects), bool), np.zeros(1, bool)
-        known = faces, middles, faces, middles
-        none = np.full(tips, -1)
-        settle(touches, self._boxes, self._widths, self._widths, *known, *new, closed, stale, none)
-        return [
-            [self._wanted(f, int(new[0][0, f, o]), new[1][0, f, o]) for o in range(objects)]
-            for f in range(tips)
-        ]
 
     def _refuse_backs(self) -> None:
         if self._around:
@@ -497,8 +385,8 @@ class JoinedHeat:
         """Puts it into a state taken by `state`."""
         self._materials = list(state.materials)
         for w, (saved, materials) in enumerate(zip(state.fields, state.materials, strict=True)):
-            keys = [(o, materials[o], field.places) for o, field in enumerate(saved)]
-            self._fields[w] = [self._known.setdefault(*known) for known in zip(keys, saved, strict=True)]
+            pairs = enumerate(zip(materials, saved, strict=True))
+            self._fields[w] = [self._known.of(o, material, field) for o, (material, field) in pairs]
             self._held_by[w] = [field.heat[0] for field in self._fields[w]]
         self._current[:] = state.current
         self._x = state.states.copy()
@@ -528,20 +416,6 @@ class JoinedHeat:
             held[:, self._on[e]] += within[:, e]
         return held
 
-    def _bare(self, materials: tuple[Material, ...]) -> list[BodyField]:
-        """Objects of those materials that nothing has touched."""
-        return [self._field(o, material, ()) for o, material in enumerate(materials)]
-
-    def _field(self, o: int, material: Material, places: tuple[Place, ...]) -> BodyField:
-        if (o, material, places) not in self._known:
-            shape = self._shapes[o].of(material)
-            self._known[o, material, places] = (
-                touched(shape, self._film, places, self._pads, self._tips, self._level, self._cache)
-                if places
-                else untouched(shape, self._film)
-            )
-        return self._known[o, material, places]
-
     def _forget(self) -> None:
         """Systems are made anew when they are wanted."""
         self._table = None
@@ -550,8 +424,7 @@ class JoinedHeat:
         self._pool = SystemPool(self._tips, faces, len(self._shapes), self._level.patterns, self._dt, around)
         self._numbers: dict[BodyField, int] = {}
         self._fade = _padded([np.exp(-self._dt * tip.side.rates) for tip in self._tips])
-        in_use = {field for fields in self._fields for field in fields}
-        self._known = {key: field for key, field in self._known.items() if field in in_use or not key[2]}
+        self._known.forget({field for fields in self._fields for field in fields})
         self._pairs.forget()
         for w in range(len(self._fields)):
             self._renumber(w)
@@ -581,24 +454,28 @@ class JoinedHeat:
         elif wide < 0:
             self._fade = np.pad(self._fade, ((0, 0), (0, -wide)))
 
-    def _settle(self, w: int, f: int, o: int) -> None:
-        """The pair's place: one that is known near there, or a new one."""
-        place = self._wanted(f, int(self._new_faces[w, f, o]), self._new_middles[w, f, o])
-        known = self._fields[w][o].places
-        for number, one in enumerate(known):
-            if near(one, place, NEAR * float(self._widths[f])):
-                self._current[w, f, o] = number
-                break
-        else:
-            self._add(w, o, place)
-        self._place(w, f, o)
-        self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.whole
+    def _settle(self, w: int, o: int, fingertips: Sequence[int]) -> None:
+        """Those fingertips of an object are on places that are known near there, or on new ones."""
+        before, patterns = self._fields[w][o], self._level.patterns
+        wanted = {
+            f: Place.on_grid(f, self._new_faces[w, f, o], self._new_middles[w, f, o]) for f in fingertips
+        }
+        held = self._x[w, o, : len(before.rates)]
+        current = self._current[w, :, o].tolist()
+        move = moved(before, current, wanted, self._widths, patterns, held, MOST_PLACES)
+        after = self._known.field(o, self._materials[w][o], move.places, move.whole)
+        self._current[w, :, o] = move.current
+        if after is not before:
+            heat = carried_states(before, after, patterns, held)
+            self._fields[w][o] = after
+            self._renumber(w)
+            self._x[w, o] = 0.0
+            self._x[w, o, : len(heat)] = heat
+        for f in range(len(self._pads)):
+            self._place(w, f, o)
+        for f, place in wanted.items():
+            self._sought_faces[w, f, o], self._sought_middles[w, f, o] = place.face, place.whole
         self._stale[w] = True
-
-    def _wanted(self, f: int, face: int, middle: np.ndarray) -> Place:
-        """Of the grid, as `settle` tells it."""
-        along, beside, across = middle.tolist()
-        return Place(face, (along, beside), f, across)
 
     def _place(self, w: int, f: int, o: int) -> None:
         number = int(self._current[w, f, o])
@@ -615,27 +492,6 @@ class JoinedHeat:
         field = self._fields[w][o]
         at = int(self._current[w, f, o])
         self._pairs.spread(w, f, o, seen_of(self._materials[w][o], field.covered[at]))
-
-    def _add(self, w: int, o: int, place: Place) -> None:
-        """A new place of an object; the one that was in use the longest ago goes where there would be too many."""
-        before = self._fields[w][o]
-        current = self._current[w, :, o]
-        used = {int(number) for number in current if number >= 0}
-        used.discard(int(current[place.fingertip]))
-        kept = list(range(len(before.places)))
-        idle = [number for number in kept if number not in used]
-        if len(idle) > MOST_PLACES:
-            kept.remove(idle[0])
-        after = self._field(o, self._materials[w][o], (*(before.places[number] for number in kept), place))
-        heat = carried_states(before, after, self._level.patterns, self._x[w, o, : len(before.rates)])
-        current[:] = [kept.index(known) if known in kept else -1 for known in current.tolist()]
-        current[place.fingertip] = len(after.places) - 1
-        self._fields[w][o] = after
-        self._renumber(w)
-        self._x[w, o] = 0.0
-        self._x[w, o, : len(heat)] = heat
-        for f in range(len(self._pads)):
-            self._place(w, f, o)
 
     def _join(self, w: int) -> None:
         """The systems of a world's closed contacts."""

@@ -24,6 +24,7 @@ from ..contacts import (
 )
 from ..pointers import flags, floats, words
 from .narrow import STEPS, lean, spread
+from .places import ACROSS
 from .step import CONTACTS, HEADER, PACE, room_of, step
 
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
@@ -31,8 +32,6 @@ TABLE = 59
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 BOX = 19
 """Of a row that tells an object."""
-ACROSS = 0.25
-"""What a step across a face counts for one along it: pads sink in, and walls of one object are far from each other."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
 _TIE = 1e-6
 """By how much a face must look more at the pad than the axis before, and a place must be nearer to the next point of

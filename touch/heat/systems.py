@@ -19,7 +19,7 @@ import numpy as np
 from thermograsp.lanes import LANES
 
 from ...thermal.kernels import Tip
-from .fields import BodyField
+from .places import BodyField
 from .step import PACE, gram, lanes, pace
 
 Pair = tuple[int, int]

@@ -68,11 +68,12 @@ def _own(model: mujoco.MjModel, shape: BodyShape) -> BodyShape:
     from ...thermal.meshes import body_modes  # nothing that meshes need is loaded without them
 
     turn, offset = np.eye(3), np.zeros(3)
-    if len(shape.geoms) == 1:  # in its file's axes, along which its walls are, not in those of inertia
+    if len(shape.geoms) == 1:
         (geom,) = shape.geoms
-        mesh = int(model.geom_dataid[geom])
-        turn = rotation(model.geom_quat[geom]) @ rotation(model.mesh_quat[mesh]).T
-        offset = model.geom_pos[geom]
+        turn, offset = rotation(model.geom_quat[geom]), model.geom_pos[geom]
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
+            # in its file's axes, along which its walls are, not in those of inertia
+            turn = turn @ rotation(model.mesh_quat[int(model.geom_dataid[geom])]).T
     try:
         with busy(f"how heat spreads in object {shape.name!r}, once for its shape"):
             parts = {geom_label(model, geom): _surface(model, geom, offset, turn) for geom in shape.geoms}

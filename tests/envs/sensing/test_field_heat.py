@@ -23,7 +23,7 @@ from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig
 from thermograsp.envs.sensing import FieldHeat, FieldScenes, GraspHeat
 from thermograsp.thermal import material
 from thermograsp.touch import Fingertip, ThermalTouch
-from thermograsp.touch.heat import fields, joined
+from thermograsp.touch.heat import joined
 
 BALL = ObjectSpec(name="ball", shape="sphere")
 ROD = ObjectSpec(name="rod", shape="cylinder", size=(0.04, 0.04, 0.08))
@@ -188,22 +188,20 @@ def test_a_bare_rod_s_mesh_is_felt_as_the_rod(force: float, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_a_mesh_forgets_less_than_a_box_where_a_pad_returns_to(
+def test_a_pad_feels_what_it_returns_to_on_a_mesh_as_on_a_box(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its own states stay. Where all places are remembered, both feel the same."""
+    """Few places that are remembered would not do."""
     specs, words = (PLATE, block(tmp_path)), {"anywhere": True, "skin": None, "fingertips": 2}
 
     def both() -> list[np.ndarray]:
         return [felt(heat_of(body_of("glass", spec, **words)), PLATE) for spec in specs]
 
-    shipped = both()
-    for module in (fields, joined):
-        monkeypatch.setattr(module, "MOST_PLACES", 12)
     box, mesh = both()
-    np.testing.assert_allclose(mesh[4:], box[4:], atol=0.02)
-    by_box, by_mesh = (np.abs(each - box)[4:].max() for each in shipped)
-    assert 0.1 < by_mesh < 0.7 * by_box
+    np.testing.assert_allclose(mesh[4:], box[4:], atol=0.03)
+    monkeypatch.setattr(joined, "MOST_PLACES", 2)
+    by_box, by_mesh = (np.abs(each - box)[4:].max() for each in both())
+    assert by_mesh > 0.1 and by_box > 0.1
 
 
 def test_in_the_middle_of_a_face_it_is_the_network_of_press() -> None:

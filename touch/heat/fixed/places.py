@@ -12,9 +12,9 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
-from ...thermal import ArrayTables, HeatTables, array_step, array_tables
-from ...thermal.network import propagator
-from ...thermal.numerics import Array, as_like
+from ....thermal import ArrayTables, HeatTables, array_step, array_tables
+from ....thermal.network import propagator
+from ....thermal.numerics import Array, as_like
 
 
 @dataclass(frozen=True, slots=True)

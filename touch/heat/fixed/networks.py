@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...thermal.kernels import Tip
-from .fields import BodyField
+from ....thermal.kernels import Tip
+from ..places import BodyField
 
 
 @dataclass(frozen=True, slots=True, eq=False)

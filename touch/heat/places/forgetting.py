@@ -1,0 +1,54 @@
+"""Which places of an object are forgotten: those whose loss changes the field least.
+
+P: ports, K: rates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .bodies import BodyField
+
+MOST_PLACES = 12
+"""Of an object that are remembered besides those in use."""
+_SOON = 0.5  # s, from when on what is lost counts
+_RIDGE = 1e-4  # of a port's mean square
+_ALIKE = 1e-6  # relative: round-off does not decide between places of which as much would be lost
+
+
+def forgotten(
+    field: BodyField, patterns: int, states: np.ndarray, idle: Sequence[int], count: int
+) -> list[int]:
+    """So many of the idle places, by number. states: (n,) of the field.
+
+    What is stored is the sum of the states' squares. Without a place those states are left that the others' ports
+    bring about: by each rate, what is lost is u^T S u, where u are the flows that would make the states and S is what
+    is stored by a unit flow that the other places see nothing of, the inverse of the inverse Gram matrix' block. Of
+    places as good as each other the first one goes."""
+    if count <= 0:
+        return []
+    ports = [n * patterns + m for n, whole in enumerate(field.whole) for m in range(patterns if whole else 1)]
+    owner = np.array(ports) // patterns
+    rates = np.unique(field.rates[field.own :])
+    gram, hears = np.zeros((len(rates), len(ports), len(ports))), np.zeros((len(rates), len(ports), 1))
+    for k, rate in enumerate(rates):
+        of_rate = field.own + np.flatnonzero(field.rates[field.own :] == rate)
+        seen = field.ports[of_rate][:, ports]
+        gram[k], hears[k, :, 0] = seen.T @ seen, seen.T @ states[of_rate]
+    diagonal = np.arange(len(ports))
+    ridge = _RIDGE * np.trace(gram, axis1=1, axis2=2) / len(ports)
+    gram[:, diagonal, diagonal] += ridge[:, None]
+    left, gone = np.exp(-2 * rates * _SOON), []
+    while len(gone) < count:
+        alive = np.flatnonzero(~np.isin(owner, gone))
+        inverse = np.linalg.inv(gram[:, alive[:, None], alive])
+        flows, lost = inverse @ hears[:, alive], {}
+        for n in (n for n in idle if n not in gone):
+            own = np.flatnonzero(owner[alive] == n)
+            block = np.linalg.solve(inverse[:, own[:, None], own], flows[:, own])
+            lost[n] = float(left @ (flows[:, own] * block).sum(axis=(1, 2)))
+        least = min(lost.values()) * (1 + _ALIKE)
+        gone.append(next(n for n, each in lost.items() if each <= least))
+    return gone
