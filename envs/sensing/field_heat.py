@@ -19,8 +19,8 @@ import numpy as np
 
 from ...thermal.contact import FOOTPRINT_LAW
 from ...touch.contacts import COLUMNS
-from ...touch.heat import HeatBalance, JoinedHeat
 from ...touch.heat import HeatState as FieldState
+from ...touch.heat import JoinedHeat
 from ...touch.scene import BodyShape, PadPlace
 from ..footprint import PAD, GraspBody, PadContact, mesh_steps, pad_contact, touch_pads
 from .heat import HeatStep
@@ -52,16 +52,12 @@ class FieldHeatState:
 
 @dataclass(slots=True)
 class _Row:
-    """An environment's heat. contacts: of each object. touches: (N, 1, F, O + F, columns), and samples: its parts.
-    given: (F, O) J to the objects, stored: (F,) J in elements and pads, air: J, all at the last step's end."""
+    """An environment's heat. contacts: of each object. touches: (N, 1, F, O + F, columns), and samples: its parts."""
 
     heat: JoinedHeat
     contacts: list[PadContact]
     touches: np.ndarray
     samples: list[np.ndarray]
-    given: np.ndarray
-    stored: np.ndarray
-    air: float
 
 
 class FieldScenes:
@@ -79,7 +75,7 @@ class FieldScenes:
         sensor_temperature: float | tuple[float, float],
         cache: bool = True,
     ) -> None:
-        self._cache, self._tolerance, self._air, self._dt, self._samples = cache, tolerance, air, dt, samples
+        self._cache, self._tolerance, self._film, self._dt, self._samples = cache, tolerance, air, dt, samples
         self._rows = np.zeros((num_envs, objects), HEAT_ROW)
         self._rows["sensor_temperature"] = sensor_temperature
         self._laws = np.zeros((num_envs, objects), FOOTPRINT_LAW)
@@ -88,6 +84,9 @@ class FieldScenes:
         self._scenes: dict[int, tuple[GraspBody, ...]] = {}
         self._heats: dict[int, _Row] = {}
         self._owner = np.zeros((num_envs, 2), int)
+        # J at the last step's end: from fingertips to objects, in elements and pads, in objects, to the air
+        self._given, self._stored = np.zeros((num_envs, 2, objects)), np.zeros((num_envs, 2))
+        self._gained, self._air = np.zeros((num_envs, objects)), np.zeros(num_envs)
         # Meshes, whose contact follows the place: where the pads closed, and how far they have gone.
         self._meshes: list[tuple[int, int]] = []
         self._closed = np.zeros((num_envs, objects, 4))
@@ -131,14 +130,14 @@ class FieldScenes:
             for k, touches in enumerate(one.samples):
                 one.heat.advance(touches, 1)
                 drop[row, k, : one.heat.drop.shape[1]] = one.heat.drop[0]
-            self._tell(row, one)
+        self._tell()
         return self._step(drop)
 
     def rest(self) -> SceneHeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
         self._info[:] = np.zeros(1, HEAT_INFO)
-        for row in self._heats:
-            self._tell_temperatures(row)
+        self._info["reservoir_temperature"] = np.nan
+        self._tell_temperatures()
         return self._step(np.zeros((len(self._rows), self._samples, 2)))
 
     def state(self, rows: Sequence[int]) -> FieldHeatState:
@@ -157,7 +156,7 @@ class FieldScenes:
             self._place(row, state.scenes[k], state.rows[k, 0]["sensor_temperature"])
             self._rows[row], self._owner[row] = state.rows[k], state.owner[k]
             self._heats[row].heat.set_state(state.fields[k])
-            self._close_books(self._heats[row])
+            self._close_book(row, self._heats[row].heat)
 
     @property
     def sensor_temperatures(self) -> np.ndarray:
@@ -175,21 +174,13 @@ class FieldScenes:
             worlds=1,
             dt=self._dt,
             tolerance=self._tolerance,
-            film=self._air,
+            film=self._film,
             ambient=first.temperature if first.ambient is None else first.ambient,
             cache=self._cache,
         )
         touches = np.zeros((self._samples, 1, len(pads), len(scene) + len(pads), COLUMNS))
-        none = np.zeros((len(pads), len(scene)))
-        self._heats[row] = _Row(
-            heat,
-            [pad_contact(body) for body in scene],
-            touches,
-            list(touches),
-            none,
-            none[:, 0].copy(),
-            0.0,
-        )
+        self._heats[row] = _Row(heat, [pad_contact(body) for body in scene], touches, list(touches))
+        self._given[row], self._stored[row], self._gained[row], self._air[row] = 0.0, 0.0, 0.0, 0.0
         self._meshes = [each for each in self._meshes if each[0] != row]
         self._steps[row] = 0
         for o, body in enumerate(scene):
@@ -219,39 +210,42 @@ class FieldScenes:
             most = part.max(axis=2)
             self._owner = np.where(most.max(axis=1) > 0, most.argmax(axis=1), self._owner)
 
-    def _tell(self, row: int, one: _Row) -> None:
-        """Fills the row's info after a step."""
-        given, stored, air = one.given, one.stored, one.air
-        balance, seconds = self._close_books(one), self._samples * self._dt
-        tips, flowed = len(stored), one.given - given
-        info = self._info[row]
-        info["flow"][:, :tips] = flowed.T / seconds
-        info["drawn"][:, :tips] = info["flow"][:, :tips] + (one.stored - stored) / seconds
-        info["heat"][:, :tips] = one.stored
-        info["heat"][:, 2] = balance.objects
-        info["air_loss"] = 0.0
-        info["air_loss"][0] = (one.air - air) / seconds
-        books = self._rows[row]["books"]
-        books[:, 1] += np.abs(flowed).sum(axis=0)
-        info["exchanged"] = books[:, 1]
-        info["imbalance"] = 0.0
-        info["imbalance"][0] = balance.objects.sum() + one.air - one.given.sum()
-        self._tell_temperatures(row)
+    def _tell(self) -> None:
+        """Fills the info after a step."""
+        given, stored, air = self._given.copy(), self._stored.copy(), self._air.copy()
+        self._close_books()
+        info, seconds = self._info, self._samples * self._dt
+        flowed = self._given - given
+        info["flow"] = flowed.transpose(0, 2, 1) / seconds
+        info["drawn"] = info["flow"] + ((self._stored - stored) / seconds)[:, None]
+        info["heat"][..., :2] = self._stored[:, None]
+        info["heat"][..., 2] = self._gained
+        info["air_loss"][:, 0] = (self._air - air) / seconds
+        books = self._rows["books"]
+        books[..., 1] += np.abs(flowed).sum(axis=1)
+        info["exchanged"] = books[..., 1]
+        info["imbalance"][:, 0] = self._gained.sum(axis=1) + self._air - self._given.sum(axis=(1, 2))
+        self._tell_temperatures()
 
-    def _tell_temperatures(self, row: int) -> None:
-        info, heat = self._info[row], self._heats[row].heat
-        info["sensor_surface"] = self._rows[row]["sensor_temperature"]
-        info["object_temperature"] = heat.object_temperature[0]
-        info["object_surface"] = info["object_temperature"][:, None]
-        sensors, objects = heat.faces(0)
-        info["sensor_surface"][:, : len(sensors)] = sensors
-        info["object_surface"][:, : len(sensors)] = objects.T
-        info["reservoir_temperature"] = np.nan
+    def _tell_temperatures(self) -> None:
+        info = self._info
+        info["sensor_surface"] = self._rows["sensor_temperature"]
+        for row, one in self._heats.items():
+            sensors, objects = one.heat.faces(0)
+            info["object_temperature"][row] = one.heat.object_temperature[0]
+            info["object_surface"][row] = info["object_temperature"][row][:, None]
+            info["sensor_surface"][row, :, : len(sensors)] = sensors
+            info["object_surface"][row, :, : len(sensors)] = objects.T
 
-    def _close_books(self, one: _Row) -> HeatBalance:
-        balance = one.heat.balance(0)
-        one.given, one.stored, one.air = balance.given, balance.elements, balance.air
-        return balance
+    def _close_books(self) -> None:
+        for row, one in self._heats.items():
+            self._close_book(row, one.heat)
+
+    def _close_book(self, row: int, heat: JoinedHeat) -> None:
+        balance = heat.balance(0)
+        tips = len(balance.elements)
+        self._given[row, :tips], self._stored[row, :tips] = balance.given, balance.elements
+        self._gained[row], self._air[row] = balance.objects, balance.air
 
     def _step(self, drop: np.ndarray) -> SceneHeatStep:
         objects, owner = self._info.copy(), self._owner.copy()

@@ -100,7 +100,8 @@ class JoinedHeat:
         self._rows = _padded([tip.side.outputs["drop"] for tip in self._tips])
         self._elements = _padded([tip.side.outputs["element"] for tip in self._tips])
         self._uniform = _padded([field.uniform for field in self._tip_fields])
-        self._on = np.array([-1 if pad.glued is None else pad.glued for pad in pads])
+        self._even = _padded([tip.side.ports[:, 0] for tip in self._tips])
+        self._glued_on = [pad.glued for pad in glued if pad.glued is not None]
         self._fields = [list(bare) for _ in range(worlds)]
         self._current = np.full((worlds, count, objects), -1)
         self._faces = np.full((worlds, count, objects), -1)
@@ -143,8 +144,8 @@ class JoinedHeat:
             self._held_by[w] = [field.heat[0] for field in self._fields[w]]
             self._x[w] = 0.0
             self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by[w]
-            for e in np.flatnonzero(self._on >= 0).tolist():
-                warm = celsius[self._on[e]] - self._ambient
+            for e, o in enumerate(self._glued_on, len(self._pads) - len(self._glued_on)):
+                warm = celsius[o] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
             self._renumber(w)
         rows = list(worlds)
@@ -158,7 +159,8 @@ class JoinedHeat:
         self._closed[rows], self._stale[rows] = False, False
         self._narrow[rows] = 0.0
         self._given[rows], self._air[rows], self.drop[rows] = 0.0, 0.0, 0.0
-        self._started[rows] = self._held()[rows]
+        for w in rows:
+            self._started[w] = self._held(w)
         self._warm_up()
 
     def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
@@ -331,15 +333,15 @@ class JoinedHeat:
         """°C of a world's sensors, (F,), and of the objects under each, (F, O): means over the whole face, an object's
         mean where none has touched it."""
         objects, patterns = len(self._shapes), self._level.patterns
-        sensors, under = self._ambient + self._warm[world], np.empty(self._current.shape[1:])
-        for f, tip in enumerate(self._tips):
-            sensors[f] += tip.side.ports[:, 0] @ self._x[world, objects + f, : len(tip.side.rates)]
-        under[:] = self.object_temperature[world]
-        for f, o in np.argwhere(self._current[world] >= 0).tolist():
-            field = self._fields[world][o]
-            port = field.port(int(self._current[world, f, o]), patterns)[:, 0]
-            under[f, o] = self._ambient + port @ self._x[world, o, : len(field.rates)]
-        return sensors, under
+        x, under = self._x[world], np.empty(self._current.shape[1:])
+        sensors = self._warm[world] + (x[objects:, : self._even.shape[1]] * self._even).sum(axis=1)
+        under[:] = self.warmth[world]
+        for f, of_tip in enumerate(self._current[world].tolist()):
+            for o, number in enumerate(of_tip):
+                if number >= 0:
+                    field = self._fields[world][o]
+                    under[f, o] = field.ports[:, number * patterns] @ x[o, : len(field.rates)]
+        return self._ambient + sensors, self._ambient + under
 
     @property
     def object_temperature(self) -> np.ndarray:
@@ -350,20 +352,20 @@ class JoinedHeat:
         """Where a world's heat has gone."""
         objects = len(self._shapes)
         sensors = len(self._pads)
-        given, elements = self._given[world, :sensors].copy(), self._in_tips()[world]
+        given, elements = self._given[world, :sensors].copy(), self._in_tips(world)
         for r, (f, _) in enumerate(self._around):
             given[f] += self._given[world, sensors + r * RINGS : sensors + (r + 1) * RINGS].sum(axis=0)
         for back in self._backs:
             elements[back.tip] += back.gained[world]
-        tips = int((self._on < 0).sum())
-        for e, o in enumerate(self._on[tips:].tolist(), tips):
+        tips = self._current.shape[1] - len(self._glued_on)
+        for e, o in enumerate(self._glued_on, tips):
             given[:, o] += given[:, objects + e]
         return HeatBalance(
             given[:tips, :objects],
             given[:tips, objects : objects + tips],
             float(self._air[world]),
             elements[:tips],
-            (self._held() - self._started)[world],
+            self._held(world) - self._started[world],
         )
 
     def state(self) -> HeatState:
@@ -405,15 +407,17 @@ class JoinedHeat:
         """Says how warm the objects are."""
         self.warmth[:] = self._x[:, : len(self._shapes), 0] / self._held_by
 
-    def _in_tips(self) -> np.ndarray:
-        """(W, S) J in the sensors' elements."""
-        return (self._x[:, len(self._shapes) :, : self._elements.shape[1]] * self._elements).sum(axis=2)
+    def _in_tips(self, w: int) -> np.ndarray:
+        """(S,) J in the sensors' elements."""
+        return (self._x[w, len(self._shapes) :, : self._elements.shape[1]] * self._elements).sum(axis=1)
 
-    def _held(self) -> np.ndarray:
-        """(W, O) J in the objects and what is glued on them, counted from the air's temperature."""
-        held, within = self._x[:, : len(self._shapes), 0] * self._held_by, self._in_tips()
-        for e in np.flatnonzero(self._on >= 0).tolist():
-            held[:, self._on[e]] += within[:, e]
+    def _held(self, w: int) -> np.ndarray:
+        """(O,) J in the objects and what is glued on them, counted from the air's temperature."""
+        held = self._x[w, : len(self._shapes), 0] * self._held_by[w]
+        if self._glued_on:
+            within = self._in_tips(w)
+            for e, o in enumerate(self._glued_on, self._current.shape[1] - len(self._glued_on)):
+                held[o] += within[e]
         return held
 
     def _forget(self) -> None:
