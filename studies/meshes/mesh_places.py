@@ -11,7 +11,7 @@ library's vessels, at FELT over LONG.
     python studies/meshes/mesh_places.py rim --json       those with "rim" in their name
     python studies/meshes/mesh_places.py --filled         places of mugs with contents instead
     python studies/meshes/mesh_places.py --vessels        drawn places of the library's vessels with contents instead
-    python studies/meshes/mesh_places.py --pairs          drawn pairs of fingertips at the library's vessels' rims and feet
+    python studies/meshes/mesh_places.py --pairs          drawn pairs of fingertips at vessels' rims and feet
     python studies/meshes/mesh_places.py --times          how long modes and networks take instead
 """
 
