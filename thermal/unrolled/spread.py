@@ -105,12 +105,9 @@ class Spread(NamedTuple):
     def _beyond(self, at: np.ndarray, near: float) -> np.ndarray:
         """(N,) whether places (N, 3) m of u, v and w are that near to the cells' ends, or beyond."""
         low, high = (np.array([edges[end] for edges in self.edges]) for end in (0, -1))
-        # above the face they go on as far as the body does
-        return (
-            np.isnan(at).any(axis=1)
-            | (at < low + near).any(axis=1)
-            | (at[:, :2] > high[:2] - near).any(axis=1)
-        )
+        high[2] = np.inf  # above the face they go on as far as the body does
+        inside = (at >= low + near) & (at <= high - near)
+        return ~inside.all(axis=1)
 
 
 def spread_beneath(local: LocalCells, times: np.ndarray) -> Spread:
