@@ -106,8 +106,8 @@ class Spread(NamedTuple):
         """(N,) whether places (N, 3) m of u, v and w are that near to the cells' ends, or beyond."""
         low, high = (np.array([edges[end] for edges in self.edges]) for end in (0, -1))
         high[2] = np.inf  # above the face they go on as far as the body does
-        inside = (at >= low + near) & (at <= high - near)
-        return ~inside.all(axis=1)
+        inside: np.ndarray = (at >= low + near) & (at <= high - near)
+        return np.logical_not(inside.all(axis=1))
 
 
 def spread_beneath(local: LocalCells, times: np.ndarray) -> Spread:
