@@ -11,6 +11,7 @@ library's vessels, at FELT over LONG.
     python studies/meshes/mesh_places.py rim --json       those with "rim" in their name
     python studies/meshes/mesh_places.py --filled         places of mugs with contents instead
     python studies/meshes/mesh_places.py --vessels        drawn places of the library's vessels with contents instead
+    python studies/meshes/mesh_places.py --pairs          drawn pairs of fingertips at vessels' rims and feet
     python studies/meshes/mesh_places.py --times          how long modes and networks take instead
 """
 
@@ -33,14 +34,15 @@ from thermograsp import thermal
 from thermograsp.envs.bodies.library import library_object
 from thermograsp.envs.bodies.object_solids import object_solid
 from thermograsp.thermal import Solid, SurfacePatch
-from thermograsp.thermal.meshes import body_network
+from thermograsp.thermal.meshes import body_network, surface_normal
 from thermograsp.thermal.meshes.film import Film, film_of, held_apart
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
 from thermograsp.thermal.meshes.network import patch_fields
+from thermograsp.thermal.meshes.placed import _fields as placed_fields
 from thermograsp.thermal.meshes.placed import centred_tip, face_patterns, placed_network
 from thermograsp.thermal.network import ThermalNetwork
-from thermograsp.thermal.surfaces import SolidPart
+from thermograsp.thermal.surfaces import SolidPart, crossings
 
 CONDUCTANCES = 1e3, 1e4, 1e5  # W/(m2 K)
 TIMES = 0.02 * np.arange(3, 300)  # s
@@ -253,7 +255,7 @@ def with_contents(name: str, material: str) -> list[Row]:
     for film in FILMS:
         inside = Film(film * one.area, one.walls)
         fast = _held(placed_network(body, [patch], STACK, inside.conductance).network, inside.conductance)
-        held = patch_fields(body, patch, face_patterns(TIP), _FINEST, inside)
+        held = patch_fields(body, [patch], face_patterns(TIP), _FINEST, inside)
         fine = ThermalNetwork(held.rates, held.ports, np.zeros((held.ports.shape[1],) * 2))
         worst = Row(f"{name}, {film:g} W/(m2 K) to contents", material, 0.0, 0.0, 0.0, 0.0)
         for conductance in CONDUCTANCES:
@@ -326,7 +328,7 @@ def _vessel(name: str, body: Solid, patch: SurfacePatch) -> list[VesselRow]:
     for film in VESSEL_FILMS:
         inside = Film(film * one.area, one.walls)
         body_modes(body, inside)
-        fine = patch_fields(body, patch, face_patterns(TIP), grid, inside)
+        fine = patch_fields(body, [patch], face_patterns(TIP), grid, inside)
         begin = time.process_time()
         network = placed_network(body, [patch], STACK, inside.conductance).network
         seconds = time.process_time() - begin
@@ -335,6 +337,133 @@ def _vessel(name: str, body: Solid, patch: SurfacePatch) -> list[VesselRow]:
         worst = tuple(float(error[np.abs(error).argmax()]) for error in errors)
         found.append(VesselRow(name, patch.centre, film, worst, seconds, network.order))
     return found
+
+
+PAIRED = 4  # pairs of each, one of each kind
+PAIR_FILM = 500.0  # W/(m2 K), of every second pair
+
+
+@dataclass(frozen=True, slots=True)
+class PairRow:
+    """Error of a drawn pair, K of DIFFERENCE, with its sign, the largest over TIMES at CONDUCTANCES of either tip.
+    film: W/(m2 K) to contents, or 0. seconds: of processor time that the network took. grids: whether a grid was made
+    for it."""
+
+    vessel: str
+    kind: str
+    places: tuple[Vector, Vector]
+    film: float
+    error: float
+    seconds: float
+    grids: bool
+
+
+def pair_rows(chosen: str) -> list[PairRow]:
+    """Of the vessels with this in their name."""
+    found = []
+    for name in VESSELS:
+        if chosen not in name:
+            continue
+        preset = library_object(name)
+        body = object_solid(preset.spec(), thermal.material(preset.material))
+        rng = np.random.default_rng([11, *name.encode()])
+        for n in range(PAIRED):
+            kind, one, other = _pair(body, n, rng)
+            found.append(_paired(name, kind, body, (one, other), PAIR_FILM * (n % 2 == len(name) % 2)))
+    return found
+
+
+def _pair(body: Solid, kind: int, rng: np.random.Generator) -> tuple[str, SurfacePatch, SurfacePatch]:
+    """Two fingertips near each other. The handle, if any, is along y; they are far from it."""
+    (_, _, low), (_, _, high) = body.bounds
+    at, beside = rng.uniform(-0.6, 0.6), rng.uniform(-2e-3, 2e-3)
+    depth, deeper = rng.uniform(0.0, 9e-3, 2)
+    width = body.bounds[1, 0]
+    apart = rng.uniform(9e-3, 14e-3) / width
+    if kind == 0 and (inner := _on_wall(body, at + beside / width, high - deeper, inside=True)) is not None:
+        return "pinched at the rim", _outer(body, at, high - depth), inner
+    if kind <= 1:
+        return (
+            "side by side at the rim",
+            _outer(body, at, high - depth),
+            _outer(body, at + apart, high - deeper),
+        )
+    if kind == 2:
+        return (
+            "side by side at the foot",
+            _outer(body, at, low + depth),
+            _outer(body, at + apart, low + deeper),
+        )
+    inner = _on_wall(body, at + beside / width, (low + high) / 2 + deeper, inside=True)
+    if inner is None:
+        return "above each other", _outer(body, at, low + depth), _outer(body, at, low + depth + 9.5e-3)
+    return "pinched at the wall", _outer(body, at, (low + high) / 2 + depth), inner
+
+
+def _outer(body: Solid, angle: float, height: float) -> SurfacePatch:
+    found = _on_wall(body, angle, height, inside=False)
+    assert found is not None
+    return found
+
+
+def _on_wall(body: Solid, angle: float, height: float, *, inside: bool) -> SurfacePatch | None:
+    """On the outside of a wall round z, or on its inside if it is open at the top."""
+    out = np.array([math.cos(angle), math.sin(angle), 0.0])
+    low, high = body.bounds[:, 2]
+    height = float(np.clip(height, low + 0.2e-3, high - 0.2e-3))
+    centre = np.array([0.0, 0.0, height])
+    if inside:
+        met = -crossings(body.outside, centre, -out)
+        up = crossings(body.outside, centre + [1e-5, 2e-5, 0.0], np.array([0.0, 0.0, 1.0]))
+        if (up > 0).any() or not (met > AREA**0.5).any():
+            return None
+        place = centre + met[met > 0].min() * out
+    else:
+        place = centre + crossings(body.outside, centre, out).max() * out
+    x, y, z = surface_normal(body, place).tolist()
+    return _at(tuple(place.tolist()), (x, y, z))
+
+
+def _paired(
+    name: str, kind: str, body: Solid, patches: tuple[SurfacePatch, SurfacePatch], through: float
+) -> PairRow:
+    one = film_of(body, 1.0)
+    assert one is not None
+    inside = Film(through * one.area, one.walls) if through else None
+    film = through * one.area
+    body_modes(body, inside)
+    misses = placed_fields.cache_info().misses
+    begin = time.process_time()
+    network = placed_network(body, patches, STACK, film).network
+    seconds = time.process_time() - begin
+    grids = placed_fields.cache_info().misses > misses
+    fast, worst = _held(network, film) if film else network, 0.0
+    for n in range(2):
+        fine = patch_fields(
+            body, (patches[1 - n], patches[n]), face_patterns(TIP), MeshGridding(relief=16), inside
+        )
+        told = ThermalNetwork(fine.rates, fine.ports, np.zeros((fine.ports.shape[1],) * 2))
+        for conductance in CONDUCTANCES:
+            error = drops(fast, conductance)[:, n] - drops(told, conductance)[:, 1]
+            worst = max(worst, float(error[np.abs(error).argmax()]), key=abs)
+    return PairRow(name, kind, (patches[0].centre, patches[1].centre), through, worst, seconds, grids)
+
+
+def _print_pairs(found: Sequence[PairRow]) -> None:
+    for row in found:
+        places = "; ".join(" ".join(f"{1e3 * x:.1f}" for x in place) for place in row.places)
+        grid = ", with a grid" if row.grids else ""
+        print(
+            f"{row.vessel:20}{row.kind:26}{row.film:5g}  {row.error:+.3f} K in {1e3 * row.seconds:.0f} ms at "
+            f"{places}{grid}"
+        )
+    served = [row for row in found if not row.grids]
+    errors, seconds = [abs(row.error) for row in served], [row.seconds for row in served]
+    middle, ninth = np.quantile(errors, [0.5, 0.9])
+    print(
+        f"{len(served)} of {len(found)} pairs without a grid: half within {middle:.3f} K, nine of ten {ninth:.3f} K, "
+        f"all {max(errors):.3f} K; half in {1e3 * float(np.median(seconds)):.0f} ms, all in {1e3 * max(seconds):.0f}"
+    )
 
 
 def _drawn(body: Solid, rng: np.random.Generator) -> SurfacePatch:
@@ -462,7 +591,15 @@ def main() -> int:
     parser.add_argument("--times", action="store_true", help="how long modes and networks take")
     parser.add_argument("--filled", action="store_true", help="places of mugs with contents")
     parser.add_argument("--vessels", action="store_true", help="drawn places of vessels with contents")
+    parser.add_argument("--pairs", action="store_true", help="drawn pairs of fingertips near each other")
     chosen = parser.parse_args()
+    if chosen.pairs:
+        pairs = pair_rows(chosen.case)
+        if chosen.json:
+            print(json.dumps([asdict(row) for row in pairs], indent=2))
+        else:
+            _print_pairs(pairs)
+        return 0
     if chosen.vessels:
         vessels = vessel_rows(chosen.case)
         if chosen.json:

@@ -35,7 +35,8 @@ _AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x o
 class Beneath:
     """What lies beneath a place. depth: m. curvature: (2,) 1/m along its sides. ends: (2, 2) m along each side to where
     the face ends either way, negative where its middle lies beyond. plain: whether it is as a box there, bent a little:
-    covered wholly, of one depth, and all of its other side wet or none. wet: whether contents wet that side."""
+    covered wholly, of one depth, and all of its other side wet or none. wet: whether contents wet that side. within:
+    whether they wet the face itself."""
 
     placed: PlacedPatch
     depth: float
@@ -43,6 +44,7 @@ class Beneath:
     ends: np.ndarray
     plain: bool
     wet: bool
+    within: bool
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -54,11 +56,15 @@ class Beneath:
         """The face of that box on which a patch lies, as kernels.Patches has it, with its middle and half widths (2,) m
         there; None where it lies on no face. The curved face is unrolled."""
         axes = np.stack((*self.placed.sides, self.placed.normal))
-        size, half = np.array(self.size), other.half_width
+        size, half, wide = np.array(self.size), other.half_width, np.full(2, other.half_width)
         offset, along = axes @ (other.centre - self.placed.centre), axes @ other.normal
         arcs, level, outward = self._unrolled(offset)
         if abs(level) < _LEVEL * half and outward @ along > _ALONG:
             offset, along = np.append(arcs, level), np.eye(3)[2]
+        elif abs(level + self.depth) < _LEVEL * half and outward @ along < -_ALONG:
+            # as wide there as the wall's other side is shorter
+            offset, along = np.append(arcs, level), -np.eye(3)[2]
+            wide /= 1 - self.curvature * self.depth
         middle = offset + [*self.ends[:, 0], self.depth]
         axis = int(np.argmax(np.abs(along)))
         far = along[axis] > 0
@@ -71,7 +77,7 @@ class Beneath:
             or np.any(middle[rest] > size[rest])
         ):
             return None
-        low, high = (np.clip(middle[rest] + way * half, 0.0, size[rest]) for way in (-1, 1))
+        low, high = (np.clip(middle[rest] + way * wide, 0.0, size[rest]) for way in (-1, 1))
         return 2 * axis + far, (low + high) / 2, (high - low) / 2
 
     def _unrolled(self, offset: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
@@ -179,15 +185,22 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None
     # just beyond, a face goes on or ends, but does not bend down
     beyond = [bent(_BEYOND * half * way) / half for way in (*np.eye(2), *-np.eye(2))]
     smooth &= all(far <= _UNSMOOTH * _BEYOND or far >= _ENDED for far in beyond)
-    wet = [False]
-    if walls is not None and depth < _DEEP:
-        behind = _Column(walls, placed)
+    wet, within = [False], False
+    behind = None if walls is None else _Column(walls, placed)
+    if behind is not None:
+        within = any(len(near(at)) and _wet(near(at), behind.tops(_ASIDE + at), 0.0) for at in half * _AROUND)
+    if behind is not None and depth < _DEEP:
         middle_and_around = zip([np.zeros(2), *half * _AROUND], [depth, *around], strict=True)
         wet = [_wet(heights(at), behind.bottoms(_ASIDE + at), thick) for at, thick in middle_and_around]
     plain = (
-        even and smooth and not base.any() and ends.min() >= half and np.abs(curvature).max() * half <= ROUND
+        even
+        and smooth
+        and not within
+        and not base.any()
+        and ends.min() >= half
+        and np.abs(curvature).max() * half <= ROUND
     )
-    return Beneath(placed, depth, curvature, ends, bool(plain) and all(wet) == any(wet), all(wet))
+    return Beneath(placed, depth, curvature, ends, bool(plain) and all(wet) == any(wet), all(wet), within)
 
 
 def _wet(tops: np.ndarray, walls: np.ndarray, thickness: float) -> bool:

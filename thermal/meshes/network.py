@@ -95,8 +95,8 @@ def body_network(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PatchFields:
-    """What flows through one patch leaves of fields on a grid that is fine there. grid: aligned with the patch, without
-    its links. rates: (K,) 1/s, the first 0. ports: (K, M) sqrt(K/J). fields: (N, K) of the states, of single
+    """What flows through patches leaves of fields on a grid that is fine there. grid: aligned with the last patch,
+    without its links. rates: (K,) 1/s, the first 0. ports: (K, P M) sqrt(K/J). fields: (N, K) of the states, of single
     precision."""
 
     grid: MeshGrid
@@ -115,15 +115,16 @@ class PatchFields:
 
 def patch_fields(
     body: Solid,
-    patch: SurfacePatch,
+    patches: Sequence[SurfacePatch],
     patterns: PatchPatterns,
     gridding: MeshGridding,
     film: Film | None = None,
 ) -> PatchFields:
-    """As body_network's of one patch, with its states' fields. film: of contents that are held at one temperature, so
-    that no state has rate 0. Raises as body_network does."""
-    frame = grid_frame(checked(body), (patch,))
-    grid, placed = _gridded(body, (patch,), frame, gridding, patterns)
+    """As body_network's, with its states' fields. film: of contents that are held at one temperature, so that no state
+    has rate 0. Raises as body_network does."""
+    patches = surface_patches(patches)
+    frame = grid_frame(checked(body), patches)
+    grid, placed = _gridded(body, patches, frame, gridding, patterns)
     grid, sink = (grid, None) if film is None else film.joined(grid, body.outside)
     rates, ports, fields = _reduced(grid, placed, sink)
     cells = replace(grid, neighbours=grid.neighbours[:0], links=grid.links[:0])

@@ -92,7 +92,8 @@ def patch_on_grid(
     grid: MeshGrid, triangles: np.ndarray, patch: PlacedPatch, patterns: PatchPatterns
 ) -> PatchOnGrid:
     """The patch's cells. triangles: (F, 3, 3) m in the grid's frame. Surface within half a side above and below the
-    centre is touched, where it faces the patch's way and nothing of the object lies above it."""
+    centre is touched, where it faces the patch's way and nothing of the object lies above it within a side: the wall of
+    a hollow that is as wide can be touched from within."""
     axes = np.stack((*patch.sides, patch.normal))
     half = patch.half_width
     areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -109,7 +110,7 @@ def patch_on_grid(
         room *= 4
     cells = grid.index.ravel()[cells]
     around = (triangles - patch.centre) @ axes.T
-    over = np.all((around.min(axis=1) <= [half, half, np.inf]) & (around.max(axis=1) >= -half), axis=1)
+    over = np.all((around.min(axis=1) <= [half, half, 2 * half]) & (around.max(axis=1) >= -half), axis=1)
     above = crossed_above((middles - patch.centre) @ axes.T, np.ascontiguousarray(around[over]), ABOVE)
     touched = (cells >= 0) & ~above.any(axis=1)
     cells, areas, middles, spans = cells[touched], areas[touched], middles[touched], spans[touched]

@@ -4,10 +4,10 @@ The heat kernel between patches is that of the body's slow modes once heat has s
 that the local one: of a box as thick as the body is there and as wide as its face goes on, curved as it is (the terms
 of first and second order in the curvature, from the impedances of cylinder and sphere). So a network is a function of
 place in milliseconds. Where that box would not be the body (rims, edges, feet, layers of other materials), the kernel
-is that of cells along the face, unrolled, in a few more (unrolled/). Where the surface is curved too much for that, or
-heat goes too far along another material, a patch's own impedance is a grid's that is fine there, in tenths of a
-second. Its states are the body's slowest modes,
-whatever the place, and what fades sooner, at rates that are the same for all places, its residues positive
+is that of cells along the face, unrolled, in a few more (unrolled/), between places that feel each other there too.
+Where the surface is curved too much for that or contents wet it, or heat goes too far along another material, a patch's
+own impedance is a grid's that is fine there, in tenths of a second. Its states are the body's slowest modes, whatever
+the place, and what fades sooner, at rates that are the same for all places, its residues positive
 semidefinite. Contents behind a film on the walls of a hollow make modes of their own, and a wall that they wet has a
 film at its other side.
 
@@ -49,7 +49,19 @@ from ..matter import SensorStack
 from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
-from ..unrolled import Face, Fineness, LocalKernel, Place, filmed, local_kernel
+from ..unrolled import (
+    Face,
+    Felt,
+    Fineness,
+    LocalCells,
+    LocalKernel,
+    Place,
+    Spread,
+    felt_patch,
+    filmed,
+    local_cells,
+    spread_beneath,
+)
 from .beneath import FLAT, ROUND, Beneath, beneath
 from .film import Film, film_of, held_apart
 from .grid import MeshGridding
@@ -72,7 +84,6 @@ _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
 _TOLD = 3.0  # over the last mode's rate above the first one's, likewise
 _LAYERED = 100.0  # s, the same where there are several materials, whose cells tell layers late
-_FADED = 2.0  # times that, from when on modes alone tell
 _REACH = 9e-3  # m beyond a patch, that its heat is followed until then at least
 _FARTHEST = 25e-3  # m, at most
 _BOTH_WAYS = 0.01  # product of a face's curvatures times half widths, up to which it is unrolled
@@ -80,7 +91,10 @@ _TAKEN = 0.2  # the slowest rate behind a film over heat's along a cell, from wh
 _FELT = 6e-3  # m between patches, across which heat goes before the modes tell
 _STILL = 1e-12  # m2, diffusivity times time before which heat has gone nowhere
 _KEPT = 256  # places
-_PAIRS = 4096  # of places, 3 kB each
+_PAIRS = 4096  # of places, a few kB each
+_CELLS = 8  # places whose cells are kept, for what other places nearby feel of them
+_ALIKE = 0.8  # cosine between the normals of two places on one face
+_FARTHER = 0.25  # of a place, that may be near the end of what is cut into cells beneath another
 _CORNER = 6e-3  # m beyond a patch, within which the wall of a hollow may go on round its face's end
 
 
@@ -106,8 +120,8 @@ _FIELDS = 64  # grids of such places, 2 to 8 MB each: two fingertips in eight wo
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
     """A patch on a body. below: what lies there. seen: (M, R) of the modes by its patterns, 1/sqrt(J/K). local: its
-    kernel on cells, impedance: (S, M, M) K/W at GRASP, less that of the slow modes, from a grid that is fine there;
-    None where another of them or the box tells."""
+    kernel on cells, at those of TIMES at which they tell anything. impedance: (S, M, M) K/W at GRASP, less that of the
+    slow modes, from a grid that is fine there. None where another of them or the box tells."""
 
     below: Beneath
     seen: np.ndarray
@@ -184,20 +198,29 @@ def face_impedance(
     for place, ports in zip(places, at, strict=True):
         if place.local is not None:
             told = _faded(place.seen, modes.rates, taus)
-            told[early] += (1 - over[early]) * (place.local.kernel(TIMES[early]) - told[early])
+            told[early] += (1 - over[early]) * (place.local.kernel - told[early])
             kernel[:, ports, ports] = told
             soon[ports, ports] = np.sqrt(np.pi * TIMES[0]) * before(1.0) * told[0]
         else:
             soon[ports, ports] = before(modes.diffusivity) / (modes.capacity * one.area) * np.eye(count)
+    grids = []
+    for n, m in combinations(range(len(places)), 2):
+        if not _close(places[n], places[m]):
+            continue
+        told = _beside(body, places[n], places[m], stack, inside, cache)
+        if told is None:
+            grids.append((n, m, _pair(body, patches[n], patches[m], stack, inside, level, cache)))
+            continue
+        late = _faded(places[n].seen, modes.rates, taus, places[m].seen)
+        late[early] += (1 - over[early]) * (told - late[early])
+        kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = late, late.transpose(0, 2, 1)
     kernel -= _faded(slow.held.T, slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1) + soon
     for place, ports in zip(places, at, strict=True):
         if place.impedance is not None:
             impedance[:, ports, ports] = place.impedance
-    for n, m in combinations(range(len(places)), 2):
-        if _close(places[n], places[m]):
-            pair = _pair(body, patches[n], patches[m], stack, inside, level, cache)
-            impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
+    for n, m, pair in grids:
+        impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     return FaceImpedance(modes, one, places, impedance)
 
 
@@ -286,8 +309,9 @@ def _placed(
     rounds = film is not None and below.ends.min() < below.placed.half_width + _CORNER
     if below.plain and len(body.parts) == 1 and not rounds:
         return Placed(below, seen, None, None)
-    if (local := _unrolled(body, below, one, film, _told_by(body, modes))) is not None:
-        return Placed(below, seen, local, None)
+    told = _told_by(body, modes)
+    if (cells := _unrolled(body, below, stack, film, told)) is not None:
+        return Placed(below, seen, cells.kernel(TIMES[_over(told) < 1]), None)
     fine, slow = _fields(body, patch, stack, film, level), _slow(modes, seen, film)
     fading = slice(1 if film is None else 0, None)  # the body's mean is on both grids
     impedance = _impedance(fine.ports[fading].T, fine.rates[fading])
@@ -305,20 +329,64 @@ def is_touchable(body: Solid, patch: SurfacePatch, stack: SensorStack, *, cache:
     return True
 
 
-def _unrolled(body: Solid, below: Beneath, one: Tip, film: Film | None, told: float) -> LocalKernel | None:
+@lru_cache(maxsize=_CELLS)
+def _unrolled(
+    body: Solid, below: Beneath, stack: SensorStack, film: Film | None, told: float
+) -> LocalCells | None:
     """What lies beneath a place that is no box, until the modes tell, told s. None where the surface is curved too
-    much, or heat goes too far along another material."""
+    much or contents wet it, or heat goes too far along another material."""
     farthest = max(part.material.diffusivity for part in body.parts) * told
     reach = _REACH if len(body.parts) == 1 else math.sqrt(farthest)
     bent = np.abs(below.curvature) * below.placed.half_width
-    if bent.max() > ROUND or bent.prod() > _BOTH_WAYS or reach > _FARTHEST:
+    if bent.max() > ROUND or bent.prod() > _BOTH_WAYS or reach > _FARTHEST or below.within:
         return None
     bend = np.where(np.abs(below.curvature) < FLAT, 0.0, below.curvature)
     face = Face(below.placed.centre, np.stack((*below.placed.sides, below.placed.normal)), bend)
-    place = Place(face, below.placed.half_width, below.ends, below.depth)
+    half = below.placed.half_width
+    place, one = Place(face, half, below.ends, below.depth), centred_tip(stack, 4 * half**2)
     reach = max(reach, _REACH)
     through = 0.0 if film is None else film.conductance / film.area
-    return local_kernel(body, _wetted(body, film), through, place, one, _FADED * told, Fineness(reach, reach))
+    return local_cells(body, _wetted(body, film), through, place, one, Fineness(reach, reach))
+
+
+@lru_cache(maxsize=_FIELDS)
+def _spread(body: Solid, place: Placed, stack: SensorStack, film: Film | None, cache: bool) -> Spread | None:
+    """What flows through a place leaves on the cells beneath it, at those of TIMES at which they tell anything."""
+    told = _told_by(body, body_modes(body, film, cache=cache))
+    cells = _unrolled(body, place.below, stack, film, told)
+    return None if cells is None else spread_beneath(cells, TIMES[_over(told) < 1])
+
+
+@lru_cache(maxsize=_KEPT)
+def _felt(body: Solid, place: Placed, stack: SensorStack) -> Felt | None:
+    """A place as cells beneath others feel it."""
+    placed = place.below.placed
+    face = Face(placed.centre, np.stack((*placed.sides, placed.normal)), np.zeros(2))
+    half = placed.half_width
+    return felt_patch(body.outside, face, half, centred_tip(stack, 4 * half**2))
+
+
+@lru_cache(maxsize=_PAIRS)
+def _beside(
+    body: Solid, one: Placed, other: Placed, stack: SensorStack, film: Film | None, cache: bool
+) -> np.ndarray | None:
+    """(T, M, M) K/J between two places as the cells beneath both tell it, at those of TIMES at which they tell
+    anything; as those alone that reach clearly farther beyond the other place. None where neither do, and where the
+    places overlap: what flows at the one's end is in the middle of the other, where cells are coarse."""
+    first, second = (each.below.placed for each in (one, other))
+    if first.normal @ second.normal > _ALIKE and _apart(one, other) < 2 * first.half_width:
+        return None
+    told, far = [], []
+    for place, beside in ((one, other), (other, one)):
+        spread, felt = _spread(body, place, stack, film, cache), _felt(body, beside, stack)
+        if spread is None or felt is None or (found := spread.felt(felt)) is None:
+            continue
+        turn = spread.turn if beside.local is None else beside.local.turn
+        kernel = turn @ found.kernel @ spread.turn.transpose(0, 2, 1)
+        told.append(kernel if place is other else kernel.transpose(0, 2, 1))
+        far.append(found.far)
+    nearest = [kernel for kernel, share in zip(told, far, strict=True) if share < min(far) + _FARTHER]
+    return np.mean(nearest, axis=0) if told else None
 
 
 @lru_cache(maxsize=16)
@@ -341,8 +409,12 @@ def _close(one: Placed, other: Placed) -> bool:
     """Whether one feels the other before the modes tell, where no box stands for the body beneath both."""
     if all(each.impedance is None and each.local is None for each in (one, other)):
         return False
-    apart = one.below.placed.centre - other.below.placed.centre
-    return float(np.linalg.norm(apart)) < 2 * one.below.placed.half_width + _FELT
+    return _apart(one, other) < 2 * one.below.placed.half_width + _FELT
+
+
+def _apart(one: Placed, other: Placed) -> float:
+    """m between the middles of two places."""
+    return float(np.linalg.norm(one.below.placed.centre - other.below.placed.centre))
 
 
 @lru_cache(maxsize=_KEPT)
@@ -377,12 +449,15 @@ def _fields(
     body: Solid, patch: SurfacePatch, stack: SensorStack, film: Film | None, level: _Fineness
 ) -> PatchFields:
     gridding = level.alone if len(body.parts) == 1 else level.layered
-    return patch_fields(body, patch, face_patterns(centred_tip(stack, patch.area)), gridding, film)
+    return patch_fields(body, [patch], face_patterns(centred_tip(stack, patch.area)), gridding, film)
 
 
-def _faded(seen: np.ndarray, rates: np.ndarray, taus: np.ndarray) -> np.ndarray:
-    """(T, M, M) of ports (M, R) whose states fade at these rates."""
-    return np.einsum("ir,tr,jr->tij", seen, np.exp(-np.outer(taus, rates)), seen, optimize=True)
+def _faded(
+    seen: np.ndarray, rates: np.ndarray, taus: np.ndarray, others: np.ndarray | None = None
+) -> np.ndarray:
+    """(T, M, M) of ports (M, R) whose states fade at these rates, or between these and others."""
+    others = seen if others is None else others
+    return np.einsum("ir,tr,jr->tij", seen, np.exp(-np.outer(taus, rates)), others, optimize=True)
 
 
 def _impedance(seen: np.ndarray, rates: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:

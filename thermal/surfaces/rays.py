@@ -15,19 +15,34 @@ FACING = 0.2  # cosine of the angle to a direction, below which a face does not 
 def crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Distances m along a line at which it leaves through faces that look its way (Moller & Trumbore, J. Graph. Tools
     2, 1997)."""
-    a = triangles[:, 0]
-    first, second = triangles[:, 1] - a, triangles[:, 2] - a
-    normal = np.cross(first, second)
-    facing = normal @ direction > FACING * np.linalg.norm(normal, axis=1)
-    a, first, second = a[facing], first[facing], second[facing]
-    p = np.cross(direction, second)
-    scale = np.einsum("fi,fi->f", first, p)
-    to = origin - a
-    u = np.einsum("fi,fi->f", to, p) / scale
-    q = np.cross(to, first)
-    v = q @ direction / scale
-    inside = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9)
-    return np.einsum("fi,fi->f", second, q)[inside] / scale[inside]
+    found = np.empty(len(triangles))
+    line = np.asarray(origin, float), np.asarray(direction, float)
+    return found[: _crossings(np.ascontiguousarray(triangles, float), *line, found)]
+
+
+@njit(cache=True, error_model="numpy", short_loops=True)
+def _crossings(triangles, origin, direction, found):
+    """Writes them down, and returns how many there are."""
+    d0, d1, d2 = direction
+    count = 0
+    for f in range(len(triangles)):
+        a = triangles[f, 0]
+        e0, e1, e2 = triangles[f, 1, 0] - a[0], triangles[f, 1, 1] - a[1], triangles[f, 1, 2] - a[2]
+        g0, g1, g2 = triangles[f, 2, 0] - a[0], triangles[f, 2, 1] - a[1], triangles[f, 2, 2] - a[2]
+        n0, n1, n2 = e1 * g2 - e2 * g1, e2 * g0 - e0 * g2, e0 * g1 - e1 * g0
+        facing = n0 * d0 + n1 * d1 + n2 * d2
+        if not facing > FACING * np.sqrt(n0 * n0 + n1 * n1 + n2 * n2):
+            continue
+        t0, t1, t2 = origin[0] - a[0], origin[1] - a[1], origin[2] - a[2]
+        u = t0 * (d1 * g2 - d2 * g1) + t1 * (d2 * g0 - d0 * g2) + t2 * (d0 * g1 - d1 * g0)
+        q0, q1, q2 = t1 * e2 - t2 * e1, t2 * e0 - t0 * e2, t0 * e1 - t1 * e0
+        v = d0 * q0 + d1 * q1 + d2 * q2
+        scale = -facing
+        u, v = u / scale, v / scale
+        if u >= -1e-9 and v >= -1e-9 and u + v <= 1 + 1e-9:
+            found[count] = (g0 * q0 + g1 * q1 + g2 * q2) / scale
+            count += 1
+    return count
 
 
 @njit(cache=True, short_loops=True)

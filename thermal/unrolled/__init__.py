@@ -6,7 +6,20 @@ feet, floors, handles, layers, contents).
 
 from .columns import Fineness, Place
 from .filmed import filmed
-from .local import LocalKernel, local_kernel
+from .local import LocalCells, LocalKernel, local_cells
 from .rays import Face
+from .spread import Felt, Spread, felt_patch, spread_beneath
 
-__all__ = ["Face", "Fineness", "LocalKernel", "Place", "filmed", "local_kernel"]
+__all__ = [
+    "Face",
+    "Felt",
+    "Fineness",
+    "LocalCells",
+    "LocalKernel",
+    "Place",
+    "Spread",
+    "felt_patch",
+    "filmed",
+    "local_cells",
+    "spread_beneath",
+]

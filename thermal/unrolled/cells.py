@@ -26,11 +26,13 @@ _LENT = 0.5  # of a cell's heat capacity, that neighbours may borrow
 
 
 class Cells(NamedTuple):
-    """w: (K + 1,) m, edges. capacity: (N,) J/K. neighbours: (N, 6), a cell itself for none, and links: (N, 6) W/K to
-    them. sink: (N,) W/K to contents. cover: (I, J) of each column, that is touched, and top: (I, J), number of its
-    highest cell. wet: whether contents wet most of what lies just below the patch."""
+    """w: (K + 1,) m, edges. numbers: (I, J, K), a cell's number, -1 where there is no material. capacity: (N,) J/K.
+    neighbours: (N, 6), a cell itself for none, and links: (N, 6) W/K to them. sink: (N,) W/K to contents. cover: (I, J)
+    of each column, that is touched, and top: (I, J), number of its highest cell. wet: whether contents wet most of what
+    lies just below the patch."""
 
     w: np.ndarray
+    numbers: np.ndarray
     capacity: np.ndarray
     neighbours: np.ndarray
     links: np.ndarray
@@ -48,7 +50,7 @@ def cells_beneath(
     face, half = place.face, place.half
     u, v = (_halves(edges, *shares) for edges, shares in zip(along, _RAYS, strict=True))
     du, dv = (np.repeat(np.diff(edges) / 2, 2) for edges in along)
-    hits = [cast(face, piece.triangles, piece.surfaces, u, v, 2 * fine.deep) for piece in pieces]
+    hits = [cast(face, piece.triangles, piece.surfaces, u, v, 2 * half, 2 * fine.deep) for piece in pieces]
     outer = [each for each, piece in zip(hits, pieces, strict=True) if piece.host is None]
     tops = np.max([np.where(h.surfaces[..., 0] != 0, h.heights[..., 0], -np.inf) for h in outer], axis=0)
     touched = (np.abs(tops) < half) & (np.max([h.slopes[..., 0] for h in outer], axis=0) > FACING)
@@ -60,7 +62,7 @@ def cells_beneath(
     slight = _SMOOTH * half * np.maximum(1.0, (u[:, None] ** 2 + v**2) / half**2)
     shift = np.where(np.abs(tops) <= slight, tops, 0.0)
     hits = [each._replace(heights=each.heights - shift[..., None]) for each in hits]
-    w = planes(hits, half, fine)
+    w = planes(hits, 2 * half, fine)
     fills = [fill(each, w) for each in hits]
     solid = np.minimum(
         sum(each.solid for each, piece in zip(fills, pieces, strict=True) if piece.host is None), 1.0
@@ -152,7 +154,7 @@ def _joined(filled: _Filled, pieces: Sequence[Piece], film: float, first: float,
     top = index.shape[2] - 1 - np.argmax(held[..., ::-1], axis=2)
     highest = np.take_along_axis(index, top[..., None], axis=2)[..., 0]
     cover = np.where(highest >= 0, filled.cover, 0.0)
-    return Cells(heights, capacity, neighbours, links, sink, cover, highest, wet)
+    return Cells(heights, index, capacity, neighbours, links, sink, cover, highest, wet)
 
 
 def _lent(capacity: np.ndarray, neighbours: np.ndarray, links: np.ndarray, least: np.ndarray) -> np.ndarray:

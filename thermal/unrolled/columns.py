@@ -20,7 +20,8 @@ _ASIDE = 1.3e-6  # m, beside edges of triangles
 
 class Fineness(NamedTuple):
     """Of cells, m. first: under the face. side: along it at the patch's ends. least: where the thickness changes.
-    growth: per distance from there, and largest. reach: beyond the patch, and deep below it, as far as they go."""
+    growth: per distance from there, and largest. reach: beyond the patch, and deep below it, as far as they go.
+    beyond: at the other side of a wall."""
 
     reach: float
     deep: float
@@ -29,6 +30,7 @@ class Fineness(NamedTuple):
     least: float = 0.3e-3
     growth: float = 0.45
     largest: float = 3e-3
+    beyond: float = 0.3e-3
 
 
 class Piece(NamedTuple):
@@ -98,7 +100,7 @@ def _jumps(place: Place, pieces: Sequence[Piece], axis: int, middle: float, reac
     thickness = np.zeros(len(places))
     for piece in pieces:
         if piece.host is None:
-            hits = cast(place.face, piece.triangles, piece.surfaces, u, v, 2 * reach)
+            hits = cast(place.face, piece.triangles, piece.surfaces, u, v, 2 * place.half, 2 * reach)
             heights, surfaces = (each.reshape(len(places), -1) for each in (hits.heights, hits.surfaces))
             bottom = np.where(surfaces[:, 1] < 0, heights[:, 1], -reach)
             thickness = np.maximum(thickness, np.where(surfaces[:, 0] > 0, heights[:, 0] - bottom, 0.0))

@@ -26,11 +26,7 @@ class Fading(NamedTuple):
 
     def kernel(self, times: np.ndarray) -> np.ndarray:
         """(T, P, P) K/J at times s."""
-        # exp(-z (1 + x)) as a sum over Chebyshev polynomials of x
-        orders = np.arange(len(self.moments))
-        signs = np.where(orders == 0, 1.0, np.where(orders % 2 == 0, 2.0, -2.0))
-        weights = signs * ive(orders, times[:, None] * self.fastest / 2)
-        return np.tensordot(weights, self.moments, axes=1)
+        return np.tensordot(_weights(len(self.moments), self.fastest, times), self.moments, axes=1)
 
 
 def fading(
@@ -43,6 +39,54 @@ def fading(
 ) -> Fading:
     """capacity: (N,) J/K. neighbours: (N, 6), and links: (N, 6) W/K to them. sink: (N,) W/K. ports: (N, P), how each
     port's flow enters the cells, of three ports at most. last: s, until when."""
+    scaled = _scaled(capacity, neighbours, links, sink, ports, last)
+    flat = np.zeros((2 * scaled.half + 1, 6))
+    _moments(scaled.diagonal, scaled.off, scaled.neighbours, scaled.x, scaled.half, flat)
+    count = ports.shape[1]
+    rows, columns = np.tril_indices(_PORTS)
+    moments = np.zeros((len(flat), _PORTS, _PORTS))
+    moments[:, rows, columns] = moments[:, columns, rows] = flat
+    return Fading(scaled.fastest, moments[:, :count, :count])
+
+
+def spread(
+    capacity: np.ndarray,
+    neighbours: np.ndarray,
+    links: np.ndarray,
+    sink: np.ndarray,
+    ports: np.ndarray,
+    times: np.ndarray,
+    seen: np.ndarray,
+) -> np.ndarray:
+    """(T, n, P) K/J of cells seen (n,) at times s, the last the longest, after a joule through each port. Others as
+    fading's."""
+    scaled = _scaled(capacity, neighbours, links, sink, ports, float(times[-1]))
+    met = np.zeros((2 * scaled.half + 1, len(seen), _PORTS))
+    _fields(scaled.diagonal, scaled.off, scaled.neighbours, scaled.x, seen, met)
+    found = np.tensordot(_weights(len(met), scaled.fastest, times), met, axes=1)
+    return found[:, :, : ports.shape[1]] / np.sqrt(capacity[seen])[:, None]
+
+
+class _Scaled(NamedTuple):
+    """diagonal: (N,) and off: (N, 6) of twice the operator, scaled to -1 .. 1. x: (N, 3), what flows in at first. half:
+    of the moments that are needed."""
+
+    fastest: float
+    diagonal: np.ndarray
+    off: np.ndarray
+    neighbours: np.ndarray
+    x: np.ndarray
+    half: int
+
+
+def _scaled(
+    capacity: np.ndarray,
+    neighbours: np.ndarray,
+    links: np.ndarray,
+    sink: np.ndarray,
+    ports: np.ndarray,
+    last: float,
+) -> _Scaled:
     root = 1 / np.sqrt(capacity)
     diagonal = (links.sum(axis=1) + sink) / capacity
     beside = links * root[:, None] * root[neighbours]
@@ -51,13 +95,38 @@ def fading(
     scale = 4 / fastest
     x = np.zeros((len(capacity), _PORTS))
     x[:, : ports.shape[1]] = root[:, None] * ports
-    flat = np.zeros((2 * half + 1, 6))
-    _moments(scale * diagonal - 2, -scale * beside, neighbours.astype(np.int32), x, half, flat)
-    count = ports.shape[1]
-    rows, columns = np.tril_indices(_PORTS)
-    moments = np.zeros((len(flat), _PORTS, _PORTS))
-    moments[:, rows, columns] = moments[:, columns, rows] = flat
-    return Fading(fastest, moments[:, :count, :count])
+    return _Scaled(fastest, scale * diagonal - 2, -scale * beside, neighbours.astype(np.int32), x, half)
+
+
+def _weights(count: int, fastest: float, times: np.ndarray) -> np.ndarray:
+    """(T, D) of Chebyshev polynomials of x, whose sum is exp(-z (1 + x))."""
+    orders = np.arange(count)
+    signs = np.where(orders == 0, 1.0, np.where(orders % 2 == 0, 2.0, -2.0))
+    return signs * ive(orders, times[:, None] * fastest / 2)
+
+
+@njit(cache=True, error_model="numpy", short_loops=True)
+def _fields(diagonal, off, neighbours, x, seen, met):
+    """met: (D, n, 3), Chebyshev polynomials of the operator on x (N, 3), in cells seen (n,). Others as _moments'."""
+    old, new = np.zeros(x.shape), x.copy()
+    for m in range(len(met)):
+        for c in range(len(seen)):
+            for p in range(3):
+                met[m, c, p] = new[seen[c], p]
+        for i in range(len(x)):
+            d = diagonal[i]
+            s0, s1, s2 = d * new[i, 0] - old[i, 0], d * new[i, 1] - old[i, 1], d * new[i, 2] - old[i, 2]
+            for k in range(6):
+                j, g = neighbours[i, k], off[i, k]
+                s0 += g * new[j, 0]
+                s1 += g * new[j, 1]
+                s2 += g * new[j, 2]
+            old[i, 0], old[i, 1], old[i, 2] = s0, s1, s2
+        if m == 0:  # the first one is half of that
+            for i in range(len(x)):
+                for p in range(3):
+                    old[i, p] /= 2
+        old, new = new, old
 
 
 @njit(cache=True, error_model="numpy", short_loops=True)

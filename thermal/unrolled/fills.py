@@ -20,15 +20,20 @@ _BIN = 50e-6  # m, of heights that are looked for where many rays enter or leave
 _NEXT = 1.5  # bins from a plane of cells, within which a height is moved into it
 _MANY = 0.03  # of the rays
 _SLANTED = 0.5  # least cosine by which a wet face is as much larger
+_THICK = 4.0  # cells at the other side of a wall, thinner than which it has none that are finer
+_SLIVER = 20e-6  # m
 _ON = 1e-9  # m, from a plane
 
 
-def planes(hits: Sequence[Hits], half: float, fine: Fineness) -> np.ndarray:
+def planes(hits: Sequence[Hits], above: float, fine: Fineness) -> np.ndarray:
     """(K + 1,) m edges of cells along w, with planes where many rays enter or leave. Heights next to these are moved
-    into them. half: m, as far above the face as there may be material."""
-    bins, high = np.zeros(int((fine.deep + half) / _BIN) + 2, np.int64), 0.0
+    into them. above: m, as far above the face as there may be material."""
+    for each in hits:  # slivers hold no heat to speak of
+        each.heights[np.abs(each.heights) < _SLIVER] = 0.0
+    bins, high = np.zeros(int((fine.deep + above) / _BIN) + 2, np.int64), 0.0
     for each in hits:
-        heights = each.heights[(each.surfaces != 0) & (each.heights > -fine.deep) & (each.heights < half)]
+        within = (each.heights > -fine.deep) & (each.heights <= above) & (np.abs(each.heights) > _ON)
+        heights = each.heights[(each.surfaces != 0) & within]
         high = max(high, float(heights.max(initial=0.0)))
         bins += np.bincount(((heights + fine.deep) / _BIN).astype(np.int64), minlength=len(bins))
     breaks = [-fine.deep, 0.0, high] if high > _BIN else [-fine.deep, 0.0]
@@ -38,17 +43,26 @@ def planes(hits: Sequence[Hits], half: float, fine: Fineness) -> np.ndarray:
         within = np.arange(max(most - 1, 0), min(most + 2, len(bins)))
         middle = _BIN * float((within + 0.5) @ bins[within] / bins[within].sum()) - fine.deep
         around[max(most - 3, 0) : most + 4] = 0
-        met = [(np.abs(each.heights - middle) < _NEXT * _BIN) & (each.surfaces != 0) for each in hits]
+        met = [
+            (np.abs(each.heights - middle) < _NEXT * _BIN)
+            & (np.abs(each.heights) > _ON)
+            & (each.surfaces != 0)
+            for each in hits
+        ]
         at = float(np.mean(np.concatenate([each.heights[m] for each, m in zip(hits, met, strict=True)])))
-        if abs(at) < 2 * _BIN:
-            at = 0.0
+        if abs(at) < 2 * _BIN:  # not the other side of a wall that is as thin
+            at, met = 0.0, [m & (each.surfaces > 0) for each, m in zip(hits, met, strict=True)]
         elif min(abs(at - other) for other in breaks) > 2 * _BIN:
             breaks.append(at)
         else:
             continue
         for each, m in zip(hits, met, strict=True):
             each.heights[m] = at
-    return graded_cells(sorted(breaks), {0.0: fine.first}, fine.growth, fine.largest)
+    sizes = {0.0: fine.first}
+    for at in breaks[1:]:  # no cell is thinner than the first
+        if at and min(abs(at - other) for other in breaks if other != at) > _THICK * fine.beyond:
+            sizes[at] = fine.beyond
+    return graded_cells(sorted(breaks), sizes, fine.growth, fine.largest)
 
 
 class Fill(NamedTuple):
@@ -107,7 +121,7 @@ def _fill(heights, surfaces, slopes, w, solid, void, ends):
                             solid[a, b, k] += part / (w[k + 1] - w[k])
                         elif part > 0:
                             void[a, b, k] += part / (w[k + 1] - w[k])
-                if meets_wet and w[0] < at < w[cells]:
+                if meets_wet and w[0] < at <= w[cells] + _ON:
                     k = 0  # the cell on the body's side
                     while w[k + 1] < at - _ON if filled else w[k + 1] <= at + _ON:
                         k += 1

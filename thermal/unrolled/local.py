@@ -17,28 +17,43 @@ from ..surfaces import Solid
 from .box import BoxBeside, box_beside, functions, means
 from .cells import Cells, cells_beneath
 from .columns import Columns, Fineness, Piece, Place, columns
-from .fading import Fading, fading
+from .fading import fading
 
 
 class LocalKernel(NamedTuple):
-    """fading: on cells. beside: the box that tells what these are too coarse for. diffusivity: m2/s of what is
-    touched."""
+    """At some times. kernel: (T, M, M) K/J. turn: (T, M, M), of what cells are too coarse for: where k on these is
+    between this patch and another, turn k turn_of_the_other^T is without their error."""
 
-    fading: Fading
+    kernel: np.ndarray
+    turn: np.ndarray
+
+
+class LocalCells(NamedTuple):
+    """Beneath a patch. along: its columns. ports: (N, M) of the patterns' flows into the cells. beside: the box that
+    tells what these are too coarse for. diffusivity: m2/s of what is touched."""
+
+    place: Place
+    along: tuple[Columns, Columns]
+    cells: Cells
+    ports: np.ndarray
     beside: BoxBeside
     diffusivity: float
 
-    def kernel(self, times: np.ndarray) -> np.ndarray:
-        """(T, M, M) K/J at times s."""
+    def kernel(self, times: np.ndarray) -> LocalKernel:
+        """times: s, the last the longest."""
+        cells = self.cells
+        known = fading(
+            cells.capacity, cells.neighbours, cells.links, cells.sink, self.ports, float(times[-1])
+        )
         turn = self.beside.turn(self.diffusivity * times)
-        return turn @ self.fading.kernel(times) @ turn.transpose(0, 2, 1)
+        return LocalKernel(turn @ known.kernel(times) @ turn.transpose(0, 2, 1), turn)
 
 
-def local_kernel(
-    body: Solid, wet: Sequence[np.ndarray], film: float, place: Place, tip: Tip, last: float, fine: Fineness
-) -> LocalKernel | None:
-    """wet: (F,) of each part, whether contents wet its triangles, behind a film of W/(m2 K). last: s, until when. None
-    where what is touched does not lie on the place's face, or the body's parts cross."""
+def local_cells(
+    body: Solid, wet: Sequence[np.ndarray], film: float, place: Place, tip: Tip, fine: Fineness
+) -> LocalCells | None:
+    """wet: (F,) of each part, whether contents wet its triangles, behind a film of W/(m2 K). None where what is touched
+    does not lie on the place's face, or the body's parts cross."""
     if body.hosts is None:
         return None
     pieces = [
@@ -60,13 +75,8 @@ def local_kernel(
     outer = pieces[0]
     through = film / outer.conductivity if found.wet and len(pieces) == 1 else 0.0
     beside = box_beside(place.face, place.half, (u, v), found.w, tip, place.depth, through)
-    return LocalKernel(
-        fading(
-            found.capacity, found.neighbours, found.links, found.sink, _ports(place, found, (u, v), tip), last
-        ),
-        beside,
-        outer.conductivity / outer.capacity,
-    )
+    ports = _ports(place, found, (u, v), tip)
+    return LocalCells(place, (u, v), found, ports, beside, outer.conductivity / outer.capacity)
 
 
 def _ports(place: Place, cells: Cells, along: tuple[Columns, Columns], tip: Tip) -> np.ndarray:

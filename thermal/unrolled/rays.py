@@ -49,6 +49,19 @@ class Face(NamedTuple):
         along = np.where(flat, points[..., :2], angles / np.where(flat, 1.0, self.bend))
         return np.where(height > _SIDEWAYS, along, np.nan)
 
+    def located(self, points: np.ndarray) -> np.ndarray:
+        """(..., 3) m of u, v and w of points (..., 3) m along the axes; u and v as `unrolled` has them."""
+        along = self.unrolled(points)
+        turned = self.bend * along
+        curved = self.bend != 0
+        bend = np.where(curved, self.bend, 1.0)
+        start = np.where(curved, np.sin(turned) / bend, along)
+        sunk = np.where(curved, (1 - np.cos(turned)) / bend, 0.0).sum(axis=-1)
+        across = np.concatenate((np.tan(turned), np.ones((*along.shape[:-1], 1))), axis=-1)
+        offset = points - np.concatenate((start, -sunk[..., None]), axis=-1)
+        above = (offset * across).sum(axis=-1) / np.linalg.norm(across, axis=-1)
+        return np.concatenate((along, above[..., None]), axis=-1)
+
 
 class Hits(NamedTuple):
     """What rays meet on their way down. heights: (A, B, n) m, w of each. surfaces: (A, B, n), the number of what is
@@ -60,16 +73,25 @@ class Hits(NamedTuple):
 
 
 def cast(
-    face: Face, triangles: np.ndarray, surfaces: np.ndarray, u: np.ndarray, v: np.ndarray, depth: float
+    face: Face,
+    triangles: np.ndarray,
+    surfaces: np.ndarray,
+    u: np.ndarray,
+    v: np.ndarray,
+    above: float,
+    depth: float,
 ) -> Hits:
     """triangles: (F, 3, 3) m along the face's axes, and surfaces (F,), their numbers from 1 on. u: (A,), v: (B,) m of
-    the rays, ascending. depth: m below the face, to which they go."""
+    the rays, ascending. above, depth: m above and below the face, from which to which they go. One that begins within
+    the body enters it there."""
     reach = np.array([np.abs(u).max(), np.abs(v).max()])
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     sunk = float((np.abs(face.bend) * reach**2).sum()) / 2
     near = (high[:, 2] > -depth - sunk) & np.all(
         (low[:, :2] < _BESIDE * reach) & (high[:, :2] > -_BESIDE * reach), axis=1
     )
+    if (face.bend < 0).any():  # the other side of a hollow, where rays cross
+        near &= low[:, 2] < above + sunk
     triangles = np.ascontiguousarray(triangles[near])
     along = face.unrolled(triangles)
     low, high = along.min(axis=1), along.max(axis=1)
@@ -81,13 +103,14 @@ def cast(
     )
     shape = len(u), len(v), _HITS
     found = Hits(np.zeros(shape), np.zeros(shape, np.int64), np.zeros(shape))
-    _cast(triangles, surfaces[near], first, last, u, v, face.bend, depth, *found)
+    _cast(triangles, surfaces[near], first, last, u, v, face.bend, above, depth, *found)
     return found
 
 
 @njit(cache=True, error_model="numpy")
-def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slopes):
+def _cast(triangles, surfaces, first, last, u, v, bend, above, depth, heights, hit, slopes):
     """Moller & Trumbore, J. Graph. Tools 2, 1997. first, last: (F, 2), of the rays that a triangle may be met by."""
+    within = np.zeros((len(u), len(v)), np.int64)  # of the body, how often a ray enters it before it begins
     for f in range(len(triangles)):
         a = triangles[f, 0]
         e0, e1, e2 = triangles[f, 1, 0] - a[0], triangles[f, 1, 1] - a[1], triangles[f, 1, 2] - a[2]
@@ -122,6 +145,9 @@ def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slo
                 if w < -depth or hit[i, j, last_one] != 0:
                     continue
                 code = surfaces[f] if facing > 0 else -surfaces[f]
+                if w > above:
+                    within[i, j] += 1 if facing > 0 else -1
+                    continue
                 twice = False  # on an edge of two triangles
                 for m in range(last_one):
                     if hit[i, j, m] == 0:
@@ -138,3 +164,11 @@ def _cast(triangles, surfaces, first, last, u, v, bend, depth, heights, hit, slo
                 heights[i, j, k] = w
                 hit[i, j, k] = code
                 slopes[i, j, k] = abs(facing) / size
+    for i in range(len(u)):
+        for j in range(len(v)):
+            if hit[i, j, 0] < 0 or (hit[i, j, 0] == 0 and within[i, j] > 0):
+                for k in range(heights.shape[2] - 1, 0, -1):
+                    heights[i, j, k] = heights[i, j, k - 1]
+                    hit[i, j, k] = hit[i, j, k - 1]
+                    slopes[i, j, k] = slopes[i, j, k - 1]
+                heights[i, j, 0], hit[i, j, 0], slopes[i, j, 0] = above, 1, 1.0

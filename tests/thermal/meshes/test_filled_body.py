@@ -150,7 +150,7 @@ def on_grid(made: thermal.Solid, patch: SurfacePatch, film: float, gridding: Mes
     """Fields on a grid that is fine there."""
     one, patterns = film_of(made, 1.0), face_patterns(centred_tip(STACK, STACK.width**2))
     assert one is not None
-    return patch_fields(made, patch, patterns, gridding, Film(film * one.area, one.walls))
+    return patch_fields(made, [patch], patterns, gridding, Film(film * one.area, one.walls))
 
 
 @pytest.mark.parametrize("film", [500.0, *(pytest.param(f, marks=pytest.mark.slow) for f in (50.0, 3000.0))])

@@ -133,6 +133,45 @@ def test_a_touch_is_within_the_stated_share(place: str, material: str) -> None:
     assert worst(body, patch) < PLACED_SHARE * DIFFERENCE
 
 
+INSIDE = -1.0, 0.0, 0.0
+PAIRS = {
+    "pinched at the rim": (
+        at(0.02, 0.0, 0.0172, normal=(1, 0, 0)),
+        at(0.017, 0.0, 0.0165, normal=INSIDE),
+    ),
+    "pinched below it": (at(0.02, 0.0, 0.004, normal=(1, 0, 0)), at(0.017, 0.0, 0.003, normal=INSIDE)),
+    "side by side": (
+        at(0.02, 0.0, 0.0172, normal=(1, 0, 0)),
+        at(0.0169, 0.0107, 0.0165, normal=(0.0169, 0.0107, 0)),
+    ),
+    "beside and on the rim": (
+        at(0.02, 0.0, 0.0145, normal=(1, 0, 0)),
+        at(0.0185, 0.0, 0.02, normal=(0, 0, 1)),
+    ),
+    "at the foot's edge": (
+        at(0.02, 0.0, -0.0172, normal=(1, 0, 0)),
+        at(0.0142, 0.0, -0.02, normal=(0, 0, -1)),
+    ),
+}
+"""Fingertips near each other on a cup."""
+
+
+@pytest.mark.parametrize(
+    ("places", "material"),
+    [
+        pytest.param(
+            places,
+            material,
+            marks=() if (places, material) == ("pinched at the rim", "ceramic") else pytest.mark.slow,
+        )
+        for places in PAIRS
+        for material in ("wood", "ceramic", "aluminium")
+    ],
+)
+def test_fingertips_near_each_other_at_a_rim_or_a_foot(places: str, material: str) -> None:
+    assert worst(of(cup(), material), *PAIRS[places]) < PLACED_SHARE * DIFFERENCE
+
+
 def test_only_what_is_strongly_curved_or_conducts_far_needs_a_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> None:
         raise AssertionError
@@ -141,6 +180,8 @@ def test_only_what_is_strongly_curved_or_conducts_far_needs_a_grid(monkeypatch: 
     for place in ("rim", "beyond the rim", "foot's edge", "edge"):
         mesh, patch, _ = PLACES[place]
         placed_network(of(mesh(), "limestone"), [patch], STACK)
+    for one, other in PAIRS.values():
+        placed_network(of(cup(), "limestone"), [one, other], STACK)
     layered = at(0.003, 0.002, 0.013, normal=(0, 0, 1))
     placed_network(slab("neoprene", "stainless_steel"), [layered], STACK)
     mesh, patch, _ = PLACES["rod"]
