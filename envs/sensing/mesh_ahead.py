@@ -9,7 +9,7 @@ from ...thermal import SolidPart, SurfacePatch, body_network, material, sensor
 from ...thermal.kernels import Resolution, tip
 from ...thermal.pressed import pressure_map
 from ...thermal.surfaces import Solid
-from ...thermal.unrolled import Face, Fineness, Place, local_kernel
+from ...thermal.unrolled import Face, Fineness, Place, local_cells
 from . import ahead
 
 _SIDE = 0.01  # m
@@ -32,7 +32,7 @@ def _edge() -> None:
     one = tip(stack, ((0.0, stack.width),) * 2, Resolution(12, 3))
     cube = _cube()
     wet = [np.zeros(len(part.faces), bool) for part in cube.parts]
-    local = local_kernel(cube, wet, 0.0, place, one, 1.0, Fineness(_SIDE, _SIDE))
+    local = local_cells(cube, wet, 0.0, place, one, Fineness(_SIDE, _SIDE))
     assert local is not None
     local.kernel(np.ones(1))
 

@@ -1,7 +1,7 @@
 """How far environments are from ThermalTouch on balls and rods at three forces, without and with anywhere=True.
 
-    python studies/round_forces.py
-    python studies/round_forces.py --materials steel wood --json
+    python studies/scenes/round_forces.py
+    python studies/scenes/round_forces.py --materials steel wood --json
 
 Two fingertips hold a ball of 40 mm or an upright rod of 30 mm in the middle; the drop counts two seconds after the
 touch, of a difference of 12 K.
