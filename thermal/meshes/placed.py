@@ -94,7 +94,7 @@ _KEPT = 256  # places
 _PAIRS = 4096  # of places, a few kB each
 _CELLS = 8  # places whose cells are kept, for what other places nearby feel of them
 _ALIKE = 0.8  # cosine between the normals of two places on one face
-_FARTHER = 0.25  # of a place, that may be near the end of what is cut into cells beneath another
+_FARTHER = 0.35  # of a place, that may be near the end of what is cut into cells beneath another
 _CORNER = 6e-3  # m beyond a patch, within which the wall of a hollow may go on round its face's end
 
 
@@ -307,7 +307,8 @@ def _placed(
     patterns = face_patterns(one)
     seen = _seen(modes, body.outside, below.placed, patterns) / np.sqrt(modes.capacity)
     rounds = film is not None and below.ends.min() < below.placed.half_width + _CORNER
-    if below.plain and len(body.parts) == 1 and not rounds:
+    hollow = below.curvature.min() <= -FLAT  # heat goes outward there, and no box widens as such a wall does
+    if below.plain and len(body.parts) == 1 and not rounds and not hollow:
         return Placed(below, seen, None, None)
     told = _told_by(body, modes)
     if (cells := _unrolled(body, below, stack, film, told)) is not None:
