@@ -62,7 +62,7 @@ def test_friction_cones_may_change_at_any_time() -> None:
     model, data, touch = pressed(200)
     for cone in (mujoco.mjtCone.mjCONE_PYRAMIDAL, mujoco.mjtCone.mjCONE_ELLIPTIC):
         model.opt.cone = cone
-        go(model, data, touch, 40)
+        go(model, data, touch, 100)
         np.testing.assert_allclose(touch.reading.force + touch.reading.beside, 8.0, rtol=0.01)
 
 
