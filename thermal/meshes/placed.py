@@ -375,7 +375,8 @@ def _beside(
     anything; as those alone that reach clearly farther beyond the other place. None where neither do, and where the
     places overlap: what flows at the one's end is in the middle of the other, where cells are coarse."""
     first, second = (each.below.placed for each in (one, other))
-    if first.normal @ second.normal > _ALIKE and _apart(one, other) < 2 * first.half_width:
+    along = np.abs(np.stack(first.sides) @ (second.centre - first.centre))
+    if first.normal @ second.normal > _ALIKE and along.max() < 2 * first.half_width:
         return None
     told, far = [], []
     for place, beside in ((one, other), (other, one)):
@@ -410,12 +411,8 @@ def _close(one: Placed, other: Placed) -> bool:
     """Whether one feels the other before the modes tell, where no box stands for the body beneath both."""
     if all(each.impedance is None and each.local is None for each in (one, other)):
         return False
-    return _apart(one, other) < 2 * one.below.placed.half_width + _FELT
-
-
-def _apart(one: Placed, other: Placed) -> float:
-    """m between the middles of two places."""
-    return float(np.linalg.norm(one.below.placed.centre - other.below.placed.centre))
+    apart = one.below.placed.centre - other.below.placed.centre
+    return float(np.linalg.norm(apart)) < 2 * one.below.placed.half_width + _FELT
 
 
 @lru_cache(maxsize=_KEPT)

@@ -93,10 +93,7 @@ class Spread(NamedTuple):
         shares = np.zeros((len(some), other.shares.shape[1]))
         np.add.at(shares, where, other.shares)
         shares, some = shares[some >= 0], some[some >= 0]
-        kernel = (shares.T @ self.fields[:, some].swapaxes(0, 1).reshape(len(some), -1)).reshape(
-            len(shares.T), len(self.fields), -1
-        )
-        return Between(kernel.swapaxes(0, 1), far)
+        return Between(np.einsum("nj,tni->tji", shares, self.fields[:, some], optimize=True), far)
 
     def _located(self, points: np.ndarray) -> np.ndarray:
         """(N, 3) m of u, v and w."""

@@ -172,6 +172,21 @@ def test_fingertips_near_each_other_at_a_rim_or_a_foot(places: str, material: st
     assert worst(of(cup(), material), *PAIRS[places]) < PLACED_SHARE * DIFFERENCE
 
 
+@pytest.mark.parametrize("material", ["aluminium", pytest.param("wood", marks=pytest.mark.slow)])
+def test_fingertips_on_both_sides_of_a_ring_at_its_hole(material: str) -> None:
+    """Neither lies among the cells beneath the other."""
+    ring = trimesh.creation.annulus(0.015, 0.03, 0.01, segments=64)
+    above, below = (at(0.0165, 0.001 * way, 0.005 * way, normal=(0, 0, way)) for way in (1, -1))
+    assert worst(of(ring, material), above, below) < PLACED_SHARE * DIFFERENCE
+
+
+@pytest.mark.slow
+def test_places_that_overlap_at_their_corners_on_a_narrow_face() -> None:
+    bar = trimesh.creation.box((0.06, 0.01, 0.012))
+    one, other = at(-0.0007, 0.005, -0.0054, normal=(0, 1, 0)), at(0.0028, 0.005, 0.0034, normal=(0, 1, 0))
+    assert worst(of(bar, "ceramic"), one, other) < PLACED_SHARE * DIFFERENCE
+
+
 def test_only_what_is_strongly_curved_or_conducts_far_needs_a_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> None:
         raise AssertionError
