@@ -13,7 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from typing import Any
+from typing import Any, Literal
 
 import gymnasium
 import numpy as np
@@ -22,7 +22,12 @@ import thermograsp  # noqa: F401
 from thermograsp.envs import ObjectSpec
 
 _ENVS, _STEPS = 16, 50  # of a block, as long as an episode
-_SHAPES = {"box": (0.04, 0.04, 0.04), "cylinder": (0.03, 0.03, 0.06), "sphere": (0.04, 0.04, 0.04)}
+Shape = Literal["box", "cylinder", "sphere"]
+_SHAPES: dict[Shape, tuple[float, float, float]] = {
+    "box": (0.04, 0.04, 0.04),
+    "cylinder": (0.03, 0.03, 0.06),
+    "sphere": (0.04, 0.04, 0.04),
+}
 _WAYS: dict[str, dict[str, Any]] = {
     "as shipped": {},
     "anywhere=True": {"anywhere": True},
@@ -33,8 +38,10 @@ _WAYS: dict[str, dict[str, Any]] = {
 def measured(blocks: int, seed: int) -> dict[str, dict[str, float]]:
     """us a step, by shape and way."""
     rng = np.random.default_rng(seed)
-    envs = {(shape, way): _environment(shape, way) for shape in _SHAPES for way in _WAYS}
-    times: dict[tuple[str, str], list[float]] = {each: [] for each in envs}
+    envs: dict[tuple[Shape, str], Any] = {
+        (shape, way): _environment(shape, way) for shape in _SHAPES for way in _WAYS
+    }
+    times: dict[tuple[Shape, str], list[float]] = {each: [] for each in envs}
     for env in envs.values():
         env.reset(seed=seed)
     for block in range(blocks + 1):
@@ -54,7 +61,7 @@ def measured(blocks: int, seed: int) -> dict[str, dict[str, float]]:
     }
 
 
-def _environment(shape: str, way: str) -> Any:
+def _environment(shape: Shape, way: str) -> Any:
     return gymnasium.make_vec(
         "thermograsp/Grasp-v0",
         num_envs=_ENVS,

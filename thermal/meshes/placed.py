@@ -375,7 +375,7 @@ def _beside(
     anything; as those alone that reach clearly farther beyond the other place. None where neither do, and where the
     places overlap: what flows at the one's end is in the middle of the other, where cells are coarse."""
     first, second = (each.below.placed for each in (one, other))
-    along = np.abs(np.stack(first.sides) @ (second.centre - first.centre))
+    along = np.abs(first.sides @ (second.centre - first.centre))
     if first.normal @ second.normal > _ALIKE and along.max() < 2 * first.half_width:
         return None
     told, far = [], []
