@@ -69,19 +69,19 @@ class SimulationConfig:
     (its setpoint is sensor_temperature, its ambient the room where that is given), None for an ideal one. placement: m
     and degree; the object lies within +- these of its own place, drawn per episode. randomize: what else differs from
     episode to episode, records of randomization.py. fingertips: how many carry a sensor (1: the left one). anywhere:
-    heat knows where it enters boxes, cylinders and spheres, as it always does of meshes in mode T; False: each patch is
-    the middle of a face; "auto": it knows on boxes whose edges may come within 2 mm of a sensor's face. Only True has
-    the true size of round contacts at each force, see docs/physics.md (The contact). gripper: an
-    MJCF file, an MjSpec, what load_gripper makes of them, or a GripperModel; None for the shipped one. solver: MuJoCo's
-    time step and settings. substeps: of MuJoCo in a control step, which must be a whole number of 10 ms samples.
-    threads: of MuJoCo, 0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a name of
-    thermal.SKINS or a Skin, None for bare ones, or "auto": bare where all objects are boxes whose material is
-    `material`'s, in mode O, and where the sensor has a heater of its own, else filled_silicone. taxels: (n, m) of the
-    map of pressure over each pad, None for none. face_temperature: (n, m) of the map of temperature over each sensor's
-    face (T mode), None for none. surround: the pad around the sensor, which gives heat to the sensor and to
-    objects: the name of its material or a Material for one as wide as the pad, or a Surround that is no wider; None for
-    a sensor by itself. Heat flows and heat that an environment tells are then those of element and pad together; with
-    it heat knows where it enters all but boxes, whatever `anywhere` says."""
+    heat knows where it enters objects, in mode T; False: each patch, but those of meshes, is the middle of a face;
+    "auto": so it is on boxes whose edges stay 2 mm away from the sensors' faces. Unless it is False, contacts of round
+    objects and meshes have their true size at each force (docs/physics.md, The contact). gripper: an MJCF file, an
+    MjSpec, what load_gripper makes of them, or a GripperModel; None for the shipped one. solver: MuJoCo's time step and
+    settings. substeps: of MuJoCo in a control step, which must be a whole number of 10 ms samples. threads: of MuJoCo,
+    0 for all. cache: keep thermal networks on disk. skin: over the fingertips, a name of thermal.SKINS or a Skin, None
+    for bare ones, or "auto": bare where all objects are boxes whose material is `material`'s, in mode O, and where the
+    sensor has a heater of its own, else filled_silicone. taxels: (n, m) of the map of pressure over each pad, None for
+    none. face_temperature: (n, m) of the map of temperature over each sensor's face (T mode), None for none. surround:
+    the pad around the sensor, which gives heat to the sensor and to objects: the name of its material or a Material for
+    one as wide as the pad, or a Surround that is no wider; None for a sensor by itself. Heat flows and heat that an
+    environment tells are then those of element and pad together; with it heat knows where it enters all but boxes,
+    whatever `anywhere` says."""
 
     material: str | Material | Sequence[str | Material] | None = None
     mode: Mode = "T"
@@ -193,14 +193,14 @@ class SimulationConfig:
     @cached_property
     def by_fields(self) -> bool:
         """Whether heat flows in the fields of ThermalTouch, which know where it enters and how broad a contact is at
-        each force: round objects and meshes with `anywhere`, and all that a pad around the sensor may touch beside the
-        middle of boxes' faces."""
+        each force: round objects and meshes unless `anywhere` is False, and all that a pad around the sensor may touch
+        beside the middle of boxes' faces."""
         sizes = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         least = min((1.0, *(factor for some in sizes for factor in some)))
         every = (*(scaled(shape, least) for shape in self.shapes), *self.others)
         if self.surround is not None:
             return any(shape.shape != "box" or self._anywhere(shape) for shape in every)
-        if self.anywhere is not True or self.mode == "O" or self.heated is not None:
+        if self.anywhere is False or self.mode == "O" or self.heated is not None:
             return False
         plain = not any(shape.parts or shape.reservoir is not None for shape in every)
         ideal = self.thermostat is None and self.face_temperature is None

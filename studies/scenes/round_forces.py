@@ -1,4 +1,4 @@
-"""How far environments are from ThermalTouch on balls and rods at three forces, without and with anywhere=True.
+"""How far environments are from ThermalTouch on balls and rods at three forces, with anywhere=False and as shipped.
 
     python studies/scenes/round_forces.py
     python studies/scenes/round_forces.py --materials steel wood --json
@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import json
 from itertools import product
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -31,7 +32,7 @@ FORCES, SECONDS = (3.0, 8.0, 25.0), 2.0
 ENDLESS = GraspTask(hold_seconds=1e3, seconds=1e3)
 
 
-def environment(shape: str, name: str, skin: str | None, force: float, anywhere: bool) -> float:
+def environment(shape: str, name: str, skin: str | None, force: float, anywhere: Any) -> float:
     """K of drop."""
     batch = GraspBatch(
         1,
@@ -87,14 +88,16 @@ def main() -> None:
     rows = []
     for shape, name in product(SHAPES, given.materials):
         for skin, force in product(("filled_silicone", None), FORCES):
-            ways = [environment(shape, name, skin, force, anywhere) for anywhere in (False, True)]
+            ways = [environment(shape, name, skin, force, anywhere) for anywhere in (False, "auto")]
             row = (f"{shape} of {name}, {skin or 'bare'}", force, *ways, touched(shape, name, skin, force))
             rows.append(
-                dict(zip(("object", "force_N", "default_K", "anywhere_K", "touch_K"), row, strict=True))
+                dict(zip(("object", "force_N", "middle_K", "shipped_K", "touch_K"), row, strict=True))
             )
             if not given.json:
                 print(
-                    "{:40}{:4.0f} N  default {:5.2f}  anywhere {:5.2f}  ThermalTouch {:5.2f} K".format(*row)
+                    "{:40}{:4.0f} N  anywhere=False {:5.2f}  as shipped {:5.2f}  ThermalTouch {:5.2f} K".format(
+                        *row
+                    )
                 )
     if given.json:
         print(json.dumps(rows, indent=1))

@@ -29,7 +29,7 @@ _SHAPES: dict[Shape, tuple[float, float, float]] = {
     "sphere": (0.04, 0.04, 0.04),
 }
 _WAYS: dict[str, dict[str, Any]] = {
-    "as shipped": {},
+    "anywhere=False": {"anywhere": False},
     "anywhere=True": {"anywhere": True},
     "and a pad": {"anywhere": True, "surround": "silicone"},
 }

@@ -162,6 +162,6 @@ def test_where_a_plate_stands_for_a_mesh_it_is_told_why(tmp_path):
         cube.apply_translation((0.01 * side, 0.01 * side, 0.0))
     trimesh.util.concatenate(cubes).export(tmp_path / "edge.stl")
     spec = ObjectSpec(shape="mesh", mesh=str(tmp_path / "edge.stl"), name="two cubes")
-    batch = GraspBatch(1, objects=spec, material="wood")
+    batch = GraspBatch(1, objects=spec, material="wood", anywhere=False)
     with pytest.warns(RuntimeWarning, match="'two cubes': .*. A plate of the same volume stands for it"):
         batch.reset([0], [np.random.default_rng(0)])

@@ -104,7 +104,7 @@ def test_a_ball_is_felt_less_than_a_rod_and_that_less_than_a_box(skin: str | Non
         batch, _ = held(objects=spec, material="steel", signal="ideal", skin=skin)
         assert batch.reading is not None
         drops.append(batch.reading.voltage[0, 0].mean())
-    assert 0 < 2 * drops[0] < drops[1] and drops[1] < 0.95 * drops[2]
+    assert 0 < 1.9 * drops[0] < drops[1] and drops[1] < 0.95 * drops[2]
 
 
 def test_rows_feel_the_same_bits_alone_and_among_others() -> None:

@@ -326,18 +326,19 @@ def test_solids_of_the_plain_shapes_have_their_volume():
         assert solid.bounds == pytest.approx(np.outer([-0.5, 0.5], spec.size), rel=2e-3)
 
 
-def test_cubes_and_cylinders_are_touched_anywhere_where_that_is_asked():
+def test_cubes_are_touched_anywhere_where_that_is_asked_and_cylinders_unless_it_is_refused():
     round_one = ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05))
     box = GraspBatch(1, material="glass", task=ENDLESS)
     plain = GraspBatch(1, material="glass", task=ENDLESS, objects=round_one)
-    words = {"material": "glass", "task": ENDLESS, "objects": round_one, "anywhere": True, "tolerance": 0.1}
-    requested, mapped = GraspBatch(1, **words), GraspBatch(1, **words, face_temperature=(3, 3))
+    words = {"material": "glass", "task": ENDLESS, "objects": round_one, "tolerance": 0.1}
+    middle = GraspBatch(1, **words, anywhere=False)
+    mapped = GraspBatch(1, **words, anywhere=True, face_temperature=(3, 3))
     cube = GraspBatch(1, material="glass", task=ENDLESS, anywhere=True, tolerance=0.05)
     every = (
         (box, "network:"),
         (cube, "kernels:"),
-        (plain, "network:"),
-        (requested, "fields:"),
+        (plain, "fields:"),
+        (middle, "network:"),
         (mapped, "body:"),
     )
     for batch, rung in every:
