@@ -63,13 +63,14 @@ Span = tuple[float, float]
 @dataclass(frozen=True, slots=True)
 class Case:
     """A rectangle on the sensor's face: y and z m from its middle, W/(m2 K), and the y m of the block's middle; along z
-    all is symmetric. skin: of the fingertip."""
+    all is symmetric. skin: of the fingertip. thick: m, of the block."""
 
     y: Span
     half_z: float
     conductance: float
     block: float
     skin: str | None = "filled_silicone"
+    thick: float = SIDE
 
 
 _H = 0.0045
@@ -86,15 +87,21 @@ CASES = {
     "ball off the middle": Case((0.0011, 0.0039), 0.0014, 5e5, 0.0),
     "ball at the face's edge": Case((0.0017, _H), 0.0014, 5e5, 0.0),
     "ball at the block's edge": Case((-0.0014, 0.0014), 0.0014, 5e5, 0.0014 - SIDE / 2),
+    "rod on a wall of 4 mm": Case((-0.0008, 0.0008), _H, 5e5, 0.0, thick=0.004),
+    "rod on a wall of 1.5 mm": Case((-0.0008, 0.0008), _H, 5e5, 0.0, thick=0.0015),
+    "rod on a wall of 0.6 mm": Case((-0.0008, 0.0008), _H, 5e5, 0.0, thick=0.0006),
+    "rod on a wall of 0.2 mm": Case((-0.0008, 0.0008), _H, 5e5, 0.0, thick=0.0002),
+    "ball on a wall of 1.5 mm": Case((-0.0014, 0.0014), 0.0014, 5e5, 0.0, thick=0.0015),
+    "ball on a wall of 0.6 mm": Case((-0.0014, 0.0014), 0.0014, 5e5, 0.0, thick=0.0006),
 }
 
 
 @lru_cache
-def touch_on(made_of: str, skin: str | None) -> ThermalTouch:
+def touch_on(made_of: str, skin: str | None, thick: float) -> ThermalTouch:
     """Of a fingertip above a block that looks down."""
     model = mujoco.MjModel.from_xml_string(f"""
       <mujoco><worldbody>
-        <body name="block"><geom name="block" type="box" size="{SIDE / 2} {SIDE / 2} {SIDE / 2}"/></body>
+        <body name="block"><geom name="block" type="box" size="{SIDE / 2} {SIDE / 2} {thick / 2}"/></body>
         <body name="tip" pos="0 0 .1"><geom name="tip" type="box" size=".01 .01 .004"/></body>
       </worldbody></mujoco>""")
     tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), temperature=WARM, skin=skin)
@@ -105,7 +112,7 @@ def touch_on(made_of: str, skin: str | None) -> ThermalTouch:
 
 def by_network(case: Case, made_of: str) -> tuple[float, ...]:
     """K of drop after TIMES."""
-    touch = touch_on(made_of, case.skin)
+    touch = touch_on(made_of, case.skin, case.thick)
     width = touch._pads[0].stack.width
     heat = JoinedHeat(
         touch._pads, (), touch._shapes, worlds=1, dt=0.01, tolerance=0.05, film=0.0, ambient=COOL
@@ -117,7 +124,7 @@ def by_network(case: Case, made_of: str) -> tuple[float, ...]:
     row[[CONDUCTANCE, CLOSED, AREA, LENGTH]] = case.conductance * area, 1.0, area, area * long
     row[ASIDE] = area * patch_offset(abs(middle), broad, width)
     row[ENDS] = area * patch_ends(middle - case.block, case.block, broad, SIDE, width)
-    row[PLACE : PLACE + 3], row[NORMAL : NORMAL + 3] = (-case.block, 0.0, SIDE / 2), (0.0, 0.0, -1.0)
+    row[PLACE : PLACE + 3], row[NORMAL : NORMAL + 3] = (-case.block, 0.0, case.thick / 2), (0.0, 0.0, -1.0)
     found = []
     for n in range(1, round(TIMES[-1] / 0.01) + 1):
         heat.advance(touches, 1)
@@ -148,7 +155,7 @@ def _lines_of(low: float, high: float, patch: Span, refine: float) -> tuple[np.n
 
 def by_volumes(case: Case, made_of: str, refine: float) -> tuple[float, ...]:
     """K of drop after TIMES in half of both bodies."""
-    stack, matter = touch_on(made_of, case.skin)._pads[0].stack, material(made_of)
+    stack, matter = touch_on(made_of, case.skin, case.thick)._pads[0].stack, material(made_of)
     half = stack.width / 2
     first = min(1.2e-4, case.half_z / 6) / refine
     patch_z = case.half_z - lines(0.0, case.half_z, round(5 * refine), first)[::-1]
@@ -164,7 +171,7 @@ def by_volumes(case: Case, made_of: str, refine: float) -> tuple[float, ...]:
         k += [layer.conductivity] * count
         c += [layer.volumetric_heat_capacity] * count
     tip = body(Grid((np.concatenate(x), *grids[0]), np.array(k), np.array(c), held=WARM - COOL))
-    deep = lines(0.0, SIDE, round(14 * refine), 1e-4 / refine)
+    deep = lines(0.0, case.thick, round(14 * refine), min(1e-4, case.thick / 15) / refine)
     count = len(deep) - 1
     grid = (deep, *grids[1])
     block = body(

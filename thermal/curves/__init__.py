@@ -2,7 +2,7 @@
 functions of the object's material, the conductance and the sensor's layers. And what a contact that is narrower than
 the sensor's face meets on both sides."""
 
-from .narrow import CONFORMING, LAPPED, equal_square, half_space_impedance, stack_impedance
+from .narrow import CONFORMING, LAPPED, equal_square, plate_impedance, stack_impedance
 from .unit_curves import UnitCurves
 
 __all__ = [
@@ -10,6 +10,6 @@ __all__ = [
     "LAPPED",
     "UnitCurves",
     "equal_square",
-    "half_space_impedance",
+    "plate_impedance",
     "stack_impedance",
 ]

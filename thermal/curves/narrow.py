@@ -1,14 +1,16 @@
 """The impedance of a contact's two sides where it is narrower than the sensor's face.
 
-Even flow over a rectangle meets the element by its heat kernels (thermal/kernels/element.py) and the object as a
-half-space, on which a rectangle's kernel is a product of two strips'. How even the flow is depends on the contact: the
-better it conducts, the more of the flow crowds to the rectangle's edges and the less impedance it meets.
+Even flow over a rectangle meets the element by its heat kernels (thermal/kernels/element.py) and the object as a plate
+without sides, on which a rectangle's kernel is a product of two strips' and the depth's. How even the flow is depends
+on the contact: the better it conducts, the more of the flow crowds to the rectangle's edges and the less impedance it
+meets.
 
 J: widths, S: moments.
 """
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -28,6 +30,7 @@ Handbook, 2003)."""
 
 _FELT = 1.0  # 1/s, of a touch of about a second
 _ALIKE = 1e-3  # of a square's side
+_IMAGES, _LEAST = 4, 1e-9  # of a plate's back, to round-off; of depths, below which they tell nothing
 
 
 @lru_cache(maxsize=256)
@@ -44,7 +47,7 @@ def equal_square(stack: SensorStack, skinned: bool, body: Material, area: float,
         spans = tuple(((whole - side) / 2, (whole + side) / 2) for side in (first, second))
         own = _under_contact(stack, conducts, *spans)
         return float(
-            (own + half_space_impedance(body, conducts, np.array([first, second]))[0, 0, 0, 1])[felt]
+            (own + plate_impedance(body, math.inf, conducts, np.array([first, second]))[0, 0, 0, 1])[felt]
         )
 
     strip = impedance(min(area / long, whole), long)
@@ -84,19 +87,30 @@ def _under_contact(stack: SensorStack, conducts: float, *spans: tuple[float, flo
     return 1 / (flow @ GRAM[0]) - loose
 
 
-def half_space_impedance(material: Material, conducts: float, widths: np.ndarray) -> np.ndarray:
-    """As stack_impedance, on a half-space, or beside where it ends: a mirror image stands for the end. It is known of
-    even flow; under an even temperature it ends lower."""
+def plate_impedance(material: Material, thickness: float, conducts: float, widths: np.ndarray) -> np.ndarray:
+    """As stack_impedance, on a plate of that thickness m whose back is insulated, inf for a half-space, or beside where
+    it ends: a mirror image stands for the end. It is known of even flow; under an even temperature it ends lower."""
     capacity = material.volumetric_heat_capacity
     diffusivity = material.conductivity / capacity
-    reached = np.sqrt(np.pi * diffusivity * TIMES)
+    reached = np.sqrt(np.pi * diffusivity * TIMES) / _kept_by_back(thickness, diffusivity)
     shared = np.stack([_shared(factor * widths[:, None], diffusivity) for factor in (1, 2)])
     kernel = shared[:, None, :, None] * shared[None, :, None, :] / reached
     area = np.outer(widths, widths)[..., None]
     even = (kernel @ TO_MOMENTS[OF_GRASP].T + before(diffusivity)) / (capacity * area)
-    deep = 1 / (material.effusivity * np.sqrt(GRASP) * area)  # before heat has spread at all
+    back = np.tanh(thickness * np.sqrt(GRASP / diffusivity))
+    deep = 1 / (material.effusivity * np.sqrt(GRASP) * back * area)  # while heat has not spread at all
     loose = material.conductivity / (conducts * np.sqrt(area))
     return even * (1 - _EVEN_TEMPERATURE / (1 + loose) * (1 - even / deep))
+
+
+def _kept_by_back(thickness: float, diffusivity: float) -> np.ndarray:
+    """How much hotter the face of a plate is at TIMES after a pulse than a half-space's, as its insulated back keeps
+    the heat: by images, and once they are many by waves (Carslaw & Jaeger, sections 10.10 and 14.3)."""
+    ends = np.arange(1, _IMAGES + 1)[:, None]
+    depth = np.pi * diffusivity * TIMES / thickness**2
+    soon = 1 + 2 * np.exp(-np.pi * ends**2 / np.maximum(depth, _LEAST)).sum(axis=0)
+    late = np.sqrt(depth) * (1 + 2 * np.exp(-np.pi * ends**2 * depth).sum(axis=0))
+    return np.where(depth < 1.0, soon, late)
 
 
 def _shared(length: np.ndarray, diffusivity: float) -> np.ndarray:

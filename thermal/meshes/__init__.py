@@ -6,7 +6,7 @@ from .network import body_network
 from .placed import LEVEL as PLACED_LEVEL
 from .placed import PLACED_SHARE, placed_body
 from .press import press_body
-from .ringed import body_in_pads, covered_share, surface_patch
+from .ringed import body_in_pads, surface_patch, wall_below
 from .touched import TouchedBody, field_carried, surface_normal, touched_body
 
 __all__ = [
@@ -16,12 +16,12 @@ __all__ = [
     "body_in_pads",
     "body_modes",
     "body_network",
-    "covered_share",
     "field_carried",
     "placed_body",
     "press_body",
     "surface_normal",
     "surface_patch",
     "touched_body",
+    "wall_below",
     "wetted_area",
 ]

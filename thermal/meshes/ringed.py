@@ -131,15 +131,22 @@ def _places(
     yield _triple(middles[np.argmax(middles @ outward)]), _triple(outward)
 
 
-def covered_share(body: Solid, patch: SurfacePatch) -> float:
-    """Of a patch's square, where there is a surface that looks its way, within half a side of its middle."""
-    half, outward = patch.half_width, patch.direction
+def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
+    """Of a patch's square, where there is a surface that looks its way, within half a side of its middle; and how
+    thick m the body is below it, the median: inf where there is none."""
+    half, outward, centre = patch.half_width, patch.direction, np.array(patch.centre)
     sides = half * np.linalg.svd(outward[None])[2][1:]
     triangles = body.outside
-    local = (triangles - np.array(patch.centre)) @ sides.T / half
+    local = (triangles - centre) @ sides.T / half
     near = triangles[((local.min(axis=1) <= half) & (local.max(axis=1) >= -half)).all(axis=1)]
-    found = [crossings(near, np.array(patch.centre) + at @ sides, outward) for at in _SAMPLED]
-    return sum(bool(len(met) and np.abs(met).min() < half) for met in found) / len(found)
+    thick = []
+    for at in _SAMPLED:
+        met = crossings(near, centre + at @ sides, outward)
+        if not len(met) or (face := met[np.abs(met).argmin()]) <= -half or face >= half:
+            continue
+        left = crossings(near, centre + at @ sides, -outward) + face
+        thick.append(min(left[left > 0], default=math.inf))
+    return len(thick) / len(_SAMPLED), float(np.median(thick)) if thick else math.inf
 
 
 def _triple(values: np.ndarray) -> _Triple:

@@ -77,7 +77,7 @@ typedef struct {
   double timestep, dt, least;
   const double *roles, *pads, *boxes, *owner, *narrow, *spread, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double* seebeck;         /* V/K */
-  /* narrow: (spreads, SPREAD, K), and spread: the numbers of both sides of each pair */
+  /* narrow: (spreads, SPREAD, K), and spread: the numbers of each pair, of the pad and of its target across each axis */
   const double *glued, *glued_laws, *first; /* GLUED of each element, Law of each pad on it; K above the air at first */
   const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
   const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */

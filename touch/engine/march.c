@@ -214,21 +214,22 @@ static int before(double ratio, double* share) {
 
 #define WHOLE 0.9 /* of the face, from which on an object counts as being under all of it */
 
-/* The share of a sensor's face under which an object is, at the place that is in use. */
-static double covered(const Numbers* numbers, const State* state, int f, int o) {
+/* The share of a sensor's face under which an object is, at the place that is in use, and the axis across it. */
+static double covered(const Numbers* numbers, const State* state, int f, int o, int* axis) {
   int number = (int)state->current[f * numbers->objects + o];
+  *axis = 0;
   if (number < 0) return 1;
   const double *box = numbers->boxes + o * BOX, width = numbers->pads[f * PAD + WIDTH];
-  int axis = (int)state->places[(o * numbers->places + number) * SLOT + FACE] / 2;
+  *axis = (int)state->places[(o * numbers->places + number) * SLOT + FACE] / 2;
   double share = 1;
-  for (int i = 0; i < 3; i++)
-    if (i != axis) share *= lesser(box[i] / width, 1);
+  for (int i = 0; i < AXES; i++)
+    if (i != *axis) share *= lesser(box[i] / width, 1);
   return share;
 }
 
-/* Fills root with the b_k of a narrow contact; false where it is as wide as the face. share: of the face on the object,
-   from less than all of which its network knows how heat spreads. */
-static bool spread(const Numbers* numbers, int pair, const double* touch, double share, double* root) {
+/* Fills root with the b_k of a narrow contact; false where it is as wide as the face. axis: across the object's face.
+   share: of the face on the object, from less than all of which its network knows how heat spreads. */
+static bool spread(const Numbers* numbers, int pair, const double* touch, int axis, double share, double* root) {
   if (!(touch[AREA] > 0)) return false;
   double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
   double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = lesser(area / first, width), u, v;
@@ -237,7 +238,7 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, double
   int all = (int)lesser(greater(ceil(2 * log2(1 / greater(share, 1e-3))), 1), WIDTHS - 1);
   memset(root, 0, sizeof(double) * rates);
   for (int side = 0; side < 2; side++) {
-    const double* table = numbers->narrow + (size_t)numbers->spread[2 * pair + side] * SPREAD * rates;
+    const double* table = numbers->narrow + (size_t)numbers->spread[(1 + AXES) * pair + (side ? 1 + axis : 0)] * SPREAD * rates;
     double one = lesser(greater(touch[ASIDE + 2 * side] / touch[AREA], 0), 1);
     double other = lesser(greater(touch[ASIDE + 2 * side + 1] / touch[AREA], 0), 1);
     for (int corner = 0; corner < 16; corner++) {
@@ -275,7 +276,9 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
     resistance[i] = lesser(numbers->sample_steps / touch[CONDUCTANCE], MOST);
     difference[i] = warm(numbers, state, f) - (t >= objects ? warm(numbers, state, t - objects) : 0);
-    if (!spread(numbers, pair[i], touch, t < objects ? covered(numbers, state, f, t) : 1, root)) continue;
+    int axis = 0;
+    double share = t < objects ? covered(numbers, state, f, t, &axis) : 1;
+    if (!spread(numbers, pair[i], touch, axis, share, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
       difference[i] -= root[k] * part * own[k];

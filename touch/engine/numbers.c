@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 10, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 11, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
        MOST_SPREADS = 2 * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
@@ -84,7 +84,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->tilts, (size_t)fingers * things * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)n->spreads * SPREAD * n->rates},
-      {&n->spread, (size_t)tips * n->targets * 2},
+      {&n->spread, (size_t)tips * n->targets * (1 + AXES)},
       {&n->bends, (size_t)fingers * BEND},
       {&n->curves, (size_t)things * 3 * CURVES},
       {&n->glued, (size_t)elements * GLUED},
@@ -135,7 +135,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       !numbered(n->curved, (size_t)fingers * things * n->sides, n->tables) || n->sides < 3 ||
       !within(n->glued + ON, elements, GLUED, objects - 1) ||
       !within(glued_across, (size_t)fingers * elements, law, 2) || !within(glued_across + 1, (size_t)fingers * elements, law, 2) ||
-      !within(n->spread, (size_t)tips * n->targets * 2, 1, n->spreads - 1) || !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
+      !within(n->spread, (size_t)tips * n->targets * (1 + AXES), 1, n->spreads - 1) || !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

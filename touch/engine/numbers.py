@@ -8,7 +8,7 @@ F: fingertips, O: objects, G: geoms of the objects, N = G + F: what a pad may me
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import prod
 
 import mujoco
@@ -19,11 +19,11 @@ from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
 from ..contacts import BOND, GluedContacts, bends, curves, pair_laws
-from ..heat import TipField, narrow_tables, resolution, tip_field, untouched
+from ..heat import TipField, Wall, narrow_tables, resolution, tip_field, untouched, wall_of
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 10
+_VERSION = 11
 
 
 def packed(
@@ -51,8 +51,11 @@ def packed(
     found = pair_laws(model, pads, shapes)
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
-    targets = (*(shape.material for shape in shapes), *sensors)
-    narrow, spread = narrow_tables([(pad, other) for pad in sensors for other in targets], level)
+    narrow, spread = narrow_tables(
+        [(pad, side) for pad in sensors for target in (*shapes, *sensors) for side in _across(target, pad)],
+        level,
+    )
+    spread = spread.reshape(-1, 3, 2)
     glued_contacts = GluedContacts(pads, glued, len(shapes), 1)
     header = (
         *(_VERSION, len(sensors), len(shapes), len(owner), level.patterns, level.rates, most, steps),
@@ -72,7 +75,7 @@ def packed(
         tilts,
         tables,
         narrow,
-        spread,
+        np.column_stack((spread[:, 0, 0], spread[..., 1])),
         bends(pads),
         curves(model, pads, shapes),
         [
@@ -97,6 +100,15 @@ def packed(
         *(SEPARATION, (2 / (HIGH - LOW), (HIGH + LOW) / (HIGH - LOW), LOG_LEAST, LOG_MOST)),
     )
     return np.concatenate([np.ravel(part) for part in every]).astype(">f8").tobytes().hex()
+
+
+def _across(target: BodyShape | PadPlace, pad: PadPlace) -> Iterator[Wall | PadPlace]:
+    """What a pad touches across each axis of a target."""
+    for axis in range(3):
+        if isinstance(target, PadPlace):
+            yield target
+        else:
+            yield wall_of(target.material, 1.0, float(target.size[axis]), pad.stack.width)
 
 
 def _box(shape: BodyShape, film: float, ambient: float) -> tuple[float, ...]:

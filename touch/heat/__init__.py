@@ -4,7 +4,7 @@ from .array_narrow import ArrayNarrow, array_narrow
 from .fixed import FixedNetworks, FixedPlaces, network_tables
 from .joined import JoinedHeat
 from .march import sample
-from .narrow import narrow_tables
+from .narrow import Wall, narrow_tables, wall_of
 from .places import TipField, resolution, tip_field, untouched
 from .records import HeatBalance, HeatState
 
@@ -16,6 +16,7 @@ __all__ = [
     "HeatState",
     "JoinedHeat",
     "TipField",
+    "Wall",
     "array_narrow",
     "narrow_tables",
     "network_tables",
@@ -23,4 +24,5 @@ __all__ = [
     "sample",
     "tip_field",
     "untouched",
+    "wall_of",
 ]

@@ -26,7 +26,7 @@ from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
 from .fixed import FixedNetworks, FixedPlaces, JoinedWorld, world_networks, world_places
 from .march import TABLE, sample
-from .narrow import STEPS, seen_of
+from .narrow import STEPS, wall_of
 from .narrow_pairs import NarrowPairs
 from .places import (
     MOST_PLACES,
@@ -495,7 +495,8 @@ class JoinedHeat:
         """How a narrow contact's heat spreads in the object at the pair's place."""
         field = self._fields[w][o]
         at = int(self._current[w, f, o])
-        self._pairs.spread(w, f, o, seen_of(self._materials[w][o], field.covered[at]))
+        wall = wall_of(self._materials[w][o], *field.below[at], float(self._widths[f]))
+        self._pairs.spread(w, f, o, wall)
 
     def _join(self, w: int) -> None:
         """The systems of a world's closed contacts."""

@@ -1,11 +1,11 @@
 """Contacts narrower than the sensor's face: what heat has still to spread there.
 
 The networks of fields.py know patches of the sensor's whole face. Under a contact of p by q that is narrower the two
-bodies have more impedance, Z(p, q) - Z(width, width), which builds up as heat spreads. It is taken from heat
-kernels (thermal/curves/narrow.py) and put on the networks' rates: Z = sum b_k^2 /
-(s + rate_k). Its states, c_k' = -rate_k c_k + b_k q with q W through the contact, put the difference sum b_k c_k
-between its faces. They hold no heat, they tell where it is. As the same b_k send and receive, they are passive whatever
-the widths do.
+bodies have more impedance, Z(p, q) - Z(width, width), which builds up as heat spreads. It is taken from heat kernels
+(thermal/curves/narrow.py), the object's as of a plate that is as thick as it is there, and put on the networks' rates:
+Z = sum b_k^2 / (s + rate_k). Its states, c_k' = -rate_k c_k + b_k q with q W through the contact, put the difference
+sum b_k c_k between its faces. They hold no heat, they tell where it is. As the same b_k send and receive, they are
+passive whatever the widths do.
 
 Each side has a table of its own, for contacts in the middle of a face and at its ends: a half-space ends there, which
 its mirror image stands for, twice as broad a contact that twice the heat flows through. In between the shares of
@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -27,7 +27,7 @@ from thermograsp.compiled import njit
 
 from ...thermal import Material, SensorStack
 from ...thermal.contact import NARROW
-from ...thermal.curves import CONFORMING, LAPPED, half_space_impedance, stack_impedance
+from ...thermal.curves import CONFORMING, LAPPED, plate_impedance, stack_impedance
 from ...thermal.kernels import Resolution, residues
 from ..scene import PadPlace
 
@@ -35,6 +35,8 @@ STEPS = 13
 """Widths of a table: the sensor's, and each the last one's over the root of 2; narrower ones count as the last."""
 _ROOT = 2.0**0.5
 _WHOLE = 0.9  # of the face, from which on an object counts as being under all of it
+_STEPS, _THICK, _THINNEST = 8, 0.5, 2.0**-8
+"""Steps of thickness from one to its half; what is thick and the thinnest, of the sensor's width."""
 _FINEST = 3e4
 """W/(m2 K) of the contact beside which errors of the impedance are weighed."""
 
@@ -48,25 +50,31 @@ class Beside:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """An object of that material which is under a share of the sensor's face, and whose network knows how heat spreads
-    from there."""
+class Wall:
+    """What of an object is under a sensor's face: share of the face, from less than all of which its network knows how
+    heat spreads, and thickness m, inf where heat has spread before it comes to the other side."""
 
     material: Material
-    share: float
+    share: float = 1.0
+    thickness: float = math.inf
 
 
-Side = tuple[Material | SensorStack | Beside | Part | None, float]
+Side = tuple[Wall | SensorStack | Beside | None, float]
 """What spreads heat on one side of a contact, None for nothing, and W/(m2 K) of the contact if that matters."""
 
 
-def seen_of(made_of: Material, covered: float) -> Material | Part:
-    """An object of that material which is under a share of the sensor's face."""
-    return made_of if covered > _WHOLE else Part(made_of, covered)
+def wall_of(made_of: Material, covered: float, thickness: float, width: float) -> Wall:
+    """An object of that material which is under a share of a sensor's face of that width m and so many m thick there:
+    in steps that many places share."""
+    thick = math.inf
+    if thickness < _THICK * width:
+        step = round(_STEPS * math.log2(width / max(thickness, _THINNEST * width)))
+        thick = width * 2.0 ** (-step / _STEPS)
+    return Wall(made_of, 1.0 if covered > _WHOLE else covered, thick)
 
 
-def narrow_sides(pad: PadPlace, target: Material | PadPlace | Part) -> tuple[Side, Side]:
-    """What spreads heat on either side of a pad's contact with an object's material or another fingertip: None for
+def narrow_sides(pad: PadPlace, target: Wall | PadPlace) -> tuple[Side, Side]:
+    """What spreads heat on either side of a pad's contact with an object or another fingertip: None for
     bare thermostats, which have no impedance, and where an element is glued on, which is met with its whole face."""
     if pad.glued is not None or (isinstance(target, PadPlace) and target.glued is not None):
         return (None, 0.0), (None, 0.0)
@@ -86,8 +94,8 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
     table = np.zeros((2, 2, STEPS, STEPS, level.rates))
     if matter is None:
         return table
-    if isinstance(matter, Part):
-        table[:] = narrow_table((matter.material, conducts), width, level)
+    if isinstance(matter, Wall) and matter.share < 1.0:
+        table[:] = narrow_table((replace(matter, share=1.0), conducts), width, level)
         return np.maximum(table - _known_of(table, matter.share), 0.0)
     widths = width * 2.0 ** (-np.arange(STEPS) / 2)
     if isinstance(matter, Beside):
@@ -95,7 +103,7 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
     elif isinstance(matter, SensorStack):
         known = stack_impedance(matter, conducts, widths)
     else:
-        known = half_space_impedance(matter, conducts, widths)
+        known = plate_impedance(matter.material, matter.thickness, conducts, widths)
     area = np.outer(widths, widths)
     for first, second, i, j in np.ndindex(table.shape[:-1]):
         each, whole = known[first, second, i, j], known[first, second, 0, 0]
@@ -107,7 +115,7 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
 
 
 def narrow_tables(
-    pairs: Sequence[tuple[PadPlace, Material | PadPlace | Part]], level: Resolution
+    pairs: Sequence[tuple[PadPlace, Wall | PadPlace]], level: Resolution
 ) -> tuple[np.ndarray, np.ndarray]:
     """Every narrow_table that pairs need (N, 2, 2, J, J, K), and the numbers (pairs, 2) of those of their sides."""
     keys = [(side, pad.stack.width) for pad, target in pairs for side in narrow_sides(pad, target)]

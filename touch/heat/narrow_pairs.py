@@ -12,7 +12,7 @@ import numpy as np
 from ...thermal import Material
 from ...thermal.kernels import Resolution
 from ..scene import PadPlace
-from .narrow import Beside, Part, Side, narrow_sides, narrow_table
+from .narrow import Beside, Side, Wall, narrow_sides, narrow_table
 
 
 class NarrowPairs:
@@ -40,7 +40,7 @@ class NarrowPairs:
     def know(self, w: int, materials: tuple[Material, ...]) -> None:
         """What a world's objects are made of."""
         for f, pad in enumerate(self._pads):
-            for t, target in enumerate((*materials, *self._pads)):
+            for t, target in enumerate((*map(Wall, materials), *self._pads)):
                 for s, side in enumerate(narrow_sides(pad, target)):
                     self.kinds[w, f, t, s] = self._number(side, pad.stack.width)
         for lane, impedance in enumerate(self._rings, len(self._pads)):
@@ -49,11 +49,9 @@ class NarrowPairs:
             # the object has a patch of what the ring covers
             self.kinds[w, lane, :, 1] = self._number((None, 0.0), width)
 
-    def spread(self, w: int, f: int, o: int, made_of: Material | Part) -> None:
+    def spread(self, w: int, f: int, o: int, wall: Wall) -> None:
         """What the object of a pair spreads heat as."""
-        self.kinds[w, f, o, 1] = self._number(
-            narrow_sides(self._pads[f], made_of)[1], self._pads[f].stack.width
-        )
+        self.kinds[w, f, o, 1] = self._number(narrow_sides(self._pads[f], wall)[1], self._pads[f].stack.width)
 
     def _number(self, side: Side, width: float) -> int:
         key = side, width

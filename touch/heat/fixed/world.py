@@ -18,7 +18,7 @@ from ....thermal.numerics import Array
 from ...contacts import COLUMNS, CONDUCTANCE, NORMAL, PLACE
 from ...scene import PadPlace
 from ..march import settle
-from ..narrow import narrow_tables, seen_of
+from ..narrow import narrow_tables, wall_of
 from ..places import BodyField, Place, carried_states
 from .networks import FixedNetworks, fixed_networks
 from .places import FixedPlaces, fixed_places
@@ -120,7 +120,7 @@ def world_networks(
     # as `after` has them, of which an object may have fewer
     fields = [[known[min(v, len(known) - 1)] for v in range(most * len(poses))] for known in after]
     pairs = [
-        (pad, seen_of(one, field.covered[int(current[f, o])]))
+        (pad, wall_of(one, *field.below[int(current[f, o])], pad.stack.width))
         for f, pad in enumerate(world.pads)
         for o, each in enumerate(kinds)
         for one, field in zip(each, fields[o], strict=True)

@@ -28,8 +28,8 @@ class BodyField:
     even one alone, which tells what flowed there a while ago, and zeros for the others. rates: (n,) 1/s.
     ports: (n, N M) sqrt(K/J). heat: (n,) J and loss: (n,) W of a state; only the first one, the mean temperature's, has
     any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. own: how
-    many of the states, the first ones, are the object's wherever it is touched. covered: of each place the share of the
-    sensor's face under which the object is; from less than all the network knows how heat spreads."""
+    many of the states, the first ones, are the object's wherever it is touched. below: of each place the share of the
+    sensor's face under which the object is, and how thick m it is there."""
 
     places: tuple[Place, ...]
     whole: tuple[bool, ...]
@@ -39,7 +39,7 @@ class BodyField:
     loss: np.ndarray
     beside: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     own: int = 1
-    covered: tuple[float, ...] = ()
+    below: tuple[tuple[float, float], ...] = ()
 
     def port(self, place: int, patterns: int) -> np.ndarray:
         """(n, M) of one place."""
@@ -72,7 +72,7 @@ def touched(
     what takes long. The air takes heat from the object's mean temperature."""
     bare = untouched(shape, film)
     if shape.solid is not None:
-        side, beside, own, covered = _solid_side(shape, places, whole, pads, cache)
+        side, beside, own, below = _solid_side(shape, places, whole, pads, cache)
         # the body's mean, by its own heat capacity
         side.ports[0] *= side.outputs["heat"][0] / bare.heat[0]
         beside[0] *= side.outputs["heat"][0] / bare.heat[0]
@@ -85,18 +85,18 @@ def touched(
             side, beside = _side(shape.material, (x, y, z), at, whole, seen, around, level)
         widths = [pads[place.fingertip].stack.width for place in places]
         own = 1
-        covered = tuple(_under((x, y, z), place, width) for place, width in zip(places, widths, strict=True))
+        below = tuple(_under((x, y, z), place, width) for place, width in zip(places, widths, strict=True))
     rates = side.rates.copy()
     rates[0] = bare.rates[0]
     rest = np.zeros(len(rates) - 1)
     heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
-    return BodyField(places, whole, rates, side.ports, heat, loss, beside, own, covered)
+    return BodyField(places, whole, rates, side.ports, heat, loss, beside, own, below)
 
 
-def _under(size: tuple[float, float, float], place: Place, width: float) -> float:
-    """The share of a face of that width m under which a box is."""
+def _under(size: tuple[float, float, float], place: Place, width: float) -> tuple[float, float]:
+    """The share of a face of that width m under which a box is, and how thick m it is there."""
     one, other = (side for axis, side in enumerate(size) if axis != place.face // 2)
-    return min(one / width, 1.0) * min(other / width, 1.0)
+    return min(one / width, 1.0) * min(other / width, 1.0), size[place.face // 2]
 
 
 def _solid_side(
@@ -105,9 +105,9 @@ def _solid_side(
     whole: tuple[bool, ...],
     pads: tuple[PadPlace, ...],
     cache: bool,
-) -> tuple[ThermalNetwork, np.ndarray, int, tuple[float, ...]]:
-    """As _side's, of a body of any shape; how many of its states are its own, and how much of each
-    face is on it."""
+) -> tuple[ThermalNetwork, np.ndarray, int, tuple[tuple[float, float], ...]]:
+    """As _side's, of a body of any shape; how many of its states are its own, how much of each face is on it, and how
+    thick it is there."""
     from ....thermal.meshes import body_in_pads
 
     assert shape.solid is not None
@@ -115,17 +115,18 @@ def _solid_side(
     pad = pads[places[0].fingertip]
     with _BLAS.limit(limits=1, user_api="blas"):
         found = [_patch(solid, (x, y, z), place, pad.stack, cache) for place in places]
-        patches, covered = [patch for patch, _ in found], tuple(share for _, share in found)
+        patches, below = [patch for patch, _ in found], tuple(each for _, each in found)
         rings = rings_of(pad) or ()
-        return *body_in_pads(solid, patches, pad.stack, rings, whole=whole, cache=cache), covered
+        return *body_in_pads(solid, patches, pad.stack, rings, whole=whole, cache=cache), below
 
 
 @lru_cache(maxsize=2048)
 def _patch(
     solid: Solid, size: tuple[float, float, float], place: Place, stack: SensorStack, cache: bool
-) -> tuple[SurfacePatch, float]:
-    """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is."""
-    from ....thermal.meshes import covered_share, surface_patch
+) -> tuple[SurfacePatch, tuple[float, float]]:
+    """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is, and how thick
+    m it is there."""
+    from ....thermal.meshes import surface_patch, wall_below
 
     outward, centre = np.zeros(3), np.zeros(3)
     axis, far = divmod(place.face, 2)
@@ -133,7 +134,7 @@ def _patch(
     across_last = [*(i for i in range(3) if i != axis), axis]
     centre[across_last] = np.array(place.whole) - np.array(size)[across_last] / 2
     patch = surface_patch(solid, centre, outward, stack, cache=cache)
-    return patch, covered_share(solid, patch)
+    return patch, wall_below(solid, patch)
 
 
 @lru_cache(maxsize=512)
