@@ -50,6 +50,7 @@ from ..network import ThermalNetwork
 from ..plates import Geometry
 from ..surfaces import Solid, SurfacePatch
 from ..unrolled import (
+    Between,
     Face,
     Felt,
     Fineness,
@@ -60,6 +61,7 @@ from ..unrolled import (
     felt_patch,
     filmed,
     local_cells,
+    overlapped,
     spread_beneath,
 )
 from .beneath import FLAT, ROUND, Beneath, beneath
@@ -362,9 +364,15 @@ def _spread(body: Solid, place: Placed, stack: SensorStack, film: Film | None, c
 def _felt(body: Solid, place: Placed, stack: SensorStack) -> Felt | None:
     """A place as cells beneath others feel it."""
     placed = place.below.placed
-    face = Face(placed.centre, np.stack((*placed.sides, placed.normal)), np.zeros(2))
-    half = placed.half_width
-    return felt_patch(body.outside, face, half, centred_tip(stack, 4 * half**2))
+    return felt_patch(body.outside, _flat(placed), placed.half_width, _tip_at(stack, place))
+
+
+def _flat(placed: PlacedPatch) -> Face:
+    return Face(placed.centre, np.stack((*placed.sides, placed.normal)), np.zeros(2))
+
+
+def _tip_at(stack: SensorStack, place: Placed) -> Tip:
+    return centred_tip(stack, 4 * place.below.placed.half_width**2)
 
 
 @lru_cache(maxsize=_PAIRS)
@@ -372,23 +380,28 @@ def _beside(
     body: Solid, one: Placed, other: Placed, stack: SensorStack, film: Film | None, cache: bool
 ) -> np.ndarray | None:
     """(T, M, M) K/J between two places as the cells beneath both tell it, at those of TIMES at which they tell
-    anything; as those alone that reach clearly farther beyond the other place. None where neither do, and where the
-    places overlap: what flows at the one's end is in the middle of the other, where cells are coarse."""
+    anything; as those alone that reach clearly farther beyond the other place. None where neither do."""
     first, second = (each.below.placed for each in (one, other))
     along = np.abs(first.sides @ (second.centre - first.centre))
-    if first.normal @ second.normal > _ALIKE and along.max() < 2 * first.half_width:
-        return None
-    told, far = [], []
+    overlap = first.normal @ second.normal > _ALIKE and along.max() < 2 * first.half_width
+    told: list[Between] = []
     for place, beside in ((one, other), (other, one)):
-        spread, felt = _spread(body, place, stack, film, cache), _felt(body, beside, stack)
-        if spread is None or felt is None or (found := spread.felt(felt)) is None:
+        if (spread := _spread(body, place, stack, film, cache)) is None:
             continue
-        turn = spread.turn if beside.local is None else beside.local.turn
-        kernel = turn @ found.kernel @ spread.turn.transpose(0, 2, 1)
-        told.append(kernel if place is other else kernel.transpose(0, 2, 1))
-        far.append(found.far)
-    nearest = [kernel for kernel, share in zip(told, far, strict=True) if share < min(far) + _FARTHER]
-    return np.mean(nearest, axis=0) if told else None
+        if overlap:
+            found = overlapped(spread, _flat(beside.below.placed), _tip_at(stack, beside))
+        else:
+            felt = _felt(body, beside, stack)
+            found = (
+                None
+                if felt is None
+                else spread.felt(felt, None if beside.local is None else beside.local.turn)
+            )
+        if found is not None:
+            told.append(found if place is other else found.turned_round)
+    nearest = min((each.far for each in told), default=0.0) + _FARTHER
+    kernels = [each.kernel for each in told if each.far < nearest]
+    return np.mean(kernels, axis=0) if told else None
 
 
 @lru_cache(maxsize=16)

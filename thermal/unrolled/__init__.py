@@ -7,10 +7,12 @@ feet, floors, handles, layers, contents).
 from .columns import Fineness, Place
 from .filmed import filmed
 from .local import LocalCells, LocalKernel, local_cells
+from .overlap import overlapped
 from .rays import Face
-from .spread import Felt, Spread, felt_patch, spread_beneath
+from .spread import Between, Felt, Spread, felt_patch, spread_beneath
 
 __all__ = [
+    "Between",
     "Face",
     "Felt",
     "Fineness",
@@ -21,5 +23,6 @@ __all__ = [
     "felt_patch",
     "filmed",
     "local_cells",
+    "overlapped",
     "spread_beneath",
 ]

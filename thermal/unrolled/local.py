@@ -75,23 +75,31 @@ def local_cells(
     outer = pieces[0]
     through = film / outer.conductivity if found.wet and len(pieces) == 1 else 0.0
     beside = box_beside(place.face, place.half, (u, v), found.w, tip, place.depth, through)
-    ports = _ports(place, found, (u, v), tip)
+    ports = flow_into(place, found, (u, v), functions(tip))
     return LocalCells(place, (u, v), found, ports, beside, outer.conductivity / outer.capacity)
 
 
-def _ports(place: Place, cells: Cells, along: tuple[Columns, Columns], tip: Tip) -> np.ndarray:
-    """(N, M) of each pattern's flow into the cells, that of the even one in all 1: no other lets heat in, also where
-    the face ends within the patch."""
+def flow_into(
+    place: Place,
+    cells: Cells,
+    along: tuple[Columns, Columns],
+    values: np.ndarray,
+    middle: tuple[float, float] = (0.0, 0.0),
+) -> np.ndarray:
+    """(N, M) of each pattern's flow into the cells through a square like the place's, that of the even one in all 1: no
+    other lets heat in, also where the face ends within the square. values: (2, M, strips), functions' along u and v.
+    middle: m along the face, where the square is."""
     edges = [
-        np.clip(place.face.seen(each.edges, axis) / place.half, -1.0, 1.0) for axis, each in enumerate(along)
+        np.clip(place.face.seen(each.edges - at, axis) / place.half, -1.0, 1.0)
+        for axis, (each, at) in enumerate(zip(along, middle, strict=True))
     ]
     weight = cells.cover * np.diff(edges[0])[:, None] * np.diff(edges[1])
     weight /= weight.sum()
-    x, y = (means(values, each) for values, each in zip(functions(tip), edges, strict=True))
-    values = x[:, :, None] + y[:, None, :]
-    values[0] = 1.0
-    values[1:] -= np.tensordot(values[1:], weight, axes=2)[:, None, None]
-    ports = np.zeros((len(cells.capacity), len(values)))
+    x, y = (means(each, at) for each, at in zip(values, edges, strict=True))
+    flows = x[:, :, None] + y[:, None, :]
+    flows[0] = 1.0
+    flows[1:] -= np.tensordot(flows[1:], weight, axes=2)[:, None, None]
+    ports = np.zeros((len(cells.capacity), len(flows)))
     touched = weight > 0
-    ports[cells.top[touched]] = (weight * values)[:, touched].T
+    ports[cells.top[touched]] = (weight * flows)[:, touched].T
     return ports

@@ -53,27 +53,40 @@ def felt_patch(triangles: np.ndarray, face: Face, half: float, tip: Tip) -> Felt
 
 
 class Between(NamedTuple):
-    """kernel: (T, M, M) K/J of another patch's patterns by the one's beneath which cells are. far: how much of the
+    """kernel: (T, M, M) K/J of another patch's patterns by the one's beneath which cells are, without the cells' error.
+    far: how much of the
     other is near the end of these or beyond."""
 
     kernel: np.ndarray
     far: float
 
+    @property
+    def turned_round(self) -> Between:
+        """Of the one's patterns by the other's."""
+        return self._replace(kernel=self.kernel.transpose(0, 2, 1))
+
 
 class Spread(NamedTuple):
-    """On the cells beneath a patch. face and edges, along u, v and w: of these. number: (I, J, K) of each cell along
-    the surface, -1 elsewhere. fields: (T, n, M) K/J in these after a joule through each pattern of the patch. turn: (T,
-    M, M), a LocalKernel's."""
+    """On the cells beneath a patch, at times (T,) s. seen: (n,) cells along the surface, and number: (I, J, K) of each
+    of these, -1 elsewhere. fields: (T, n, M) K/J in these after a joule through each pattern of the patch. turn: (T, M,
+    M), a LocalKernel's."""
 
-    face: Face
-    edges: tuple[np.ndarray, np.ndarray, np.ndarray]
+    local: LocalCells
+    times: np.ndarray
+    seen: np.ndarray
     number: np.ndarray
     fields: np.ndarray
     turn: np.ndarray
 
-    def felt(self, other: Felt) -> Between | None:
-        """What of another patch lies beyond the cells feels nothing. None where cells do not hold what of it lies among
-        them."""
+    @property
+    def edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """m, of the cells along u, v and w."""
+        u, v = (each.edges for each in self.local.along)
+        return u, v, self.local.cells.w
+
+    def felt(self, other: Felt, turn: np.ndarray | None = None) -> Between | None:
+        """What of another patch lies beyond the cells feels nothing. turn: (T, M, M) of the other's own cells, if they
+        are known; else as these have it. None where cells do not hold what of it lies among them."""
         cells, far = np.full(len(other.points), -1), 0.0
         for within in _WITHIN:
             left = np.flatnonzero(cells == -1)
@@ -93,11 +106,14 @@ class Spread(NamedTuple):
         shares = np.zeros((len(some), other.shares.shape[1]))
         np.add.at(shares, where, other.shares)
         shares, some = shares[some >= 0], some[some >= 0]
-        return Between(np.einsum("nj,tni->tji", shares, self.fields[:, some], optimize=True), far)
+        kernel = np.einsum("nj,tni->tji", shares, self.fields[:, some], optimize=True)
+        turn = self.turn if turn is None else turn
+        return Between(turn @ kernel @ self.turn.transpose(0, 2, 1), far)
 
     def _located(self, points: np.ndarray) -> np.ndarray:
         """(N, 3) m of u, v and w."""
-        return self.face.located((points - self.face.centre) @ self.face.axes.T)
+        face = self.local.place.face
+        return face.located((points - face.centre) @ face.axes.T)
 
     def _beyond(self, at: np.ndarray, near: float) -> np.ndarray:
         """(N,) whether places (N, 3) m of u, v and w are that near to the cells' ends, or beyond."""
@@ -114,6 +130,4 @@ def spread_beneath(local: LocalCells, times: np.ndarray) -> Spread:
     seen = np.flatnonzero(open_)
     number = np.append(np.where(open_, np.cumsum(open_) - 1, -1), -1)[cells.numbers]
     fields = spread(cells.capacity, cells.neighbours, cells.links, cells.sink, local.ports, times, seen)
-    u, v = (each.edges for each in local.along)
-    turn = local.beside.turn(local.diffusivity * times)
-    return Spread(local.place.face, (u, v, cells.w), number, fields, turn)
+    return Spread(local, times, seen, number, fields, local.beside.turn(local.diffusivity * times))

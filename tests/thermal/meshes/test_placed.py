@@ -152,8 +152,24 @@ PAIRS = {
         at(0.02, 0.0, -0.0172, normal=(1, 0, 0)),
         at(0.0142, 0.0, -0.02, normal=(0, 0, -1)),
     ),
+    "slid along the rim": (
+        at(0.02, 0.0, 0.0172, normal=(1, 0, 0)),
+        at(0.01975, 0.00314, 0.0167, normal=(0.01975, 0.00314, 0)),
+    ),
+    "slid on over the rim": (
+        at(0.02, 0.0, 0.0192, normal=(1, 0, 0)),
+        at(0.01892, 0.00649, 0.0188, normal=(0.01892, 0.00649, 0)),
+    ),
+    "slid down from the rim": (
+        at(0.02, 0.0, 0.0175, normal=(1, 0, 0)),
+        at(0.01999, 0.00063, 0.0128, normal=(0.01999, 0.00063, 0)),
+    ),
+    "slid along the foot": (
+        at(0.02, 0.0, -0.0172, normal=(1, 0, 0)),
+        at(0.01963, 0.00382, -0.0165, normal=(0.01963, 0.00382, 0)),
+    ),
 }
-"""Fingertips near each other on a cup."""
+"""Fingertips near each other on a cup, or overlapping, as where one has slid on."""
 
 
 @pytest.mark.parametrize(

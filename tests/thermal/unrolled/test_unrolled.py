@@ -18,6 +18,7 @@ from thermograsp.thermal.unrolled import (
     felt_patch,
     filmed,
     local_cells,
+    overlapped,
     spread_beneath,
 )
 from thermograsp.thermal.unrolled.fading import fading
@@ -136,9 +137,52 @@ def test_on_a_block_another_patch_feels_what_it_does_on_the_block(
         spread = spread_beneath(cells, taus / GLASS.diffusivity)
         between = spread.felt(felt)
         assert between is not None
-        turned = spread.turn @ between.kernel @ spread.turn.transpose(0, 2, 1)
-        found = turned[:, 0, 0] * GLASS.volumetric_heat_capacity
+        found = between.kernel[:, 0, 0] * GLASS.volumetric_heat_capacity
         assert np.abs((found - expected[:, 1]) / expected[:, 0]).max() < error
+
+
+@pytest.mark.parametrize("x", [0.0, 0.006, 0.0125])
+@pytest.mark.parametrize(
+    ("on", "error"), [((0.0017, 0.0), 1e-3), ((0.003, -0.002), 1e-3), ((-0.001, 0.0085), 0.01)]
+)
+@pytest.mark.parametrize("turned", [False, True])
+def test_on_a_block_a_patch_that_overlaps_feels_what_it_does_on_the_block(
+    x: float, on: tuple[float, float], error: float, turned: bool
+) -> None:
+    """In the middle of a face and over its edge; its sides named in either order. As shares of what the patch itself
+    feels. What lies farthest is near the end of the cells."""
+    taus = np.geomspace(1e-7, 1.2e-5, 7)
+    body = solid((trimesh.creation.box((0.03, 0.04, 0.005)), GLASS))
+    here = on_top(0.0025, [[0.05, 0.015 - x], [0.05, 0.05]], 0.005, x)
+    ends = np.array([[x, x + on[0]]] * 2) + 0.015 + np.array([[-1], [1]]) * WIDTH / 2
+    low, high = np.minimum(ends, 0.03)
+    middles = np.stack(((low + high) / 2, [0.02, 0.02 + on[1]]), axis=1)
+    patches = Patches(np.array([5, 5]), middles, np.stack(((high - low) / 2, [WIDTH / 2, WIDTH / 2]), axis=1))
+    jumps = np.array([basis_jumps(TIP.basis)] * 2)
+    expected, _, port, _, _ = box_kernel(
+        (0.03, 0.04, 0.005), 1.0, 1.0, 0.0, patches, jumps, basis_terms(3), 2, taus
+    )
+    own, expected = np.split((expected + np.outer(port, port))[:, :, :3], 2, axis=1)
+    cells = local_cells(body, dry(body), 0.0, here, TIP, COARSE)
+    assert cells is not None
+    axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) if turned else np.eye(3)
+    other = Face(here.face.centre + [*on, 0.0], axes, np.zeros(2))
+    between = overlapped(spread_beneath(cells, taus / GLASS.diffusivity), other, TIP)
+    assert between is not None
+    found = between.kernel * GLASS.volumetric_heat_capacity
+    assert found[:, 0, 0] / own[:, 0, 0] == pytest.approx(expected[:, 0, 0] / own[:, 0, 0], abs=error)
+    if not turned and high.max() < 0.03:  # other patterns are cut off at an edge
+        assert found / own[:, :1, :1] == pytest.approx(expected / own[:, :1, :1], abs=error)
+
+
+def test_a_patch_on_another_face_or_turned_aside_does_not_overlap() -> None:
+    body = solid((trimesh.creation.box((0.03, 0.04, 0.005)), GLASS))
+    cells = local_cells(body, dry(body), 0.0, on_top(0.0025, [[0.05] * 2] * 2, 0.005), TIP, COARSE)
+    assert cells is not None
+    spread = spread_beneath(cells, TAUS / GLASS.diffusivity)
+    aside = np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 2**0.5]]) / 2**0.5
+    for centre, axes in (((0.002, 0.0, 0.0025), aside), OPPOSITE, ((0.002, 0.0, 0.0045), np.eye(3))):
+        assert overlapped(spread, Face(np.array(centre), axes, np.zeros(2)), TIP) is None
 
 
 def test_the_wall_of_a_hollow_is_met_from_within() -> None:

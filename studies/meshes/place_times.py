@@ -1,0 +1,74 @@
+"""How long a body's modes and the networks of new places take."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from place_drops import STACK, at
+from place_shapes import beside, on, whole
+
+from thermograsp.thermal import SurfacePatch
+from thermograsp.thermal.meshes.modes import body_modes
+from thermograsp.thermal.meshes.placed import placed_network
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """s of processor time: modes of a body of so many cells, once, and networks of a new place beside 0, 1 and 4 known
+    ones, medians of NEW."""
+
+    body: str
+    cells: int
+    modes: float
+    network: tuple[float, float, float]
+
+
+NEW = 12
+ROUND: dict[str, tuple[str, Callable[[float], SurfacePatch]]] = {
+    "mug": ("mug", lambda angle: beside(angle, 0.01)),
+    "pot, over the rim": ("pot of 1 mm", lambda angle: beside(angle, 0.037, 0.045)),
+    "cube": ("cube", lambda angle: on(0, 0.02, 0.01 * math.cos(angle), 0.01 * math.sin(angle))),
+    "egg": (
+        "egg",
+        lambda angle: at(
+            (0.02 * math.cos(angle), 0.02 * math.sin(angle), 0.0), (math.cos(angle), math.sin(angle), 0.0)
+        ),
+    ),
+}
+"""Body, and patches by an angle rad."""
+
+
+def timed(name: str) -> Times:
+    """Of a case of ROUND, of ceramic."""
+    kind, patch = ROUND[name]
+    body = whole(kind, "ceramic")
+    begin = time.process_time()
+    cells = len(body_modes(body, cache=False).grid.capacity)
+    modes = time.process_time() - begin
+    body_modes(body)
+    angles, medians = iter(0.37 * n for n in range(10_000)), []
+    for known in (0, 1, 4):
+        taken = []
+        for _ in range(NEW):
+            patches = [patch(next(angles)) for _ in range(known + 1)]
+            if known:
+                placed_network(body, patches[:-1], STACK)
+            begin = time.process_time()
+            placed_network(body, patches, STACK)
+            taken.append(time.process_time() - begin)
+        medians.append(float(np.median(taken)))
+    return Times(name, cells, modes, (medians[0], medians[1], medians[2]))
+
+
+def print_times(found: Sequence[Times]) -> None:
+    """A line each."""
+    for each in found:
+        first, second, fifth = (1e3 * seconds for seconds in each.network)
+        print(
+            f"{each.body:20}modes of {each.cells} cells {each.modes:.1f} s; first place {first:.1f} ms, "
+            f"second {second:.1f} ms, fifth {fifth:.1f} ms"
+        )
