@@ -12,6 +12,7 @@ library's vessels, at FELT over LONG.
     python studies/meshes/mesh_places.py --filled         places of mugs with contents instead
     python studies/meshes/mesh_places.py --vessels        drawn places of the library's vessels with contents instead
     python studies/meshes/mesh_places.py --pairs          drawn pairs of fingertips at vessels' rims and feet
+    python studies/meshes/mesh_places.py --pairs slid     of these, a fingertip before and after it has slid on
     python studies/meshes/mesh_places.py --times          how long modes and networks take instead
 """
 
@@ -46,7 +47,7 @@ def main() -> int:
     elif chosen.vessels:
         shown(vessel_rows(chosen.case), print_vessels, chosen.json)
     elif chosen.times:
-        shown([timed(name) for name in ROUND], print_times, chosen.json)
+        shown([timed(name) for name in ROUND if chosen.case in name], print_times, chosen.json)
     else:
         found = (filled_rows if chosen.filled else rows)(chosen.case)
         if not found:
