@@ -87,14 +87,14 @@ def flow_into(
     middle: tuple[float, float] = (0.0, 0.0),
 ) -> np.ndarray:
     """(N, M) of each pattern's flow into the cells through a square like the place's, that of the even one in all 1: no
-    other lets heat in, also where the face ends within the square. values: (2, M, strips), functions' along u and v.
-    middle: m along the face, where the square is."""
+    other lets heat in, also where the face ends within the square. All 0 where nothing of it is on the face. values:
+    (2, M, strips), functions' along u and v. middle: m along the face, where the square is."""
     edges = [
         np.clip(place.face.seen(each.edges - at, axis) / place.half, -1.0, 1.0)
         for axis, (each, at) in enumerate(zip(along, middle, strict=True))
     ]
     weight = cells.cover * np.diff(edges[0])[:, None] * np.diff(edges[1])
-    weight /= weight.sum()
+    weight /= weight.sum() or 1.0
     x, y = (means(each, at) for each, at in zip(values, edges, strict=True))
     flows = x[:, :, None] + y[:, None, :]
     flows[0] = 1.0

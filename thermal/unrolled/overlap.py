@@ -43,6 +43,8 @@ def overlapped(spread: Spread, other: Face, tip: Tip) -> Between | None:
         return None
     flows = flows_along(place.face, place.half, values, np.array(covered), middle)
     ports = flow_into(place, cells, local.along, values, middle)
+    if not ports.any():
+        return None
     told = np.einsum("nj,tni->tji", ports[spread.seen], spread.fields, optimize=True)
     own = spread.fields[..., 0] @ local.ports[spread.seen, 0]
     taus = local.diffusivity * spread.times

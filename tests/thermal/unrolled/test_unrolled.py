@@ -180,6 +180,7 @@ def test_a_patch_on_another_face_or_turned_aside_does_not_overlap() -> None:
     cells = local_cells(body, dry(body), 0.0, on_top(0.0025, [[0.05] * 2] * 2, 0.005), TIP, COARSE)
     assert cells is not None
     spread = spread_beneath(cells, TAUS / GLASS.diffusivity)
+    assert overlapped(spread, Face(np.array([0.0, 0.0205, 0.0025]), np.eye(3), np.zeros(2)), TIP) is None
     aside = np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 2**0.5]]) / 2**0.5
     for centre, axes in (((0.002, 0.0, 0.0025), aside), OPPOSITE, ((0.002, 0.0, 0.0045), np.eye(3))):
         assert overlapped(spread, Face(np.array(centre), axes, np.zeros(2)), TIP) is None
