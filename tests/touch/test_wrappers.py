@@ -3,9 +3,12 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+import copy
 import importlib.util
+import pickle
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,7 @@ import gymnasium
 import mujoco
 import numpy as np
 import pytest
+from gymnasium.utils.env_checker import check_env
 
 import thermograsp
 from thermograsp.errors import InvalidValueError
@@ -70,6 +74,34 @@ def test_every_substep_of_an_environment_is_heard(anew: bool) -> None:
     np.testing.assert_array_equal(info["touch"].voltage, touch.reading.voltage)
     assert (info["touch"].temperature_drop > 1.0).all()
     assert mujoco.mj_step is step
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_a_copy_feels_its_own_simulation(copied: Any) -> None:
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(), fingertips=PADS, objects={"can": "aluminium"}
+    )
+    env.reset(seed=0)
+    for _ in range(10):
+        env.step(np.array([10.0]))
+    again = copied(env)
+    for _ in range(10):
+        info = again.step(np.array([10.0]))[4]  # the copy alone
+    assert info["touch"].time == pytest.approx(env.touch.reading.time + 0.2)
+    for _ in range(10):
+        expected = env.step(np.array([10.0]))[4]
+    assert info["touch"] == expected["touch"] and (info["touch"].temperature_drop > 1.0).all()
+    again.reset(seed=0)
+    assert again.touch.reading != expected["touch"]
+
+
+def test_gymnasiums_check_passes() -> None:
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(), fingertips=PADS, objects={"can": "aluminium"}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what OtherEnv's own spaces are
+        check_env(env, skip_render_check=True)
 
 
 class ByName(OtherEnv):

@@ -46,7 +46,7 @@ class AddThermalObservation(gymnasium.Wrapper):
     ) -> None:
         super().__init__(env)
         every = {"fingertips": fingertips, "objects": objects, **words}
-        self._stepped = SteppedTouch(lambda: _simulation(self.env), every)
+        self._stepped = SteppedTouch(_simulation, env, every)
         shape = (len(self.touch.fingertips), SAMPLES)
         volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
         space = env.observation_space
