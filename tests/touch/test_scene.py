@@ -130,3 +130,12 @@ def test_a_timestep_that_has_changed_is_told() -> None:
     mujoco.mj_step(model, data)
     with pytest.raises(InvalidValueError, match="timestep is 0.0033 s, and was 0.002 s"):
         touch.update(data)
+
+
+def test_the_dt_that_a_message_gives_can_be_given() -> None:
+    model = scene()
+    model.opt.timestep = 0.00333333
+    tips: dict = {"fingertips": {"tip": "pad"}, "objects": {"table": "glass"}}
+    with pytest.raises(InvalidValueError, match=r"steps of 0.00333333 s: give 0.01999998$"):
+        ThermalTouch(model, **tips)
+    ThermalTouch(model, **tips, dt=0.01999998)
