@@ -48,8 +48,8 @@ class Layout:
 
 
 class TouchReading:
-    """What the fingertips feel at `time` s. failed: whether the simulation broke down; its numbers are nan then. Two are
-    equal where all that they tell is.
+    """What the fingertips feel at `time` s. failed: whether the simulation broke down; its numbers are nan then. Two
+    are equal where all that they tell is.
 
     Of many worlds, everything has a leading axis of worlds, and `touching` is a tuple of tuples."""
 
