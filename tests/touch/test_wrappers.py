@@ -95,13 +95,19 @@ def test_a_copy_feels_its_own_simulation(copied: Any) -> None:
     assert again.touch.reading != expected["touch"]
 
 
-def test_gymnasiums_check_passes() -> None:
+def test_gymnasiums_check_passes_and_its_spec_makes_it_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gymnasium.envs.registration, "registry", {})
+    gymnasium.register("Other-v0", OtherEnv, max_episode_steps=7)
     env = thermograsp.wrappers.AddThermalObservation(
-        OtherEnv(), fingertips=PADS, objects={"can": "aluminium"}
+        gymnasium.make("Other-v0"), fingertips=PADS, objects={"can": "aluminium"}
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of what OtherEnv's own spaces are
         check_env(env, skip_render_check=True)
+    assert env.spec is not None
+    again: Any = gymnasium.make(env.spec)
+    assert again.observation_space == env.observation_space
+    assert again.touch.fingertips == env.touch.fingertips and again.touch.objects == ("can",)
 
 
 class ByName(OtherEnv):

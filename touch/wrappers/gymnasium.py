@@ -26,7 +26,7 @@ OBSERVATION = "observation"
 """That of what was the whole observation, where that was no Dict."""
 
 
-class AddThermalObservation(gymnasium.Wrapper):
+class AddThermalObservation(gymnasium.Wrapper, gymnasium.utils.RecordConstructorArgs):
     """Adds "voltage" (F, 16) V to the observation of a Gymnasium environment that has MuJoCo's `model` and `data`.
 
     A Dict observation gains the entry; any other becomes Dict(observation=..., voltage=...). info["touch"] is the last
@@ -44,8 +44,9 @@ class AddThermalObservation(gymnasium.Wrapper):
         objects: Mapping[str, str | Material | ThermalBody] | None = None,
         **words: Any,
     ) -> None:
-        super().__init__(env)
         every = {"fingertips": fingertips, "objects": objects, **words}
+        gymnasium.utils.RecordConstructorArgs.__init__(self, **every)  # env.spec tells them
+        gymnasium.Wrapper.__init__(self, env)
         self._stepped = SteppedTouch(_simulation, env, every)
         shape = (len(self.touch.fingertips), SAMPLES)
         volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
