@@ -3,6 +3,7 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+import math
 from contextlib import nullcontext
 
 import mujoco
@@ -11,7 +12,7 @@ import pytest
 import trimesh
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.touch import ThermalTouch
+from thermograsp.touch import Fingertip, ThermalTouch
 
 SCENE = """
 <mujoco>
@@ -139,3 +140,12 @@ def test_the_dt_that_a_message_gives_can_be_given() -> None:
     with pytest.raises(InvalidValueError, match=r"steps of 0.00333333 s: give 0.01999998$"):
         ThermalTouch(model, **tips)
     ThermalTouch(model, **tips, dt=0.01999998)
+
+
+def test_a_bare_thermostat_touches_with_its_whole_pad_however_long_that_is() -> None:
+    long: dict = {"position": (0, 0, -0.004), "normal": (0, 0, -1), "size": (0.004, 0.02)}
+    for sensor, face in ((None, math.sqrt(0.004 * 0.02)), ("seed", math.sqrt(0.004 * 0.009))):
+        tip = Fingertip("pad", sensor=sensor, **long)
+        touch = ThermalTouch(scene(), fingertips={"tip": tip}, objects={"table": "glass"})
+        assert touch._pads[0].silicone.face == pytest.approx(face)
+        assert touch._pads[0].silicone.width == pytest.approx(math.sqrt(0.004 * 0.02))

@@ -121,7 +121,7 @@ class PadPlace:
     def silicone(self) -> Pad:
         """The pad without its skin, as wide as a square of its area. A sensor's face that is wider than a side of the
         pad touches with what the pad bears of it, a square of that area."""
-        borne = np.minimum(self.stack.width, self.size)
+        borne = self.size if self.bare else np.minimum(self.stack.width, self.size)
         return Pad(width=math.sqrt(self.size.prod()), face=math.sqrt(borne.prod()))
 
 
