@@ -214,6 +214,13 @@ class ThermalTouch:
         return tuple(element.label for element in self._glued)
 
     @property
+    def most_voltage(self) -> float:
+        """V that no voltage of a reading exceeds, of either sign: 1, or more where a heated sensor's divider is
+        supplied with more."""
+        heated = (pad.heated for pad in (*self._pads, *self._glued))
+        return max(1.0, *(0.0 if sensor is None else sensor.divider.supply for sensor in heated))
+
+    @property
     def model(self) -> mujoco.MjModel:
         """The model that it was made for."""
         return self._model

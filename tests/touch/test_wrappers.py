@@ -9,6 +9,7 @@ import pickle
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ from gymnasium.utils.env_checker import check_env
 
 import thermograsp
 from thermograsp.errors import InvalidValueError
+from thermograsp.thermal.stack import heated_stack
+from thermograsp.touch import Fingertip
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
@@ -107,6 +110,18 @@ def test_gymnasiums_check_passes_and_its_spec_makes_it_again(monkeypatch: pytest
     again: Any = gymnasium.make(env.spec)
     assert again.observation_space == env.observation_space
     assert again.touch.fingertips == env.touch.fingertips and again.touch.objects == ("can",)
+
+
+def test_the_voltage_of_a_divider_is_in_the_observation_space() -> None:
+    sensor = heated_stack("heated_thermistor")
+    sensor = replace(sensor, divider=replace(sensor.divider, supply=3.3))
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(),
+        fingertips={"thumb": Fingertip("thumb_pad", sensor=sensor)},
+        objects={"can": "aluminium"},
+    )
+    observation, _ = env.reset(seed=0)
+    assert observation["voltage"].max() > 1.0 and observation in env.observation_space
 
 
 class ByName(OtherEnv):

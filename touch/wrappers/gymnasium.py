@@ -49,7 +49,8 @@ class AddThermalObservation(gymnasium.Wrapper, gymnasium.utils.RecordConstructor
         gymnasium.Wrapper.__init__(self, env)
         self._stepped = SteppedTouch(_simulation, env, every)
         shape = (len(self.touch.fingertips), SAMPLES)
-        volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
+        most = self.touch.most_voltage
+        volts = gymnasium.spaces.Box(-most, most, shape, np.float32)
         space = env.observation_space
         self._is_dict = isinstance(space, gymnasium.spaces.Dict)
         if isinstance(space, gymnasium.spaces.Dict):
