@@ -5,6 +5,7 @@
 
 import math
 from contextlib import nullcontext
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -35,13 +36,15 @@ SCENE = """
 HIDDEN = 'contype="0" conaffinity="0"'
 
 
-def scene(
+def scene_text(
     x: float = 0.0, kind: str = "box", size: str = ".01 .01 .004", masks: str = "", pairs: str = ""
-) -> mujoco.MjModel:
+) -> str:
     text = SCENE.format(x=x, kind=kind, size=size, masks=masks, pairs=pairs, joint="down")
-    return mujoco.MjModel.from_xml_string(
-        text.replace('<joint type="slide"', '<joint name="down" type="slide"')
-    )
+    return text.replace('<joint type="slide"', '<joint name="down" type="slide"')
+
+
+def scene(*words: Any, **others: Any) -> mujoco.MjModel:
+    return mujoco.MjModel.from_xml_string(scene_text(*words, **others))
 
 
 def felt(model: mujoco.MjModel, objects: dict, tip: str = "pad") -> tuple[float, float]:
@@ -149,3 +152,15 @@ def test_a_bare_thermostat_touches_with_its_whole_pad_however_long_that_is() -> 
         touch = ThermalTouch(scene(), fingertips={"tip": tip}, objects={"table": "glass"})
         assert touch._pads[0].silicone.face == pytest.approx(face)
         assert touch._pads[0].silicone.width == pytest.approx(math.sqrt(0.004 * 0.02))
+
+
+def test_geoms_in_one_place_are_told() -> None:
+    """A mesh to be seen that collides as well as the box that stands for it."""
+    spec = mujoco.MjSpec.from_string(scene_text())
+    cup = spec.body("cup")
+    cup.add_geom(name="half", type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.02, 0.02, 0.01), pos=(0, 0, 0.01))
+    tips: dict = {"fingertips": {"tip": "pad"}, "objects": {"cup": "glass"}}
+    ThermalTouch(spec.compile(), **tips)
+    cup.add_geom(name="twice", type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.0201, 0.02, 0.02))
+    with pytest.warns(RuntimeWarning, match="'solid' and 'twice' fill the same place"):
+        ThermalTouch(spec.compile(), **tips)
