@@ -149,6 +149,7 @@ class ThermalTouch:
             "air": air,
             "chain": self._chain,
         }
+        self._made_for = self._measures(model)
         self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
         self._reader = ContactReader(model, self._pads, self._shapes, count)
         self._heat = JoinedHeat(
@@ -278,6 +279,10 @@ class ThermalTouch:
         booleans; None for all. objects: what some are made of and how warm they start from now on, in these worlds, in
         the constructor's form: one of them or a list of one for each."""
         rows = chosen_worlds(worlds, len(self._time))
+        if not self.fits(self._model):
+            raise InvalidValueError(
+                "the model's geoms have other sizes or places than when this ThermalTouch was made: make another one"
+            )
         if data is not None:
             if self._many:
                 raise InvalidValueError("many worlds have no MjData: reset(worlds=...)")
@@ -547,6 +552,11 @@ class ThermalTouch:
                 "the data belong to another model than this ThermalTouch: make one for theirs, "
                 "thermograsp.ThermalTouch(data.model, ...)"
             )
+
+    def fits(self, model: mujoco.MjModel) -> bool:
+        """Whether fingertips and objects of a model, in which numbers may have been changed, are still as large and
+        where they were when this was made."""
+        return self._measures(model) == self._made_for
 
     def _measures(self, model: mujoco.MjModel) -> tuple[object, ...]:
         """By which a copy of a model is known from another one, where fingertips and objects are not alike;

@@ -112,6 +112,21 @@ def test_gymnasiums_check_passes_and_its_spec_makes_it_again(monkeypatch: pytest
     assert again.touch.fingertips == env.touch.fingertips and again.touch.objects == ("can",)
 
 
+def test_a_geom_that_a_reset_resizes_is_felt_as_it_is_then() -> None:
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(), fingertips=PADS, objects={"can": "aluminium"}
+    )
+    before = env.touch
+    env.reset(seed=0)
+    assert env.touch is before
+    env.get_wrapper_attr("model").geom("can_wall").size[1] *= 0.5
+    with pytest.raises(InvalidValueError, match="other sizes or places than when"):
+        before.reset()
+    env.reset(seed=0)
+    assert env.touch is not before
+    assert env.touch._shapes[0].size[2] == pytest.approx(before._shapes[0].size[2] / 2)
+
+
 def test_the_voltage_of_a_divider_is_in_the_observation_space() -> None:
     sensor = heated_stack("heated_thermistor")
     sensor = replace(sensor, divider=replace(sensor.divider, supply=3.3))

@@ -27,9 +27,9 @@ class SteppedTouch:
         self.touch = ThermalTouch(model, **words)
 
     def restart(self, seed: int | None = None) -> None:
-        """After the environment's reset, which may have made another model."""
+        """After the environment's reset, which may have made another model, or changed its geoms."""
         model, data = self._simulation(self._env)
-        if model is not self.touch.model:
+        if model is not self.touch.model or not self.touch.fits(model):
             self.touch = ThermalTouch(model, **self._words)
         self.touch.reset(data, seed=seed)
 
