@@ -146,7 +146,7 @@ def test_the_dt_that_a_message_gives_can_be_given() -> None:
 
 
 def test_a_bare_thermostat_touches_with_its_whole_pad_however_long_that_is() -> None:
-    long: dict = {"position": (0, 0, -0.004), "normal": (0, 0, -1), "size": (0.004, 0.02)}
+    long: dict = {"position": (0, 0, -0.004), "normal": (0, 0, -1), "size": np.array((0.004, 0.02))}
     for sensor, face in ((None, math.sqrt(0.004 * 0.02)), ("seed", math.sqrt(0.004 * 0.009))):
         tip = Fingertip("pad", sensor=sensor, **long)
         touch = ThermalTouch(scene(), fingertips={"tip": tip}, objects={"table": "glass"})

@@ -80,7 +80,7 @@ class Fingertip:
             if value is None:
                 continue
             numbers(f"fingertip {self.name!r}: {field}", value, count)
-        for side in self.size or ():
+        for side in () if self.size is None else self.size:
             length(f"fingertip {self.name!r}: size (m)", side)
         if self.normal is not None and not np.linalg.norm(self.normal) > 0:
             raise InvalidValueError(f"fingertip {self.name!r}: its normal must not be zero")
