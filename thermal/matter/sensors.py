@@ -86,8 +86,7 @@ def sensors() -> Mapping[str, SensorStack]:
 def sensor(name: str | os.PathLike[str] | SensorStack) -> SensorStack:
     """The preset of that name, the one sensor of a file (a path, or a name that ends in .toml), or the stack itself.
 
-    Raises UnknownNameError with near names, and InvalidValueError for a file that does not hold one sensor and for what
-    is no name.
+    Raises UnknownNameError with near names, and InvalidValueError for a file that does not hold one sensor.
     """
     if isinstance(name, SensorStack):
         return name
@@ -98,13 +97,9 @@ def sensor(name: str | os.PathLike[str] | SensorStack) -> SensorStack:
                 f"{name} holds {len(found)} sensors, {', '.join(found)}: keep one in the file"
             )
         return next(iter(found.values()))
-    if not isinstance(name, str):
-        raise InvalidValueError(
-            f"sensor must be a preset's name, a .toml file or a SensorStack, got {name!r}"
-        )
     try:
         return sensors()[name]
-    except KeyError:
+    except (KeyError, TypeError):  # a list is no name at all
         raise unknown_name("sensor", name, sensors()) from None
 
 
