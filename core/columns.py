@@ -28,7 +28,8 @@ def csv_text(columns: Mapping[str, np.ndarray]) -> str:
 
 def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     """Columns name -> (N,) of such a file; an empty or wordy cell is NaN. Raises InvalidValueError where the file
-    cannot be read, has no rows, names that commas do not separate, or a row of another length than the header."""
+    cannot be read, has no rows, names that commas do not separate or that are not told apart, or a row of another
+    length than the header."""
     try:
         # spreadsheets begin UTF-8 with a byte order mark
         with open(path, encoding="utf-8-sig", newline="") as file:
@@ -41,11 +42,14 @@ def read_csv(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     if len(header) == 1 and (other := next((mark for mark in ";\t" if mark in header[0]), None)):
         mark = "tabs" if other == "\t" else "semicolons"
         raise InvalidValueError(f"{path} has {mark} between its columns: write commas, and points in numbers")
+    named = [name.strip() for name in header]
+    if twice := next((name for name in named if named.count(name) > 1), None):
+        raise InvalidValueError(f"{path}: two columns are named {twice!r}: name each column once")
     for number, row in enumerate(rows, start=2):
         if len(row) != len(header):
             raise InvalidValueError(f"{path}, row {number}: {len(row)} cells under {len(header)} names")
     table = np.array([[_number(cell) for cell in row] for row in rows])
-    return {name.strip(): table[:, k] for k, name in enumerate(header)}
+    return {name: table[:, k] for k, name in enumerate(named)}
 
 
 def _number(cell: str) -> float:

@@ -57,6 +57,7 @@ THREE: dict[str, Call] = {
 OTHERS: list[tuple[Call, Any, str]] = [
     (lambda value: SimulationConfig(placement=value), 0.002, "placement .* must be 2 finite numbers"),
     (lambda value: GraspBatch(sensor=value), 3, "unknown sensor 3; known: "),
+    (lambda value: GraspBatch(sensor=value), ["seed"], r"unknown sensor \['seed'\]; known: "),
     (lambda value: SimulationConfig(randomize=value), 3, "randomize must be a list"),
     (lambda value: SimulationConfig(solver=value), 3, "solver must be SolverSettings"),
     (lambda value: GraspBatch(plant=value), 3, "unknown plant '3'; known: "),

@@ -28,9 +28,10 @@ def named_chain(chain: SignalChain | str) -> SignalChain:
     """The electronics, by name or as they are. Raises UnknownNameError."""
     if isinstance(chain, SignalChain):
         return chain
-    if chain not in SIGNAL_CHAINS:
-        raise unknown_name("signal chain", chain, SIGNAL_CHAINS)
-    return SIGNAL_CHAINS[chain]
+    try:
+        return SIGNAL_CHAINS[chain]
+    except (KeyError, TypeError):  # a list is no name at all
+        raise unknown_name("signal chain", chain, SIGNAL_CHAINS) from None
 
 
 def chosen_worlds(worlds: Sequence[int] | np.ndarray | None, count: int) -> list[int]:

@@ -48,7 +48,8 @@ class Layout:
 
 
 class TouchReading:
-    """What the fingertips feel at `time` s. failed: whether the simulation broke down; its numbers are nan then.
+    """What the fingertips feel at `time` s. failed: whether the simulation broke down; its numbers are nan then. Two
+    are equal where all that they tell is.
 
     Of many worlds, everything has a leading axis of worlds, and `touching` is a tuple of tuples."""
 
@@ -74,6 +75,18 @@ class TouchReading:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return TouchReading, (self.time, self.failed, self._numbers, self._layout)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, TouchReading):
+            return NotImplemented
+        pairs = (
+            (self.time, other.time),
+            (self.failed, other.failed),
+            (self._numbers, other._numbers),
+        )
+        return self._layout == other._layout and all(np.array_equal(*pair, equal_nan=True) for pair in pairs)
+
+    __hash__ = None  # pyright: ignore[reportAssignmentType]
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={getattr(self, name)!r}" for name in _SHOWN)

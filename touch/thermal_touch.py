@@ -149,6 +149,7 @@ class ThermalTouch:
             "air": air,
             "chain": self._chain,
         }
+        self._made_for = self._measures(model)
         self._sensors = sensor_places(model, self._pads, self._shapes) if self._many else None
         self._reader = ContactReader(model, self._pads, self._shapes, count)
         self._heat = JoinedHeat(
@@ -214,6 +215,13 @@ class ThermalTouch:
         return tuple(element.label for element in self._glued)
 
     @property
+    def most_voltage(self) -> float:
+        """V that no voltage of a reading exceeds, of either sign: 1, or more where a heated sensor's divider is
+        supplied with more."""
+        heated = (pad.heated for pad in (*self._pads, *self._glued))
+        return max(1.0, *(0.0 if sensor is None else sensor.divider.supply for sensor in heated))
+
+    @property
     def model(self) -> mujoco.MjModel:
         """The model that it was made for."""
         return self._model
@@ -271,6 +279,10 @@ class ThermalTouch:
         booleans; None for all. objects: what some are made of and how warm they start from now on, in these worlds, in
         the constructor's form: one of them or a list of one for each."""
         rows = chosen_worlds(worlds, len(self._time))
+        if not self.fits(self._model):
+            raise InvalidValueError(
+                "the model's geoms have other sizes or places than when this ThermalTouch was made: make another one"
+            )
         if data is not None:
             if self._many:
                 raise InvalidValueError("many worlds have no MjData: reset(worlds=...)")
@@ -540,6 +552,11 @@ class ThermalTouch:
                 "the data belong to another model than this ThermalTouch: make one for theirs, "
                 "thermograsp.ThermalTouch(data.model, ...)"
             )
+
+    def fits(self, model: mujoco.MjModel) -> bool:
+        """Whether fingertips and objects of a model, in which numbers may have been changed, are still as large and
+        where they were when this was made."""
+        return self._measures(model) == self._made_for
 
     def _measures(self, model: mujoco.MjModel) -> tuple[object, ...]:
         """By which a copy of a model is known from another one, where fingertips and objects are not alike;

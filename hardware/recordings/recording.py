@@ -162,6 +162,10 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
     entries, damage = _entries(content)
     for one in damage:
         _LOG.warning("%s: %s", path, one)
+    if (count := sum(entry.kind == METADATA for entry in entries)) > 1:  # of clocks that need not agree
+        raise InvalidValueError(
+            f"{path} is {count} recordings, one behind the other: give each a file of its own"
+        )
     metadata: dict[str, Any] = {}
     for entry in entries:
         if entry.kind == METADATA:

@@ -61,6 +61,7 @@ def test_says_for_people_why_it_cannot_tell(recording: Path, capsys: pytest.Capt
         ("time_s,voltage_V\n", "", "no rows"),
         ("time_s,current_A\n0,1\n", "", "voltage_V"),
         ("time_s,voltage_V\n0\n", "", "row 2: 1 cells"),
+        ("time_s,voltage_V, voltage_V\n0,1,2\n", "", "two columns are named 'voltage_V'"),
         ("time_s,voltage_V\n0,\n", "", "no sample"),
         ("time_s,voltage_V\n0,0\n0,0\n", AMONG, "must increase"),
         ("time_s,voltage_V\n0,0\n", "--among gold glas", "did you mean"),

@@ -186,6 +186,18 @@ def test_what_is_no_recording(tmp_path: Path) -> None:
         replay(tmp_path / "none.tgr")
 
 
+def test_two_recordings_in_one_file_are_refused(tmp_path: Path) -> None:
+    """Their clocks do not agree: the second one's samples were all given the last time of the first."""
+    content = b""
+    for name in ("a", "b"):
+        with Recorder(tmp_path / name) as recorder:
+            recorder.received(1.0, b"x")
+        content += (tmp_path / name).read_bytes()
+    (tmp_path / "both").write_bytes(content)
+    with pytest.raises(InvalidValueError, match="both is 2 recordings, one behind the other"):
+        read_recording(tmp_path / "both")
+
+
 class SmallDisk:
     """A file that takes a few bytes at a time, and then no more."""
 

@@ -3,6 +3,7 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+import math
 from typing import Literal
 
 import mujoco
@@ -64,6 +65,37 @@ def test_one_fingertip_on_a_box_feels_what_a_press_does(name: str, cone: str, sk
     late = np.array(times) - times[0] > 0.3
     expected = np.interp(np.array(times) - times[0] + 0.02, curves.t, curves.temperature_drop)
     assert np.abs(np.array(drops) - expected)[late].max() < 0.05 + 0.02
+
+
+@pytest.mark.parametrize("name", ["glass", "aluminium"])
+def test_a_pad_that_is_narrower_than_the_sensor_touches_with_what_it_bears_of_it(name: str) -> None:
+    """A bar of 4 mm bears 4 x 9 mm of the sensor's face, which a press takes as a square: finite volumes of aluminium
+    at 1e4 W/(m2 K) are 0.2 K below that, and 2.5 K below the whole face."""
+    model = mujoco.MjModel.from_xml_string(
+        ONE_PRESS.format(cone="elliptic").replace('size=".01 .01 .004"', 'size=".002 .01 .004"')
+    )
+    assert model.geom("tip").size[0] == 0.002
+    data = mujoco.MjData(model)
+    touch = ThermalTouch(
+        model, fingertips={"tip": "tip"}, objects={"block": name}, air=0.0, chain="ideal", tolerance=0.02
+    )
+    data.ctrl[0] = 10.0
+    drops, times = [], []
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+        reading = touch.update(data)
+        if reading.touching[0] and reading.time not in times:
+            times.append(reading.time)
+            drops.append(reading.temperature_drop[0])
+    area = 0.004 * 0.009
+    sheet = Pad(width=math.sqrt(0.004 * 0.02), face=math.sqrt(area))
+    pressure = float(flat_contact(sheet, 10.0).face_pressure)
+    h = float(contact_conductance(face_joint(None, Surface.of(material(name))), pressure))
+    size = (0.04, 0.04, 0.04)
+    curves = press(name, conductance=h, area=area, object_size=size, seconds=4.0, dt=0.02, tolerance=0.02)
+    late = np.array(times) - times[0] > 0.3
+    expected = np.interp(np.array(times) - times[0] + 0.02, curves.t, curves.temperature_drop)
+    assert np.abs(np.array(drops) - expected)[late].max() < 0.1
 
 
 @pytest.mark.parametrize(

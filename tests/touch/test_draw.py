@@ -48,13 +48,19 @@ def test_a_cold_touch_is_drawn_blue_with_a_bar() -> None:
 def test_view_writes_a_picture_of_any_scene(
     tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    keys = '<keyframe><key ctrl="10 10 10 0 0"/></keyframe></mujoco>'
+    keys = '<keyframe><key time="5" ctrl="10 10 10 0 0"/></keyframe></mujoco>'
     (tmp_path / "scene.xml").write_text(hand.scene().replace("</mujoco>", keys))
     command = ["view", "--model", str(tmp_path / "scene.xml"), "--seconds", "0.3"]
     pads = ["--fingertips", *PADS.values()]
     written = tmp_path / "felt.png"
     assert main([*command, *pads, "--objects", "can=aluminium", "--render", str(written)]) == 0
     assert written.read_bytes()[:4] == b"\x89PNG"
+    short = [*command[:-1], "0.004", *pads, "--objects", "can=aluminium", "--render", str(written)]
+    assert main(short) == 0
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert main([*command, *pads, "--objects", "can=aluminium"]) != 0
+    assert "no display" in capsys.readouterr().err
     assert main([*command, *pads, "--objects", "can", "--render", str(written)]) != 0
     assert "NAME=MATERIAL" in capsys.readouterr().err
     assert main([*command, "--objects", "can=aluminium", "--render", str(written)]) != 0

@@ -36,7 +36,8 @@ def fixed(inner: str) -> str:
 
 
 def test_geoms_that_are_fixed_to_an_object_are_named_or_told_of() -> None:
-    whole = BLOCK.replace("block", "lower") + fixed(BLOCK.replace("block", "upper"))
+    upper = '<geom name="upper" type="box" size=".02 .02 .01" pos="0 0 .01"/>'
+    whole = BLOCK.replace("block", "lower") + fixed(upper)
     with pytest.warns(
         RuntimeWarning, match="object 'block': contacts with geom 'upper' are not felt.*fusestatic"
     ):

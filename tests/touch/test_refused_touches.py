@@ -31,6 +31,7 @@ WRONG = [
     ({"dt": 0.0}, InvalidValueError, "dt"),
     ({"tolerance": -1.0}, InvalidValueError, "tolerance"),
     ({"chain": "ads"}, UnknownNameError, "ads1115"),
+    ({"chain": ["ideal"]}, UnknownNameError, r"unknown signal chain \['ideal'\]"),
     ({"ambient": -300.0}, InvalidValueError, "ambient"),
     ({"dt": 1e300}, InvalidValueError, "too long"),
     ({"fingertips": ["thumb_pad"]}, InvalidValueError, "mapping"),

@@ -3,7 +3,9 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+import math
 from contextlib import nullcontext
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -11,7 +13,7 @@ import pytest
 import trimesh
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.touch import ThermalTouch
+from thermograsp.touch import Fingertip, ThermalTouch
 
 SCENE = """
 <mujoco>
@@ -34,13 +36,15 @@ SCENE = """
 HIDDEN = 'contype="0" conaffinity="0"'
 
 
-def scene(
+def scene_text(
     x: float = 0.0, kind: str = "box", size: str = ".01 .01 .004", masks: str = "", pairs: str = ""
-) -> mujoco.MjModel:
+) -> str:
     text = SCENE.format(x=x, kind=kind, size=size, masks=masks, pairs=pairs, joint="down")
-    return mujoco.MjModel.from_xml_string(
-        text.replace('<joint type="slide"', '<joint name="down" type="slide"')
-    )
+    return text.replace('<joint type="slide"', '<joint name="down" type="slide"')
+
+
+def scene(*words: Any, **others: Any) -> mujoco.MjModel:
+    return mujoco.MjModel.from_xml_string(scene_text(*words, **others))
 
 
 def felt(model: mujoco.MjModel, objects: dict, tip: str = "pad") -> tuple[float, float]:
@@ -130,3 +134,33 @@ def test_a_timestep_that_has_changed_is_told() -> None:
     mujoco.mj_step(model, data)
     with pytest.raises(InvalidValueError, match="timestep is 0.0033 s, and was 0.002 s"):
         touch.update(data)
+
+
+def test_the_dt_that_a_message_gives_can_be_given() -> None:
+    model = scene()
+    model.opt.timestep = 0.00333333
+    tips: dict = {"fingertips": {"tip": "pad"}, "objects": {"table": "glass"}}
+    with pytest.raises(InvalidValueError, match=r"steps of 0.00333333 s: give 0.01999998$"):
+        ThermalTouch(model, **tips)
+    ThermalTouch(model, **tips, dt=0.01999998)
+
+
+def test_a_bare_thermostat_touches_with_its_whole_pad_however_long_that_is() -> None:
+    long: dict = {"position": (0, 0, -0.004), "normal": (0, 0, -1), "size": np.array((0.004, 0.02))}
+    for sensor, face in ((None, math.sqrt(0.004 * 0.02)), ("seed", math.sqrt(0.004 * 0.009))):
+        tip = Fingertip("pad", sensor=sensor, **long)
+        touch = ThermalTouch(scene(), fingertips={"tip": tip}, objects={"table": "glass"})
+        assert touch._pads[0].silicone.face == pytest.approx(face)
+        assert touch._pads[0].silicone.width == pytest.approx(math.sqrt(0.004 * 0.02))
+
+
+def test_geoms_in_one_place_are_told() -> None:
+    """A mesh to be seen that collides as well as the box that stands for it."""
+    spec = mujoco.MjSpec.from_string(scene_text())
+    cup = spec.body("cup")
+    cup.add_geom(name="half", type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.02, 0.02, 0.01), pos=(0, 0, 0.01))
+    tips: dict = {"fingertips": {"tip": "pad"}, "objects": {"cup": "glass"}}
+    ThermalTouch(spec.compile(), **tips)
+    cup.add_geom(name="twice", type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.0201, 0.02, 0.02))
+    with pytest.warns(RuntimeWarning, match="'solid' and 'twice' fill the same place"):
+        ThermalTouch(spec.compile(), **tips)

@@ -3,9 +3,13 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+import copy
 import importlib.util
+import pickle
 import subprocess
 import sys
+import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +17,12 @@ import gymnasium
 import mujoco
 import numpy as np
 import pytest
+from gymnasium.utils.env_checker import check_env
 
 import thermograsp
 from thermograsp.errors import InvalidValueError
+from thermograsp.thermal.stack import heated_stack
+from thermograsp.touch import Fingertip
 
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
@@ -70,6 +77,66 @@ def test_every_substep_of_an_environment_is_heard(anew: bool) -> None:
     np.testing.assert_array_equal(info["touch"].voltage, touch.reading.voltage)
     assert (info["touch"].temperature_drop > 1.0).all()
     assert mujoco.mj_step is step
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_a_copy_feels_its_own_simulation(copied: Any) -> None:
+    def felt(one: Any) -> Any:
+        return [one.step(np.array([10.0]))[4]["touch"] for _ in range(10)][-1]
+
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(), fingertips=PADS, objects={"can": "aluminium"}
+    )
+    env.reset(seed=0)
+    first = felt(env)
+    again = copied(env)
+    alone = felt(again)
+    assert alone.time == pytest.approx(first.time + 0.2) and (alone.temperature_drop > 1.0).all()
+    assert felt(env) == alone != first
+    again.reset(seed=0)
+    assert env.touch.reading == alone != again.touch.reading
+
+
+def test_gymnasiums_check_passes_and_its_spec_makes_it_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gymnasium.envs.registration, "registry", {})
+    gymnasium.register("Other-v0", lambda **words: OtherEnv(**words), max_episode_steps=7)
+    env = thermograsp.wrappers.AddThermalObservation(
+        gymnasium.make("Other-v0"), fingertips=PADS, objects={"can": "aluminium"}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what OtherEnv's own spaces are
+        check_env(env, skip_render_check=True)
+    assert env.spec is not None
+    again: Any = gymnasium.make(env.spec)
+    assert again.observation_space == env.observation_space
+    assert again.touch.fingertips == env.touch.fingertips and again.touch.objects == ("can",)
+
+
+def test_a_geom_that_a_reset_resizes_is_felt_as_it_is_then() -> None:
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(), fingertips=PADS, objects={"can": "aluminium"}
+    )
+    before = env.touch
+    env.reset(seed=0)
+    assert env.touch is before
+    env.get_wrapper_attr("model").geom("can_wall").size[1] *= 0.5
+    with pytest.raises(InvalidValueError, match="other sizes or places than when"):
+        before.reset()
+    env.reset(seed=0)
+    assert env.touch is not before
+    assert env.touch._shapes[0].size[2] == pytest.approx(before._shapes[0].size[2] / 2)
+
+
+def test_the_voltage_of_a_divider_is_in_the_observation_space() -> None:
+    sensor = heated_stack("heated_thermistor")
+    sensor = replace(sensor, divider=replace(sensor.divider, supply=3.3))
+    env = thermograsp.wrappers.AddThermalObservation(
+        OtherEnv(),
+        fingertips={"thumb": Fingertip("thumb_pad", sensor=sensor)},
+        objects={"can": "aluminium"},
+    )
+    observation, _ = env.reset(seed=0)
+    assert observation["voltage"].max() > 1.0 and observation in env.observation_space
 
 
 class ByName(OtherEnv):

@@ -99,7 +99,7 @@ def sensor(name: str | os.PathLike[str] | SensorStack) -> SensorStack:
         return next(iter(found.values()))
     try:
         return sensors()[name]
-    except KeyError:
+    except (KeyError, TypeError):  # a list is no name at all
         raise unknown_name("sensor", name, sensors()) from None
 
 

@@ -163,6 +163,10 @@ def sample_times(seconds: float, dt: float) -> np.ndarray:
     count = int(np.floor(seconds / dt * (1 + 1e-12))) + 1
     if count > _MOST_SAMPLES:
         raise InvalidValueError(f"{seconds:g} s at dt {dt:g} s are {count} samples: give a larger dt")
+    if count < 2:
+        raise InvalidValueError(
+            f"{seconds:g} s at dt {dt:g} s have no sample after the touch: give a dt of {seconds:g} or less"
+        )
     return np.arange(count) * dt
 
 

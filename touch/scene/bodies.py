@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import combinations
 
 import mujoco
 import numpy as np
@@ -25,6 +26,7 @@ PREFIX = "thermograsp:"
 """Of the names of an MJCF's custom texts that tell an object's material and temperature."""
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+_SAME = 0.05  # of the least side, by which boxes of geoms in one place may differ
 _ROUND = (math.pi / 6) ** (1 / 3)  # side of the cube of a sphere's volume, of its diameter
 _DISC = math.sqrt(math.pi) / 2  # side of the square of a disc's area, of its diameter
 
@@ -140,12 +142,34 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
                 RuntimeWarning,
                 stacklevel=3,
             )
+        for first, second in combinations(shape.geoms, 2):
+            if _in_one_place(model, first, second):
+                warnings.warn(
+                    f"object {shape.name!r}: {geom_label(model, first)} and {geom_label(model, second)} fill the same "
+                    "place, so that the gas in a contact with both counts twice: give the one that is only to be seen "
+                    'contype="0" and conaffinity="0"',
+                    RuntimeWarning,
+                    stacklevel=3,
+                )
         for geom in shape.geoms:
             if owner.setdefault(geom, shape.name) != shape.name:
                 raise InvalidValueError(
                     f"objects {owner[geom]!r} and {shape.name!r} share geom {geom_label(model, geom)}: name it once"
                 )
     return tuple(found)
+
+
+def _in_one_place(model: mujoco.MjModel, *geoms: int) -> bool:
+    """Whether two geoms of a body have nearly the same box round them."""
+    low, high = (np.stack([end(_corners(model, geom), axis=0) for geom in geoms]) for end in (np.min, np.max))
+    apart = np.abs(np.diff((low, high), axis=1)).max()
+    return bool(apart < _SAME * (high - low).min())
+
+
+def _corners(model: mujoco.MjModel, geom: int) -> np.ndarray:
+    """Of the box round a geom, (8, 3) m in its body's frame."""
+    box = model.geom_aabb[geom]
+    return (box[:3] + _CORNERS * box[3:]) @ rotation(model.geom_quat[geom]).T + model.geom_pos[geom]
 
 
 def require_box(model: mujoco.MjModel, shape: BodyShape, wanted: str, instead: str) -> None:
@@ -258,13 +282,8 @@ def _box(
         turn = rotation(model.geom_quat[geom])
         middle = model.geom_aabb[geom, :3] if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH else 0.0
         return size, model.geom_pos[geom] + turn @ np.broadcast_to(middle, 3), turn, extent, surface
-    corners = []
-    for geom in geoms:
-        box = model.geom_aabb[geom]
-        corners.append(
-            (box[:3] + _CORNERS * box[3:]) @ rotation(model.geom_quat[geom]).T + model.geom_pos[geom]
-        )
-    low, high = np.concatenate(corners).min(axis=0), np.concatenate(corners).max(axis=0)
+    corners = np.concatenate([_corners(model, geom) for geom in geoms])
+    low, high = corners.min(axis=0), corners.max(axis=0)
     extent = high - low
     volume = sum(float(np.prod(size)) for size, _, _ in measured)
     size = extent * min((volume / float(np.prod(extent))) ** (1 / 3), 1.0)

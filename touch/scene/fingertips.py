@@ -80,7 +80,7 @@ class Fingertip:
             if value is None:
                 continue
             numbers(f"fingertip {self.name!r}: {field}", value, count)
-        for side in self.size or ():
+        for side in () if self.size is None else self.size:
             length(f"fingertip {self.name!r}: size (m)", side)
         if self.normal is not None and not np.linalg.norm(self.normal) > 0:
             raise InvalidValueError(f"fingertip {self.name!r}: its normal must not be zero")
@@ -119,9 +119,10 @@ class PadPlace:
 
     @property
     def silicone(self) -> Pad:
-        """The pad without its skin, as wide as a square of its area."""
-        width = math.sqrt(self.size.prod())
-        return Pad(width=width, face=min(self.stack.width, width))
+        """The pad without its skin, as wide as a square of its area. A sensor's face that is wider than a side of the
+        pad touches with what the pad bears of it, a square of that area."""
+        borne = self.size if self.bare else np.minimum(self.stack.width, self.size)
+        return Pad(width=math.sqrt(self.size.prod()), face=math.sqrt(borne.prod()))
 
 
 def pads(

@@ -17,7 +17,7 @@ def whole_steps(dt: float, step: float) -> int:
     if count < 1 or abs(dt / step - count) > _WHOLE * count:
         nearest = max(count, 1) * step
         raise InvalidValueError(
-            f"dt={dt:g} s is not a whole number of the model's steps of {step:g} s: give {nearest:g}"
+            f"dt={dt:g} s is not a whole number of the model's steps of {step:.9g} s: give {nearest:.9g}"
         )
     return count
 

@@ -46,7 +46,7 @@ class DmControlThermalWrapper(dm_env.Environment):
     ) -> None:
         self._env = env
         every = {"fingertips": fingertips, "objects": objects, **words}
-        self._stepped = SteppedTouch(lambda: (env.physics.model.ptr, env.physics.data.ptr), every)
+        self._stepped = SteppedTouch(_simulation, env, every)
 
     @property
     def touch(self) -> ThermalTouch:
@@ -88,3 +88,7 @@ class DmControlThermalWrapper(dm_env.Environment):
     def _with_voltage(self, step: Any) -> Any:
         volts = self.touch.reading.voltage.astype(np.float32)
         return step._replace(observation={**step.observation, VOLTAGE: volts})
+
+
+def _simulation(env: Any) -> tuple[Any, Any]:
+    return env.physics.model.ptr, env.physics.data.ptr

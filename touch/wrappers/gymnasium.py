@@ -26,7 +26,7 @@ OBSERVATION = "observation"
 """That of what was the whole observation, where that was no Dict."""
 
 
-class AddThermalObservation(gymnasium.Wrapper):
+class AddThermalObservation(gymnasium.Wrapper, gymnasium.utils.RecordConstructorArgs):
     """Adds "voltage" (F, 16) V to the observation of a Gymnasium environment that has MuJoCo's `model` and `data`.
 
     A Dict observation gains the entry; any other becomes Dict(observation=..., voltage=...). info["touch"] is the last
@@ -44,11 +44,13 @@ class AddThermalObservation(gymnasium.Wrapper):
         objects: Mapping[str, str | Material | ThermalBody] | None = None,
         **words: Any,
     ) -> None:
-        super().__init__(env)
         every = {"fingertips": fingertips, "objects": objects, **words}
-        self._stepped = SteppedTouch(lambda: _simulation(self.env), every)
+        gymnasium.utils.RecordConstructorArgs.__init__(self, **every)  # env.spec tells them
+        gymnasium.Wrapper.__init__(self, env)
+        self._stepped = SteppedTouch(_simulation, env, every)
         shape = (len(self.touch.fingertips), SAMPLES)
-        volts = gymnasium.spaces.Box(-1.0, 1.0, shape, np.float32)
+        most = self.touch.most_voltage
+        volts = gymnasium.spaces.Box(-most, most, shape, np.float32)
         space = env.observation_space
         self._is_dict = isinstance(space, gymnasium.spaces.Dict)
         if isinstance(space, gymnasium.spaces.Dict):

@@ -41,7 +41,7 @@ class RobosuiteThermalWrapper(Wrapper):
     ) -> None:
         super().__init__(env)
         every = {"fingertips": fingertips, "objects": objects, **words}
-        self._stepped = SteppedTouch(lambda: (env.sim.model._model, env.sim.data._data), every)
+        self._stepped = SteppedTouch(_simulation, env, every)
 
     @property
     def touch(self) -> ThermalTouch:
@@ -66,3 +66,7 @@ class RobosuiteThermalWrapper(Wrapper):
 
     def _with_voltage(self, observation: Mapping[str, Any]) -> dict[str, Any]:
         return {**observation, VOLTAGE: self.touch.reading.voltage.astype(np.float32)}
+
+
+def _simulation(env: Any) -> tuple[Any, Any]:
+    return env.sim.model._model, env.sim.data._data

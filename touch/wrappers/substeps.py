@@ -14,22 +14,22 @@ from ..thermal_touch import ThermalTouch
 from .clock import heard_steps
 
 _RK4 = mujoco.mjtIntegrator.mjINT_RK4
-Simulation = Callable[[], tuple[mujoco.MjModel, mujoco.MjData]]
+Simulation = Callable[[Any], tuple[mujoco.MjModel, mujoco.MjData]]
 
 
 class SteppedTouch:
-    """To be entered while the environment steps. simulation: gives the environment's present model and data. words:
-    those of ThermalTouch."""
+    """To be entered while the environment steps. simulation: gives an environment's present model and data. It is a
+    function of a module, so that a copy of both asks the copied environment. words: those of ThermalTouch."""
 
-    def __init__(self, simulation: Simulation, words: dict[str, Any]) -> None:
-        self._simulation, self._words = simulation, words
-        model, _ = simulation()
+    def __init__(self, simulation: Simulation, env: Any, words: dict[str, Any]) -> None:
+        self._simulation, self._env, self._words = simulation, env, words
+        model, _ = simulation(env)
         self.touch = ThermalTouch(model, **words)
 
     def restart(self, seed: int | None = None) -> None:
-        """After the environment's reset, which may have made another model."""
-        model, data = self._simulation()
-        if model is not self.touch.model:
+        """After the environment's reset, which may have made another model, or changed its geoms."""
+        model, data = self._simulation(self._env)
+        if model is not self.touch.model or not self.touch.fits(model):
             self.touch = ThermalTouch(model, **self._words)
         self.touch.reset(data, seed=seed)
 
@@ -40,7 +40,7 @@ class SteppedTouch:
         not served. Of steps that were taken otherwise, by a function imported by name or in a rollout, the last
         contacts stand for all. While MuJoCo takes several steps in one call, they are heard by its clock (clock.py);
         what goes wrong with one is raised at the end of the call."""
-        _, data = self._simulation()
+        _, data = self._simulation(self._env)
         step, second, touch = self._wrapped = mujoco.mj_step, mujoco.mj_step2, self.touch
         self._data, self._heard = data, None
         update, model = touch.update, touch.model
@@ -66,5 +66,7 @@ class SteppedTouch:
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         mujoco.mj_step, mujoco.mj_step2, touch = self._wrapped
-        if kind is None and self._data.time != self._heard:  # else a call that would find nothing
-            touch.update(self._data)
+        data, heard = self._data, self._heard
+        del self._wrapped, self._data, self._heard  # MuJoCo's functions cannot be pickled
+        if kind is None and data.time != heard:  # else a call that would find nothing
+            touch.update(data)

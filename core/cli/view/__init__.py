@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermograsp.cli.shared import Output, add_materials_file, add_mode, add_old_name, load_mujoco, target
-from thermograsp.errors import InvalidValueError, positive
+from thermograsp.errors import InvalidValueError, MissingDependencyError, positive
+from thermograsp.opengl import has_display
 
 if TYPE_CHECKING:
     from thermograsp.studio.control import Choices, Stock
@@ -131,13 +132,16 @@ def _scene(args: argparse.Namespace, output: Output) -> int:
     """A scene of the user's, in MuJoCo's viewer or as a picture."""
     from thermograsp.cli.view.scene import opened_scene, picture, watch
 
+    path = target(args.render, (".png",))
     model, data, touch = opened_scene(Path(args.model), args.fingertips, args.objects)
-    if args.render is None:
+    if path is None:
+        if not has_display():  # MuJoCo's viewer would end the process
+            raise MissingDependencyError(
+                "no display to open MuJoCo's viewer on; write a picture by --render FILE, or set DISPLAY to a running "
+                "X server"
+            )
         watch(model, data, touch)
         return 0
-    path = Path(args.render)
-    if path.suffix != ".png":
-        raise InvalidValueError(f"--render {path}: of a scene of your own a picture is written, a .png file")
     picture(model, data, touch, positive("--seconds", args.seconds), path)
     output.line(f"wrote {path}")
     output.document({"written": str(path)})

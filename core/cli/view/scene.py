@@ -82,7 +82,8 @@ def picture(
     import mujoco
 
     times, drops, reading = [], [], touch.reading
-    while data.time < seconds:
+    end = data.time + seconds  # a keyframe may have a time of its own
+    while data.time < end:
         mujoco.mj_step(model, data)
         latest = touch.update(data)
         if latest is not reading:
@@ -97,8 +98,9 @@ def picture(
     )
     above.imshow(pixels)
     above.axis("off")
+    curves = np.reshape(drops, (-1, len(touch.fingertips)))  # shorter than a reading takes there is none
     for row, label in enumerate(touch.fingertips):
-        below.plot(times, np.array(drops)[:, row], label=label)
+        below.plot(times, curves[:, row], label=label)
     below.set_xlabel("time (s)")
     below.set_ylabel("temperature drop (K)")
     below.legend(loc="upper left")

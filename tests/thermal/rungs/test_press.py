@@ -116,6 +116,7 @@ def test_colder_sensor_mirrors_a_warmer_one() -> None:
         ({"sensor_temperature": float("nan")}, "sensor_temperature"),
         ({"seconds": -1.0}, "seconds"),
         ({"dt": 0.0}, "dt"),
+        ({"dt": 1.1}, "1 s at dt 1.1 s have no sample after the touch"),
         ({"tolerance": 0.0}, "tolerance"),
         ({"seconds": 1e9, "dt": 1e-3}, "larger dt"),
         ({"rung": "layered:2/3"}, "no orders"),
