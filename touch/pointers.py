@@ -14,9 +14,10 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
 from ..thermal import CONTACT_LAW
+from ..thermal.contact import FOOTPRINT_LAW
 from ..thermal.readout import CHAIN_NUMBERS
 
-_LAW, _CHAIN = from_dtype(CONTACT_LAW), from_dtype(CHAIN_NUMBERS)
+_LAW, _FOOTPRINT, _CHAIN = (from_dtype(each) for each in (CONTACT_LAW, FOOTPRINT_LAW, CHAIN_NUMBERS))
 
 
 def table(arrays: Sequence[np.ndarray], numbers: Sequence[int] = ()) -> np.ndarray:
@@ -51,6 +52,10 @@ def _flags(context, address, shape):
 
 def _laws(context, address, shape):
     return _array(_LAW, address, shape), _made
+
+
+def _footprints(context, address, shape):
+    return _array(_FOOTPRINT, address, shape), _made
 
 
 def _chains(context, address, shape):
@@ -114,9 +119,10 @@ integers: Any = intrinsic(_integers)
 words: Any = intrinsic(_words)
 flags: Any = intrinsic(_flags)
 laws: Any = intrinsic(_laws)
+footprints: Any = intrinsic(_footprints)
 chains: Any = intrinsic(_chains)
 """The array of a shape that begins at an address: of floating-point numbers, of integers of 32 and 64 bits, of
-booleans, of CONTACT_LAW and of CHAIN_NUMBERS."""
+booleans, of CONTACT_LAW, of FOOTPRINT_LAW and of CHAIN_NUMBERS."""
 called_one: Any = intrinsic(_called_one)
 called_two: Any = intrinsic(_called_two)
 called: Any = intrinsic(_called)

@@ -20,9 +20,11 @@ import numpy as np
 from ...thermal.contact import FOOTPRINT_LAW
 from ...touch.contacts import COLUMNS
 from ...touch.heat import HeatState as FieldState
-from ...touch.heat import JoinedHeat
+from ...touch.heat import JoinedHeat, sample, tell_books
+from ...touch.pointers import entry, table
 from ...touch.scene import BodyShape, PadPlace
-from ..footprint import PAD, GraspBody, PadContact, mesh_steps, pad_contact, touch_pads
+from ..footprint import PAD, GraspBody, PadContact, mesh_steps, pad_contact
+from .field_kernel import HEAT, LISTED, PARTS, advance_fields, tell_fields, tell_temperatures
 from .heat import HeatStep
 from .kernel import meet_rows
 from .rows import HEAT_INFO, HEAT_ROW
@@ -52,12 +54,12 @@ class FieldHeatState:
 
 @dataclass(slots=True)
 class _Row:
-    """An environment's heat. contacts: of each object. touches: (N, 1, F, O + F, columns), and samples: its parts."""
+    """An environment's heat. contacts: of each object. touches: (N, 1, F, O + F, columns). told: JoinedHeat.telling."""
 
     heat: JoinedHeat
-    contacts: list[PadContact]
+    contacts: dict[int, PadContact]
     touches: np.ndarray
-    samples: list[np.ndarray]
+    told: np.ndarray
 
 
 class FieldScenes:
@@ -84,6 +86,11 @@ class FieldScenes:
         self._scenes: dict[int, tuple[GraspBody, ...]] = {}
         self._heats: dict[int, _Row] = {}
         self._owner = np.zeros((num_envs, 2), int)
+        # What compiled code takes (field_kernel.py): where the rows' heats are and what their pads meet.
+        self._sample = entry(sample, 4)
+        self._listed = np.zeros((num_envs, LISTED), np.int64)
+        self._parts = np.zeros((num_envs, objects, PARTS), np.int64)
+        self._ambient = np.zeros(num_envs)
         # J at the last step's end: from fingertips to objects, in elements and pads, in objects, to the air
         self._given, self._stored = np.zeros((num_envs, 2, objects)), np.zeros((num_envs, 2))
         self._gained, self._air = np.zeros((num_envs, objects)), np.zeros(num_envs)
@@ -124,20 +131,26 @@ class FieldScenes:
             self._slip(force, place)
         meet_rows(self._laws, self._rows, force, place, self._info)
         self._own(force)
-        for row, one in self._heats.items():
-            for o, contact in enumerate(one.contacts):
-                touch_pads(*contact, force[row, o], place[row, o], one.touches[:, 0, :, o])
-            for k, touches in enumerate(one.samples):
-                one.heat.advance(touches, 1)
-                drop[row, k, : one.heat.drop.shape[1]] = one.heat.drop[0]
-        self._tell()
+        arrays = self._sample, self._listed, self._parts, force, place, drop
+        number, last = advance_fields(*arrays, 0), len(force) * self._samples
+        while number < last:
+            row, k = divmod(number, self._samples)
+            one = self._heats[row]
+            one.heat.advance(one.touches[k], 1)
+            drop[row, k, : one.heat.drop.shape[1]] = one.heat.drop[0]
+            self._list(row)
+            number = advance_fields(*arrays, number + 1)
+        seconds = self._samples * self._dt
+        books = self._given, self._stored, self._gained, self._air
+        tell_fields(self._listed, self._rows, seconds, self._info, *books)
+        tell_temperatures(self._listed, self._rows, self._ambient, self._info)
         return self._step(drop)
 
     def rest(self) -> SceneHeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
         self._info[:] = np.zeros(1, HEAT_INFO)
         self._info["reservoir_temperature"] = np.nan
-        self._tell_temperatures()
+        tell_temperatures(self._listed, self._rows, self._ambient, self._info)
         return self._step(np.zeros((len(self._rows), self._samples, 2)))
 
     def state(self, rows: Sequence[int]) -> FieldHeatState:
@@ -156,7 +169,9 @@ class FieldScenes:
             self._place(row, state.scenes[k], state.rows[k, 0]["sensor_temperature"])
             self._rows[row], self._owner[row] = state.rows[k], state.owner[k]
             self._heats[row].heat.set_state(state.fields[k])
-            self._close_book(row, self._heats[row].heat)
+            self._list(row)
+            books = self._given[row], self._stored[row], self._gained[row]
+            self._air[row] = tell_books(self._listed[row, HEAT], *books)
 
     @property
     def sensor_temperatures(self) -> np.ndarray:
@@ -166,6 +181,7 @@ class FieldScenes:
     def _place(self, row: int, scene: tuple[GraspBody, ...], celsius: np.ndarray) -> None:
         first = scene[0]
         self._scenes[row] = scene
+        self._ambient[row] = first.temperature if first.ambient is None else first.ambient
         pads = [_pad(first, number, float(celsius[number])) for number in range(first.fingertips)]
         heat = JoinedHeat(
             pads,
@@ -175,11 +191,14 @@ class FieldScenes:
             dt=self._dt,
             tolerance=self._tolerance,
             film=self._film,
-            ambient=first.temperature if first.ambient is None else first.ambient,
+            ambient=float(self._ambient[row]),
             cache=self._cache,
         )
         touches = np.zeros((self._samples, 1, len(pads), len(scene) + len(pads), COLUMNS))
-        self._heats[row] = _Row(heat, [pad_contact(body) for body in scene], touches, list(touches))
+        self._heats[row] = _Row(heat, {}, touches, heat.telling())
+        for o, body in enumerate(scene):
+            self._meet(row, o, pad_contact(body))
+        self._list(row)
         self._given[row], self._stored[row], self._gained[row], self._air[row] = 0.0, 0.0, 0.0, 0.0
         self._meshes = [each for each in self._meshes if each[0] != row]
         self._steps[row] = 0
@@ -188,6 +207,17 @@ class FieldScenes:
             if body.closed_mesh is not None:
                 self._meshes.append((row, o))
                 self._closed[row, o] = body.closed_mesh.azimuth, *body.closed_mesh.place
+
+    def _meet(self, row: int, o: int, contact: PadContact) -> None:
+        """The pads meet an object in this way from now on."""
+        self._heats[row].contacts[o] = contact
+        self._parts[row, o] = table(contact, (len(contact.tables), len(contact.halves)))
+
+    def _list(self, row: int) -> None:
+        """Where the row's heat is from now on; to be called whenever anything but compiled code has changed it."""
+        one = self._heats[row]
+        one.told = one.heat.telling()
+        self._listed[row] = one.told.ctypes.data, *one.heat.hearing(one.touches), one.touches.shape[2]
 
     def _slip(self, force: np.ndarray, place: np.ndarray) -> None:
         """What the pads touch of meshes that have slipped or turned between them."""
@@ -200,56 +230,23 @@ class FieldScenes:
             step, body = tuple(now[k].tolist()), self._scenes[row][o]
             self._steps[row, o] = now[k]
             self._laws[row, o] = body.slipped_law(step)
-            self._heats[row].contacts[o] = pad_contact(body, step)
+            self._meet(row, o, pad_contact(body, step))
 
     def _own(self, force: np.ndarray) -> None:
         """Whose the fingertips are after forces (B, O, S, 2): of several objects, that of which they press hardest."""
+        if force.shape[1] == 1:
+            return
         substeps = force.shape[2]
         for k in range(self._samples):
             part = force[:, :, k * substeps // self._samples : -(-(k + 1) * substeps // self._samples)]
             most = part.max(axis=2)
             self._owner = np.where(most.max(axis=1) > 0, most.argmax(axis=1), self._owner)
 
-    def _tell(self) -> None:
-        """Fills the info after a step."""
-        given, stored, air = self._given.copy(), self._stored.copy(), self._air.copy()
-        self._close_books()
-        info, seconds = self._info, self._samples * self._dt
-        flowed = self._given - given
-        info["flow"] = flowed.transpose(0, 2, 1) / seconds
-        info["drawn"] = info["flow"] + ((self._stored - stored) / seconds)[:, None]
-        info["heat"][..., :2] = self._stored[:, None]
-        info["heat"][..., 2] = self._gained
-        info["air_loss"][:, 0] = (self._air - air) / seconds
-        books = self._rows["books"]
-        books[..., 1] += np.abs(flowed).sum(axis=1)
-        info["exchanged"] = books[..., 1]
-        info["imbalance"][:, 0] = self._gained.sum(axis=1) + self._air - self._given.sum(axis=(1, 2))
-        self._tell_temperatures()
-
-    def _tell_temperatures(self) -> None:
-        info = self._info
-        info["sensor_surface"] = self._rows["sensor_temperature"]
-        for row, one in self._heats.items():
-            sensors, objects = one.heat.faces(0)
-            info["object_temperature"][row] = one.heat.object_temperature[0]
-            info["object_surface"][row] = info["object_temperature"][row][:, None]
-            info["sensor_surface"][row, :, : len(sensors)] = sensors
-            info["object_surface"][row, :, : len(sensors)] = objects.T
-
-    def _close_books(self) -> None:
-        for row, one in self._heats.items():
-            self._close_book(row, one.heat)
-
-    def _close_book(self, row: int, heat: JoinedHeat) -> None:
-        balance = heat.balance(0)
-        tips = len(balance.elements)
-        self._given[row, :tips], self._stored[row, :tips] = balance.given, balance.elements
-        self._gained[row], self._air[row] = balance.objects, balance.air
-
     def _step(self, drop: np.ndarray) -> SceneHeatStep:
         objects, owner = self._info.copy(), self._owner.copy()
-        return SceneHeatStep(HeatStep(drop, of_fingertips(objects, owner)), objects, owner)
+        alone = objects.shape[1] == 1
+        info = objects[:, 0].copy() if alone else of_fingertips(objects, owner)
+        return SceneHeatStep(HeatStep(drop, info), objects, owner)
 
 
 class FieldHeat:

@@ -7,6 +7,7 @@ from .march import sample
 from .narrow import Wall, narrow_tables, wall_of
 from .places import TipField, resolution, tip_field, untouched
 from .records import HeatBalance, HeatState
+from .told import tell_books, tell_drop, tell_warmth
 
 __all__ = [
     "ArrayNarrow",
@@ -22,6 +23,9 @@ __all__ = [
     "network_tables",
     "resolution",
     "sample",
+    "tell_books",
+    "tell_drop",
+    "tell_warmth",
     "tip_field",
     "untouched",
     "wall_of",

@@ -1,0 +1,100 @@
+"""One control step of many rows' fields, compiled: what each one's pads touch, its samples, and what it tells.
+
+B: environments, O: objects, S: substeps, F = 2 fingertips, N: heat samples of a control step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermograsp.compiled import njit
+
+from ...thermal.contact import CURVED_TABLE
+from ...thermal.padded import RINGS
+from ...touch.contacts import COLUMNS
+from ...touch.heat import tell_books, tell_drop, tell_warmth
+from ...touch.pointers import called, floats, footprints, laws
+from ..footprint import touch_pads
+
+HEAT, SAMPLE, TOUCHES, TIPS, LISTED = range(5)
+"""Of a row's heat: the addresses of JoinedHeat.telling, of what `sample` takes, and of its touches
+(N, F, O + F, COLUMNS), which is 0 before the first reset; and how many fingertips it has."""
+PARTS = 8
+"""Of an object under pads: the addresses of a PadContact's arrays, in its order, and the lengths of its tables and
+halves."""
+
+
+@njit(cache=True, error_model="numpy")
+def advance_fields(sample, rows, contacts, force, place, drop, first):
+    """Advances the rows (B, LISTED) by the samples of a control step, all samples counted row by row, from number
+    `first` on; fills drop (B, N, F) K. sample: the address of touch.heat's. contacts: (B, O, PARTS). force:
+    (B, O, S, F) N. place: (B, O, F, 3) m. Returns the number of a sample before which places or contacts change, which
+    has not been taken yet; B N after the last one."""
+    samples, objects = drop.shape[1], force.shape[1]
+    for number in range(first, len(rows) * samples):
+        b, k = number // samples, number % samples
+        heat, touches, tips = rows[b, SAMPLE], rows[b, TOUCHES], rows[b, TIPS]
+        if touches == 0:
+            continue
+        if k == 0:
+            every = floats(touches, (samples, tips, objects + tips, COLUMNS))
+            for o in range(objects):
+                part = contacts[b, o]
+                touch_pads(
+                    footprints(part[0], 1),
+                    laws(part[1], 1),
+                    floats(part[2], (part[6], CURVED_TABLE)),
+                    footprints(part[3], RINGS),
+                    floats(part[4], (9, 5)),
+                    floats(part[5], part[7]),
+                    force[b, o],
+                    place[b, o],
+                    every[:, :, o],
+                )
+        if called(sample, heat, touches + 8 * k * tips * (objects + tips) * COLUMNS, 1, 0) != 0:
+            return number
+        tell_drop(rows[b, HEAT], drop[b, k])
+    return len(rows) * samples
+
+
+@njit(cache=True, error_model="numpy")
+def tell_fields(rows, records, seconds, info, given, stored, gained, air):
+    """Fills flows, heats and books of info (B, O) HEAT_INFO after a control step of so many seconds; books of records
+    (B, O) HEAT_ROW go on. From the step before to this one go given (B, F, O) J from fingertips to objects, stored
+    (B, F) J in elements and pads, gained (B, O) J in objects, and air (B,) J."""
+    passed, kept = np.empty(given.shape[1:]), np.empty(2)
+    for b in range(len(rows)):
+        if rows[b, TOUCHES] == 0:
+            continue
+        passed[:], kept[:], lost = given[b], stored[b], air[b]
+        air[b] = tell_books(rows[b, HEAT], given[b], stored[b], gained[b])
+        for o in range(info.shape[1]):
+            step, record, exchanged = info[b, o], records[b, o], 0.0
+            for f in range(2):
+                flowed = given[b, f, o] - passed[f, o]
+                step.flow[f], step.heat[f] = flowed / seconds, stored[b, f]
+                step.drawn[f] = step.flow[f] + (stored[b, f] - kept[f]) / seconds
+                exchanged += abs(flowed)
+            step.heat[2] = gained[b, o]
+            record.books[1] += exchanged
+            step.exchanged = record.books[1]
+        info[b, 0].air_loss = (air[b] - lost) / seconds
+        info[b, 0].imbalance = gained[b].sum() + air[b] - given[b].sum()
+
+
+@njit(cache=True, error_model="numpy")
+def tell_temperatures(rows, records, ambient, info):
+    """Fills temperatures of info (B, O) HEAT_INFO. records: (B, O) HEAT_ROW. ambient: (B,) °C of the air."""
+    objects = info.shape[1]
+    sensors, under, means = np.empty(2), np.empty((objects, 2)), np.empty(objects)
+    for b in range(len(rows)):
+        if rows[b, TOUCHES] == 0:
+            continue
+        tell_warmth(rows[b, HEAT], ambient[b], sensors, under, means)
+        for o in range(objects):
+            step = info[b, o]
+            step.object_temperature = means[o]
+            for f in range(2):
+                has = f < rows[b, TIPS]
+                step.sensor_surface[f] = sensors[f] if has else records[b, o].sensor_temperature[f]
+                step.object_surface[f] = under[o, f] if has else means[o]
