@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,10 @@ _BOXES = {
 }
 """Sides of the box that heat flows in, of the object's; a mesh's heat flows in itself."""
 
+MOST_SPARES, MOST_SYSTEMS = 32, 64
+"""Heats of objects that no environment holds any more, which are kept for its next episodes, and the groups of fields
+that one of them may know."""
+
 
 @dataclass(frozen=True, slots=True)
 class FieldHeatState:
@@ -54,10 +58,13 @@ class FieldHeatState:
 
 @dataclass(slots=True)
 class _Row:
-    """An environment's heat. contacts: of each object. touches: (N, 1, F, O + F, columns). told: JoinedHeat.telling."""
+    """An environment's heat. bodies: the objects, but for temperatures. contacts: of each as the pads close on it, and
+    slipped: of those that have slipped since. touches: (N, 1, F, O + F, columns). told: JoinedHeat.telling."""
 
+    bodies: tuple[GraspBody, ...]
     heat: JoinedHeat
-    contacts: dict[int, PadContact]
+    contacts: list[PadContact]
+    slipped: dict[int, PadContact]
     touches: np.ndarray
     told: np.ndarray
 
@@ -85,6 +92,7 @@ class FieldScenes:
         self._info["reservoir_temperature"] = np.nan
         self._scenes: dict[int, tuple[GraspBody, ...]] = {}
         self._heats: dict[int, _Row] = {}
+        self._spares: list[_Row] = []
         self._owner = np.zeros((num_envs, 2), int)
         # What compiled code takes (field_kernel.py): where the rows' heats are and what their pads meet.
         self._sample = entry(sample, 4)
@@ -180,37 +188,48 @@ class FieldScenes:
 
     def _place(self, row: int, scene: tuple[GraspBody, ...], celsius: np.ndarray) -> None:
         first = scene[0]
-        self._scenes[row] = scene
-        self._ambient[row] = first.temperature if first.ambient is None else first.ambient
-        pads = [_pad(first, number, float(celsius[number])) for number in range(first.fingertips)]
+        ambient = first.temperature if first.ambient is None else first.ambient
+        if row in self._heats:
+            self._spares = [one for one in (*self._spares, self._heats[row]) if one.heat.systems <= MOST_SYSTEMS]
+        one = self._spared(tuple(replace(body, temperature=0.0, ambient=None) for body in scene))
+        self._heats[row], self._spares = one, self._spares[-MOST_SPARES:]
+        one.heat.set_around(ambient, celsius[: first.fingertips])
+        one.heat.reset([0], np.array([[body.temperature for body in scene]]))
+        self._scenes[row], self._ambient[row] = scene, ambient
+        self._given[row], self._stored[row], self._gained[row], self._air[row] = 0.0, 0.0, 0.0, 0.0
+        self._meshes = [each for each in self._meshes if each[0] != row]
+        self._steps[row] = 0
+        for o, body in enumerate(one.bodies):
+            self._meet(row, o, body.law, one.contacts[o])
+            self._rows[row, o]["reach"] = body.stack.width / 2
+            if body.closed_mesh is not None:
+                self._meshes.append((row, o))
+                self._closed[row, o] = body.closed_mesh.azimuth, *body.closed_mesh.place
+        self._list(row)
+
+    def _spared(self, bodies: tuple[GraspBody, ...]) -> _Row:
+        """A heat of such objects, which waits for a reset."""
+        for number, one in enumerate(self._spares):
+            if one.bodies == bodies:
+                return self._spares.pop(number)
+        pads = [_pad(bodies[0], number) for number in range(bodies[0].fingertips)]
         heat = JoinedHeat(
             pads,
             (),
-            [_shape(body) for body in scene],
+            [_shape(body) for body in bodies],
             worlds=1,
             dt=self._dt,
             tolerance=self._tolerance,
             film=self._film,
-            ambient=float(self._ambient[row]),
+            ambient=0.0,
             cache=self._cache,
         )
-        touches = np.zeros((self._samples, 1, len(pads), len(scene) + len(pads), COLUMNS))
-        self._heats[row] = _Row(heat, {}, touches, heat.telling())
-        for o, body in enumerate(scene):
-            self._meet(row, o, pad_contact(body))
-        self._list(row)
-        self._given[row], self._stored[row], self._gained[row], self._air[row] = 0.0, 0.0, 0.0, 0.0
-        self._meshes = [each for each in self._meshes if each[0] != row]
-        self._steps[row] = 0
-        for o, body in enumerate(scene):
-            self._laws[row, o], self._rows[row, o]["reach"] = body.law, body.stack.width / 2
-            if body.closed_mesh is not None:
-                self._meshes.append((row, o))
-                self._closed[row, o] = body.closed_mesh.azimuth, *body.closed_mesh.place
+        touches = np.zeros((self._samples, 1, len(pads), len(bodies) + len(pads), COLUMNS))
+        return _Row(bodies, heat, [pad_contact(body) for body in bodies], {}, touches, np.zeros(0))
 
-    def _meet(self, row: int, o: int, contact: PadContact) -> None:
+    def _meet(self, row: int, o: int, law: np.void, contact: PadContact) -> None:
         """The pads meet an object in this way from now on."""
-        self._heats[row].contacts[o] = contact
+        self._laws[row, o] = law
         self._parts[row, o] = table(contact, (len(contact.tables), len(contact.halves)))
 
     def _list(self, row: int) -> None:
@@ -227,10 +246,10 @@ class FieldScenes:
         gone = (now != self._steps[rows, objects]).any(axis=1) & (force[rows, objects] > 0).any(axis=(1, 2))
         for k in np.flatnonzero(gone).tolist():
             row, o = self._meshes[k]
-            step, body = tuple(now[k].tolist()), self._scenes[row][o]
+            step, one = tuple(now[k].tolist()), self._heats[row]
             self._steps[row, o] = now[k]
-            self._laws[row, o] = body.slipped_law(step)
-            self._meet(row, o, pad_contact(body, step))
+            contact = one.slipped[o] = pad_contact(one.bodies[o], step)
+            self._meet(row, o, one.bodies[o].slipped_law(step), contact)
 
     def _own(self, force: np.ndarray) -> None:
         """Whose the fingertips are after forces (B, O, S, 2): of several objects, that of which they press hardest."""
@@ -289,8 +308,8 @@ class FieldHeat:
         return self._scenes.sensor_temperatures
 
 
-def _pad(body: GraspBody, number: int, celsius: float) -> PadPlace:
-    """A fingertip, as warm as its thermostat; where it is, contacts tell."""
+def _pad(body: GraspBody, number: int) -> PadPlace:
+    """A fingertip; where it is, contacts tell, and how warm, a reset."""
     return PadPlace(
         label=_TIPS[number],
         body=0,
@@ -299,7 +318,7 @@ def _pad(body: GraspBody, number: int, celsius: float) -> PadPlace:
         axes=np.eye(3),
         size=np.full(2, PAD.width),
         stack=body.stack,
-        temperature=celsius,
+        temperature=0.0,
         skin=body.skin,
         surround=body.surround,
     )

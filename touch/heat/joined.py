@@ -11,6 +11,7 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact (objects, 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import is_
 from typing import Any
 
 import numpy as np
@@ -133,7 +134,8 @@ class JoinedHeat:
         self._roots, self._leans = np.zeros((2, ports, self._level.rates))
         self._placed = np.zeros(4)
         self._touches, self._touches_at = np.zeros(0), 0
-        self._table: np.ndarray | None = None
+        self._room, self._table = np.zeros(0), np.zeros(TABLE, np.int64)
+        self._point()
         self._forget()
         self.reset(range(worlds), np.tile([shape.temperature for shape in shapes], (worlds, 1)))
 
@@ -167,6 +169,16 @@ class JoinedHeat:
         """What those worlds' objects are made of from now on; a reset of these worlds must follow."""
         for w, combination in zip(worlds, materials, strict=True):
             self._materials[w] = combination
+
+    def set_around(self, ambient: float, fingertips: np.ndarray) -> None:
+        """°C of the air and (S,) of ideal thermostats from now on; a reset of all worlds must follow."""
+        self._ambient = ambient
+        self._warm[:] = fingertips - ambient
+
+    @property
+    def systems(self) -> int:
+        """How many groups of fields are known."""
+        return len(self._pool)
 
     def advance(self, touches: np.ndarray, substeps: int) -> None:
         """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps."""
@@ -212,9 +224,11 @@ class JoinedHeat:
 
     def _address(self) -> int:
         """Of the table of all arrays that `sample` takes."""
-        if self._table is None:
+        if self._outdated:
             pool = self._pool
-            self._room = np.zeros(room_size(pool.most, self._level.patterns, pool.rates))
+            room = room_size(pool.most, self._level.patterns, pool.rates)
+            if room != len(self._room):
+                self._room = np.zeros(room)
             arrays = (
                 *(self._boxes, self._widths, self._reach, self._faces, self._middles),
                 *(self._sought_faces, self._sought_middles, self._new_faces, self._new_middles),
@@ -239,17 +253,24 @@ class JoinedHeat:
                     len(self._widths),
                 ),
             )
-            self._pointed = arrays  # which must live as long as their addresses are in use
-            self._table = np.zeros(TABLE, np.int64)
-            entries = table(arrays, sizes)
-            self._table[: len(entries)] = entries
-            self._table_at = self._table.ctypes.data
+            self._outdated = False
+            if sizes != self._sizes or not all(map(is_, arrays, self._pointed)):
+                self._pointed, self._sizes = arrays, sizes  # they must live as long as their addresses are in use
+                entries = table(arrays, sizes)
+                self._table[: len(entries)] = entries
         return self._table_at
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
         self.__dict__.update(state)
-        self._table, self._touches = None, np.zeros(0)
+        self._touches = np.zeros(0)
+        self._point()
+
+    def _point(self) -> None:
+        """The table is to be filled, wherever it is."""
+        self._table_at, self._outdated = self._table.ctypes.data, True
+        self._pointed: tuple[np.ndarray, ...] = ()
+        self._sizes: tuple[int, ...] = ()
 
     def fixed_places(self, w: int, like: Array) -> FixedPlaces:
         """World w's fingertips on the places that they have, and on other fingertips that they touch."""
@@ -432,7 +453,7 @@ class JoinedHeat:
 
     def _forget(self) -> None:
         """Systems are made anew when they are wanted."""
-        self._table = None
+        self._outdated = True
         faces = [field.face for field in self._tip_fields]
         around = [(f, padded.rings) for f, padded in self._around]
         self._pool = SystemPool(self._tips, faces, len(self._shapes), self._level.patterns, self._dt, around)
@@ -450,7 +471,7 @@ class JoinedHeat:
 
     def _renumber(self, w: int) -> None:
         """Which networks a world's fields have."""
-        self._table = None
+        self._outdated = True
         for o, field in enumerate(self._fields[w]):
             if field not in self._numbers:
                 number = self._numbers[field] = len(self._tips) + len(self._numbers)
@@ -510,7 +531,7 @@ class JoinedHeat:
 
     def _join(self, w: int) -> None:
         """The systems of a world's closed contacts."""
-        self._table = None
+        self._outdated = True
         if len(self._pool) > MOST_SYSTEMS + 2 * self._plan.size:
             self._forget()
         objects = len(self._shapes)
