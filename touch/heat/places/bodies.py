@@ -71,25 +71,76 @@ def touched(
     """An object and its places. whole: as in BodyField. pads, tips: of all fingertips, by number. cache: keep on disk
     what takes long. The air takes heat from the object's mean temperature."""
     bare = untouched(shape, film)
+    x, y, z = shape.size.tolist()
+    held, rate = float(bare.heat[0]), float(bare.rates[0])
+    around = tuple(rings_of(pads[place.fingertip]) for place in places)
     if shape.solid is not None:
-        side, beside, own, below = _solid_side(shape, places, whole, pads, cache)
-        # the body's mean, by its own heat capacity
-        side.ports[0] *= side.outputs["heat"][0] / bare.heat[0]
-        beside[0] *= side.outputs["heat"][0] / bare.heat[0]
-    else:
-        x, y, z = shape.size.tolist()
-        at = tuple((place.face, place.middle) for place in places)
-        seen = tuple(tips[place.fingertip] for place in places)
-        around = tuple(rings_of(pads[place.fingertip]) for place in places)
-        with _BLAS.limit(limits=1, user_api="blas"):
-            side, beside = _side(shape.material, (x, y, z), at, whole, seen, around, level)
-        widths = [pads[place.fingertip].stack.width for place in places]
-        own = 1
-        below = tuple(_under((x, y, z), place, width) for place, width in zip(places, widths, strict=True))
-    rates = side.rates.copy()
-    rates[0] = bare.rates[0]
-    rest = np.zeros(len(rates) - 1)
-    heat, loss = np.concatenate((bare.heat, rest)), np.concatenate((bare.loss, rest))
+        stack = pads[places[0].fingertip].stack
+        return _solid_field(shape.solid, (x, y, z), held, rate, places, whole, stack, around[0] or (), cache)
+    seen = tuple(tips[place.fingertip] for place in places)
+    widths = tuple(pads[place.fingertip].stack.width for place in places)
+    return _box_field(shape.material, (x, y, z), held, rate, places, whole, seen, around, widths, level)
+
+
+@lru_cache(maxsize=512)
+def _box_field(
+    material: Material,
+    size: tuple[float, float, float],
+    held: float,
+    rate: float,
+    places: tuple[Place, ...],
+    whole: tuple[bool, ...],
+    seen: tuple[Tip, ...],
+    around: tuple[Rings | None, ...],
+    widths: tuple[float, ...],
+    level: Resolution,
+) -> BodyField:
+    """Of a box of that material and size m. held, rate: an untouched one's. seen: the tips at the places, of those
+    widths m, with such pads around them."""
+    with _BLAS.limit(limits=1, user_api="blas"):
+        side, beside = _side(material, size, places, whole, seen, around, level)
+    below = tuple(_under(size, place, width) for place, width in zip(places, widths, strict=True))
+    return _with_mean(held, rate, places, whole, side, beside, 1, below)
+
+
+@lru_cache(maxsize=512)
+def _solid_field(
+    solid: Solid,
+    size: tuple[float, float, float],
+    held: float,
+    rate: float,
+    places: tuple[Place, ...],
+    whole: tuple[bool, ...],
+    stack: SensorStack,
+    rings: Rings,
+    cache: bool,
+) -> BodyField:
+    """The same of a body of any shape, which is as large as that box. rings: around all sensors."""
+    from ....thermal.meshes import body_in_pads
+
+    with _BLAS.limit(limits=1, user_api="blas"):
+        found = [_patch(solid, size, place, stack, cache) for place in places]
+        patches, below = [patch for patch, _ in found], tuple(each for _, each in found)
+        side, beside, own = body_in_pads(solid, patches, stack, rings, whole=whole, cache=cache)
+    # the body's mean, by its own heat capacity
+    side.ports[0] *= side.outputs["heat"][0] / held
+    beside[0] *= side.outputs["heat"][0] / held
+    return _with_mean(held, rate, places, whole, side, beside, own, below)
+
+
+def _with_mean(
+    held: float,
+    rate: float,
+    places: tuple[Place, ...],
+    whole: tuple[bool, ...],
+    side: ThermalNetwork,
+    beside: np.ndarray,
+    own: int,
+    below: tuple[tuple[float, float], ...],
+) -> BodyField:
+    """The mean temperature's state is as that of an object that nothing has touched."""
+    rates, heat, loss = side.rates.copy(), np.zeros(len(side.rates)), np.zeros(len(side.rates))
+    rates[0], heat[0], loss[0] = rate, held, held * rate
     return BodyField(places, whole, rates, side.ports, heat, loss, beside, own, below)
 
 
@@ -97,27 +148,6 @@ def _under(size: tuple[float, float, float], place: Place, width: float) -> tupl
     """The share of a face of that width m under which a box is, and how thick m it is there."""
     one, other = (side for axis, side in enumerate(size) if axis != place.face // 2)
     return min(one / width, 1.0) * min(other / width, 1.0), size[place.face // 2]
-
-
-def _solid_side(
-    shape: BodyShape,
-    places: tuple[Place, ...],
-    whole: tuple[bool, ...],
-    pads: tuple[PadPlace, ...],
-    cache: bool,
-) -> tuple[ThermalNetwork, np.ndarray, int, tuple[tuple[float, float], ...]]:
-    """As _side's, of a body of any shape; how many of its states are its own, how much of each face is on it, and how
-    thick it is there."""
-    from ....thermal.meshes import body_in_pads
-
-    assert shape.solid is not None
-    solid, (x, y, z) = shape.solid, shape.size.tolist()
-    pad = pads[places[0].fingertip]
-    with _BLAS.limit(limits=1, user_api="blas"):
-        found = [_patch(solid, (x, y, z), place, pad.stack, cache) for place in places]
-        patches, below = [patch for patch, _ in found], tuple(each for _, each in found)
-        rings = rings_of(pad) or ()
-        return *body_in_pads(solid, patches, pad.stack, rings, whole=whole, cache=cache), below
 
 
 @lru_cache(maxsize=2048)
@@ -137,23 +167,22 @@ def _patch(
     return patch, wall_below(solid, patch)
 
 
-@lru_cache(maxsize=512)
 def _side(
     material: Material,
     size: tuple[float, float, float],
-    at: tuple[tuple[int, tuple[float, float]], ...],
+    places: tuple[Place, ...],
     whole: tuple[bool, ...],
     seen: tuple[Tip, ...],
     around: tuple[Rings | None, ...],
     level: Resolution,
 ) -> tuple[ThermalNetwork, np.ndarray]:
-    """The network of a box of that material and size m with patches at those faces and middles; and its ports beside
-    them."""
-    half = np.empty((len(at), 2))
-    for row, (face, _), tip_ in zip(half, at, seen, strict=True):
-        others = [size[i] for i in range(3) if i != face // 2]
+    """The network of a box with patches at those places; and its ports beside them."""
+    half = np.empty((len(places), 2))
+    for row, place, tip_ in zip(half, places, seen, strict=True):
+        others = [size[i] for i in range(3) if i != place.face // 2]
         row[:] = [min(np.sqrt(tip_.area), side) / 2 for side in others]
-    patches = Patches(np.array([face for face, _ in at]), np.array([middle for _, middle in at]), half)
+    faces, middles = (np.array([getattr(place, each) for place in places]) for each in ("face", "middle"))
+    patches = Patches(faces, middles, half)
     if any(sides is not None for sides in around):
         return box_in_pads(material, size, patches, seen, around, level, whole)
     told = np.repeat(whole, level.patterns)
