@@ -104,11 +104,12 @@ class SystemPool:
                         seen[number] = _in_place(fields[target].in_rings(place), patterns)
                 elif member == target:
                     seen[number] = self._faces[target - objects]
-            ports, padded = np.zeros((len(rates), m)), np.zeros((len(rates), len(seen), of_contact * LANES))
-            for place, (number, port) in enumerate(seen.items()):
-                ports[:, number * patterns : (number + 1) * patterns] = port
+            padded = np.zeros((len(rates), len(seen), of_contact * LANES))
+            for place, port in enumerate(seen.values()):
                 padded[:, place, :patterns] = port
-            heard += gram(rates, ports, self._dt)
+            ports = padded[:, :, :patterns].reshape(len(rates), -1)
+            columns = np.array([number * patterns + n for number in seen for n in range(patterns)])
+            heard[columns[:, None], columns] += gram(rates, ports, self._dt)
             blocks.append(padded.ravel())
             # the first state of an object is its mean temperature's, whatever the others' rates
             starts = [0, *(np.flatnonzero(np.diff(rates)) + 1).tolist(), len(rates)]

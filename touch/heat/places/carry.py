@@ -55,20 +55,28 @@ def _turns(before: BodyField, after: BodyField, patterns: int) -> tuple[Turn, ..
     if not common:
         return ()
     seen, wanted = _seen(before, after, common, patterns)
+    alike: dict[tuple[int, int], list[tuple[np.ndarray, np.ndarray]]] = {}  # pairs of as many states
+    for rate in dict.fromkeys(after.rates[after.own :].tolist()):
+        was, now = (each.own + np.flatnonzero(each.rates[each.own :] == rate) for each in (before, after))
+        if len(was):
+            alike.setdefault((len(was), len(now)), []).append((was, now))
     found = []
     with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-        for rate in np.unique(after.rates[after.own :]):
-            was, now = (each.own + np.flatnonzero(each.rates[each.own :] == rate) for each in (before, after))
-            if len(was):
-                found.append(Turn(now, was, _inverse(wanted[:, now]) @ seen[:, was]))
+        for pairs in alike.values():
+            every_was, every_now = (np.array(each) for each in zip(*pairs, strict=True))
+            matrices = _inverse(wanted[:, every_now].swapaxes(0, 1)) @ seen[:, every_was].swapaxes(0, 1)
+            found += [Turn(now, was, matrix) for (was, now), matrix in zip(pairs, matrices, strict=True)]
     return tuple(found)
 
 
-def _inverse(matrix: np.ndarray) -> np.ndarray:
-    left, values, right = np.linalg.svd(matrix, full_matrices=False)
-    kept = values > LEAST * values[0]
-    share = (1 - (LEAST * values[0] / values[kept]) ** 2) / values[kept]
-    return (right[kept].T * share) @ left[:, kept].T
+def _inverse(matrices: np.ndarray) -> np.ndarray:
+    """Of each of (R, m, n)."""
+    left, values, right = np.linalg.svd(matrices, full_matrices=False)
+    least = LEAST * values[:, :1]
+    kept = values > least
+    values = np.where(kept, values, 1.0)
+    share = np.where(kept, (1 - (least / values) ** 2) / values, 0.0)
+    return (right.swapaxes(1, 2) * share[:, None]) @ left.swapaxes(1, 2)
 
 
 def _seen(
