@@ -215,9 +215,11 @@ class JoinedHeat:
     def telling(self) -> np.ndarray:
         """What the functions of told.py take of a heat of one world, until a call of anything else here."""
         ports = np.zeros((*self._current.shape[1:], self._x.shape[2]))
-        for f, o in np.argwhere(self._current[0] >= 0).tolist():
-            field = self._fields[0][o]
-            ports[f, o, : len(field.rates)] = field.ports[:, self._current[0, f, o] * self._level.patterns]
+        for f, of_tip in enumerate(self._current[0].tolist()):
+            for o, number in enumerate(of_tip):
+                if number >= 0:
+                    field = self._fields[0][o]
+                    ports[f, o, : len(field.rates)] = field.ports[:, number * self._level.patterns]
         self._told = self._elements, self._even, self._started, self._current, ports
         widths = self._elements.shape[1], self._even.shape[1]
         return table(self._told, (self._address(), *widths))

@@ -21,6 +21,7 @@ import trimesh
 import thermograsp.envs  # noqa: F401  (registers the environments)
 from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size
 from thermograsp.envs.sensing import FieldHeat, FieldScenes, GraspHeat
+from thermograsp.envs.sensing.field_heat import MOST_SPARES
 from thermograsp.thermal import material
 from thermograsp.touch import Fingertip, ThermalTouch
 from thermograsp.touch.heat import joined
@@ -314,3 +315,52 @@ def test_several_environments_are_as_each_alone() -> None:
             alone.step(moves[:1])
         assert alone.reading is not None and both.reading is not None
         np.testing.assert_array_equal(alone.reading.voltage[0], both.reading.voltage[row])
+
+
+def test_flows_books_and_temperatures_are_those_of_the_fields() -> None:
+    """To round-off, for one fingertip and two, with pads and without."""
+    air = 15.0
+    every = [
+        body_of("glass", BALL, fingertips=2, air=air),
+        body_of("steel", ROD, None, surround=None, anywhere=True, air=air),
+    ]
+    heat = heat_of(*every, air=air)
+    place = np.stack([places(BALL), places(ROD, z=0.003)])
+    normal = np.full((2, 10, 2), 8.0)
+    normal[:, ::3, 0] = 0.0
+    given, stored, air_loss = np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2)
+    for _ in range(30):
+        info = heat.advance(normal, place).info
+        for row, one in heat._scenes._heats.items():
+            balance, (sensors, objects) = one.heat.balance(0), one.heat.faces(0)
+            tips = len(sensors)
+            flow = (balance.given[:, 0] - given[row, :tips]) / 0.02
+            np.testing.assert_allclose(info["flow"][row, :tips], flow, rtol=1e-9, atol=1e-12)
+            drawn = flow + (balance.elements - stored[row, :tips]) / 0.02
+            np.testing.assert_allclose(info["drawn"][row, :tips], drawn, rtol=1e-9, atol=1e-9)
+            np.testing.assert_allclose(info["heat"][row, :tips], balance.elements, rtol=1e-12)
+            assert info["heat"][row, 2] == pytest.approx(balance.objects[0], rel=1e-12)
+            assert info["air_loss"][row] == pytest.approx((balance.air - air_loss[row]) / 0.02, rel=1e-9)
+            np.testing.assert_allclose(info["sensor_surface"][row, :tips], sensors, rtol=1e-12)
+            np.testing.assert_allclose(info["object_surface"][row, :tips], objects[:, 0], rtol=1e-12)
+            assert info["object_temperature"][row] == one.heat.object_temperature[0, 0]
+            given[row, :tips], stored[row, :tips] = balance.given[:, 0], balance.elements
+            air_loss[row] = balance.air
+    assert (np.abs(info["object_surface"][:, 0] - info["object_temperature"]) > 0.1).all()
+
+
+def test_an_episode_is_as_in_a_new_environment_and_what_is_kept_stays_little() -> None:
+    """However many objects were there before it, warmer or colder ones."""
+    rng, heat = np.random.default_rng(0), heat_of(body_of("glass", BALL))
+    made = {id(heat._scenes._heats[0].heat)}
+    for k in range(MOST_SPARES + 20):
+        size = rng.uniform(0.03, 0.05) if k % 2 else 0.04
+        ball = ObjectSpec(name="ball", shape="sphere", size=(size,) * 3)
+        heat.reset([0], [body_of("glass", ball, object_temperature=20.0 + k % 5)])
+        made.add(id(heat._scenes._heats[0].heat))
+        held(heat, ball, 2, y=rng.uniform(-0.01, 0.01))
+    assert len(heat._scenes._spares) <= MOST_SPARES and len(made) < MOST_SPARES + 20
+    body = body_of("glass", BALL, object_temperature=31.0)
+    heat.reset([0], [body])
+    found, alone = held(heat, BALL, 30, y=0.002), held(heat_of(body), BALL, 30, y=0.002)
+    np.testing.assert_array_equal(found, alone)
