@@ -189,10 +189,11 @@ class FieldScenes:
     def _place(self, row: int, scene: tuple[GraspBody, ...], celsius: np.ndarray) -> None:
         first = scene[0]
         ambient = first.temperature if first.ambient is None else first.ambient
-        if row in self._heats:
-            self._spares = [one for one in (*self._spares, self._heats[row]) if one.heat.systems <= MOST_SYSTEMS]
-        one = self._spared(tuple(replace(body, temperature=0.0, ambient=None) for body in scene))
-        self._heats[row], self._spares = one, self._spares[-MOST_SPARES:]
+        bodies = tuple(replace(body, temperature=0.0, ambient=None) for body in scene)
+        free = [*self._spares, *([self._heats[row]] if row in self._heats else [])]
+        free = [each for each in free if each.heat.systems <= MOST_SYSTEMS]
+        one = next((each for each in free if each.bodies == bodies), None) or self._made(bodies)
+        self._heats[row], self._spares = one, [each for each in free if each is not one][-MOST_SPARES:]
         one.heat.set_around(ambient, celsius[: first.fingertips])
         one.heat.reset([0], np.array([[body.temperature for body in scene]]))
         self._scenes[row], self._ambient[row] = scene, ambient
@@ -207,11 +208,8 @@ class FieldScenes:
                 self._closed[row, o] = body.closed_mesh.azimuth, *body.closed_mesh.place
         self._list(row)
 
-    def _spared(self, bodies: tuple[GraspBody, ...]) -> _Row:
+    def _made(self, bodies: tuple[GraspBody, ...]) -> _Row:
         """A heat of such objects, which waits for a reset."""
-        for number, one in enumerate(self._spares):
-            if one.bodies == bodies:
-                return self._spares.pop(number)
         pads = [_pad(bodies[0], number) for number in range(bodies[0].fingertips)]
         heat = JoinedHeat(
             pads,

@@ -257,7 +257,10 @@ class JoinedHeat:
             )
             self._outdated = False
             if sizes != self._sizes or not all(map(is_, arrays, self._pointed)):
-                self._pointed, self._sizes = arrays, sizes  # they must live as long as their addresses are in use
+                self._pointed, self._sizes = (
+                    arrays,
+                    sizes,
+                )  # they must live as long as their addresses are in use
                 entries = table(arrays, sizes)
                 self._table[: len(entries)] = entries
         return self._table_at

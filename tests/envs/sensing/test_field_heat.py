@@ -329,6 +329,7 @@ def test_flows_books_and_temperatures_are_those_of_the_fields() -> None:
     normal = np.full((2, 10, 2), 8.0)
     normal[:, ::3, 0] = 0.0
     given, stored, air_loss = np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2)
+    info = heat.rest().info
     for _ in range(30):
         info = heat.advance(normal, place).info
         for row, one in heat._scenes._heats.items():
@@ -355,7 +356,7 @@ def test_an_episode_is_as_in_a_new_environment_and_what_is_kept_stays_little() -
     made = {id(heat._scenes._heats[0].heat)}
     for k in range(MOST_SPARES + 20):
         size = rng.uniform(0.03, 0.05) if k % 2 else 0.04
-        ball = ObjectSpec(name="ball", shape="sphere", size=(size,) * 3)
+        ball = ObjectSpec(name="ball", shape="sphere", size=(size, size, size))
         heat.reset([0], [body_of("glass", ball, object_temperature=20.0 + k % 5)])
         made.add(id(heat._scenes._heats[0].heat))
         held(heat, ball, 2, y=rng.uniform(-0.01, 0.01))
