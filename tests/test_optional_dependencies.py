@@ -125,7 +125,7 @@ WHERE_INSTALLED = {
 }
 """The benchmark leaves its rows out elsewhere; of geoms that are not fused a warning in the log names the extra."""
 BY_NUMBA = {
-    ("touch/pointers.py", "llvmlite"),
+    ("touch/pointers/calls.py", "llvmlite"),
     ("core/lanes.py", "llvmlite"),
     ("touch/wrappers/clock.py", "llvmlite"),
 }

@@ -7,15 +7,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
 from numba import from_dtype, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
-from ..thermal import CONTACT_LAW
-from ..thermal.contact import FOOTPRINT_LAW
-from ..thermal.readout import CHAIN_NUMBERS
+from ...thermal import CONTACT_LAW
+from ...thermal.contact import FOOTPRINT_LAW
+from ...thermal.readout import CHAIN_NUMBERS
 
 _LAW, _FOOTPRINT, _CHAIN = (from_dtype(each) for each in (CONTACT_LAW, FOOTPRINT_LAW, CHAIN_NUMBERS))
 
@@ -23,15 +22,6 @@ _LAW, _FOOTPRINT, _CHAIN = (from_dtype(each) for each in (CONTACT_LAW, FOOTPRINT
 def table(arrays: Sequence[np.ndarray], numbers: Sequence[int] = ()) -> np.ndarray:
     """The addresses of contiguous arrays, and numbers behind them. It holds as long as the arrays live."""
     return np.array([*(array.ctypes.data for array in arrays), *numbers], np.int64)
-
-
-def entry(kernel: Any, arguments: int) -> int:
-    """The address of a compiled function of one, two or four integers that returns one, for `called_one`, `called_two`
-    and `called`."""
-    kinds = (types.int64,) * arguments
-    kernel.compile(kinds)
-    compiled = kernel.overloads[kinds]
-    return compiled.library.get_pointer_to_function(compiled.fndesc.mangled_name)
 
 
 def _floats(context, address, shape):
@@ -82,38 +72,6 @@ def _made(context, builder, signature, arguments):
     return array._getvalue()
 
 
-def _called_one(context, address, first):
-    return types.int64(types.int64, types.int64), _call
-
-
-def _called_two(context, address, first, second):
-    return types.int64(types.int64, types.int64, types.int64), _call
-
-
-def _called(context, address, first, second, third, fourth):
-    return types.int64(*[types.int64] * 5), _call
-
-
-def _call(context, builder, signature, arguments):
-    kinds = signature.args[1:]
-    kind = context.call_conv.get_function_type(types.int64, kinds)
-    function = builder.inttoptr(arguments[0], kind.as_pointer())
-    status, found = context.call_conv.call_function(builder, function, types.int64, kinds, arguments[1:])
-    with cgutils.if_unlikely(builder, status.is_error):
-        context.call_conv.return_status_propagate(builder, status)
-    return found
-
-
-def _asked(context, address, number):
-    return types.int64(types.int64, types.int64), _ask
-
-
-def _ask(context, builder, signature, arguments):
-    word = ir.IntType(64)
-    function = builder.inttoptr(arguments[0], ir.FunctionType(word, [word]).as_pointer())
-    return builder.call(function, [arguments[1]])
-
-
 floats: Any = intrinsic(_floats)
 integers: Any = intrinsic(_integers)
 words: Any = intrinsic(_words)
@@ -123,10 +81,3 @@ footprints: Any = intrinsic(_footprints)
 chains: Any = intrinsic(_chains)
 """The array of a shape that begins at an address: of floating-point numbers, of integers of 32 and 64 bits, of
 booleans, of CONTACT_LAW, of FOOTPRINT_LAW and of CHAIN_NUMBERS."""
-called_one: Any = intrinsic(_called_one)
-called_two: Any = intrinsic(_called_two)
-called: Any = intrinsic(_called)
-"""What the function at an address returns of one, two or four integers. It is not compiled into its caller once
-more."""
-asked: Any = intrinsic(_asked)
-"""What Python's function at an address, ctypes.CFUNCTYPE(c_int64, c_int64), returns of a number."""
