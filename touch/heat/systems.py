@@ -107,7 +107,7 @@ class SystemPool:
             padded = np.zeros((len(rates), len(seen), of_contact * LANES))
             for place, port in enumerate(seen.values()):
                 padded[:, place, :patterns] = port
-            ports = padded[:, :, :patterns].reshape(len(rates), -1)
+            ports = padded[:, :, :patterns].reshape(len(rates), len(seen) * patterns)
             columns = np.array([number * patterns + n for number in seen for n in range(patterns)])
             heard[columns[:, None], columns] += gram(rates, ports, self._dt)
             blocks.append(padded.ravel())
