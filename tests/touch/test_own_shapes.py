@@ -163,7 +163,10 @@ def test_geoms_that_are_one_body_are_felt_as_its_mesh() -> None:
 
 @pytest.mark.parametrize(
     "size",
-    [(0.003, 0.02), *(pytest.param(size, marks=pytest.mark.slow) for size in ((0.0004, 0.004), (0.02, 0.02)))],
+    [
+        (0.003, 0.02),
+        *(pytest.param(size, marks=pytest.mark.slow) for size in ((0.0004, 0.004), (0.02, 0.02))),
+    ],
 )
 def test_thin_capsules_and_cylinders_are_fused_too(
     size: tuple[float, float], caplog: pytest.LogCaptureFixture
