@@ -9,7 +9,7 @@ from __future__ import annotations
 import gc
 import os
 import tempfile
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -55,13 +55,23 @@ def pytest_collection() -> Generator[None, object, object]:
     try:
         return (yield)
     finally:
+        gc.freeze()
         gc.enable()
+
+
+class NotAskedFor(pytest.Module):
+    """A file of a tier that nobody asks for: one skip, for which nothing is imported."""
+
+    def collect(self) -> Iterable[pytest.Item | pytest.Collector]:
+        pytest.skip(_not_asked_for(self.path), allow_module_level=True)
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
+    return NotAskedFor.from_parent(parent, path=module_path) if _not_asked_for(module_path) else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        if reason := _not_asked_for(item.path):
-            item.add_marker(pytest.mark.skip(reason=reason))
         if item.get_closest_marker("slow") and not os.environ.get(SLOW):
             item.add_marker(pytest.mark.skip(reason="takes long: make test-slow"))
 

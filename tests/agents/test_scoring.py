@@ -268,7 +268,9 @@ def test_what_voltages_do_while_fingers_close_has_a_fixed_place() -> None:
     assert not felt(0.06, 3e-3, 0.0)[1:].any()
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "hotter" else name for name in TASKS]
+)
 def test_a_shipped_agent_may_begin_with_fingertips_that_have_been_in_the_air(name: str) -> None:
     """As real ones have: they show some 20 uV before they touch anything."""
     rows = 4

@@ -52,16 +52,13 @@ def plugged_elsewhere(served: PtyDevice, before: str) -> Iterator[None]:
 def nothing_left() -> Iterator[None]:
     """The block leaves no thread, no descriptor; what an earlier test left to the collector does not count."""
     threads, files = set(threading.enumerate()), descriptors()
-    gc.freeze()  # what is held now is not searched again: that took most of a second in a run of all tests
-    try:
-        yield
-        deadline = time.monotonic() + 1.0
-        while set(threading.enumerate()) - threads and time.monotonic() < deadline:
-            time.sleep(0.01)
-        assert not set(threading.enumerate()) - threads
-        assert not descriptors() - files
-    finally:
-        gc.unfreeze()
+    gc.freeze()  # what lives now is never searched again: that took most of a second in a run of all tests
+    yield
+    deadline = time.monotonic() + 1.0
+    while set(threading.enumerate()) - threads and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not set(threading.enumerate()) - threads
+    assert not descriptors() - files
 
 
 def descriptors() -> Counter[str]:

@@ -222,18 +222,13 @@ EDGE = """
 WAYS, SKINS = ("1 0 0", "0 -1 0", "0.8 0.6 0"), (None, "filled_silicone")
 
 
-QUICK = (("0.8 0.6 0", None),)  # of the mesh
-
-
 @NEEDS_SPECS
 @pytest.mark.parametrize(
     ("geom", "way", "skin"),
     [
         *(('type="box" size=".02 .02 .02"', way, skin) for way in WAYS for skin in SKINS),
         *(
-            pytest.param(
-                'type="mesh" mesh="block"', way, skin, marks=() if (way, skin) in QUICK else pytest.mark.slow
-            )
+            pytest.param('type="mesh" mesh="block"', way, skin, marks=pytest.mark.slow)
             for way in WAYS
             for skin in SKINS
         ),

@@ -86,7 +86,7 @@ def felt(touch: ThermalTouch, data: mujoco.MjData, seconds: float, *orders: floa
     return np.array(found)
 
 
-@pytest.mark.parametrize("name", ["aluminium", "wood"])
+@pytest.mark.parametrize("name", [pytest.param("aluminium", marks=pytest.mark.slow), "wood"])
 def test_a_mesh_of_a_cube_is_felt_as_a_box(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Held, let go, elsewhere and back."""
     moves = (1.0, 10.0, 0.0), (0.4, -2.0, 0.006), (0.6, 10.0, 0.006), (0.4, -2.0, 0.0), (0.6, 20.0, 0.0)
@@ -114,7 +114,9 @@ def noted(touch: ThermalTouch) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("name", ["aluminium", "ceramic", "wood"])
+@pytest.mark.parametrize(
+    "name", ["ceramic", *(pytest.param(name, marks=pytest.mark.slow) for name in ("aluminium", "wood"))]
+)
 def test_thin_walls_are_felt_as_by_a_grid_that_is_fine_there(name: str) -> None:
     """Which shares neither the network's states nor its kernels, and takes the conductances that were recorded."""
     model = spec(mesh("tray"), 0.015).compile()
@@ -159,7 +161,13 @@ def test_geoms_that_are_one_body_are_felt_as_its_mesh() -> None:
     np.testing.assert_allclose(both[0], both[1], atol=0.02)
 
 
-@pytest.mark.parametrize("size", [(0.003, 0.02), (0.0004, 0.004), (0.02, 0.02)])
+@pytest.mark.parametrize(
+    "size",
+    [
+        (0.003, 0.02),
+        *(pytest.param(size, marks=pytest.mark.slow) for size in ((0.0004, 0.004), (0.02, 0.02))),
+    ],
+)
 def test_thin_capsules_and_cylinders_are_fused_too(
     size: tuple[float, float], caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -254,6 +262,7 @@ def test_a_state_of_boxes_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         touch.set_state(touch_of(model).state())
 
 
+@pytest.mark.slow
 @NEEDS_RECORDS
 def test_many_worlds_are_single_ones_and_a_material_scales_time() -> None:
     pads, made_of = {"tip": "tip", "other": "other"}, ["steel", "wood"]
@@ -298,6 +307,7 @@ def test_fixed_touch_is_the_loop() -> None:
     assert drop.min() > 2.0
 
 
+@pytest.mark.slow
 @NEEDS_RECORDS
 def test_a_grasp_across_the_middle_is_felt_in_its_own_shape() -> None:
     """As worlds on a device have it: across the third side of a tray, far from what its box would feel."""

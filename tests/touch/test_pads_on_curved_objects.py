@@ -7,7 +7,7 @@ heat balance, and what of it is alike for a mesh and the shape that it stands fo
 import copy
 import math
 from functools import lru_cache
-from itertools import pairwise
+from itertools import pairwise, product
 
 import mujoco
 import numpy as np
@@ -262,6 +262,7 @@ def test_a_cube_s_mesh_is_felt_as_the_box(skin: str | None) -> None:
         )
 
 
+@pytest.mark.slow
 def test_a_ball_s_mesh_is_felt_as_the_ball_under_a_skin() -> None:
     for name in ("aluminium", "glass"):
         assert drop("ball mesh", name, "filled_silicone") == pytest.approx(
@@ -276,8 +277,14 @@ def test_a_ball_is_felt_less_than_a_rod_and_a_rod_less_than_a_flat_face(name: st
     assert ball < rod < standing
 
 
-@pytest.mark.parametrize("shape", ["ball", "ball mesh", "rod"])
-@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize(
+    ("shape", "skin"),
+    [
+        *product(("ball", "rod"), (None, "filled_silicone")),
+        ("ball mesh", None),
+        pytest.param("ball mesh", "filled_silicone", marks=pytest.mark.slow),
+    ],
+)
 def test_no_heat_is_lost_and_a_pad_cools_its_sensor_s_sides(shape: str, skin: str | None) -> None:
     touch, _ = touched(shape, "aluminium", skin)
     alone, _ = touched(shape, "aluminium", skin, surround=None)

@@ -66,7 +66,7 @@ def nudged_sensor(stack: SensorStack, rng: np.random.Generator) -> SensorStack:
         pytest.param("rubber", None, marks=pytest.mark.slow),
         ("rubber", "filled_silicone"),
         ("aluminium", None),
-        ("wood", None),
+        pytest.param("wood", None, marks=pytest.mark.slow),
     ],
 )
 def test_slides_that_differ_by_round_off_are_curves_alike(name: str, skin: str | None) -> None:

@@ -213,6 +213,7 @@ def test_vector_and_single_environments_agree_bit_for_bit_and_scenes_take_parts(
     assert np.all(np.abs(truth["heat_imbalance"]) <= 1e-9 * truth["heat_exchanged"])
 
 
+@pytest.mark.slow
 def test_networks_of_parts_are_kept_by_content(tmp_path, monkeypatch):
     monkeypatch.setenv("THERMOGRASP_CACHE", str(tmp_path))
     touches._body.cache_clear()

@@ -137,7 +137,7 @@ def test_feeling_pays_and_nothing_else_does():
     assert 4 < first.sum() < 16
 
 
-@pytest.mark.parametrize("materials", [["glass"], ["copper"]])
+@pytest.mark.parametrize("materials", [["glass"], pytest.param(["copper"], marks=pytest.mark.slow)])
 def test_the_hotter_one_is_found_by_touch(materials):
     env = SortVectorEnv(6, goal="hotter", material=materials)
     assert episodes(env, ScriptedSort(env.batch).action)[0].all()

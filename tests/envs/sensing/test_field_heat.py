@@ -215,7 +215,11 @@ def test_in_the_middle_of_a_face_it_is_the_network_of_press() -> None:
         np.testing.assert_allclose(held(heat_of(body), PLATE, 150)[0, 4:], expected, atol=0.06)
 
 
-@pytest.mark.parametrize("spec", [BALL, THIN, PLATE], ids=lambda spec: spec.name)
+@pytest.mark.parametrize(
+    "spec",
+    [THIN, *(pytest.param(spec, marks=pytest.mark.slow) for spec in (BALL, PLATE))],
+    ids=lambda spec: spec.name,
+)
 def test_what_flows_is_in_the_object_or_the_air(spec: ObjectSpec) -> None:
     rng = np.random.default_rng(3)
     heat = heat_of(body_of("glass", spec, None, fingertips=2, air=20.0, anywhere=True), air=20.0)

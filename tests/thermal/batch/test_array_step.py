@@ -29,7 +29,7 @@ def step(tables: ArrayTables, batch: Batch, state: np.ndarray, conductance: np.n
 @pytest.mark.parametrize(
     ("largest", "within"),
     # The kernel takes the difference of flows that grow with the conductance; at 1e9 it loses its last four digits.
-    [(1e5, 1e-12), (1e9, 1e-10)],
+    [(1e5, 1e-12), pytest.param(1e9, 1e-10, marks=pytest.mark.slow)],
 )
 def test_equals_the_compiled_kernel(case: Case, largest: float, within: float) -> None:
     batch = Batch(case, 60, largest)
@@ -40,7 +40,7 @@ def test_equals_the_compiled_kernel(case: Case, largest: float, within: float) -
 
 
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("largest", [1e5, 1e9])
+@pytest.mark.parametrize("largest", [pytest.param(1e5, marks=pytest.mark.slow), 1e9])
 def test_float32_keeps_its_digits_at_any_conductance(case: Case, largest: float) -> None:
     """Within 3e-6 of the largest difference of 20 K, through ten touches and releases."""
     batch = Batch(case, 60, largest)

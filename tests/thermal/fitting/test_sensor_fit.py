@@ -127,6 +127,7 @@ def test_six_noisy_touches_tell_the_sensor() -> None:
     assert fit.stack.layers[0] == sensor("seed").layers[0]
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     t, conductances = times(100.0, 2.0), (4e3, 8e3, 1e4, 1.5e4)
     names = ("glass", "aluminium", "glass", "aluminium")

@@ -82,12 +82,14 @@ def test_with_a_film_they_agree_to_what_two_ends_do_to_each_other() -> None:
 
 @lru_cache(maxsize=3)
 def fine_grid(film: float) -> tuple[float, np.ndarray, np.ndarray]:
-    """Length of its cells, rates and fields."""
+    """Length of its cells, and rates and fields of its slowest modes; all others have faded by exp(-20) at 1e-4."""
     cells = 3000
     step = 1 / cells
     diagonal = np.full(cells, 2 / step**2)
     diagonal[[0, -1]] = 1 / step**2 + film / (1 + film * step / 2) / step
-    rates, fields = eigh_tridiagonal(diagonal, np.full(cells - 1, -1 / step**2))
+    rates, fields = eigh_tridiagonal(
+        diagonal, np.full(cells - 1, -1 / step**2), select="i", select_range=(0, 149)
+    )
     return step, rates, fields
 
 
@@ -95,7 +97,7 @@ def fine_grid(film: float) -> tuple[float, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("film", [0.0, 3.0, 40.0])
 def test_an_axis_is_a_fine_grid(film: float, tau: float) -> None:
     step, decay, fields = fine_grid(film)
-    cells = len(decay)
+    cells = len(fields)
     edges = np.arange(cells + 1) * step
     inside = np.diff(np.clip(edges, 0.1, 0.4))
     grid = (inside @ fields) ** 2 @ np.exp(-decay * tau) / step

@@ -129,7 +129,12 @@ def half_space_rise(material, area: float, t: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("name", "degree", "early"),
-    [("glass", 0, 0.01), ("plastic", 6, 0.015), ("glass", 10, 0.015), ("aluminium", 20, 0.015)],
+    [
+        ("glass", 0, 0.01),
+        ("plastic", 6, 0.015),
+        pytest.param("glass", 10, 0.015, marks=pytest.mark.slow),
+        pytest.param("aluminium", 20, 0.015, marks=pytest.mark.slow),
+    ],
 )
 def test_a_face_inclined_to_its_patch_warms_as_a_half_space_does(name, degree, early):
     """The pads close along an axis that the face is not across, as on a cone."""

@@ -28,7 +28,9 @@ def of(mesh, material):
     return solid(mesh.vertices, mesh.faces, thermal.material(material))
 
 
-@pytest.mark.parametrize("material", ["cork", "glass", "aluminium"])
+@pytest.mark.parametrize(
+    "material", ["aluminium", *(pytest.param(name, marks=pytest.mark.slow) for name in ("cork", "glass"))]
+)
 def test_a_mesh_cube_feels_like_the_box(material):
     mesh = press_body(of(trimesh.creation.box(CUBE), material), TOP, tolerance=0.025, cache=False)
     box = thermal.press(material, object_size=CUBE, rung="semi_analytic")

@@ -69,8 +69,10 @@ def test_all_heat_of_a_ring_is_in_the_body(shape: str) -> None:
     ("turn", "place", "axis"),
     [
         ((0.637, 0.2698, 0.041), (0.01222, -0.02274, 0.02469), 1),
-        ((0.2616, 0.2985, 0.8142), (-0.02342, -0.002057, -0.01958), 0),
-        ((0.2616, 0.2985, 0.8142), (-0.01717, -0.003071, -0.03087), 0),
+        *(
+            pytest.param((0.2616, 0.2985, 0.8142), place, 0, marks=pytest.mark.slow)
+            for place in ((-0.02342, -0.002057, -0.01958), (-0.01717, -0.003071, -0.03087))
+        ),
     ],
 )
 def test_a_place_is_found_where_a_rim_or_an_opening_is_touched_at_a_slant(

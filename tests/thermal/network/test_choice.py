@@ -72,7 +72,7 @@ def exact(problem: PressProblem) -> np.ndarray:
 
 
 @pytest.mark.parametrize("fingertips", [1, 2])
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (2, 3))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2, 3))])
 def test_random_scenes_keep_the_tolerance(seed: int, fingertips: int) -> None:
     """Against the solution without a grid, which shares neither kernels nor states with the networks. A second
     fingertip that stays apart changes nothing."""

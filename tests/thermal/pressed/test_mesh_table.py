@@ -35,8 +35,17 @@ SOLIDS = {
 HALF_FELT = 0.4  # W/K, by which about half of the temperature difference is felt
 
 
-@pytest.mark.parametrize("skin", [None, "filled_silicone"])
-@pytest.mark.parametrize("shape", SOLIDS)
+QUICK = ("rod", "filled_silicone"), ("ball", None), ("small ball", "filled_silicone"), ("box", None)
+
+
+@pytest.mark.parametrize(
+    ("shape", "skin"),
+    [
+        pytest.param(shape, skin, marks=() if (shape, skin) in QUICK else pytest.mark.slow)
+        for shape in SOLIDS
+        for skin in (None, "filled_silicone")
+    ],
+)
 def test_between_places_it_tells_what_the_springs_do(shape: str, skin: str | None) -> None:
     """At forces of .5 to 25 N, while a crown slides over the face's edge and beyond it, where a contact ends within
     tenths of a millimetre: in shares of what can be felt, beyond what springs tell a quarter of a millimetre away."""

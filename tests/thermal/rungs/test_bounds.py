@@ -103,6 +103,7 @@ def test_a_network_in_air_counts_the_air_in_its_error(mode: Mode) -> None:
     assert metal.rung.error <= 0.005
 
 
+@pytest.mark.slow
 def test_auto_takes_a_grid_in_air_where_no_network_is_fine_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ladder, "_GRIDS", (1, 1))
     found = press(
