@@ -308,6 +308,8 @@ def test_loaded_code_is_old_at_once_but_what_somebody_froze_stays_frozen() -> No
         return next(found, None)
 
     gc.disable()
+    collected = gc.get_freeze_count() > 0  # by conftest.py, what pytest has collected
+    gc.unfreeze()
     try:
         loaded: list[object] = [[]]
         assert age(loaded) == 0
@@ -319,4 +321,6 @@ def test_loaded_code_is_old_at_once_but_what_somebody_froze_stays_frozen() -> No
         assert age(young) == 0 and gc.get_freeze_count() > 0
     finally:
         gc.unfreeze()
+        if collected:
+            gc.freeze()
         gc.enable()

@@ -50,7 +50,6 @@ def test_two_equal_presses_see_half_the_plate_each(mode: Mode, name: str) -> Non
     assert both.stored_heat[-1, 1] == pytest.approx(2 * half.stored_heat[-1, 1], rel=2e-3)
 
 
-def test_auto_takes_no_simpler_rung_that_no_sample_has_shown_fit() -> None:
-    """One sample at the touch: the lumped rung's drop would be there at once."""
-    run = press("glass", seconds=0.5, dt=1.0)
-    assert run.rung.name == "network" and run.temperature_drop[0] == 0
+def test_a_press_without_a_sample_after_the_touch_is_refused() -> None:
+    with pytest.raises(InvalidValueError, match="no sample after the touch"):
+        press("glass", seconds=0.5, dt=1.0)
