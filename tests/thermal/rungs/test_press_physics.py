@@ -48,8 +48,3 @@ def test_two_equal_presses_see_half_the_plate_each(mode: Mode, name: str) -> Non
     half = press(name, mode=mode, object_size=(0.04, 0.04, 0.005), seconds=10.0, dt=0.1, tolerance=0.005)
     assert np.max(np.abs(both.temperature_drop - half.temperature_drop)[1:]) < 0.01
     assert both.stored_heat[-1, 1] == pytest.approx(2 * half.stored_heat[-1, 1], rel=2e-3)
-
-
-def test_a_press_without_a_sample_after_the_touch_is_refused() -> None:
-    with pytest.raises(InvalidValueError, match="no sample after the touch"):
-        press("glass", seconds=0.5, dt=1.0)
