@@ -72,6 +72,14 @@ VOLUMES = {
     ("ball at the block's edge", "aluminium"): (1.055, 2.757),
     ("ball at the block's edge", "glass"): (0.306, 0.617),
     ("ball at the block's edge", "wood"): (0.095, 0.169),
+    ("rod on a wall of 1.5 mm", "steel"): (1.706, 3.926),
+    ("rod on a wall of 1.5 mm", "aluminium"): (1.831, 4.301),
+    ("rod on a wall of 1.5 mm", "glass"): (0.581, 1.181),
+    ("rod on a wall of 1.5 mm", "wood"): (0.18, 0.33),
+    ("rod on a wall of 0.6 mm", "steel"): (1.528, 3.354),
+    ("rod on a wall of 0.6 mm", "aluminium"): (1.71, 3.968),
+    ("rod on a wall of 0.6 mm", "glass"): (0.564, 0.9),
+    ("rod on a wall of 0.6 mm", "wood"): (0.181, 0.302),
 }
 """K after .5 and 2 s, by the study's volumes of two grids, extrapolated by the square of their cells."""
 
