@@ -70,6 +70,12 @@ OTHERS: list[tuple[Call, Any, str]] = [
     (lambda value: SimulationConfig(cache=value), 0.5, "cache must be True or False, got 0.5"),
     (lambda value: SimulationConfig(objects=value).shapes, [], "objects is an empty list"),
     (lambda value: ObjectSpec(position=value), 3, "position must be 2 finite numbers, got 3"),
+    (lambda value: ObjectSpec(elements=value), 5, "elements .* must be 2 finite numbers, got 5"),
+    (
+        lambda value: SimulationConfig(signal=value).chain,
+        ["ideal"],
+        r"signal must be one of .* got \['ideal'\]",
+    ),
     (lambda value: ObjectSpec(name=value), 3, "name must be a printable string, got 3"),
     (lambda value: ObjectSpec(name=value), "a\0b", "name must be a printable string, got 'a.x00b'"),
     (lambda value: ObjectSpec(rgba=value), "red", "rgba .* must be 4 finite numbers, got 'red'"),

@@ -260,7 +260,8 @@ class ObjectSpec:
 
     def _check_elements(self) -> None:
         """Raises InvalidValueError where they would stick out over the object's edge: only what lies on it conducts."""
-        side, _ = (positive("elements (side, thickness)", value) for value in self.elements or ())
+        what = "elements (side, thickness)"
+        side, _ = (positive(what, value) for value in numbers(what, self.elements, 2))
         for name, given, least in (
             ("high", self.size[2], self.grasp_height + side / 2),
             ("deep along y", self.size[1], side),

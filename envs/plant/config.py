@@ -318,7 +318,7 @@ class SimulationConfig:
         """The electronics, in the range that the sensor needs. Raises InvalidValueError for a name that is none."""
         if isinstance(self.signal, SignalChain):
             return converter(any_sensor(self.sensor), self.signal)
-        if self.signal not in SIGNAL_CHAINS:
+        if self.signal not in list(SIGNAL_CHAINS):  # which may be of a kind that no dictionary takes
             raise InvalidValueError(f"signal must be one of {sorted(SIGNAL_CHAINS)}, got {self.signal!r}")
         return converter(any_sensor(self.sensor), SIGNAL_CHAINS[self.signal])
 
