@@ -19,7 +19,7 @@ from thermograsp.bench.grasp.course import (
 )
 from thermograsp.envs.bodies import ObjectSpec
 from thermograsp.envs.footprint import GraspBody
-from thermograsp.envs.sensing import GraspHeat
+from thermograsp.envs.sensing import FieldHeat, GraspHeat
 from thermograsp.thermal import material, sensor
 
 HELD, JAMS, DROPPED, EJECTED, BROKEN = "held", "jams", "dropped", "ejected", "breaks down"
@@ -79,7 +79,8 @@ class HeatOfGrasps:
             spec = replace(spec, shape="box", mesh=None)
         body = GraspBody(spec, material(MATERIAL), _OBJECT, "T", sensor("seed"))
         self._bodies = [body] * count
-        self._heat = GraspHeat(
+        heat_of = GraspHeat if spec.shape == "box" else FieldHeat
+        self._heat = heat_of(
             count,
             tolerance=0.05,
             air=5.0,
