@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -166,15 +167,24 @@ entries = [_residues, free_residues, strayed]
 entries += [residues._gram, residues._body, remembered._box_heat, remembered._warmth]
 entries += [touched._samples, touched._warmed, touched._beside, axis.free_kernels]
 """
+FIELDS = """
+from thermograsp.envs.sensing.field_kernel import advance_fields as step
+from thermograsp.thermal.numerics.passive_residues import _residues
+inner, entries = [], [_residues]
+"""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("function", "keywords", "needed"),
-    [("compile_ahead", {}, PLATES), ("compile_boxes_ahead", {"anywhere": True}, BOXES)],
+    [
+        ("compile_ahead", {}, PLATES),
+        ("compile_boxes_ahead", {"anywhere": True}, BOXES),
+        ("compile_fields_ahead", {"anywhere": True, "surround": "silicone"}, FIELDS),
+    ],
 )
 def test_what_is_compiled_ahead_is_what_a_step_needs(
-    tmp_path: Path, function: str, keywords: dict[str, bool], needed: str
+    tmp_path: Path, function: str, keywords: dict[str, Any], needed: str
 ) -> None:
     """The first step finds it, and senses the same bits as one that compiles all itself."""
     step = f"""

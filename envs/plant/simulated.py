@@ -58,8 +58,7 @@ class SimulatedPlant:
     scenes; None for the config's objects or scene. scenes: each environment's objects."""
 
     def __init__(self, num_envs: int, config: SimulationConfig, layout: Layout | None = None) -> None:
-        if not config.by_fields:
-            start_compiling(boxes=config.by_kernels)
+        start_compiling(boxes=config.by_kernels, fields=config.by_fields)
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = whole_number("num_envs", num_envs, 1), config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)

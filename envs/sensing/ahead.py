@@ -35,7 +35,18 @@ from ...thermal.contact import (
     gas_conduction,
     solid_conduction,
 )
-from ...thermal.kernels import Footprint, Patches, Spot, TouchedBox, tip, tip_at, touched_box
+from ...thermal.kernels import (
+    GRASP,
+    Footprint,
+    Patches,
+    Spot,
+    TouchedBox,
+    at_rates,
+    element_samples,
+    tip,
+    tip_at,
+    touched_box,
+)
 from ...thermal.network import workspace
 from ...thermal.numerics import port_residues
 from ...thermal.readout import compile_measuring
@@ -46,10 +57,15 @@ _SIDE = 0.02  # m
 _VECTOR = types.Array(types.float64, 1, "C")
 
 
-def start_compiling(boxes: bool) -> None:
+def start_compiling(boxes: bool, fields: bool = False) -> None:
     """Starts that process, where nothing of it is kept on disk and another processor is there (see compile_beside).
-    boxes: all objects have networks from heat kernels, and need nothing of others."""
-    if boxes:
+    boxes: all objects have networks from heat kernels, and need nothing of others. fields: heat flows in those of
+    ThermalTouch."""
+    if fields:
+        from .field_kernel import advance_fields  # nothing that fields need is loaded without them
+
+        compile_beside(__name__, gas_conduction.called(), advance_fields, by="compile_fields_ahead")
+    elif boxes:
         compile_beside(__name__, gas_conduction.called(), advance_fixed, by="compile_boxes_ahead")
     else:
         compile_beside(__name__, gas_conduction.called(), advance_row)
@@ -63,6 +79,16 @@ def compile_ahead() -> None:
     )
     _advance(advance_row, tables, 2, _made_by(workspace, types.int64, types.int64))
     compile_measuring()
+
+
+def compile_fields_ahead() -> None:
+    """The same for objects whose heat flows in fields."""
+    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
+    _contacts()
+    compile_measuring()
+    stack = sensor("seed")
+    element_samples(stack, ((0.0, stack.width), (0.0, stack.width)))
+    at_rates(np.ones((len(GRASP), 1, 1)), FIXED_LEVEL, np.ones(len(GRASP)))
 
 
 def compile_boxes_ahead() -> None:
