@@ -59,7 +59,7 @@ class FieldHeatState:
 @dataclass(slots=True)
 class _Row:
     """An environment's heat. bodies: the objects, but for temperatures. contacts: of each as the pads close on it, and
-    slipped: of those that have slipped since. touches: (N, 1, F, O + F, columns). told: JoinedHeat.telling."""
+    slipped: of those that have since the reset. touches: (N, 1, F, O + F, columns). told: JoinedHeat.telling."""
 
     bodies: tuple[GraspBody, ...]
     heat: JoinedHeat
@@ -181,6 +181,15 @@ class FieldScenes:
             books = self._given[row], self._stored[row], self._gained[row]
             self._air[row] = tell_books(self._listed[row, HEAT], *books)
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy, whose arrays are elsewhere."""
+        self.__dict__.update(state)
+        self._sample = entry(sample, 4)
+        for row, one in self._heats.items():
+            for o, closed in enumerate(one.contacts):
+                self._meet(row, o, self._laws[row, o], one.slipped.get(o, closed))
+            self._list(row)
+
     @property
     def sensor_temperatures(self) -> np.ndarray:
         """(B, 2) °C of the thermostats."""
@@ -200,6 +209,7 @@ class FieldScenes:
         self._given[row], self._stored[row], self._gained[row], self._air[row] = 0.0, 0.0, 0.0, 0.0
         self._meshes = [each for each in self._meshes if each[0] != row]
         self._steps[row] = 0
+        one.slipped.clear()
         for o, body in enumerate(one.bodies):
             self._meet(row, o, body.law, one.contacts[o])
             self._rows[row, o]["reach"] = body.stack.width / 2

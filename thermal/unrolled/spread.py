@@ -54,8 +54,7 @@ def felt_patch(triangles: np.ndarray, face: Face, half: float, tip: Tip) -> Felt
 
 class Between(NamedTuple):
     """kernel: (T, M, M) K/J of another patch's patterns by the one's beneath which cells are, without the cells' error.
-    far: how much of the
-    other is near the end of these or beyond."""
+    far: how much of the other is near the end of these or beyond."""
 
     kernel: np.ndarray
     far: float

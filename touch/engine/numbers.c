@@ -10,7 +10,7 @@
 
 enum { VERSION = 11, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
-       MOST_SPREADS = 2 * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
+       MOST_SPREADS = (1 + AXES) * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;

@@ -51,10 +51,8 @@ def packed(
     found = pair_laws(model, pads, shapes)
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
-    narrow, spread = narrow_tables(
-        [(pad, side) for pad in sensors for target in (*shapes, *sensors) for side in _across(target, pad)],
-        level,
-    )
+    across = [(pad, side) for pad in sensors for side in _across(shapes, sensors, pad.stack.width)]
+    narrow, spread = narrow_tables(across, level)
     spread = spread.reshape(-1, 3, 2)
     glued_contacts = GluedContacts(pads, glued, len(shapes), 1)
     header = (
@@ -102,13 +100,14 @@ def packed(
     return np.concatenate([np.ravel(part) for part in every]).astype(">f8").tobytes().hex()
 
 
-def _across(target: BodyShape | PadPlace, pad: PadPlace) -> Iterator[Wall | PadPlace]:
-    """What a pad touches across each axis of a target."""
-    for axis in range(3):
-        if isinstance(target, PadPlace):
-            yield target
-        else:
-            yield wall_of(target.material, 1.0, float(target.size[axis]), pad.stack.width)
+def _across(
+    shapes: Sequence[BodyShape], sensors: Sequence[PadPlace], width: float
+) -> Iterator[Wall | PadPlace]:
+    """What a sensor of that width m touches across each of the three axes of every target."""
+    for shape in shapes:
+        yield from (wall_of(shape.material, 1.0, side, width) for side in shape.size.tolist())
+    for sensor in sensors:
+        yield from (sensor,) * 3
 
 
 def _box(shape: BodyShape, film: float, ambient: float) -> tuple[float, ...]:

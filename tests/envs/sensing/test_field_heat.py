@@ -6,6 +6,8 @@ ThermalTouch and a box of the same shape, books of heat, states, and environment
 
 from __future__ import annotations
 
+import copy
+import gc
 import pickle
 from functools import lru_cache
 from itertools import product
@@ -245,6 +247,22 @@ def test_a_state_goes_on_bit_for_bit_in_another_batch(shape: str, tmp_path: Path
     other = heat_of(body_of("glass", BALL), body_of("glass", BALL))
     other.set_state([1], kept)
     np.testing.assert_array_equal(held(other, spec, 30, z=0.002)[1], expected[0])
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda heat: pickle.loads(pickle.dumps(heat))])
+@pytest.mark.parametrize("shape", ["ball", pytest.param("mesh", marks=pytest.mark.slow)])
+def test_a_copy_has_numbers_of_its_own(copied: Any, shape: str, tmp_path: Path) -> None:
+    """Also where the first one is gone, whose arrays compiled code knew by their addresses."""
+    spec = BALL if shape == "ball" else block(tmp_path)
+    heat = heat_of(body_of("glass", spec, fingertips=2))
+    held(heat, spec, 10)
+    held(heat, spec, 10, z=0.004)
+    twin, third = copied(heat), copied(heat)
+    expected = held(heat, spec, 20, z=0.002)
+    np.testing.assert_array_equal(held(twin, spec, 20, z=0.002), expected)
+    del heat, twin
+    gc.collect()
+    np.testing.assert_array_equal(held(third, spec, 20, z=0.002), expected)
 
 
 def test_one_row_is_as_alone() -> None:
