@@ -73,7 +73,7 @@ def pad_contact(body: GraspBody, step: tuple[int, ...] = (0, 0, 0, 0, 0)) -> Pad
     elif body.closed_mesh is not None:
         around, lying = body.around_face(step, rings)
         laws[: len(rings)] = around
-    return PadContact(law, beside, tables, laws, lying, np.array(sides) / 2)
+    return PadContact(law, beside, tables, laws, np.ascontiguousarray(lying), np.array(sides) / 2)
 
 
 @lru_cache(maxsize=128)

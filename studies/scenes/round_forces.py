@@ -1,4 +1,5 @@
-"""How far environments are from ThermalTouch on balls and rods at three forces, with anywhere=False and as shipped.
+"""How far environments are from ThermalTouch on balls, rods and a ball's mesh at three forces, with anywhere=False and
+as shipped.
 
     python studies/scenes/round_forces.py
     python studies/scenes/round_forces.py --materials steel wood --json
@@ -14,11 +15,14 @@ from __future__ import annotations
 
 import argparse
 import json
+import tempfile
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
+import trimesh
 
 from thermograsp import Fingertip, ThermalTouch
 from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, action_of
@@ -28,8 +32,17 @@ SHAPES = {
     "rod": ObjectSpec(shape="cylinder", size=(0.03, 0.03, 0.05)),
 }
 GEOMS = {"ball": 'type="sphere" size=".02"', "rod": 'type="cylinder" size=".015 .025"'}
+MESH = "ball's mesh"
 FORCES, SECONDS = (3.0, 8.0, 25.0), 2.0
 ENDLESS = GraspTask(hold_seconds=1e3, seconds=1e3)
+
+
+def with_mesh(folder: Path) -> None:
+    """Adds the ball's mesh to SHAPES and GEOMS, a file in that folder."""
+    file = folder / "ball.stl"
+    trimesh.creation.icosphere(subdivisions=4, radius=0.02).export(file)
+    SHAPES[MESH] = ObjectSpec(shape="mesh", mesh=str(file))
+    GEOMS[MESH] = 'type="mesh" mesh="ball"'
 
 
 def environment(shape: str, name: str, skin: str | None, force: float, anywhere: Any) -> float:
@@ -54,14 +67,15 @@ def environment(shape: str, name: str, skin: str | None, force: float, anywhere:
 
 def touched(shape: str, name: str, skin: str | None, force: float) -> float:
     """The same of ThermalTouch."""
-    away = SHAPES[shape].size[0] / 2 + 0.0041
+    away = SHAPES[shape].width / 2 + 0.0041
     tips = "".join(
         f'<body pos="{way * away} 0 0"><joint name="{tip}" type="slide" axis="{-way} 0 0" damping="20"/>'
         f'<geom name="{tip}" type="box" size=".004 .01 .01" mass=".05" friction="0 0 0"/></body>'
         for way, tip in ((1, "right"), (-1, "left"))
     )
+    asset = f'<asset><mesh name="ball" file="{SHAPES[shape].mesh}"/></asset>' if shape == MESH else ""
     model = mujoco.MjModel.from_xml_string(
-        f'<mujoco><option gravity="0 0 0"/><worldbody><body name="thing"><geom {GEOMS[shape]}/></body>{tips}'
+        f'<mujoco>{asset}<option gravity="0 0 0"/><worldbody><body name="thing"><geom {GEOMS[shape]}/></body>{tips}'
         '</worldbody><actuator><motor joint="right"/><motor joint="left"/></actuator></mujoco>'
     )
     data, began = mujoco.MjData(model), None
@@ -85,6 +99,13 @@ def main() -> None:
     parser.add_argument("--materials", nargs="+", default=["aluminium", "glass"])
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        with_mesh(Path(folder))
+        told(given)
+
+
+def told(given: argparse.Namespace) -> None:
+    """The table."""
     rows = []
     for shape, name in product(SHAPES, given.materials):
         for skin, force in product(("filled_silicone", None), FORCES):

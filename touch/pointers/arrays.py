@@ -20,7 +20,13 @@ _LAW, _FOOTPRINT, _CHAIN = (from_dtype(each) for each in (CONTACT_LAW, FOOTPRINT
 
 
 def table(arrays: Sequence[np.ndarray], numbers: Sequence[int] = ()) -> np.ndarray:
-    """The addresses of contiguous arrays, and numbers behind them. It holds as long as the arrays live."""
+    """The addresses of contiguous arrays, and numbers behind them. It holds as long as the arrays live. Raises
+    ValueError for an array whose numbers do not stand in rows one behind the other: compiled code would read others."""
+    for number, array in enumerate(arrays):
+        if not array.flags.c_contiguous:
+            raise ValueError(
+                f"array {number} of {array.shape} has strides {array.strides}: hand over a copy in rows"
+            )
     return np.array([*(array.ctypes.data for array in arrays), *numbers], np.int64)
 
 

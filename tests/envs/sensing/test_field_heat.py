@@ -249,6 +249,17 @@ def test_a_state_goes_on_bit_for_bit_in_another_batch(shape: str, tmp_path: Path
     np.testing.assert_array_equal(held(other, spec, 30, z=0.002)[1], expected[0])
 
 
+@pytest.mark.parametrize("surround", [None, "silicone"])
+def test_a_rod_s_mesh_is_felt_as_the_rod(surround: str | None, tmp_path: Path) -> None:
+    """Whose contact is as narrow: a face that counted as wide would be 0.36 K lower."""
+    file = tmp_path / "rod.stl"
+    trimesh.creation.cylinder(0.02, 0.08, sections=128).export(file)
+    mesh = ObjectSpec(name="rod", shape="mesh", mesh=str(file))
+    words: dict[str, Any] = {"surround": surround, "anywhere": True}
+    drops = [held(heat_of(body_of("steel", spec, **words)), ROD, 100)[0] for spec in (ROD, mesh)]
+    np.testing.assert_allclose(drops[0][:, 0], drops[1][:, 0], atol=0.05)
+
+
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda heat: pickle.loads(pickle.dumps(heat))])
 @pytest.mark.parametrize("shape", ["ball", pytest.param("mesh", marks=pytest.mark.slow)])
 def test_a_copy_has_numbers_of_its_own(copied: Any, shape: str, tmp_path: Path) -> None:
