@@ -166,6 +166,14 @@ def placed_network(
     )
 
 
+def own_network(body: Solid, film: float, *, cache: bool = True) -> ThermalNetwork:
+    """The states of placed_network that are the body's own wherever it is touched, with its outputs and without ports.
+    Arguments and errors as its."""
+    inside = film_of(body, film)
+    modes = body_modes(body, inside, cache=cache)
+    return _slow(modes, np.zeros((0, len(modes.rates))), inside).network
+
+
 class FaceImpedance(NamedTuple):
     """Of sensors' faces on a body. modes: the body's. one: the sensor's element under its contact. places: where the
     patches are. impedance: (S, P M, P M) K/W at GRASP, less that of the slow modes."""

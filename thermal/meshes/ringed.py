@@ -62,20 +62,22 @@ def body_in_pads(
     sides: tuple[float, ...],
     *,
     whole: Sequence[bool] | None = None,
+    film: float = 0.0,
     cache: bool = True,
 ) -> tuple[ThermalNetwork, np.ndarray, int]:
     """The body's network of P M ports, in orthonormal patterns of the sensor's whole face, its output "heat" the J that
     it has gained; (n, P R) ports of even flows into rings of the pads around; and how many of its states, the first
     ones, are the body's own wherever it is touched. sides: (R,) m, the rings' outer sides, none without pads. whole:
-    whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. Raises
-    MeshError where a patch meets no surface, or the body is no solid in one piece."""
+    whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. film: W/K
+    to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in one
+    piece."""
     told = None
     if whole is not None:
         told = np.repeat(whole, LEVEL.patterns)
         told[:: LEVEL.patterns] = True
         told = np.concatenate((told, np.repeat(whole, len(sides))))
     if not sides:
-        alone = placed_network(body, patches, stack, told=told, cache=cache)
+        alone = placed_network(body, patches, stack, film, told=told, cache=cache)
         return alone.network, np.zeros((len(alone.network.rates), 0)), alone.slow
     found = face_impedance(body, patches, stack, None, cache)
     around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]

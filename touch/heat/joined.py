@@ -25,6 +25,7 @@ from ..contacts import FORCE, GluedContacts
 from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
+from .contents import HeldContents
 from .fixed import FixedNetworks, FixedPlaces, JoinedWorld, world_networks, world_places
 from .march import TABLE, sample
 from .narrow import STEPS, wall_of
@@ -127,6 +128,12 @@ class JoinedHeat:
         self._backs = tuple(
             self._back(f, pad, worlds) for f, pad in enumerate(pads) if pad.heated or pad.thermostat
         )
+        inside = [(o, shape.contents) for o, shape in enumerate(shapes) if shape.contents is not None]
+        self.inner = np.zeros((worlds, len(inside)))
+        """(W, C) °C of the contents of the objects that have any, in their order. It stays where it is."""
+        self._contents = tuple(
+            HeldContents(o, each, self.inner, c, dt) for c, (o, each) in enumerate(inside)
+        )
         self._busy, self._seconds, self._reach = np.zeros(fields, bool), np.array([dt]), NEAR * self._widths
         kept = np.exp(-dt * self._level.decay)
         self._decay = np.array([self._level.decay, kept, (1 - kept) / self._level.decay])
@@ -146,6 +153,8 @@ class JoinedHeat:
             self._held_by[w] = [field.heat[0] for field in self._fields[w]]
             self._x[w] = 0.0
             self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by[w]
+            for each in self._contents:
+                each.reset(w, float(celsius[each.object]), self._fields[w][each.object])
             for e, o in enumerate(self._glued_on, len(self._pads) - len(self._glued_on)):
                 warm = celsius[o] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
@@ -188,6 +197,7 @@ class JoinedHeat:
             self._touches = np.ascontiguousarray(touches, float)
             self._touches_at = self._touches.ctypes.data
         before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
+        self._exchange()
         if sample(self._address(), self._touches_at, substeps, 0):
             for w, o in np.argwhere((self._new_faces >= 0).any(axis=1)).tolist():
                 self._settle(w, o, np.flatnonzero(self._new_faces[w, :, o] >= 0).tolist())
@@ -196,6 +206,11 @@ class JoinedHeat:
                     self._stale[w] = False
                     self._join(w)
             sample(self._address(), self._touches_at, substeps, 1)
+        if self._contents:
+            self._exchange()
+            for inside in self._contents:
+                inside.end()
+            self._warm_up()
         for back, (held, passed) in zip(self._backs, before, strict=True):
             f = back.tip
             force = touches[:, f, :, FORCE].sum(axis=1) + touches[:, :, len(self._shapes) + f, FORCE].sum(
@@ -208,9 +223,14 @@ class JoinedHeat:
     def hearing(self, touches: np.ndarray) -> tuple[int, int]:
         """What `sample` takes first, until a call of anything else here: addresses of all arrays and of the touches.
         Zeros where a step is more than that."""
-        if self._backs or self._glued is not None:
+        if self._backs or self._contents or self._glued is not None:
             return 0, 0
         return self._address(), touches.ctypes.data
+
+    def _exchange(self) -> None:
+        """Half a step of contents and walls."""
+        for each in self._contents:
+            each.exchange(self._x[:, each.object], self._ambient)
 
     def telling(self) -> np.ndarray:
         """What the functions of told.py take of a heat of one world, until a call of anything else here."""
@@ -319,6 +339,11 @@ class JoinedHeat:
         return bool((self._current >= 0).any())
 
     def _refuse_backs(self) -> None:
+        if self._contents:
+            raise InvalidValueError(
+                "fixed places know empty objects alone: leave contents= of the objects out, or update a ThermalTouch "
+                "step by step"
+            )
         if self._around:
             raise InvalidValueError(
                 "fixed places know elements without a pad alone: leave surround= of the fingertips out, or update a "
@@ -396,12 +421,16 @@ class JoinedHeat:
         tips = self._current.shape[1] - len(self._glued_on)
         for e, o in enumerate(self._glued_on, tips):
             given[:, o] += given[:, objects + e]
+        contents = np.zeros(objects)
+        for each in self._contents:
+            contents[each.object] = each.given[world]
         return HeatBalance(
             given[:tips, :objects],
             given[:tips, objects : objects + tips],
             float(self._air[world]),
             elements[:tips],
             self._held(world) - self._started[world],
+            contents,
         )
 
     def state(self) -> HeatState:
@@ -417,6 +446,7 @@ class JoinedHeat:
             self._air.copy(),
             self.drop.copy(),
             tuple(back.state() for back in self._backs),
+            tuple(each.state() for each in self._contents),
         )
 
     def set_state(self, state: HeatState) -> None:
@@ -434,6 +464,9 @@ class JoinedHeat:
         for back, saved in zip(self._backs, state.backs, strict=True):
             back.set_state(saved)
             self._warm[:, back.tip] = back.temperature - self._ambient
+        bare = [self._known.bare(materials) for materials in self._materials] if self._contents else []
+        for each, saved in zip(self._contents, state.contents, strict=True):
+            each.set_state(saved, [fields[each.object] for fields in bare])
         for w, f, o in np.ndindex(self._current.shape):
             self._place(w, f, o)
         self._forget()

@@ -1,0 +1,77 @@
+"""What is in an object and keeps it hot or cold: one temperature behind a film on its walls, stepped beside the fields.
+
+Half of a step's exchange comes before the step of the fields and half behind it (Strang splitting), each exact for
+contents whose temperature stands still; heat that has left them changes it at the step's end, as in environments.
+
+W: worlds, K: states.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from ...thermal import Reservoir
+from ...thermal.matter import RESERVOIR_ROW, reservoir_step, reservoir_temperature
+from .places import BodyField
+
+
+class HeldContents:
+    """In object number `object`, in steps of dt s. temperatures: (W, C) °C of all objects' contents, of which this is
+    column `number`; it stays where it is. given: (W,) J to the object so far."""
+
+    def __init__(
+        self, object: int, reservoir: Reservoir, temperatures: np.ndarray, number: int, dt: float
+    ) -> None:
+        worlds = len(temperatures)
+        self.object, self.given = object, np.zeros(worlds)
+        self._reservoir, self._temperatures, self._number, self._dt = reservoir, temperatures, number, dt
+        self._rows = np.zeros(worlds, RESERVOIR_ROW).view(np.recarray)
+        self._enthalpy, self._passed = np.zeros(worlds), np.zeros(worlds)
+        self._bare: dict[int, BodyField] = {}
+
+    def reset(self, w: int, celsius: float, bare: BodyField) -> None:
+        """A world's at their first temperature, in an object of °C whose field, untouched, is `bare`."""
+        self._rows[w], self._enthalpy[w] = self._reservoir.row(celsius)
+        self._temperatures[w, self._number] = self._rows[w].temperature
+        self.given[w], self._passed[w], self._bare[w] = 0.0, 0.0, bare
+
+    def exchange(self, states: np.ndarray, ambient: float) -> None:
+        """Half a step. states: (W, K) of the object, in place. ambient: °C from which its temperature counts."""
+        for w, bare in self._bare.items():
+            held, own, kept = bare.heat[0], len(bare.walls), _kept(bare, self._dt / 2)
+            even = (self._temperatures[w, self._number] - ambient) * held
+            away = states[w, :own].copy()
+            away[0] -= even
+            left = kept @ away
+            self._passed[w] += held * (left[0] - away[0])
+            states[w, :own] = left
+            states[w, 0] += even
+
+    def end(self) -> None:
+        """What heat has left them in the step, they do not have."""
+        for w in self._bare:
+            flow = self._passed[w] / self._dt
+            self.given[w] += self._passed[w]
+            self._enthalpy[w] = reservoir_step.py_func(self._rows[w], self._enthalpy[w], flow, self._dt)
+            celsius = reservoir_temperature.py_func(self._rows[w], self._enthalpy[w])
+            self._temperatures[w, self._number] = celsius
+            self._passed[w] = 0.0
+
+    def state(self) -> tuple[np.ndarray, ...]:
+        """A copy of what they remember between steps."""
+        temperature = self._temperatures[:, self._number].copy()
+        return temperature, self.given.copy(), self._enthalpy.copy(), self._rows.copy()
+
+    def set_state(self, state: tuple[np.ndarray, ...], bare: list[BodyField]) -> None:
+        """Puts them into a state taken by `state`, in objects whose fields, untouched, are these in each world."""
+        self._temperatures[:, self._number], self.given[:], self._enthalpy[:], self._rows[:] = state
+        self._bare = dict(enumerate(bare))
+
+
+@lru_cache(maxsize=64)
+def _kept(bare: BodyField, seconds: float) -> np.ndarray:
+    """(own, own): what is left of the object's own states after so many s of the film alone, less the contents'."""
+    rates, turn = np.linalg.eigh(bare.walls)
+    return np.ascontiguousarray(turn * np.exp(-seconds * np.maximum(rates, 0.0)) @ turn.T)
