@@ -8,13 +8,26 @@ W: worlds, K: states.
 
 from __future__ import annotations
 
+from collections import namedtuple
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from ...thermal import Reservoir
 from ...thermal.matter import RESERVOIR_ROW, reservoir_step, reservoir_temperature
 from .places import BodyField
+
+Row = namedtuple("Row", RESERVOIR_ROW.names or ())  # quicker to read than a record
+
+
+class ContentsState(NamedTuple):
+    """temperature: (W,) °C, given and enthalpy: (W,) J, and rows: (W,) of a RESERVOIR_ROW's numbers."""
+
+    temperature: np.ndarray
+    given: np.ndarray
+    enthalpy: np.ndarray
+    rows: tuple[Row, ...]
 
 
 class HeldContents:
@@ -27,21 +40,27 @@ class HeldContents:
         worlds = len(temperatures)
         self.object, self.given = object, np.zeros(worlds)
         self._reservoir, self._temperatures, self._number, self._dt = reservoir, temperatures, number, dt
-        self._rows = np.zeros(worlds, RESERVOIR_ROW).view(np.recarray)
+        self._rows = [Row(*np.zeros(1, RESERVOIR_ROW)[0])] * worlds
         self._enthalpy, self._passed = np.zeros(worlds), np.zeros(worlds)
         self._bare: dict[int, BodyField] = {}
 
     def reset(self, w: int, celsius: float, bare: BodyField) -> None:
         """A world's at their first temperature, in an object of °C whose field, untouched, is `bare`."""
-        self._rows[w], self._enthalpy[w] = self._reservoir.row(celsius)
-        self._temperatures[w, self._number] = self._rows[w].temperature
+        row, self._enthalpy[w] = self._reservoir.row(celsius)
+        self._rows[w] = Row(*row.tolist())
+        self.temperature[w] = self._rows[w].temperature
         self.given[w], self._passed[w], self._bare[w] = 0.0, 0.0, bare
+
+    @property
+    def temperature(self) -> np.ndarray:
+        """(W,) °C."""
+        return self._temperatures[:, self._number]
 
     def exchange(self, states: np.ndarray, ambient: float) -> None:
         """Half a step. states: (W, K) of the object, in place. ambient: °C from which its temperature counts."""
         for w, bare in self._bare.items():
             held, own, kept = bare.heat[0], len(bare.walls), _kept(bare, self._dt / 2)
-            even = (self._temperatures[w, self._number] - ambient) * held
+            even = (self.temperature[w] - ambient) * held
             away = states[w, :own].copy()
             away[0] -= even
             left = kept @ away
@@ -55,19 +74,19 @@ class HeldContents:
             flow = self._passed[w] / self._dt
             self.given[w] += self._passed[w]
             self._enthalpy[w] = reservoir_step.py_func(self._rows[w], self._enthalpy[w], flow, self._dt)
-            celsius = reservoir_temperature.py_func(self._rows[w], self._enthalpy[w])
-            self._temperatures[w, self._number] = celsius
+            self.temperature[w] = reservoir_temperature.py_func(self._rows[w], self._enthalpy[w])
             self._passed[w] = 0.0
 
-    def state(self) -> tuple[np.ndarray, ...]:
+    def state(self) -> ContentsState:
         """A copy of what they remember between steps."""
-        temperature = self._temperatures[:, self._number].copy()
-        return temperature, self.given.copy(), self._enthalpy.copy(), self._rows.copy()
+        return ContentsState(
+            self.temperature.copy(), self.given.copy(), self._enthalpy.copy(), tuple(self._rows)
+        )
 
-    def set_state(self, state: tuple[np.ndarray, ...], bare: list[BodyField]) -> None:
+    def set_state(self, state: ContentsState, bare: list[BodyField]) -> None:
         """Puts them into a state taken by `state`, in objects whose fields, untouched, are these in each world."""
-        self._temperatures[:, self._number], self.given[:], self._enthalpy[:], self._rows[:] = state
-        self._bare = dict(enumerate(bare))
+        self.temperature[:], self.given[:], self._enthalpy[:] = state[:3]
+        self._rows, self._bare = list(state.rows), dict(enumerate(bare))
 
 
 @lru_cache(maxsize=64)

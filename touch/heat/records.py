@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...thermal import Material
+from .contents import ContentsState
 from .places import BodyField
 
 
@@ -45,4 +46,4 @@ class HeatState:
     air: np.ndarray
     drop: np.ndarray
     backs: tuple[tuple[Any, np.ndarray], ...]
-    contents: tuple[tuple[np.ndarray, ...], ...]
+    contents: tuple[ContentsState, ...]
