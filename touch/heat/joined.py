@@ -131,9 +131,7 @@ class JoinedHeat:
         inside = [(o, shape.contents) for o, shape in enumerate(shapes) if shape.contents is not None]
         self.inner = np.zeros((worlds, len(inside)))
         """(W, C) °C of the contents of the objects that have any, in their order. It stays where it is."""
-        self.contents = tuple(
-            HeldContents(o, each, self.inner, c, dt) for c, (o, each) in enumerate(inside)
-        )
+        self.contents = tuple(HeldContents(o, each, self.inner, c, dt) for c, (o, each) in enumerate(inside))
         """Of these."""
         self._busy, self._seconds, self._reach = np.zeros(fields, bool), np.array([dt]), NEAR * self._widths
         kept = np.exp(-dt * self._level.decay)
