@@ -28,8 +28,8 @@ NOISE_BLOCK = 32
 class Layout:
     """What the numbers of a reading are: of each world (W, SIZE), the voltages of all sensors, their drops, the
     fingertips' forces and those beside, the objects' temperatures, and what each fingertip touches, -1 for nothing.
-    names: of the objects, the fingertips, and "" for the last one. contents: numbers of the objects that have any, whose
-    temperatures stand behind."""
+    names: of the objects, the fingertips, and "" for the last one. contents: numbers of the objects that have any,
+    whose temperatures stand behind."""
 
     tips: int
     sensors: int
@@ -224,7 +224,8 @@ class Electronics:
     last input.
 
     touches, beside: a ContactReader's. sent: (W, S) what the chains take; drop: (W, S) K, warmth: (W, O) K above
-    `ambient` °C and inner: (W, C) °C of contents, of a JoinedHeat. These stay where they are. substeps: of a reading."""
+    `ambient` °C and inner: (W, C) °C of the contents of C objects, of a JoinedHeat. These stay where they are.
+    substeps: of a reading."""
 
     def __init__(
         self,

@@ -28,8 +28,8 @@ halves."""
 def advance_fields(sample, rows, contacts, force, place, drop, first):
     """Advances the rows (B, LISTED) by the samples of a control step, all samples counted row by row, from number
     `first` on; fills drop (B, N, F) K. sample: the address of touch.heat's. contacts: (B, O, PARTS). force:
-    (B, O, S, F) N. place: (B, O, F, 3) m. Returns the number of a sample before which places or contacts change, or which
-    is more than `sample` does, and which has not been taken yet; B N after the last one."""
+    (B, O, S, F) N. place: (B, O, F, 3) m. Returns the number of a sample that has not been taken yet, as places or
+    contacts change before it or it is more than `sample` does; B N after the last one."""
     samples, objects = drop.shape[1], force.shape[1]
     for number in range(first, len(rows) * samples):
         b, k = number // samples, number % samples

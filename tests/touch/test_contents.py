@@ -164,18 +164,22 @@ def test_worlds_are_as_each_alone() -> None:
         for n in range(10):
             mujoco.mj_step(model, data)
             record[0, n] = data.sensordata
-        reading = every.update(np.repeat(record, 2, axis=0))
-        alone = [each.update(record) for each in single]
-    warm = reading.contents_temperature["thing"]
-    np.testing.assert_array_equal(warm, [each.contents_temperature["thing"][0] for each in alone])
-    np.testing.assert_array_equal(
-        reading.temperature_drop[:, 0], [each.temperature_drop[0, 0] for each in alone]
-    )
+        for touch, times in ((every, 2), *((each, 1) for each in single)):
+            touch.update(np.repeat(record, times, axis=0))
+    warm = inside(every)
+    np.testing.assert_array_equal(warm, [inside(each)[0] for each in single])
+    drops = [each.reading.temperature_drop[0] for each in single]
+    np.testing.assert_array_equal(every.reading.temperature_drop, drops)
     assert np.ptp(warm) > 0.01
-    reading = every.reset(worlds=[1])
-    assert reading.contents_temperature["thing"][1] == 80.0 > reading.contents_temperature["thing"][0]
+    every.reset(worlds=[1])
+    assert inside(every)[1] == 80.0 > inside(every)[0] == warm[0]
     with pytest.raises(InvalidValueError, match="the same in every world"):
         every.reset(worlds=[1], objects={"thing": ThermalBody("wood", contents=water(0.02, 5.0))})
+
+
+def inside(touch: ThermalTouch) -> np.ndarray:
+    """(W,) °C of the contents."""
+    return np.asarray(touch.reading.contents_temperature["thing"])
 
 
 def test_what_cannot_be_is_refused() -> None:

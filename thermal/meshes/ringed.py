@@ -69,8 +69,8 @@ def body_in_pads(
     it has gained; (n, P R) ports of even flows into rings of the pads around; and how many of its states, the first
     ones, are the body's own wherever it is touched. sides: (R,) m, the rings' outer sides, none without pads. whole:
     whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. film: W/K
-    to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in one
-    piece."""
+    to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in
+    one piece."""
     told = None
     if whole is not None:
         told = np.repeat(whole, LEVEL.patterns)

@@ -60,13 +60,11 @@ class HeldContents:
         """Half a step. states: (W, K) of the object, in place. ambient: °C from which its temperature counts."""
         for w, bare in self._bare.items():
             held, own, kept = bare.heat[0], len(bare.walls), _kept(bare, self._dt / 2)
-            even = (self.temperature[w] - ambient) * held
-            away = states[w, :own].copy()
-            away[0] -= even
-            left = kept @ away
-            self._passed[w] += held * (left[0] - away[0])
-            states[w, :own] = left
+            even, before = (self.temperature[w] - ambient) * held, states[w, 0]
+            states[w, 0] -= even
+            states[w, :own] = kept @ states[w, :own]
             states[w, 0] += even
+            self._passed[w] += held * (states[w, 0] - before)  # with what rounding has added to it
 
     def end(self) -> None:
         """What heat has left them in the step, they do not have."""

@@ -189,8 +189,8 @@ class JoinedHeat:
         return len(self._pool)
 
     def advance(self, touches: np.ndarray, substeps: int) -> bool:
-        """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps. Returns whether
-        places or contacts have changed."""
+        """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps. Returns
+        whether places or contacts have changed."""
         if self._glued is not None:
             touches = self._glued.redirected(touches, substeps)
         if touches is not self._touches:

@@ -74,7 +74,8 @@ class ThermalBody:
             )
         if self.contents is not None and not isinstance(self.contents, Reservoir):
             raise InvalidValueError(
-                f"ThermalBody: contents must be a thermal.Reservoir such as thermal.water(0.2, 8.0), got {self.contents!r}"
+                "ThermalBody: contents must be a thermal.Reservoir such as thermal.water(0.2, conductance=8.0), got "
+                f"{self.contents!r}"
             )
 
 

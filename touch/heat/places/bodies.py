@@ -29,8 +29,9 @@ class BodyField:
     ports: (n, N M) sqrt(K/J). heat: (n,) J and loss: (n,) W of a state; only the first one, the mean temperature's, has
     any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. own: how
     many of the states, the first ones, are the object's wherever it is touched. below: of each place the share of the
-    sensor's face under which the object is, and how thick m it is there. walls: (own, own) 1/s, of an object with contents that
-    nothing has touched: how its own states fade towards contents that are held, by the film alone."""
+    sensor's face under which the object is, and how thick m it is there. walls: (own, own) 1/s, of an object
+    with contents that nothing has touched: how its own states fade towards contents that are held, by the film
+    alone."""
 
     places: tuple[Place, ...]
     whole: tuple[bool, ...]
