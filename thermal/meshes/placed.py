@@ -330,11 +330,14 @@ def _placed(
     return Placed(below, seen, None, impedance)
 
 
-def is_touchable(body: Solid, patch: SurfacePatch, stack: SensorStack, *, cache: bool = True) -> bool:
-    """Whether an empty body has a surface at a patch that can be touched. What is found out about the place is kept for
-    its network."""
+def is_touchable(
+    body: Solid, patch: SurfacePatch, stack: SensorStack, film: float = 0.0, *, cache: bool = True
+) -> bool:
+    """Whether a body has a surface at a patch that can be touched. What is found out about the place is kept for its
+    network. film: W/K to contents."""
+    inside = film_of(body, film)
     try:
-        _placed(body, patch, stack, None, _EMPTY, cache)
+        _placed(body, patch, stack, inside, _EMPTY if inside is None else _FILLED, cache)
     except MeshError:
         return False
     return True

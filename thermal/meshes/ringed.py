@@ -94,17 +94,23 @@ def body_in_pads(
 
 
 def surface_patch(
-    body: Solid, centre: np.ndarray, outward: np.ndarray, stack: SensorStack, *, cache: bool = True
+    body: Solid,
+    centre: np.ndarray,
+    outward: np.ndarray,
+    stack: SensorStack,
+    film: float = 0.0,
+    *,
+    cache: bool = True,
 ) -> SurfacePatch:
     """The sensor's face on the surface that looks along an outward unit vector, across it: where a line that way
     through a place (3,) m leaves the body, or at the nearest point where the line meets it far from there. Where
     nothing of the surface there can be touched, since the body covers it or it is too steep, at the nearest point of
     all the surface, or else where the body reaches farthest that way: simulations touch a mesh's hull, which spans
-    openings."""
+    openings. film: W/K to contents."""
     places = _places(body.outside, centre, outward, stack.width / 2)
     patch = SurfacePatch(*next(places), stack.face_area)
     for place in places:
-        if is_touchable(body, patch, stack, cache=cache):
+        if is_touchable(body, patch, stack, film, cache=cache):
             break
         patch = SurfacePatch(*place, stack.face_area)
     return patch

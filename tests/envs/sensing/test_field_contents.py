@@ -102,8 +102,8 @@ def test_fields_and_networks_agree(name: str, wall: float, inside: Reservoir, tm
         for each in both
     )
     assert np.abs(networks["drop"]).max() > 1.0
-    for key in ("drop", "object_temperature", "reservoir_temperature"):
-        np.testing.assert_allclose(fields[key], networks[key], atol=0.04)
+    for key, off in (("drop", 0.01), ("object_temperature", 0.04), ("reservoir_temperature", 0.01)):
+        np.testing.assert_allclose(fields[key], networks[key], atol=off)
     np.testing.assert_allclose(fields["reservoir_flow"], networks["reservoir_flow"], rtol=5e-3)
     assert np.abs(fields["imbalance"]).max() < 1e-10 * fields["exchanged"][-1]
 

@@ -142,7 +142,7 @@ def _solid_field(
     from ....thermal.meshes import body_in_pads
 
     with _BLAS.limit(limits=1, user_api="blas"):
-        found = [_patch(solid, size, place, stack, cache) for place in places]
+        found = [_patch(solid, size, place, stack, wet, cache) for place in places]
         patches, below = [patch for patch, _ in found], tuple(each for _, each in found)
         side, beside, own = body_in_pads(solid, patches, stack, rings, whole=whole, film=wet, cache=cache)
     # the body's mean, by its own heat capacity
@@ -175,10 +175,10 @@ def _under(size: tuple[float, float, float], place: Place, width: float) -> tupl
 
 @lru_cache(maxsize=2048)
 def _patch(
-    solid: Solid, size: tuple[float, float, float], place: Place, stack: SensorStack, cache: bool
+    solid: Solid, size: tuple[float, float, float], place: Place, stack: SensorStack, wet: float, cache: bool
 ) -> tuple[SurfacePatch, tuple[float, float]]:
     """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is, and how thick
-    m it is there."""
+    m it is there. wet: W/K to its contents."""
     from ....thermal.meshes import surface_patch, wall_below
 
     outward, centre = np.zeros(3), np.zeros(3)
@@ -186,7 +186,7 @@ def _patch(
     outward[axis] = 1.0 if far else -1.0
     across_last = [*(i for i in range(3) if i != axis), axis]
     centre[across_last] = np.array(place.whole) - np.array(size)[across_last] / 2
-    patch = surface_patch(solid, centre, outward, stack, cache=cache)
+    patch = surface_patch(solid, centre, outward, stack, wet, cache=cache)
     return patch, wall_below(solid, patch)
 
 
