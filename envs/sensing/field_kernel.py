@@ -19,8 +19,8 @@ from .kernel import meet_rows
 from .rows import HEAT_INFO, HEAT_ROW
 
 HEAT, SAMPLE, TOUCHES, TIPS, LISTED = range(5)
-"""Of a row's heat: the addresses of JoinedHeat.telling, of what `sample` takes, and of its touches
-(N, F, O + F, COLUMNS), which is 0 before the first reset; and how many fingertips it has."""
+"""Of a row's heat: the addresses of JoinedHeat.telling, of what `sample` takes, which is 0 where a step is more than
+that, and of its touches (N, F, O + F, COLUMNS), which is 0 before the first reset; and how many fingertips it has."""
 PARTS = 8
 """Of an object under pads: the addresses of a PadContact's arrays, in its order, and the lengths of its tables and
 halves."""
@@ -42,8 +42,8 @@ def compile_fields() -> None:
 def advance_fields(sample, rows, contacts, force, place, drop, first):
     """Advances the rows (B, LISTED) by the samples of a control step, all samples counted row by row, from number
     `first` on; fills drop (B, N, F) K. sample: the address of touch.heat's. contacts: (B, O, PARTS). force:
-    (B, O, S, F) N. place: (B, O, F, 3) m. Returns the number of a sample before which places or contacts change, which
-    has not been taken yet; B N after the last one."""
+    (B, O, S, F) N. place: (B, O, F, 3) m. Returns the number of a sample that has not been taken yet, as places or
+    contacts change before it or it is more than `sample` does; B N after the last one."""
     samples, objects = drop.shape[1], force.shape[1]
     for number in range(first, len(rows) * samples):
         b, k = number // samples, number % samples
@@ -65,7 +65,7 @@ def advance_fields(sample, rows, contacts, force, place, drop, first):
                     place[b, o],
                     every[:, :, o],
                 )
-        if called(sample, heat, touches + 8 * k * tips * (objects + tips) * COLUMNS, 1, 0) != 0:
+        if heat == 0 or called(sample, heat, touches + 8 * k * tips * (objects + tips) * COLUMNS, 1, 0) != 0:
             return number
         tell_drop(rows[b, HEAT], drop[b, k])
     return len(rows) * samples
