@@ -193,18 +193,16 @@ class SimulationConfig:
     @cached_property
     def by_fields(self) -> bool:
         """Whether heat flows in the fields of ThermalTouch, which know where it enters and how broad a contact is at
-        each force: round objects and meshes unless `anywhere` is False, and all that a pad around the sensor may touch
-        beside the middle of boxes' faces."""
+        each force: round objects and meshes without parts unless `anywhere` is False, and all that a pad around the
+        sensor may touch beside the middle of boxes' faces."""
         sizes = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         least = min((1.0, *(factor for some in sizes for factor in some)))
         every = (*(scaled(shape, least) for shape in self.shapes), *self.others)
         if self.surround is not None:
             return any(shape.shape != "box" or self._anywhere(shape) for shape in every)
-        if self.anywhere is False or self.mode == "O" or self.heated is not None:
+        if self.anywhere is False or self.mode == "O" or any(shape.parts for shape in every):
             return False
-        plain = not any(shape.parts for shape in every)
-        ideal = self.thermostat is None and self.face_temperature is None
-        return plain and ideal and any(shape.shape != "box" for shape in every)
+        return any(shape.shape != "box" for shape in every)
 
     @property
     def _sensor(self) -> SensorStack | HeatedStack:

@@ -124,7 +124,8 @@ class FieldScenes:
             self._owner[row] = 0
             for record, body in zip(self._rows[row], scene, strict=True):
                 record["sensor_temperature"], record["difference"] = celsius, celsius - body.temperature
-                for name in ("known", "touching", "books"):
+                record["element_capacity"] = body.stack.heat_capacity
+                for name in ("offset", "stored", "known", "touching", "books"):
                     record[name] = 0
 
     def rung(self, row: int) -> tuple[str, ...]:
@@ -164,6 +165,15 @@ class FieldScenes:
         self._tell_contents()
         return self._step(np.zeros((len(self._rows), self._samples, 2)))
 
+    def set_thermostats(self, celsius: np.ndarray) -> None:
+        """Temperatures (B, 2) °C of the thermostats from now on."""
+        first = self._rows[:, 0]
+        change = celsius - first["sensor_temperature"] - first["offset"]
+        self._rows["offset"] += change[:, None]
+        for row in np.flatnonzero(change.any(axis=1)).tolist():
+            one = self._heats[row]
+            one.heat.warm(change[row : row + 1, : one.bodies[0].fingertips])
+
     def state(self, rows: Sequence[int]) -> FieldHeatState:
         """A copy of what the rows remember."""
         chosen = list(rows)
@@ -177,7 +187,8 @@ class FieldScenes:
     def set_state(self, rows: Sequence[int], state: FieldHeatState) -> None:
         """Puts the rows into a state taken by `state`."""
         for k, row in enumerate(rows):
-            self._place(row, state.scenes[k], state.rows[k, 0]["sensor_temperature"])
+            first = state.rows[k, 0]
+            self._place(row, state.scenes[k], first["sensor_temperature"] + first["offset"])
             self._rows[row], self._owner[row] = state.rows[k], state.owner[k]
             self._heats[row].heat.set_state(state.fields[k])
             self._list(row)
@@ -197,7 +208,7 @@ class FieldScenes:
 
     @property
     def sensor_temperatures(self) -> np.ndarray:
-        """(B, 2) °C of the thermostats."""
+        """(B, 2) °C of the thermostats at the start."""
         return self._rows["sensor_temperature"][:, 0]
 
     def _place(self, row: int, scene: tuple[GraspBody, ...], celsius: np.ndarray) -> None:
@@ -326,6 +337,10 @@ class FieldHeat:
         """What a step would tell of a batch in which nothing has touched yet."""
         return self._scenes.rest().fingertips
 
+    def set_thermostats(self, celsius: np.ndarray) -> None:
+        """Temperatures (B, 2) °C of the thermostats from now on."""
+        self._scenes.set_thermostats(celsius)
+
     def state(self, rows: Sequence[int]) -> FieldHeatState:
         """A copy of what the rows remember."""
         return self._scenes.state(rows)
@@ -336,7 +351,7 @@ class FieldHeat:
 
     @property
     def sensor_temperatures(self) -> np.ndarray:
-        """(B, 2) °C of the thermostats."""
+        """(B, 2) °C of the thermostats at the start."""
         return self._scenes.sensor_temperatures
 
 

@@ -74,15 +74,15 @@ def advance_fields(sample, rows, contacts, force, place, drop, first):
 @njit(cache=True, error_model="numpy")
 def tell_fields(rows, records, seconds, info, given, stored, gained, air):
     """Fills flows, heats and books of info (B, O) HEAT_INFO after a control step of so many seconds; books of records
-    (B, O) HEAT_ROW go on. From the step before to this one go given (B, F, O) J from fingertips to objects, stored
-    (B, F) J in elements and pads, gained (B, O) J in objects, and air (B,) J."""
-    passed, kept = np.empty(given.shape[1:]), np.empty(2)
+    (B, O) HEAT_ROW go on, and what elements hold. From the step before to this one go given (B, F, O) J from fingertips
+    to objects, gained (B, O) J in objects, and air (B,) J; stored (B, F) J is what elements and pads have gained beside
+    thermostats that stay as they are."""
+    passed = np.empty(given.shape[1:])
     for b in range(len(rows)):
         if rows[b, TOUCHES] == 0:
             continue
         lost, imbalance = air[b], 0.0
         for f in range(2):
-            kept[f] = stored[b, f]
             for o in range(info.shape[1]):
                 passed[f, o] = given[b, f, o]
         air[b] = tell_books(rows[b, HEAT], given[b], stored[b], gained[b])
@@ -90,8 +90,10 @@ def tell_fields(rows, records, seconds, info, given, stored, gained, air):
             step, record, exchanged = info[b, o], records[b, o], 0.0
             for f in range(2):
                 flowed = given[b, f, o] - passed[f, o]
-                step.flow[f], step.heat[f] = flowed / seconds, stored[b, f]
-                step.drawn[f] = step.flow[f] + (stored[b, f] - kept[f]) / seconds
+                step.flow[f] = flowed / seconds
+                step.heat[f] = stored[b, f] + record.element_capacity * record.offset[f]
+                step.drawn[f] = step.flow[f] + (step.heat[f] - record.stored[f]) / seconds
+                record.stored[f] = step.heat[f]
                 exchanged += abs(flowed)
                 imbalance -= given[b, f, o]
             step.heat[2] = gained[b, o]

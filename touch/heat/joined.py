@@ -173,6 +173,13 @@ class JoinedHeat:
             self._started[w] = self._held(w)
         self._warm_up()
 
+    def warm(self, change: np.ndarray) -> None:
+        """The fingertips' thermostats are warmer by change (W, S) K from now on; their elements' fields stay as they
+        are, and are told from where the thermostats have gone."""
+        for f, each in enumerate(change.T):
+            self._x[:, len(self._shapes) + f, : self._uniform.shape[1]] -= each[:, None] * self._uniform[f]
+        self._warm[:, : change.shape[1]] += change
+
     def set_materials(self, worlds: Sequence[int], materials: Sequence[tuple[Material, ...]]) -> None:
         """What those worlds' objects are made of from now on; a reset of these worlds must follow."""
         for w, combination in zip(worlds, materials, strict=True):

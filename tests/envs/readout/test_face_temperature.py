@@ -11,7 +11,6 @@ from thermograsp.envs import (
     ObjectSpec,
     SortEnv,
 )
-from thermograsp.envs.sensing.scene_heat import SceneHeat
 from thermograsp.envs.spaces.map_observation import FACE_TEMPERATURE
 from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import Thermostat
@@ -145,9 +144,8 @@ def test_of_several_objects_the_touched_one_s_face_counts() -> None:
         for _ in range(60):
             seen, *_ = env.step(CLOSE)
         found.append(seen["face_temperature"])
-    assert isinstance(getattr(scene.batch.plant, "heat"), SceneHeat)  # noqa: B009
     assert np.ptp(found[0]) > 0.5
-    assert found[0] == pytest.approx(found[1], abs=0.5)  # the tolerance of the networks, which differ
+    assert found[0] == pytest.approx(found[1], abs=0.01)
 
 
 def test_a_fingertip_without_a_sensor_stays_even() -> None:
