@@ -9,12 +9,14 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ...thermal.contact import CURVED_TABLE
+from ...thermal.contact import CURVED_TABLE, FOOTPRINT_LAW
 from ...thermal.padded import RINGS
 from ...touch.contacts import COLUMNS
 from ...touch.heat import tell_books, tell_drop, tell_warmth
 from ...touch.pointers import called, floats, footprints, laws
 from ..footprint import touch_pads
+from .kernel import meet_rows
+from .rows import HEAT_INFO, HEAT_ROW
 
 HEAT, SAMPLE, TOUCHES, TIPS, LISTED = range(5)
 """Of a row's heat: the addresses of JoinedHeat.telling, of what `sample` takes, which is 0 where a step is more than
@@ -22,6 +24,18 @@ that, and of its touches (N, F, O + F, COLUMNS), which is 0 before the first res
 PARTS = 8
 """Of an object under pads: the addresses of a PadContact's arrays, in its order, and the lengths of its tables and
 halves."""
+
+
+def compile_fields() -> None:
+    """Compiles a control step as FieldScenes calls it, by one of no rows."""
+    listed, parts = np.zeros((0, LISTED), np.int64), np.zeros((0, 1, PARTS), np.int64)
+    force, place, drop = np.zeros((0, 1, 1, 2)), np.zeros((0, 1, 2, 3)), np.zeros((0, 1, 2))
+    records, info = np.zeros((0, 1), HEAT_ROW), np.zeros((0, 1), HEAT_INFO)
+    pairs, of_objects, air = np.zeros((0, 2, 1)), np.zeros((0, 1)), np.zeros(0)
+    meet_rows(np.zeros((0, 1), FOOTPRINT_LAW), records, force, place, info)
+    advance_fields(0, listed, parts, force, place, drop, 0)
+    tell_fields(listed, records, 1.0, info, pairs, np.zeros((0, 2)), of_objects, air)
+    tell_temperatures(listed, records, air, info)
 
 
 @njit(cache=True, error_model="numpy")
@@ -66,7 +80,11 @@ def tell_fields(rows, records, seconds, info, given, stored, gained, air):
     for b in range(len(rows)):
         if rows[b, TOUCHES] == 0:
             continue
-        passed[:], kept[:], lost = given[b], stored[b], air[b]
+        lost, imbalance = air[b], 0.0
+        for f in range(2):
+            kept[f] = stored[b, f]
+            for o in range(info.shape[1]):
+                passed[f, o] = given[b, f, o]
         air[b] = tell_books(rows[b, HEAT], given[b], stored[b], gained[b])
         for o in range(info.shape[1]):
             step, record, exchanged = info[b, o], records[b, o], 0.0
@@ -75,11 +93,13 @@ def tell_fields(rows, records, seconds, info, given, stored, gained, air):
                 step.flow[f], step.heat[f] = flowed / seconds, stored[b, f]
                 step.drawn[f] = step.flow[f] + (stored[b, f] - kept[f]) / seconds
                 exchanged += abs(flowed)
+                imbalance -= given[b, f, o]
             step.heat[2] = gained[b, o]
+            imbalance += gained[b, o]
             record.books[1] += exchanged
             step.exchanged = record.books[1]
         info[b, 0].air_loss = (air[b] - lost) / seconds
-        info[b, 0].imbalance = gained[b].sum() + air[b] - given[b].sum()
+        info[b, 0].imbalance = imbalance + air[b]
 
 
 @njit(cache=True, error_model="numpy")
