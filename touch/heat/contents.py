@@ -13,12 +13,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from ...thermal import Reservoir
 from ...thermal.matter import RESERVOIR_ROW, reservoir_step, reservoir_temperature
 from .places import BodyField
 
 Row = namedtuple("Row", RESERVOIR_ROW.names or ())  # quicker to read than a record
+_BLAS = ThreadpoolController()
 
 
 class ContentsState(NamedTuple):
@@ -87,8 +89,9 @@ class HeldContents:
         self._rows, self._bare = list(state.rows), dict(enumerate(bare))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=512)
 def _kept(bare: BodyField, seconds: float) -> np.ndarray:
     """(own, own): what is left of the object's own states after so many s of the film alone, less the contents'."""
-    rates, turn = np.linalg.eigh(bare.walls)
-    return np.ascontiguousarray(turn * np.exp(-seconds * np.maximum(rates, 0.0)) @ turn.T)
+    with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+        rates, turn = np.linalg.eigh(bare.walls)
+        return turn * np.exp(-seconds * np.maximum(rates, 0.0)) @ turn.T

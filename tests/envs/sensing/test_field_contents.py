@@ -19,7 +19,7 @@ from thermograsp.envs import (
     ice,
     water,
 )
-from thermograsp.envs.sensing import FieldHeat, GraspHeat
+from thermograsp.envs.sensing import FieldHeat, FieldScenes, GraspHeat
 from thermograsp.thermal import material
 
 SETTINGS: dict[str, Any] = {
@@ -132,6 +132,26 @@ def test_a_state_goes_on_bit_for_bit_beside_other_rows(tmp_path: Path) -> None:
     heat.reset([0], [every[1]])
     (_, info) = steps(heat, 1)[0]
     assert np.isnan(info["reservoir_temperature"][0]) and info["reservoir_flow"][0] == 0.0
+
+
+def test_each_object_of_a_scene_has_its_own(tmp_path: Path) -> None:
+    """A full vessel, an empty one and a box with a heater in it."""
+    heated = ObjectSpec(name="heated", reservoir=Reservoir(30.0, 4.0, power=5.0))
+    full, empty = (vessel(tmp_path, 0.002, inside) for inside in (water(0.03, 4.0, 70.0), None))
+    bodies = [body_of("ceramic", spec) for spec in (full, empty, heated)]
+    scenes = FieldScenes(1, 3, **SETTINGS)
+    scenes.reset([0], [bodies], np.full((1, 2), 36.0))
+    force, place = np.zeros((1, 3, 10, 2)), np.tile(PLACE, (1, 3, 1, 1))
+    force[:, 0] = 10.0
+    for _ in range(50):
+        step = scenes.advance(force, place)
+        told, info = step.objects[0], step.fingertips.info[0]
+        assert info["reservoir_flow"] == pytest.approx(told["reservoir_flow"].sum(), rel=1e-12)
+        assert abs(info["imbalance"]) < 1e-10 * info["exchanged"]
+        celsius = told["reservoir_temperature"]
+        assert 68.5 < info["reservoir_temperature"] == celsius[0] < 70.0
+        assert np.isnan(celsius[1]) and told["reservoir_flow"][1] == 0.0 < told["reservoir_flow"][0]
+        assert ROOM < celsius[2] < ROOM + 5.0 / 30.0
 
 
 def test_environments_take_fields_unless_networks_are_asked_for(tmp_path: Path) -> None:

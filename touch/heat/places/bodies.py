@@ -63,18 +63,27 @@ def untouched(shape: BodyShape, film: float, cache: bool = True) -> BodyField:
     if inside is None:
         return bare
     if shape.solid is not None:
-        from ....thermal.meshes import own_network
-
-        with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-            network = own_network(shape.solid, inside.conductance, cache=cache)
-        wet = [row for name, row in network.outputs.items() if name.startswith("film:")]
-        if wet:
-            rows = np.stack(wet)
-            rows[:, 0] *= network.outputs["heat"][0] / held[0]  # the body's mean, by its own heat capacity
-            none = np.zeros((len(network.rates), 0))
-            found = _with_mean(held[0], rate[0], (), (), network, none, len(network.rates), ())
-            return replace(found, walls=inside.conductance * rows.T @ rows)
+        found = _filled_field(shape.solid, float(held[0]), float(rate[0]), inside.conductance, cache)
+        if found is not None:
+            return found
     return replace(bare, walls=np.array([[inside.conductance / capacity]]))
+
+
+@lru_cache(maxsize=512)
+def _filled_field(solid: Solid, held: float, rate: float, wet: float, cache: bool) -> BodyField | None:
+    """Of a body with contents behind walls that conduct W/K to them; None where it has no hollow."""
+    from ....thermal.meshes import own_network
+
+    with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+        network = own_network(solid, wet, cache=cache)
+    outputs = network.outputs
+    felt = [row for name, row in outputs.items() if name.startswith("film:")]
+    if not felt:
+        return None
+    rows, none = np.stack(felt), np.zeros((len(network.rates), 0))
+    rows[:, 0] *= outputs["heat"][0] / held  # the body's mean, by its own heat capacity
+    found = _with_mean(held, rate, (), (), network, none, len(network.rates), ())
+    return replace(found, walls=wet * rows.T @ rows)
 
 
 def touched(
