@@ -21,10 +21,10 @@ import pytest
 import trimesh
 
 import thermograsp.envs  # noqa: F401  (registers the environments)
-from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size
+from thermograsp.envs import GraspBatch, GraspTask, ObjectSpec, SimulationConfig, Size, action_of
 from thermograsp.envs.sensing import FieldHeat, FieldScenes, GraspHeat
 from thermograsp.envs.sensing.field_heat import MOST_SPARES
-from thermograsp.thermal import material
+from thermograsp.thermal import Thermostat, material
 from thermograsp.touch import Fingertip, ThermalTouch
 from thermograsp.touch.heat import joined
 
@@ -479,3 +479,21 @@ def test_a_state_goes_on_with_thermostats_that_have_moved() -> None:
     other.set_state([0], first.state([0]))
     for name, each in swayed(first, 30, 30).items():
         np.testing.assert_array_equal(swayed(other, 30, 30)[name] if name == "drop" else each, each)
+
+
+@pytest.mark.parametrize("words", [{"thermostat": Thermostat()}, {"sensor": "heated_thermistor"}], ids=str)
+def test_what_is_behind_the_element_follows_as_beside_networks(words: dict[str, Any]) -> None:
+    """A thermostat of finite power and a heater of the sensor's own. A ball's contact is about theirs at 10 N."""
+    ball = ObjectSpec(shape="sphere", size=(0.04, 0.04, 0.04))
+    told = []
+    for anywhere in ("auto", False):
+        batch = GraspBatch(1, material="aluminium", objects=ball, anywhere=anywhere, **words)
+        batch.reset([0], [np.random.default_rng(0)])
+        for _ in range(60):
+            reading = batch.step(action_of(0.0, 10.0, 0.0)[None]).reading
+        found = reading.truth["temperature_drop"][0], reading.thermostat[0], reading.truth["heat_drawn"][0]
+        assert abs(reading.truth["heat_imbalance"][0]) < 1e-8 and np.isfinite(found).all()
+        told.append(found)
+    for each, least in zip(zip(*told, strict=True), (0.2, 0.02, 0.1), strict=True):
+        np.testing.assert_allclose(*each, atol=least)
+    assert told[0][0].min() > 0.03
