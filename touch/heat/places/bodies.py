@@ -116,7 +116,7 @@ def _solid_field(
     cache: bool,
 ) -> BodyField:
     """The same of a body of any shape, which is as large as that box. rings: around all sensors."""
-    from ....thermal.meshes import body_in_pads
+    from ....thermal.anywhere import body_in_pads
 
     with _BLAS.limit(limits=1, user_api="blas"):
         found = [_patch(solid, size, place, stack, cache) for place in places]
@@ -156,7 +156,7 @@ def _patch(
 ) -> tuple[SurfacePatch, tuple[float, float]]:
     """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is, and how thick
     m it is there."""
-    from ....thermal.meshes import surface_patch, wall_below
+    from ....thermal.anywhere import surface_patch, wall_below
 
     outward, centre = np.zeros(3), np.zeros(3)
     axis, far = divmod(place.face, 2)

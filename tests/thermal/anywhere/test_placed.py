@@ -8,10 +8,12 @@ import trimesh
 
 from thermograsp import thermal
 from thermograsp.errors import MeshError
-from thermograsp.thermal.meshes import body_network, field_carried, placed, placed_body
-from thermograsp.thermal.meshes.beneath import beneath
-from thermograsp.thermal.meshes.modes import body_modes
-from thermograsp.thermal.meshes.placed import PLACED_SHARE, centred_tip, face_patterns, placed_network
+from thermograsp.thermal.anywhere import PLACED_SHARE, placed_body
+from thermograsp.thermal.anywhere import place as place_module
+from thermograsp.thermal.anywhere.beneath import beneath
+from thermograsp.thermal.anywhere.placed import placed_network
+from thermograsp.thermal.anywhere.ports import centred_tip, face_patterns
+from thermograsp.thermal.meshes import body_modes, body_network, field_carried
 from thermograsp.thermal.surfaces import Solid, SolidPart, SurfacePatch
 
 STACK = thermal.sensor("seed")
@@ -202,7 +204,7 @@ def no_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> None:
         raise AssertionError
 
-    monkeypatch.setattr(placed, "patch_fields", refused)
+    monkeypatch.setattr(place_module, "patch_fields", refused)
 
 
 @pytest.mark.usefixtures("no_grid")
