@@ -39,6 +39,7 @@ ROUND: dict[str, tuple[str, Callable[[float], SurfacePatch]]] = {
     "mug, at the rim": ("mug", lambda angle: beside(angle, 0.0365)),
     "mug, at the foot": ("mug", lambda angle: beside(angle, -0.0365)),
     "pot, over the rim": ("pot of 1 mm", lambda angle: beside(angle, 0.037, 0.045)),
+    "handle": ("handle", lambda angle: beside(angle, 0.002, 0.01)),
     "cube": ("cube", lambda angle: on(0, 0.02, 0.01 * math.cos(angle), 0.01 * math.sin(angle))),
     "egg": (
         "egg",

@@ -26,6 +26,8 @@ from .slow import crossover_time, modal_impedance, modal_share, slow_states
 
 _REACH = 9e-3  # m beyond a patch, that its heat is followed until then at least
 _FARTHEST = 25e-3  # m, at most
+_ROD = 0.5  # curvature times half width, up to which a rod of one material without contents is unrolled, and
+_THINNEST = 9e-3  # m, its radius at least, round which heat does not go before the modes tell
 _BOTH_WAYS = 0.01  # product of a face's curvatures times half widths, up to which it is unrolled
 _KEPT = 256  # places
 _CELLS = 8  # places whose cells are kept, for what other places nearby feel of them
@@ -104,8 +106,11 @@ def unrolled_cells(
     much or contents wet it, or heat goes too far along another material."""
     farthest = max(part.material.diffusivity for part in body.parts) * told
     reach = _REACH if len(body.parts) == 1 else math.sqrt(farthest)
-    bent = np.abs(below.curvature) * below.placed.half_width
-    if bent.max() > ROUND or bent.prod() > _BOTH_WAYS or reach > _FARTHEST or below.within:
+    bent = below.curvature * below.placed.half_width
+    rod = film is None and len(body.parts) == 1 and below.curvature.max() < 1 / _THINNEST
+    most = _ROD if rod else ROUND
+    curved = bent.max() > most or bent.min() < -ROUND or abs(bent.prod()) > _BOTH_WAYS
+    if curved or reach > _FARTHEST or below.within:
         return None
     bend = np.where(np.abs(below.curvature) < FLAT, 0.0, below.curvature)
     face = Face(below.placed.centre, np.stack((*below.placed.sides, below.placed.normal)), bend)
