@@ -86,6 +86,7 @@ ROOMS = {
         "batch",
         "rungs",
         "meshes",
+        "anywhere",
         "fitting",
         "identification",
         "measured",

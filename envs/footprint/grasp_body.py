@@ -104,16 +104,18 @@ class GraspBody:
     @cached_property
     def contact_shape(self) -> Literal["flat", "cylinder", "sphere", "mesh"]:
         """What the pads meet. An element glued on (O mode) is flat, and so is what stands for a mesh that they miss."""
-        if self.mode == "O" or self.spec.shape == "box" or (self.spec.mesh and self._mesh_table is None):
+        if self.mode == "O" or self.spec.shape == "box":
             return "flat"
+        if self.spec.mesh:
+            from .mesh_contact import is_met
+
+            return "mesh" if is_met(self.pad, self.spec) else "flat"
         return self.spec.shape
 
     @cached_property
-    def _mesh_table(self) -> ContactArea | None:
+    def _mesh_table(self) -> ContactArea:
         """What the pads meet of a mesh, at TABLE_FORCES."""
-        from .mesh_contact import mesh_contact
-
-        return mesh_contact(self.pad, self.spec, tuple(TABLE_FORCES.tolist()))
+        return self._contact(self.pad, TABLE_FORCES, (0.0, 0.0))
 
     @cached_property
     def plate(self) -> tuple[float, float, float]:
@@ -291,7 +293,6 @@ class GraspBody:
         if self.contact_shape == "flat":
             followed = self.mode == "T" and self.spec.shape == "box"
             return flat_footprint(self.pad, self.joint, self._face, self._across if followed else None)
-        assert self._mesh_table is not None
         return self._table_law(self._mesh_table, (0, 0, 0, 0, 0))
 
     def _table_law(self, contact: ContactArea, step: tuple[int, ...]) -> np.void:
@@ -314,7 +315,7 @@ class GraspBody:
     @cached_property
     def closed_mesh(self) -> ClosedMesh | None:
         """A mesh as the pads close on it; None of what else they meet."""
-        if self.contact_shape != "mesh" or self._mesh_table is None:
+        if self.contact_shape != "mesh":
             return None
         from .slipped_mesh import closed_mesh
 

@@ -36,10 +36,15 @@ _FINER = 3  # times as many, of what is touched
 def mesh_contact(pad: Pad, spec: ObjectSpec, forces: tuple[float, ...]) -> ContactArea | None:
     """What pads that close on a mesh along x, at its place and angle, touch at these forces N above 0, the mean of
     those of the two that meet it; None where neither does. Arrays (n,)."""
-    touched = [side for side in map(_side, _both(pad, spec, forces)) if side is not None]
+    touched = [side for each in _both(pad, spec) if (side := _side(pad, each, forces)) is not None]
     if not touched:
         return None
     return ContactArea(*np.mean([side[:3] for side in touched], axis=0))
+
+
+def is_met(pad: Pad, spec: ObjectSpec) -> bool:
+    """Whether either of those pads meets the mesh."""
+    return any(_seen(each) is not None for each in _both(pad, spec))
 
 
 class AroundFace(NamedTuple):
@@ -55,86 +60,107 @@ def around_face(
     pad: Pad, spec: ObjectSpec, forces: tuple[float, ...], sides: tuple[float, ...]
 ) -> AroundFace:
     """sides: (R,) m, the outer sides of rings around the face."""
-    every = (_beside(closing, sides) for closing in _both(pad, spec, forces))
+    every = (_beside(pad, each, forces, sides) for each in _both(pad, spec))
     touched = np.mean([side for side in every if side is not None], axis=0)
     return AroundFace(touched[5:].reshape(len(sides), 2, len(forces)), touched[:5].T)
 
 
 class _Closing(NamedTuple):
-    """A pad that closes on a mesh along x (side 1), or against it (-1), with these forces N above 0. position (2,) m
-    and yaw rad of the mesh between the pads. height: m, the pads' middles above the mesh's."""
+    """A pad of that width m that closes on a mesh along x (side 1), or against it (-1). position (2,) m and yaw rad of
+    the mesh between the pads. height: m, the pads' middles above the mesh's."""
 
-    pad: Pad
+    width: float
     shape: MeshShape
     position: tuple[float, float]
     yaw: float
     height: float
-    forces: tuple[float, ...]
     side: int
 
 
-def _both(pad: Pad, spec: ObjectSpec, forces: tuple[float, ...]) -> list[_Closing]:
+def _both(pad: Pad, spec: ObjectSpec) -> list[_Closing]:
     place = spec.position, spec.yaw, spec.grasp_height - spec.size[2] / 2
-    return [_Closing(pad, spec.geometry, *place, forces, side) for side in (1, -1)]
+    return [_Closing(pad.width, spec.geometry, *place, side) for side in (1, -1)]
 
 
-class _Aligned(NamedTuple):
-    """A pad that has aligned itself with a mesh. frame: (4, 3) its middle m, normal and two axes. fine: (n, 2) m, its
-    places. heights: (n,) m of the mesh, and covered. sunk: of each force, depth m and tilts along both axes."""
+class _Seen(NamedTuple):
+    """A mesh as a pad sees it. frame: (4, 3) the pad's middle m, normal and two axes. coarse, fine: heights (n,) m of
+    the mesh at the places of _springs, and how far it covers them."""
 
     frame: np.ndarray
-    fine: np.ndarray
-    heights: np.ndarray
-    covered: np.ndarray
-    sunk: list[tuple[float, float, float]]
-
-    def touched(self, force: int) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) how far the mesh has sunk in, m, and where it touches, at the force of that number."""
-        depth, tilt, other = self.sunk[force]
-        sunk = depth + tilt * self.fine[:, 0] + other * self.fine[:, 1] - self.heights
-        return sunk, np.where(sunk > 0, self.covered, 0.0)
+    coarse: tuple[np.ndarray, np.ndarray]
+    fine: tuple[np.ndarray, np.ndarray]
 
 
 @lru_cache(maxsize=8)
-def _aligned(closing: _Closing) -> _Aligned | None:
+def _seen(closing: _Closing) -> _Seen | None:
     """None where the pad meets nothing."""
-    pad, shape, position, yaw, height, forces, side = closing
+    width, shape, position, yaw, height, side = closing
     cos, sin = math.cos(yaw), math.sin(yaw)
     x, y = position
     normal = np.array([side * cos, -side * sin, 0.0])
     across = np.array([side * sin, side * cos, 0.0])
     middle = np.array([-x * cos - y * sin, x * sin - y * cos, height])
-    frame = np.stack([middle, normal, across, (0.0, 0.0, 1.0)])
-    height_map = mesh_map(shape, normal)
-    places, surface, cover = _sampled(pad, frame, height_map, _POINTS)
-    if not cover.any():
+    frame, height_map = np.stack([middle, normal, across, (0.0, 0.0, 1.0)]), mesh_map(shape, normal)
+    coarse = _sampled(width, frame, height_map, _POINTS)
+    if not coarse[1].any():
         return None
-    area = (pad.width / _POINTS) ** 2
-    _, stiffer = face_springs(pad, places, pad.width / _POINTS)
-    springs = cover * stiffer
+    return _Seen(frame, coarse, _sampled(width, frame, height_map, _POINTS * _FINER))
+
+
+def _sampled(
+    width: float, frame: np.ndarray, height_map: HeightMap, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The mesh's heights m and coverage (n,) at count^2 places of a pad."""
+    places = square_middles(width, count)
+    height, cover = np.zeros(len(places)), np.zeros(len(places))
+    map_heights(*height_map, frame, places, height, cover)
+    return height, cover
+
+
+class _Springs(NamedTuple):
+    """Of a pad. places: (n, 2) m of so many squares each way. within, stiffer: as face_springs has them."""
+
+    places: np.ndarray
+    within: np.ndarray
+    stiffer: np.ndarray
+
+
+@lru_cache(maxsize=8)
+def _springs(pad: Pad, count: int) -> _Springs:
+    places = square_middles(pad.width, count)
+    return _Springs(places, *face_springs(pad, places, pad.width / count))
+
+
+@lru_cache(maxsize=16)
+def _aligned(
+    pad: Pad, closing: _Closing, forces: tuple[float, ...]
+) -> list[tuple[float, float, float]] | None:
+    """How a pad has aligned itself with a mesh at each of these forces N above 0: depth m and tilts along both axes.
+    None where it meets nothing."""
+    if (seen := _seen(closing)) is None:
+        return None
+    places, _, stiffer = _springs(pad, _POINTS)
+    surface, cover = seen.coarse
+    springs, area = cover * stiffer, (pad.width / _POINTS) ** 2
     stiffness = pad.foundation_modulus / pad.thickness
     centre = cover @ places / cover.sum()
     pressure = np.zeros(len(places))
-    sunk = [
+    return [
         pressure_map(surface, springs, places, area, stiffness, pad.thickness, force, centre, pressure)
         for force in forces
     ]
-    return _Aligned(frame, *_sampled(pad, frame, height_map, _POINTS * _FINER), sunk)
 
 
 @lru_cache(maxsize=512)
-def _side(closing: _Closing) -> np.ndarray | None:
+def _side(pad: Pad, closing: _Closing, forces: tuple[float, ...]) -> np.ndarray | None:
     """(3, n): m2 on the pad, m2 on the face, N on the face; None where the pad meets nothing."""
-    pad, forces, aligned = closing.pad, closing.forces, _aligned(closing)
-    if aligned is None:
+    seen, aligned = _seen(closing), _aligned(pad, closing, forces)
+    if seen is None or aligned is None:
         return None
-    pitch = pad.width / (_POINTS * _FINER)
-    within, stiffer = face_springs(pad, aligned.fine, pitch)
+    pitch, springs = pad.width / (_POINTS * _FINER), _springs(pad, _POINTS * _FINER)
     contacts = []
-    for force, sunk in zip(forces, aligned.sunk, strict=True):
-        found = _touched(
-            *(aligned.fine, aligned.heights, aligned.covered, within, stiffer, pad.face_ratio, *sunk)
-        )
+    for force, sunk in zip(forces, aligned, strict=True):
+        found = _touched(springs.places, *seen.fine, springs.within, springs.stiffer, pad.face_ratio, *sunk)
         contacts.append([found[0] * pitch**2, found[1] * pitch**2, found[2] * force])
     return np.array(contacts).T
 
@@ -154,22 +180,25 @@ def _touched(places, heights, cover, within, stiffer, face_ratio, depth, tilt, o
 
 
 @lru_cache(maxsize=512)
-def _beside(closing: _Closing, rings: tuple[float, ...]) -> np.ndarray | None:
+def _beside(
+    pad: Pad, closing: _Closing, forces: tuple[float, ...], rings: tuple[float, ...]
+) -> np.ndarray | None:
     """(5 + 2 R, n) of the same pad: AroundFace's lying, then m2 and N on each ring up to these outer sides m."""
-    pad, shape, forces, aligned = closing.pad, closing.shape, closing.forces, _aligned(closing)
-    if aligned is None:
+    seen, aligned = _seen(closing), _aligned(pad, closing, forces)
+    if seen is None or aligned is None:
         return None
-    pitch, fine = pad.width / (_POINTS * _FINER), aligned.fine
-    within, stiffer = face_springs(pad, fine, pitch)
+    pitch, (fine, within, stiffer) = pad.width / (_POINTS * _FINER), _springs(pad, _POINTS * _FINER)
     away, on_face = np.abs(fine).max(axis=1), within > 0
     beside = [(away > inner / 2) & (away < outer / 2) for inner, outer in pairwise((pad.face, *rings))]
-    seen = shape.surface[0] @ aligned.frame[2:].T
-    spans = np.ptp(seen, axis=0) + pad.face
-    place = (aligned.frame[2:] @ aligned.frame[0] - seen.min(axis=0) + pad.face / 2).tolist()
+    outline = closing.shape.surface[0] @ seen.frame[2:].T
+    spans = np.ptp(outline, axis=0) + pad.face
+    place = (seen.frame[2:] @ seen.frame[0] - outline.min(axis=0) + pad.face / 2).tolist()
     y, z = fine[on_face].T
     powers, contacts = np.stack((np.ones(len(y)), y, z, y * y, y * z, z * z)), []
-    for number, force in enumerate(forces):
-        sunk, touched = aligned.touched(number)
+    heights, covered = seen.fine
+    for force, (depth, tilt, other) in zip(forces, aligned, strict=True):
+        sunk = depth + tilt * fine[:, 0] + other * fine[:, 1] - heights
+        touched = np.where(sunk > 0, covered, 0.0)
         pressed, lies = touched * sunk * stiffer, np.zeros(5)
         moments = Moments(*(powers @ (touched * within)[on_face] * pitch**2).tolist())
         lie(moments, pitch**2, *place, spans, pad.face, 0.0, lies)
@@ -178,13 +207,3 @@ def _beside(closing: _Closing, rings: tuple[float, ...]) -> np.ndarray | None:
             contact += [touched[ring].sum() * pitch**2, pressed[ring].sum() / pressed.sum() * force]
         contacts.append(contact)
     return np.array(contacts).T
-
-
-def _sampled(
-    pad: Pad, frame: np.ndarray, height_map: HeightMap, count: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places (n, 2) m, count^2 of the pad, and the mesh's heights m and coverage there."""
-    places = square_middles(pad.width, count)
-    height, cover = np.zeros(len(places)), np.zeros(len(places))
-    map_heights(*height_map, frame, places, height, cover)
-    return places, height, cover

@@ -21,11 +21,10 @@ from ...thermal import (
     Solid,
     SurfacePatch,
 )
+from ...thermal.anywhere import PLACED_SHARE, placed_body
 from ...thermal.meshes import (
-    PLACED_SHARE,
     TouchedBody,
     field_carried,
-    placed_body,
     surface_normal,
     touched_body,
     wetted_area,

@@ -1,8 +1,8 @@
 """Networks of meshes from their modes beside grids that are fine at the patch.
 
 A sensor of the paper touches a body at one place, or at two at once. The drop of its temperature follows from the
-network that environments use (thermal/meshes/placed.py), and from one whose states are fields of a grid that is fine at
-the patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
+network that environments use (thermal/anywhere), and from one whose states are fields of a grid that is fine at the
+patches (body_network), which has another grid, other states and no local kernel. Compared are the drops at
 CONDUCTANCES over TIMES. Mugs with contents that are held at its first temperature behind a film of FILMS are compared
 with a grid that is finer still, whose states are fields with that film. So are drawn places of the
 library's vessels, at FELT over LONG.

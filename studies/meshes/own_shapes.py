@@ -17,7 +17,8 @@ import numpy as np
 
 from thermograsp.envs.bodies.library import library_object
 from thermograsp.thermal import material, sensor
-from thermograsp.thermal.meshes import press_body, surface_patch
+from thermograsp.thermal.anywhere import surface_patch
+from thermograsp.thermal.meshes import press_body
 from thermograsp.thermal.surfaces import Solid, SolidPart
 from thermograsp.touch.contacts import AREA, CLOSED, COLUMNS, CONDUCTANCE, LENGTH, NORMAL, PLACE
 from thermograsp.touch.heat import JoinedHeat

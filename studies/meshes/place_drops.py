@@ -10,9 +10,9 @@ import numpy as np
 
 from thermograsp import thermal
 from thermograsp.thermal import SurfacePatch
+from thermograsp.thermal.anywhere.ports import centred_tip
 from thermograsp.thermal.meshes.film import held_apart
 from thermograsp.thermal.meshes.network import PatchFields
-from thermograsp.thermal.meshes.placed import centred_tip
 from thermograsp.thermal.network import ThermalNetwork
 
 CONDUCTANCES = 1e3, 1e4, 1e5  # W/(m2 K)

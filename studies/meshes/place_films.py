@@ -6,10 +6,11 @@ from place_drops import STACK, TIP, held, largest, on_grid
 from place_rows import Row
 from place_shapes import MATERIALS, ONE, whole
 
+from thermograsp.thermal.anywhere.placed import placed_network
+from thermograsp.thermal.anywhere.ports import face_patterns
 from thermograsp.thermal.meshes.film import Film, film_of
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.network import patch_fields
-from thermograsp.thermal.meshes.placed import face_patterns, placed_network
 
 FILMS = 50.0, 500.0, 3000.0  # W/(m2 K), of air, of still water, of water that boils
 FILLED = [

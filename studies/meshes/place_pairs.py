@@ -12,13 +12,14 @@ from place_drops import AREA, STACK, TIP, Vector, at, held, largest, on_grid
 from place_vessels import VESSELS, vessel
 
 from thermograsp.thermal import Solid, SurfacePatch
+from thermograsp.thermal.anywhere.place import place_fields
+from thermograsp.thermal.anywhere.placed import placed_network
+from thermograsp.thermal.anywhere.ports import face_patterns
 from thermograsp.thermal.meshes import surface_normal
 from thermograsp.thermal.meshes.film import Film, film_of
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
 from thermograsp.thermal.meshes.network import patch_fields
-from thermograsp.thermal.meshes.placed import _fields as placed_fields
-from thermograsp.thermal.meshes.placed import face_patterns, placed_network
 from thermograsp.thermal.surfaces import crossings
 
 PAIRED = 8  # pairs of each, one of each kind
@@ -147,11 +148,11 @@ def _paired(
     inside = Film(through * one.area, one.walls) if through else None
     film = through * one.area
     body_modes(body, inside)
-    misses = placed_fields.cache_info().misses
+    misses = place_fields.cache_info().misses
     begin = time.process_time()
     network = placed_network(body, patches, STACK, film).network
     seconds = time.process_time() - begin
-    grids = placed_fields.cache_info().misses > misses
+    grids = place_fields.cache_info().misses > misses
     fast, errors = held(network, film) if film else network, []
     for n in range(2):
         ordered = patches[1 - n], patches[n]

@@ -10,8 +10,9 @@ from place_drops import STACK, TIP, largest
 from place_shapes import MATERIALS, ONE, PARTS, TWO, parted, whole
 
 from thermograsp.thermal import Solid, SurfacePatch
+from thermograsp.thermal.anywhere.placed import placed_network
+from thermograsp.thermal.anywhere.ports import face_patterns
 from thermograsp.thermal.meshes import body_network
-from thermograsp.thermal.meshes.placed import face_patterns, placed_network
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,6 +59,7 @@ BODIES: dict[str, Callable[[], trimesh.Trimesh]] = {
     "sheet of .3 mm": _block(0.06, 0.03, 0.0003),
     "cylinder": _round(0.015, 0.05),
     "can": _round(0.025, 0.05),
+    "handle": _round(0.01, 0.06),
     "rod": _round(0.006, 0.06),
     "ball": lambda: trimesh.creation.icosphere(subdivisions=4, radius=0.02),
     "egg": _egg,

@@ -12,9 +12,9 @@ from place_drops import STACK, at
 from place_shapes import beside, on, whole
 
 from thermograsp.thermal import Solid, SurfacePatch
+from thermograsp.thermal.anywhere.place import place_fields
+from thermograsp.thermal.anywhere.placed import placed_network
 from thermograsp.thermal.meshes.modes import _modes, body_modes
-from thermograsp.thermal.meshes.placed import _fields as placed_fields
-from thermograsp.thermal.meshes.placed import placed_network
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,7 @@ ROUND: dict[str, tuple[str, Callable[[float], SurfacePatch]]] = {
     "mug, at the rim": ("mug", lambda angle: beside(angle, 0.0365)),
     "mug, at the foot": ("mug", lambda angle: beside(angle, -0.0365)),
     "pot, over the rim": ("pot of 1 mm", lambda angle: beside(angle, 0.037, 0.045)),
+    "handle": ("handle", lambda angle: beside(angle, 0.002, 0.01)),
     "cube": ("cube", lambda angle: on(0, 0.02, 0.01 * math.cos(angle), 0.01 * math.sin(angle))),
     "egg": (
         "egg",
@@ -70,10 +71,10 @@ def timed(name: str) -> Times:
             placed_network(body, patches, STACK)
             taken.append(time.process_time() - begin)
         medians.append(float(np.median(taken)))
-    misses = placed_fields.cache_info().misses
+    misses = place_fields.cache_info().misses
     radius = float(np.linalg.norm(patch(0.0).centre[:2]))
     slides = tuple(_slid(body, patch, step / radius) for step in STEPS)
-    grids = placed_fields.cache_info().misses - misses
+    grids = place_fields.cache_info().misses - misses
     return Times(name, cells, modes, (medians[0], medians[1], medians[2]), slides, grids)
 
 

@@ -14,11 +14,12 @@ from thermograsp import thermal
 from thermograsp.envs.bodies.library import library_object
 from thermograsp.envs.bodies.object_solids import object_solid
 from thermograsp.thermal import Solid, SurfacePatch
+from thermograsp.thermal.anywhere.placed import placed_network
+from thermograsp.thermal.anywhere.ports import face_patterns
 from thermograsp.thermal.meshes.film import Film, film_of
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.modes import body_modes
 from thermograsp.thermal.meshes.network import patch_fields
-from thermograsp.thermal.meshes.placed import face_patterns, placed_network
 
 VESSELS = (
     "mug_of_coffee",

@@ -1,28 +1,47 @@
-"""Bodies of any shape: solids on cut-cell grids, their networks, and where they are touched."""
+"""Bodies of any shape: solids on cut-cell grids, their networks and modes, and where they are touched."""
 
-from .film import wetted_area
-from .modes import body_modes
-from .network import body_network
-from .placed import LEVEL as PLACED_LEVEL
-from .placed import PLACED_SHARE, own_network, placed_body
+from .film import Film, film_of, held_apart, wetted_area
+from .grid import MeshGridding
+from .modes import BodyModes, body_modes
+from .network import PatchFields, body_network, patch_fields
+from .patch import PatchPatterns, patch_on_grid, uniform_pattern
+from .place import ABOVE, PlacedPatch, place_patch
 from .press import press_body
-from .ringed import body_in_pads, surface_patch, wall_below
-from .touched import TouchedBody, field_carried, surface_normal, touched_body
+from .touched import (
+    PLATE,
+    PLATE_MATERIAL,
+    TouchedBody,
+    field_carried,
+    geometry_of,
+    nearest_surface,
+    surface_normal,
+    touched_body,
+)
 
 __all__ = [
-    "PLACED_LEVEL",
-    "PLACED_SHARE",
+    "ABOVE",
+    "PLATE",
+    "PLATE_MATERIAL",
+    "BodyModes",
+    "Film",
+    "MeshGridding",
+    "PatchFields",
+    "PatchPatterns",
+    "PlacedPatch",
     "TouchedBody",
-    "body_in_pads",
     "body_modes",
     "body_network",
     "field_carried",
-    "own_network",
-    "placed_body",
+    "film_of",
+    "geometry_of",
+    "held_apart",
+    "nearest_surface",
+    "patch_fields",
+    "patch_on_grid",
+    "place_patch",
     "press_body",
     "surface_normal",
-    "surface_patch",
     "touched_body",
-    "wall_below",
+    "uniform_pattern",
     "wetted_area",
 ]

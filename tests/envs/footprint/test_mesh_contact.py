@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,13 @@ from thermograsp.envs.bodies.solids import (
     skinned,
     turned,
 )
+from thermograsp.envs.footprint import mesh_contact as contacts
 from thermograsp.envs.footprint.grasp_body import NOMINAL_FORCE, PAD, GraspBody
-from thermograsp.envs.footprint.mesh_contact import mesh_contact
+from thermograsp.envs.footprint.mesh_contact import is_met, mesh_contact
 from thermograsp.envs.footprint.taxels import Taxels
 from thermograsp.thermal import SKINS, ContactArea, cylinder_contact, material, sensor, sphere_contact
-from thermograsp.thermal.contact import footprint
+from thermograsp.thermal.contact import TABLE_FORCES, footprint
+from thermograsp.thermal.pressed import pressure_map
 
 
 def saved(surface: Triangles, folder: Path, **placed: object) -> ObjectSpec:
@@ -142,3 +145,32 @@ def test_an_object_s_contact_is_that_of_its_shape(name: str, shape: str, radius:
     expected = body.contact(np.array(NOMINAL_FORCE))
     found = footprint(body.law, NOMINAL_FORCE, np.zeros(3))
     assert found == pytest.approx((float(expected.face), float(expected.face_force)), rel=0.04)
+
+
+def test_an_object_that_can_break_is_pressed_once_and_seen_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a reset asks: each pad looks at the mesh once and is pressed by one force. Its table is made when a heat
+    model asks for it."""
+    pressed = []
+
+    def press(*given: object) -> tuple[float, float, float]:
+        pressed.append(given[6])
+        return pressure_map(*given)
+
+    monkeypatch.setattr(contacts, "pressure_map", press)
+    seen = contacts._seen.cache_info().misses
+    spec = replace(objects()["egg"].spec(), yaw=0.0123)
+    body = GraspBody(spec, material("egg"), 24.0, "T", sensor("seed"), skin=SKINS["filled_silicone"])
+    assert body.crushing_force > 0
+    assert pressed == 2 * [NOMINAL_FORCE]
+    assert body.law["areas"].max() > 0
+    assert len(pressed) == 2 + 2 * len(TABLE_FORCES)
+    assert contacts._seen.cache_info().misses == seen + 2
+
+
+def test_pads_that_miss_a_mesh_meet_a_flat_stand_in(tmp_path: Path) -> None:
+    spec = saved(rod(0.01, 0.02), tmp_path, position=(0.0, 0.03))
+    assert not is_met(PAD, spec)
+    assert mesh_contact(PAD, spec, (1.0,)) is None
+    body = GraspBody(spec, material("steel"), 24.0, "T", sensor("seed"))
+    assert body.contact_shape == "flat"
+    assert body.closed_mesh is None

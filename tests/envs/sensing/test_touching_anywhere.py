@@ -26,9 +26,9 @@ from thermograsp.envs.sensing import touches
 from thermograsp.envs.sensing.heat import GraspHeat
 from thermograsp.envs.sensing.touches import first_touches
 from thermograsp.thermal import Demand
+from thermograsp.thermal.anywhere.placed import FILLED_SHARE
 from thermograsp.thermal.batch import FIXED_LEVEL
 from thermograsp.thermal.kernels import Patches, box_side, tip
-from thermograsp.thermal.meshes.placed import FILLED_SHARE
 from thermograsp.thermal.meshes.touched import field_carried, surface_normal
 
 from ..scripted import grasp_action

@@ -72,7 +72,7 @@ def untouched(shape: BodyShape, film: float, cache: bool = True) -> BodyField:
 @lru_cache(maxsize=512)
 def _filled_field(solid: Solid, held: float, rate: float, wet: float, cache: bool) -> BodyField | None:
     """Of a body with contents behind walls that conduct W/K to them; None where it has no hollow."""
-    from ....thermal.meshes import own_network
+    from ....thermal.anywhere import own_network
 
     with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
         network = own_network(solid, wet, cache=cache)
@@ -148,7 +148,7 @@ def _solid_field(
 ) -> BodyField:
     """The same of a body of any shape, which is as large as that box. rings: around all sensors. wet: W/K to its
     contents."""
-    from ....thermal.meshes import body_in_pads
+    from ....thermal.anywhere import body_in_pads
 
     with _BLAS.limit(limits=1, user_api="blas"):
         found = [_patch(solid, size, place, stack, wet, cache) for place in places]
@@ -188,7 +188,7 @@ def _patch(
 ) -> tuple[SurfacePatch, tuple[float, float]]:
     """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is, and how thick
     m it is there. wet: W/K to its contents."""
-    from ....thermal.meshes import surface_patch, wall_below
+    from ....thermal.anywhere import surface_patch, wall_below
 
     outward, centre = np.zeros(3), np.zeros(3)
     axis, far = divmod(place.face, 2)

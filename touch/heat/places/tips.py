@@ -32,7 +32,7 @@ def resolution(tolerance: float, padded: bool = False, solid: bool = False) -> R
     """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K. padded:
     whether a fingertip has a pad around its element. solid: whether an object is no box, which has one level."""
     if solid:
-        from ....thermal.meshes import PLACED_LEVEL  # nothing that meshes need is loaded without them
+        from ....thermal.anywhere import PLACED_LEVEL  # nothing that meshes need is loaded without them
 
         return PLACED_LEVEL
     levels = _PADDED_LEVELS if padded else _LEVELS

@@ -14,16 +14,13 @@ from thermograsp.thermal import (
     advance_heat,
     heat_tables,
 )
-from thermograsp.thermal.meshes import placed_body
+from thermograsp.thermal.anywhere import placed_body
+from thermograsp.thermal.anywhere.box import _across
+from thermograsp.thermal.anywhere.placed import placed_network
+from thermograsp.thermal.anywhere.ports import centred_tip, face_patterns
 from thermograsp.thermal.meshes.film import Film, film_of, held_apart
 from thermograsp.thermal.meshes.grid import MeshGridding
 from thermograsp.thermal.meshes.network import patch_fields
-from thermograsp.thermal.meshes.placed import (
-    _across,
-    centred_tip,
-    face_patterns,
-    placed_network,
-)
 from thermograsp.thermal.meshes.touched import TouchedBody, field_carried
 from thermograsp.thermal.network import NODE
 from thermograsp.thermal.surfaces.hollow import wetted_faces

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..meshes import ABOVE, PlacedPatch, place_patch
 from ..surfaces import FACING, SurfacePatch
-from .place import ABOVE, PlacedPatch, place_patch
 
 _FAR = 0.05  # m, from where on an end is not felt
 _SAMPLES = (1.0, 1.3, 1.7, 2.2, 3.0, 4.0)  # half widths from the middle at which a face is looked for

@@ -8,10 +8,10 @@ import pytest
 import trimesh
 
 from thermograsp.thermal import Material, SurfacePatch, Surround, material, sensor, solid
+from thermograsp.thermal.anywhere import PLACED_LEVEL, body_in_pads, surface_patch
+from thermograsp.thermal.anywhere.place import is_touchable
 from thermograsp.thermal.kernels import GRASP, Patches
 from thermograsp.thermal.matter import SKINS
-from thermograsp.thermal.meshes import PLACED_LEVEL, body_in_pads, surface_patch
-from thermograsp.thermal.meshes.placed import is_touchable
 from thermograsp.thermal.padded import box_in_pads, padded_tip, ring_sides
 
 STACK = SKINS["filled_silicone"].over(sensor("seed"))

@@ -18,24 +18,22 @@ import numpy as np
 
 from ..kernels import TIMES, before
 from ..matter import SensorStack
+from ..meshes import (
+    BodyModes,
+    PlacedPatch,
+    body_modes,
+    nearest_surface,
+    patch_on_grid,
+    place_patch,
+    uniform_pattern,
+)
 from ..network import ThermalNetwork
 from ..surfaces import FACING, Solid, SurfacePatch, crossings
 from .beneath import Beneath
-from .modes import BodyModes, body_modes
-from .patch import patch_on_grid, uniform_pattern
-from .place import PlacedPatch, place_patch
-from .placed import (
-    LEVEL,
-    FaceImpedance,
-    bent_room,
-    box_beneath,
-    face_impedance,
-    is_touchable,
-    placed_network,
-    ringed_network,
-    seen_on_grid,
-)
-from .touched import nearest_surface
+from .box import bent_room, box_beneath
+from .place import is_touchable
+from .placed import FaceImpedance, face_impedance, placed_network, ringed_network
+from .ports import LEVEL, seen_on_grid
 
 _UPRIGHT = math.cos(math.radians(10.0))  # a surface this near to an axis is taken as across it
 _FARTHER = 2.0  # than the nearest point, that a place may be on the line across the surface
