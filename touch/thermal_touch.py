@@ -52,6 +52,7 @@ from .scene import (
     refuse_sleep,
     samples_in,
     warn_of_fixed_bodies,
+    warn_of_kept_apart,
     whole_steps,
 )
 
@@ -126,6 +127,7 @@ class ThermalTouch:
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
         warn_of_fixed_bodies(model, fingertips, self._pads, self._shapes)
+        warn_of_kept_apart(model, self._pads, self._shapes)
         refuse_sleep(model, self._pads, self._shapes)
         self._shapes = own_shapes(model, self._shapes, self._pads)
         self._glued = glued_elements(model, self._shapes, ambient)

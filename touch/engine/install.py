@@ -22,6 +22,7 @@ from ..scene import (
     samples_in,
     warn_of_boxes,
     warn_of_fixed_bodies,
+    warn_of_kept_apart,
     whole_steps,
 )
 from .library import load_plugin
@@ -76,6 +77,7 @@ def install(
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
     warn_of_fixed_bodies(model, fingertips, found, shapes)
+    warn_of_kept_apart(model, found, shapes)
     refuse_sleep(model, found, shapes)
     for pad in found:
         if pad.surround is not None:

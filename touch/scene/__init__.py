@@ -5,6 +5,7 @@ from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .fixed_bodies import warn_of_fixed_bodies
+from .kept_apart import warn_of_kept_apart
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
 from .own_shape import own_shapes, warn_of_boxes
@@ -40,5 +41,6 @@ __all__ = [
     "triangles",
     "warn_of_boxes",
     "warn_of_fixed_bodies",
+    "warn_of_kept_apart",
     "whole_steps",
 ]
