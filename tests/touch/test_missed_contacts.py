@@ -81,15 +81,20 @@ PAIR = '<contact><pair geom1="pad" geom2="block"/></contact>'
 
 
 def apart(
-    *, tip: str = JOINT, mocap: str = "", block: str = "<freejoint/>", masks: str = "", head: str = "", tail: str = "", child: bool = False
+    *,
+    tip: str = JOINT,
+    mocap: str = "",
+    block: str = "<freejoint/>",
+    masks: str = "",
+    head: str = "",
+    tail: str = "",
+    child: bool = False,
 ) -> mujoco.MjModel:
     """A pad that is on a block already, and that MuJoCo may keep from it."""
     pad = PAD.replace("/>", f" {masks}/>")
     inner = f'<body name="tip" pos="0 0 .0239" {mocap}>{tip}{pad}</body>'
     outer = f'<body name="block">{block}{BLOCK}{inner if child else ""}</body>{"" if child else inner}'
-    return mujoco.MjModel.from_xml_string(
-        f"<mujoco>{head}<worldbody>{outer}</worldbody>{tail}</mujoco>"
-    )
+    return mujoco.MjModel.from_xml_string(f"<mujoco>{head}<worldbody>{outer}</worldbody>{tail}</mujoco>")
 
 
 def contacts(model: mujoco.MjModel) -> int:
@@ -107,7 +112,7 @@ def contacts(model: mujoco.MjModel) -> int:
         ({"tip": "", "mocap": 'mocap="true"', "block": "", "tail": PAIR}, "neither of the two has a joint"),
         ({"tip": "", "block": ""}, "neither of the two has a joint"),
         ({"child": True, "tip": ""}, "fixed to each other"),
-        ({"child": True}, "fixed to the body that carries the other"),
+        ({"child": True}, "the joints of one are on the other"),
         ({"head": '<option><flag contact="disable"/></option>'}, "disables its flag contact"),
         ({"head": '<option><flag constraint="disable"/></option>'}, "disables its flag constraint"),
     ],
@@ -117,7 +122,9 @@ def test_what_is_kept_apart_is_told_of(words: dict, why: str) -> None:
     """A finger moved as a mocap body over a fixed block, for one, felt nothing, and nothing said so."""
     model = apart(**words)
     assert not contacts(model)
-    with pytest.warns(RuntimeWarning, match=f"object 'block' is never touched by a fingertip: .*{why}") as told:
+    with pytest.warns(
+        RuntimeWarning, match=f"object 'block' is never touched by a fingertip: .*{why}"
+    ) as told:
         touch(model)
     assert len(told) == 1 and told[0].filename == __file__
 

@@ -12,6 +12,7 @@ import mujoco
 from thermograsp.errors import InvalidValueError, MissingDependencyError, celsius, non_negative, positive
 
 from ...thermal import Material
+from ..contacts import require_sensors
 from ..scene import (
     Fingertip,
     ThermalBody,
@@ -73,6 +74,7 @@ def install(
             )
     load_plugin()
     model = spec.compile()
+    require_sensors(model)
     substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)

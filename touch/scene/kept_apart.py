@@ -18,19 +18,19 @@ from .names import collides
 
 _NONE = "the model disables its flag {}: enable it"
 _STILL = (
-    "neither of the two has a joint, and between fixed and mocap bodies MuJoCo has no forces: give one of them a joint"
+    "neither of the two has a joint, and between such bodies MuJoCo has no forces: give one of them a joint"
 )
 _WELDED = "they are fixed to each other"
 _PARENT = (
-    "one is fixed to the body that carries the other: disable the flag filterparent, or name the two geoms in a <pair>"
+    "the joints of one are on the other: disable the flag filterparent, or name the two geoms in a <pair>"
 )
 _EXCLUDED = "the model excludes contacts between their bodies: leave the <exclude> out"
-_MASKED = "contype and conaffinity of their geoms do not meet: let one geom's contype share a bit with the other's"
+_MASKED = (
+    "contype and conaffinity of their geoms do not meet: let one geom's contype share a bit with the other's"
+)
 
 
-def warn_of_kept_apart(
-    model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]
-) -> None:
+def warn_of_kept_apart(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> None:
     """Warns the caller's caller of an object that no fingertip can touch, and of a fingertip that can touch neither an
     object nor another fingertip, by the model's filters of contacts."""
     untouched = set()
@@ -60,7 +60,9 @@ def _apart(model: mujoco.MjModel, one: PadPlace, other: PadPlace | BodyShape) ->
     if all(model.body_treeid[each.body] < 0 for each in (one, other)):
         return _STILL
     pairs = list(product(one.geoms, other.geoms))
-    listed = {frozenset(pair) for pair in zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)}
+    listed = {
+        frozenset(pair) for pair in zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)
+    }
     if any(frozenset(pair) in listed for pair in pairs):
         return ""
     if why := _bodies_apart(model, one.body, other.body):
