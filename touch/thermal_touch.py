@@ -53,6 +53,7 @@ from .scene import (
     samples_in,
     warn_of_fixed_bodies,
     warn_of_kept_apart,
+    warn_of_wide_faces,
     whole_steps,
 )
 
@@ -128,6 +129,7 @@ class ThermalTouch:
         self._pads = pads(model, fingertips, self._shapes)
         warn_of_fixed_bodies(model, fingertips, self._pads, self._shapes)
         warn_of_kept_apart(model, self._pads, self._shapes)
+        warn_of_wide_faces(model, self._pads)
         refuse_sleep(model, self._pads, self._shapes)
         self._shapes = own_shapes(model, self._shapes, self._pads)
         self._glued = glued_elements(model, self._shapes, ambient)

@@ -10,7 +10,7 @@ import mujoco
 import pytest
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.touch import ThermalTouch
+from thermograsp.touch import Fingertip, ThermalTouch
 
 BLOCK = '<geom name="block" type="box" size=".02 .02 .02"/>'
 PAD = '<geom name="pad" type="box" size=".01 .01 .004" mass=".1"/>'
@@ -161,3 +161,32 @@ def test_a_fingertip_that_cannot_touch_is_told_of_beside_one_that_can() -> None:
     with pytest.warns(RuntimeWarning, match="fingertip 'b' never touches anything: contype") as told:
         ThermalTouch(model, fingertips={"a": "pad", "b": "other"}, objects={"block": "glass"})
     assert len(told) == 1
+
+
+WIDE = (
+    '<geom name="pad" type="box" size=".03 .03 .004" mass=".1"/>'
+    '<site name="sensor" pos="0 0 -.004" xyaxes="0 0 -1 1 0 0"/>'
+)
+
+
+@pytest.mark.parametrize("tip", ["sensor", Fingertip("pad", position=(0, 0, -0.004), normal=(0, 0, -1))])
+def test_a_pad_on_a_wider_face_is_told_of(tip: str | Fingertip) -> None:
+    """On a plate as wide as that face it felt nothing: all contacts are at the corners."""
+    wide = BLOCK.replace(".02 .02 .02", ".04 .04 .02")
+    model = scene(wide, WIDE)
+    with pytest.warns(RuntimeWarning, match="its pad of 20 x 20 mm is part of a face of 60 x 60 mm") as told:
+        ThermalTouch(model, fingertips={"tip": tip}, objects={"block": "glass"})
+    assert len(told) == 1 and told[0].filename == __file__
+
+
+def test_a_pad_as_wide_as_its_face_is_not_told_of() -> None:
+    place = {"position": (0, 0, -0.004), "normal": (0, 0, -1)}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for tip in (
+            Fingertip("pad", size=(0.06, 0.06), **place),
+            Fingertip("pad"),
+            # on no face
+            Fingertip("pad", position=(0, 0, 0), normal=(0, 0, -1)),
+        ):
+            ThermalTouch(scene(tip=WIDE), fingertips={"tip": tip}, objects={"block": "glass"})

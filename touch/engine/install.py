@@ -24,6 +24,7 @@ from ..scene import (
     warn_of_boxes,
     warn_of_fixed_bodies,
     warn_of_kept_apart,
+    warn_of_wide_faces,
     whole_steps,
 )
 from .library import load_plugin
@@ -80,6 +81,7 @@ def install(
     found = pads(model, fingertips, shapes)
     warn_of_fixed_bodies(model, fingertips, found, shapes)
     warn_of_kept_apart(model, found, shapes)
+    warn_of_wide_faces(model, found)
     refuse_sleep(model, found, shapes)
     for pad in found:
         if pad.surround is not None:

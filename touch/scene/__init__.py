@@ -11,6 +11,7 @@ from .overlap import refuse_overlap
 from .own_shape import own_shapes, warn_of_boxes
 from .sleeping import refuse_sleep
 from .steps import LONGEST, samples_in, whole_steps
+from .wide_faces import warn_of_wide_faces
 
 __all__ = [
     "LONGEST",
@@ -42,5 +43,6 @@ __all__ = [
     "warn_of_boxes",
     "warn_of_fixed_bodies",
     "warn_of_kept_apart",
+    "warn_of_wide_faces",
     "whole_steps",
 ]
