@@ -154,6 +154,14 @@ def test_what_is_not_served_is_refused(words: dict, message: str) -> None:
         install(spec, **{"fingertips": PADS, "objects": OBJECTS, **words})
 
 
+@NEEDS_SPECS
+def test_sensors_that_are_off_are_told_of() -> None:
+    spec = mujoco.MjSpec.from_string(hand.scene())
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR
+    with pytest.raises(InvalidValueError, match="the model disables its sensors"):
+        install(spec, fingertips=PADS, objects=OBJECTS)
+
+
 def test_without_a_compiler_it_says_what_is_missing(tmp_path: Path) -> None:
     code = (
         "import os, thermograsp\nfrom thermograsp.touch import load_plugin\n"

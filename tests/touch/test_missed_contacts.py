@@ -1,4 +1,5 @@
-"""Contacts that would be missed without a word: of bodies that are fixed to others, and of bodies asleep."""
+"""Contacts that would be missed without a word: of bodies that are fixed to others, of bodies asleep, and of what
+MuJoCo keeps apart."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -9,7 +10,7 @@ import mujoco
 import pytest
 
 from thermograsp.errors import InvalidValueError
-from thermograsp.touch import ThermalTouch
+from thermograsp.touch import Fingertip, ThermalTouch
 
 BLOCK = '<geom name="block" type="box" size=".02 .02 .02"/>'
 PAD = '<geom name="pad" type="box" size=".01 .01 .004" mass=".1"/>'
@@ -72,3 +73,120 @@ def test_what_may_fall_asleep_on_a_fingertip_is_refused() -> None:
     touch(scene(head=sleepy))  # what has actuators stays awake, and wakes what it touches
     touch(scene(head=sleepy, motor=False, sleep='sleep="never"'))
     touch(scene(motor=False))
+
+
+JOINT = '<joint name="slide" type="slide" axis="0 0 1"/>'
+APART = "<contact><exclude body1='block' body2='tip'/></contact>"
+PAIR = '<contact><pair geom1="pad" geom2="block"/></contact>'
+
+
+def apart(
+    *,
+    tip: str = JOINT,
+    mocap: str = "",
+    block: str = "<freejoint/>",
+    masks: str = "",
+    head: str = "",
+    tail: str = "",
+    child: bool = False,
+) -> mujoco.MjModel:
+    """A pad that is on a block already, and that MuJoCo may keep from it."""
+    pad = PAD.replace("/>", f" {masks}/>")
+    inner = f'<body name="tip" pos="0 0 .0239" {mocap}>{tip}{pad}</body>'
+    outer = f'<body name="block">{block}{BLOCK}{inner if child else ""}</body>{"" if child else inner}'
+    return mujoco.MjModel.from_xml_string(f"<mujoco>{head}<worldbody>{outer}</worldbody>{tail}</mujoco>")
+
+
+def contacts(model: mujoco.MjModel) -> int:
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    return int(data.nefc > 0)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ({"tail": APART}, "the model excludes contacts"),
+        ({"masks": 'contype="2" conaffinity="2"'}, "contype and conaffinity of their geoms do not meet"),
+        ({"tip": "", "mocap": 'mocap="true"', "block": ""}, "neither of the two has a joint"),
+        ({"tip": "", "mocap": 'mocap="true"', "block": "", "tail": PAIR}, "neither of the two has a joint"),
+        ({"tip": "", "block": ""}, "neither of the two has a joint"),
+        ({"child": True, "tip": ""}, "fixed to each other"),
+        ({"child": True}, "the joints of one are on the other"),
+        ({"head": '<option><flag contact="disable"/></option>'}, "disables its flag contact"),
+        ({"head": '<option><flag constraint="disable"/></option>'}, "disables its flag constraint"),
+    ],
+    ids=lambda value: "",
+)
+def test_what_is_kept_apart_is_told_of(words: dict, why: str) -> None:
+    """A finger moved as a mocap body over a fixed block, for one, felt nothing, and nothing said so."""
+    model = apart(**words)
+    assert not contacts(model)
+    with pytest.warns(
+        RuntimeWarning, match=f"object 'block' is never touched by a fingertip: .*{why}"
+    ) as told:
+        touch(model)
+    assert len(told) == 1 and told[0].filename == __file__
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        {},
+        {"masks": 'contype="2" conaffinity="1"'},
+        {"tip": "", "mocap": 'mocap="true"'},
+        {"tip": ""},
+        {"block": ""},
+        {"child": True, "block": ""},
+        {"child": True, "head": '<option><flag filterparent="disable"/></option>'},
+        {"tail": PAIR + APART},
+        {"masks": 'contype="0" conaffinity="0"', "tail": PAIR},
+    ],
+    ids=lambda value: "",
+)
+def test_what_can_touch_is_not_told_of(words: dict) -> None:
+    model = apart(**words)
+    assert contacts(model)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        touch(model)
+
+
+def test_a_fingertip_that_cannot_touch_is_told_of_beside_one_that_can() -> None:
+    other = PAD.replace("pad", "other").replace("/>", ' contype="4" conaffinity="4"/>')
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><worldbody><body name="block"><freejoint/>{BLOCK}</body><body pos="0 0 .03">{PAD}</body>
+        <body pos="0 0 -.03">{other}</body></worldbody></mujoco>"""
+    )
+    with pytest.warns(RuntimeWarning, match="fingertip 'b' never touches anything: contype") as told:
+        ThermalTouch(model, fingertips={"a": "pad", "b": "other"}, objects={"block": "glass"})
+    assert len(told) == 1
+
+
+WIDE = (
+    '<geom name="pad" type="box" size=".03 .03 .004" mass=".1"/>'
+    '<site name="sensor" pos="0 0 -.004" xyaxes="0 0 -1 1 0 0"/>'
+)
+
+
+@pytest.mark.parametrize("tip", ["sensor", Fingertip("pad", position=(0, 0, -0.004), normal=(0, 0, -1))])
+def test_a_pad_on_a_wider_face_is_told_of(tip: str | Fingertip) -> None:
+    """On a plate as wide as that face it felt nothing: all contacts are at the corners."""
+    wide = BLOCK.replace(".02 .02 .02", ".04 .04 .02")
+    model = scene(wide, WIDE)
+    with pytest.warns(RuntimeWarning, match="its pad of 20 x 20 mm is part of a face of 60 x 60 mm") as told:
+        ThermalTouch(model, fingertips={"tip": tip}, objects={"block": "glass"})
+    assert len(told) == 1 and told[0].filename == __file__
+
+
+def test_a_pad_as_wide_as_its_face_is_not_told_of() -> None:
+    place = {"position": (0, 0, -0.004), "normal": (0, 0, -1)}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for tip in (
+            Fingertip("pad", size=(0.06, 0.06), **place),
+            Fingertip("pad"),
+            # on no face
+            Fingertip("pad", position=(0, 0, 0), normal=(0, 0, -1)),
+        ):
+            ThermalTouch(scene(tip=WIDE), fingertips={"tip": tip}, objects={"block": "glass"})

@@ -157,6 +157,16 @@ def test_sensors_are_added_once_and_to_a_spec(model: mujoco.MjModel) -> None:
         prepare(model, PADS, OBJECTS)  # pyright: ignore[reportArgumentType]
 
 
+def test_sensors_that_are_off_are_told_of() -> None:
+    """Their numbers are 0, as if nothing were touched."""
+    spec = mujoco.MjSpec.from_string(hand.scene())
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR
+    model = prepare(spec, PADS, OBJECTS)
+    with pytest.raises(InvalidValueError, match="the model disables its sensors.*flag sensor"):
+        many(model, 2)
+    ThermalTouch(model, fingertips=PADS, objects=OBJECTS)
+
+
 def test_a_mujoco_without_contact_sensors_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("thermograsp.touch.contacts.sensors._SENSOR", None)
     with pytest.raises(MissingDependencyError, match=r"need MuJoCo 3\.3\.5"):

@@ -162,7 +162,8 @@ def _solved(
 
 
 def _auto(problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool) -> tuple[Rung, PressCurves]:
-    """The rung of least cost whose temperature drop is within the tolerance, measured from FIRST s on."""
+    """The rung of least cost whose temperature drop is within the tolerance: a network's from FIRST s on, a simpler
+    one's at every sample, since rungs that neglect the element's heat capacity begin with most of the difference."""
     try:
         choice = press_network(problem, t, tolerance, cache)
     except InvalidValueError as refusal:
@@ -179,7 +180,7 @@ def _auto(problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool) -
     if not len(late):  # nothing by which a simpler rung could show itself fit
         return chosen, curves
     # A few samples show a simpler rung unfit; only one that passes them is computed whole.
-    probe = np.unique(late[np.geomspace(1, len(late), _PROBES).astype(int) - 1])
+    probe = np.unique([0, *late[np.geomspace(1, len(late), _PROBES).astype(int) - 1]])
     for info in RUNGS.values():
         simpler = info.solve is not None and 0 < info.multiply_adds < system.orders.multiply_adds
         if not simpler or not _possible(info, problem):
@@ -188,7 +189,7 @@ def _auto(problem: PressProblem, t: np.ndarray, tolerance: float, cache: bool) -
         for samples in (probe, np.arange(len(t))):
             candidate = info.solve(problem, t[samples])
             difference = np.abs(candidate.temperature_drop - curves.temperature_drop[samples])
-            error = float(np.max(difference[t[samples] >= FIRST], initial=0.0)) + choice.error
+            error = float(difference.max()) + choice.error
             if error > tolerance:
                 break
         else:

@@ -77,20 +77,20 @@ def press(
     material: a name of thermal.materials() or a Material. mode: "T" or "O". sensor: a preset's name, a .toml file of
     one sensor, a SensorStack or a HeatedStack. skin: over the sensor's face, a name of thermal.SKINS or a Skin, None
     for a bare face; the contact is then the skin's. conductance: W/(m2 K) of the contact, a number or a function of
-    time in s (0 = apart); None for 1e4, or what a heated sensor's contact conducts at `force`. force: N on a heated
-    sensor, a number or a function of time in s, None for the one that its contact is stated at. area: m2 of the
-    contact, at most the sensor's face, None for 81e-6 or that face where it is smaller. shape: "square" or "round".
-    object_size: (width, depth, thickness) m. air: W/(m2 K) on the object's free faces. Temperatures in °C. seconds, dt:
-    samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of temperature drop from 0.05 s on, which rung="auto" (and
-    "network") keeps. rung: a name of thermal.RUNGS, "auto", "network:ORDERS" as a Rung prints itself, or a Rung.
-    opposite: conductance of a second fingertip of the same kind on the opposite face, None for none; the curves are the
-    first one's. thermostat: one of finite power, at sensor_temperature at first, None for an ideal one. surround: what
-    holds the element and touches the object around its face: the name of a material or a Material for a square pad of
-    20 mm, or a Surround; None for a sensor by itself. All of the pad that the object's face reaches then touches, as
-    warm as the thermostat at first; heat_flow and stored_heat are those of the whole front and of element and pad
-    together, the surfaces' temperatures the face's. It is in mode "T", on an ideal thermostat. surround_conductance:
-    W/(m2 K) of the pad's own contact, of either fingertip while its face's conducts; None for that of the pad's
-    surface, or of the skin's, under 10 N on the pad. cache: keep networks on disk.
+    time in s (0 = apart), which counts in the middle of steps of at most 10 ms; None for 1e4, or what a heated sensor's
+    contact conducts at `force`. force: N on a heated sensor, a number or a function of time in s, None for the one that
+    its contact is stated at. area: m2 of the contact, at most the sensor's face, None for 81e-6 or that face where it
+    is smaller. shape: "square" or "round". object_size: (width, depth, thickness) m. air: W/(m2 K) on the object's free
+    faces. Temperatures in °C. seconds, dt: samples at 0, dt, 2 dt, ... up to seconds. tolerance: K of temperature drop
+    from 0.05 s on, which rung="auto" (and "network") keeps. rung: a name of thermal.RUNGS, "auto", "network:ORDERS" as
+    a Rung prints itself, or a Rung. opposite: conductance of a second fingertip of the same kind on the opposite face,
+    None for none; the curves are the first one's. thermostat: one of finite power, at sensor_temperature at first, None
+    for an ideal one. surround: what holds the element and touches the object around its face: the name of a material or
+    a Material for a square pad of 20 mm, or a Surround; None for a sensor by itself. All of the pad that the object's
+    face reaches then touches, as warm as the thermostat at first; heat_flow and stored_heat are those of the whole
+    front and of element and pad together, the surfaces' temperatures the face's. It is in mode "T", on an ideal
+    thermostat. surround_conductance: W/(m2 K) of the pad's own contact, of either fingertip while its face's conducts;
+    None for that of the pad's surface, or of the skin's, under 10 N on the pad. cache: keep networks on disk.
 
     A heated sensor (one with a `touch` table) has been at sensor_temperature for long, in air of object_temperature,
     and its heater's law goes on from there; a controller's setpoint is that temperature. Its element in front of the

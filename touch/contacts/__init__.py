@@ -20,7 +20,7 @@ from .laws import pair_laws, stacked
 from .memory import clock_of
 from .reader import ContactReader
 from .round_pads import bends, curves
-from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, sensor_places
+from .sensors import FORCE_AT, PLACE_AT, SensorPlaces, prepare, require_sensors, sensor_places
 from .step_contacts import read_contacts, sense_contacts
 
 __all__ = [
@@ -52,6 +52,7 @@ __all__ = [
     "pair_laws",
     "prepare",
     "read_contacts",
+    "require_sensors",
     "sense_contacts",
     "sensor_places",
     "stacked",

@@ -97,10 +97,20 @@ def prepare(
     return spec.compile()
 
 
+def require_sensors(model: mujoco.MjModel) -> None:
+    """Raises InvalidValueError for a model whose sensors are switched off: their numbers stay 0."""
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_SENSOR:
+        raise InvalidValueError(
+            "the model disables its sensors, and heat is read from them: take the flag sensor out of <option>, or "
+            "update a ThermalTouch of one world after every step"
+        )
+
+
 def sensor_places(
     model: mujoco.MjModel, found: Sequence[PadPlace], shapes: Sequence[BodyShape]
 ) -> SensorPlaces:
-    """Of a model that `prepare` has made. Raises InvalidValueError where a sensor is missing."""
+    """Of a model that `prepare` has made. Raises InvalidValueError where a sensor is missing or all are off."""
+    require_sensors(model)
     contacts, poses = {}, {}
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for n in range(model.nsensor):

@@ -12,6 +12,7 @@ import mujoco
 from thermograsp.errors import InvalidValueError, MissingDependencyError, celsius, non_negative, positive
 
 from ...thermal import Material
+from ..contacts import require_sensors
 from ..scene import (
     Fingertip,
     ThermalBody,
@@ -22,6 +23,8 @@ from ..scene import (
     samples_in,
     warn_of_boxes,
     warn_of_fixed_bodies,
+    warn_of_kept_apart,
+    warn_of_wide_faces,
     whole_steps,
 )
 from .library import load_plugin
@@ -72,10 +75,13 @@ def install(
             )
     load_plugin()
     model = spec.compile()
+    require_sensors(model)
     substeps = whole_steps(positive("dt (s)", dt), float(model.opt.timestep))
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
     warn_of_fixed_bodies(model, fingertips, found, shapes)
+    warn_of_kept_apart(model, found, shapes)
+    warn_of_wide_faces(model, found)
     refuse_sleep(model, found, shapes)
     for shape in shapes:
         if shape.contents is not None:

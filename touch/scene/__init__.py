@@ -5,11 +5,13 @@ from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .fixed_bodies import warn_of_fixed_bodies
+from .kept_apart import warn_of_kept_apart
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
 from .own_shape import own_shapes, warn_of_boxes
 from .sleeping import refuse_sleep
 from .steps import LONGEST, samples_in, whole_steps
+from .wide_faces import warn_of_wide_faces
 
 __all__ = [
     "LONGEST",
@@ -40,5 +42,7 @@ __all__ = [
     "triangles",
     "warn_of_boxes",
     "warn_of_fixed_bodies",
+    "warn_of_kept_apart",
+    "warn_of_wide_faces",
     "whole_steps",
 ]

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -143,6 +143,7 @@ def pads(
     }
     geoms = {label: geoms_of(model, *where) for label, where in found.items()}
     _require_different_geoms(model, geoms, objects)
+    _require_labels(fingertips, objects)
     middles = {label: _middle(data, where, geoms[label]) for label, where in found.items()}
     placed = []
     for label, one in given.items():
@@ -154,6 +155,21 @@ def pads(
         if placed[-1].surround is not None:
             _require_no_elements(label, objects)
     return tuple(placed)
+
+
+def _require_labels(labels: Iterable[object], objects: Sequence[BodyShape]) -> None:
+    """Raises InvalidValueError for labels by which `touching` could not tell what is touched."""
+    taken = {shape.name for shape in objects}
+    for label in labels:
+        if not isinstance(label, str) or not label:
+            raise InvalidValueError(
+                f'fingertips: {label!r} is no name; give one to each, such as {{"thumb": "thumb_pad"}}'
+            )
+        if label in taken:
+            raise InvalidValueError(
+                f"fingertip {label!r} is called as an object is, and `touching` would not tell the two apart: give the "
+                "fingertip another name"
+            )
 
 
 def _require_no_elements(label: str, objects: Sequence[BodyShape]) -> None:
@@ -252,8 +268,9 @@ def _pad(
                 break
     if found is None:
         raise InvalidValueError(
-            f"fingertip {label!r}: no face of {one.name!r} points towards the other fingertips or the objects; give "
-            "its pad: Fingertip(name, position=(x, y, z), normal=(x, y, z), size=(y, z))"
+            f"fingertip {label!r}: no face of {one.name!r} of {1e6 * SMALLEST:g} mm2 or more points towards the other "
+            "fingertips or the objects; give its pad: Fingertip(name, position=(x, y, z), normal=(x, y, z), "
+            "size=(y, z))"
         )
     position, axes, size = found
     if one.size is not None:

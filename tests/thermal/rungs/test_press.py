@@ -47,6 +47,16 @@ def test_smaller_tolerances_take_larger_networks(mode: Mode, tolerances: tuple[f
     assert states[0] < states[1] < states[2]
 
 
+def test_a_simpler_rung_is_no_further_off_before_the_touch_has_settled() -> None:
+    """The lumped rung begins with 10.4 K of 12 K: of a film of glass, which is warm within a millisecond, that was the
+    largest drop."""
+    film = {"object_size": (0.009, 0.009, 1e-6), "seconds": 1.0, "dt": 0.1, "cache": False}
+    assert press("glass", rung="lumped", **film).temperature_drop[0] > 10.0
+    found = press("glass", **film)
+    assert found.temperature_drop[0] == 0.0 and found.temperature_drop.max() < 0.02
+    assert press("glass", conductance=1.0, seconds=1.0, dt=0.1, cache=False).rung.name == "lumped"
+
+
 def test_orders_by_name_and_a_second_fingertip_apart() -> None:
     one = press("glass", rung="network:3/12/16", seconds=5.0, dt=0.05, cache=False)
     two = press("glass", rung="network:2/10/12/12", seconds=5.0, dt=0.05, cache=False)
