@@ -28,8 +28,8 @@ GRASP_STATE = np.dtype(
         ("pressed", "?"),
     ]
 )
-"""s; s at 5 cm without a break; m, how high the object was above the arm when both pads came to press (0 where it may
-slip); see progress.py; has been at 5 cm; both pads pressed at the last step."""
+"""s; s at 5 cm without a break; m, how high the object was above the arm when both pads came to press; see progress.py;
+has been at 5 cm; both pads pressed at the last step. What only slips need is 0 where the object may slip."""
 LIFTED = 0.05  # m
 TOUCHING = 0.2  # N on each pad that counts as holding
 
@@ -82,18 +82,16 @@ class GraspTask:
         left, right = reading.force[:, 0, 0], reading.force[:, 1, 0]
         pressing = np.minimum(left, right) > TOUCHING
         at_height = pressing & (lift >= LIFTED * 0.98)
-        after = np.empty_like(state)
+        after = self.fresh(len(state))
         after["elapsed"] = elapsed = state["elapsed"] + dt
         after["held"] = held = at_height * (state["held"] + dt)
-        after["gripped"] = state["gripped"]
         after["lifted"] = lifted = state["lifted"] | at_height
-        after["pressed"] = pressing
         crushed = np.maximum(left, right) > crushing
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
         failed = crushed | dropped
         reasons = {"dropped": dropped, "crushed": crushed}
         if self.most_slip < np.inf:
-            above = lift - height
+            after["pressed"], above = pressing, lift - height
             after["gripped"] = gripped = np.where(state["pressed"], state["gripped"], above)
             reasons["slipped"] = slipped = pressing & (gripped - above > self.most_slip)
             failed |= slipped
