@@ -116,9 +116,10 @@ def infos_of(
         if judged.any():
             for name, values in outcome.info.items():
                 add(name, values, judged)
-        broken = np.array([bool(error) for error in reading.error]) & rows
-        if broken.any():
-            add("error", np.array(reading.error, object), broken)
+        if any(reading.error):
+            broken = np.array([bool(error) for error in reading.error]) & rows
+            if broken.any():
+                add("error", np.array(reading.error, object), broken)
     for name in reading.info_names:
         add(name, np.array(reading.truth[name]), rows)
     randomized = reading.truth.get("randomized")

@@ -96,16 +96,11 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """One control step of 20 ms."""
-        step = self.batch.step(np.asarray(action)[None])
+        seen, reward, terminated, truncated, outcome, reading = self.batch.step(np.asarray(action)[None])
         if self.render_mode == "human":
             self.render()
-        return (
-            _first(step.observation),
-            float(step.reward[0]),
-            bool(step.terminated[0]),
-            bool(step.truncated[0]),
-            step.info(0),
-        )
+        info = info_of(reading, outcome, 0)
+        return _first(seen), float(reward[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def render(self) -> np.ndarray | None:
         """(height, width, 3) uint8 in "rgb_array", None in "human" (a window). Fingertips and object are coloured by

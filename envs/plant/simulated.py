@@ -62,6 +62,7 @@ class SimulatedPlant:
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = whole_number("num_envs", num_envs, 1), config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)
+        self._alone = objects == 1  # and its heat needs no owner of each fingertip
         self.heat: Any = self._heat()
         self.mechanics = Mechanics(
             self.layout.specs,
@@ -246,11 +247,6 @@ class SimulatedPlant:
         self._rest[chosen], self._task[chosen] = state.rest, state.task
         self._relabel(chosen)
         return rngs
-
-    @property
-    def _alone(self) -> bool:
-        """Whether there is one object, whose heat needs no owner of each fingertip."""
-        return len(self.layout.specs) == 1
 
     @property
     def _lateral(self) -> np.ndarray | None:

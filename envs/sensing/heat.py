@@ -156,8 +156,9 @@ class GraspHeat:
         """One control step. force: (B, S, F) N, normal, of each substep, 0 where apart. place: (B, F, 3) m, the
         sensor faces' middles in the object's frame at the end of the step. carried: (sample, source, target,
         fingertip) of fields that go from one row to another as that sample begins, as in carry."""
-        for row in [row for row in self._waiting if force[row].any()]:
-            self._build(row)
+        if self._waiting:
+            for row in [row for row in self._waiting if force[row].any()]:
+                self._build(row)
         if self._meshes:
             self._slip(force, place)
         moved = self._moved(force, place) if self._touches else []

@@ -82,31 +82,29 @@ class GraspTask:
         left, right = reading.force[:, 0, 0], reading.force[:, 1, 0]
         pressing = np.minimum(left, right) > TOUCHING
         at_height = pressing & (lift >= LIFTED * 0.98)
+        elapsed, held = state["elapsed"] + dt, at_height * (state["held"] + dt)
+        lifted = state["lifted"] | at_height
+        share = np.minimum(np.maximum(lift / LIFTED, 0.0), 1.0)
+        progress = lift_progress(pressing, share, np.minimum(held / self.hold_seconds, 1.0), PRESSED)
         after = self.fresh(len(state))
-        after["elapsed"] = elapsed = state["elapsed"] + dt
-        after["held"] = held = at_height * (state["held"] + dt)
-        after["lifted"] = lifted = state["lifted"] | at_height
+        after["elapsed"], after["held"], after["lifted"], after["progress"] = elapsed, held, lifted, progress
         crushed = np.maximum(left, right) > crushing
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
         failed = crushed | dropped
         reasons = {"dropped": dropped, "crushed": crushed}
         if self.most_slip < np.inf:
-            after["pressed"], above = pressing, lift - height
-            after["gripped"] = gripped = np.where(state["pressed"], state["gripped"], above)
+            above = lift - height
+            gripped = np.where(state["pressed"], state["gripped"], above)
+            after["gripped"], after["pressed"] = gripped, pressing
             reasons["slipped"] = slipped = pressing & (gripped - above > self.most_slip)
             failed |= slipped
         # In float steps of dt a rounding must not cost a control step.
-        success = (held >= self.hold_seconds - dt / 2) & ~failed
-        share = np.minimum(np.maximum(lift / LIFTED, 0.0), 1.0)
-        after["progress"] = progress = lift_progress(
-            pressing, share, np.minimum(held / self.hold_seconds, 1.0), PRESSED
-        )
-        ended = success | failed
+        ended = failed | (held >= self.hold_seconds - dt / 2)
         outcome = Outcome(
             reward=step_reward(state["progress"], progress, ended, failed, elapsed, self.seconds),
-            success=success,
+            success=ended & ~failed,
             terminated=ended,
-            truncated=~ended & (elapsed >= self.seconds - dt / 2),
+            truncated=(elapsed >= self.seconds - dt / 2) & ~ended,
             reasons=reasons,
             info={},
         )
