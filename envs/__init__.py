@@ -9,18 +9,16 @@ from typing import TYPE_CHECKING
 
 from thermograsp.doors import opened
 
+from ..thermal import Reservoir, ice, water
 from .bodies import (
     MeshShape,
     ObjectPreset,
     ObjectSpec,
     Part,
-    Reservoir,
-    ice,
     library_object,
     load_mesh,
     load_objects,
     objects,
-    water,
 )
 from .footprint import GraspBody
 from .gym import (

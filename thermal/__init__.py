@@ -48,16 +48,19 @@ from .matter import (
     Layer,
     Material,
     Mode,
+    Reservoir,
     SensorStack,
     Shape,
     Skin,
     Surround,
+    ice,
     load_materials,
     load_sensors,
     material,
     materials,
     sensor,
     sensors,
+    water,
     write_sensor,
 )
 from .network import Choice, ContactSystem, Demand, Orders, ThermalNetwork, free_area, network_for, network_of
@@ -123,6 +126,7 @@ __all__ = [
     "Pad",
     "Press",
     "PressProblem",
+    "Reservoir",
     "Rung",
     "RungInfo",
     "SensorFit",
@@ -157,6 +161,7 @@ __all__ = [
     "free_area",
     "heat_tables",
     "ideal_thermostat",
+    "ice",
     "identify",
     "joint",
     "load_materials",
@@ -180,6 +185,7 @@ __all__ = [
     "sphere_law",
     "stack_joints",
     "thermostat_step",
+    "water",
     "write_sensor",
 ]
 

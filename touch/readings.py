@@ -28,13 +28,15 @@ NOISE_BLOCK = 32
 class Layout:
     """What the numbers of a reading are: of each world (W, SIZE), the voltages of all sensors, their drops, the
     fingertips' forces and those beside, the objects' temperatures, and what each fingertip touches, -1 for nothing.
-    names: of the objects, the fingertips, and "" for the last one."""
+    names: of the objects, the fingertips, and "" for the last one. contents: numbers of the objects that have any,
+    whose temperatures stand behind."""
 
     tips: int
     sensors: int
     objects: int
     names: tuple[str, ...]
     many: bool
+    contents: tuple[int, ...] = ()
 
     @cached_property
     def starts(self) -> tuple[int, ...]:
@@ -132,11 +134,20 @@ class TouchReading:
         return dict(zip(self._layout.names, columns, strict=False))
 
     @property
+    def contents_temperature(self) -> Mapping[str, float | np.ndarray]:
+        """°C of what is in an object, by object, of those that have contents."""
+        names, inside = self._layout.names, self._layout.contents
+        first = self._layout.starts[-1]
+        found = self._rows(first, first + len(inside))
+        columns = found.T if self._layout.many else found.tolist()
+        return dict(zip([names[o] for o in inside], columns, strict=True))
+
+    @property
     def touching(self) -> tuple[str, ...] | tuple[tuple[str, ...], ...]:
         """(F,) names of objects or other fingertips, the one that presses most where there are several, "" where
         none."""
         names = self._layout.names
-        worlds = self._numbers[:, self._layout.starts[4] :].astype(int).tolist()
+        worlds = self._numbers[:, slice(*self._layout.starts[4:])].astype(int).tolist()
         found = tuple([tuple([names[t] for t in world]) for world in worlds])
         return found if self._layout.many else found[0]
 
@@ -151,7 +162,7 @@ class TouchReading:
 
 _SHOWN = (
     *("time", "voltage", "temperature_drop", "force", "beside", "touching", "object_temperature", "failed"),
-    *("element_voltage", "element_drop"),
+    *("element_voltage", "element_drop", "contents_temperature"),
 )
 
 
@@ -212,8 +223,9 @@ class Electronics:
     off: (W, F) N, sums over the substeps of a reading. filtered and last: (W S, 1) V, the low-pass's output and its
     last input.
 
-    touches, beside: a ContactReader's. sent: (W, S) what the chains take; drop: (W, S) K and warmth: (W, O) K above
-    `ambient` °C, of a JoinedHeat. These stay where they are. substeps: of a reading."""
+    touches, beside: a ContactReader's. sent: (W, S) what the chains take; drop: (W, S) K, warmth: (W, O) K above
+    `ambient` °C and inner: (W, C) °C of the contents of C objects, of a JoinedHeat. These stay where they are.
+    substeps: of a reading."""
 
     def __init__(
         self,
@@ -226,11 +238,12 @@ class Electronics:
         sent: np.ndarray,
         drop: np.ndarray,
         warmth: np.ndarray,
+        inner: np.ndarray,
         substeps: int,
         ambient: float,
     ) -> None:
         self.noise, self._layout, self._chains = noise, layout, chain_rows
-        self._sources = touches, beside, sent, drop, warmth
+        self._sources, self._inner = (touches, beside, sent, drop, warmth), inner
         worlds, tips, targets = touches.shape[:3]
         rows = worlds * layout.sensors
         self.filtered, self.last = np.zeros((rows, 1)), np.zeros((rows, 1))
@@ -300,10 +313,13 @@ class Electronics:
     def reading(self, time: np.ndarray, broken: np.ndarray) -> TouchReading:
         """The last one. time: (W,) s."""
         layout, numbers = self._layout, self._numbers.copy()
+        if self._inner.size:
+            numbers = np.concatenate((numbers, self._inner), axis=1)
         if not layout.many:
             return TouchReading(time.item(), False, numbers, layout)
         if broken.any():
             numbers[broken, : layout.starts[4]] = np.nan
+            numbers[broken, layout.starts[-1] :] = np.nan
         return TouchReading(time.copy(), broken.copy(), numbers, layout)
 
 

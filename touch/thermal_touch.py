@@ -145,6 +145,7 @@ class ThermalTouch:
             "thermostats": tuple((pad.temperature, pad.thermostat) for pad in self._pads),
             "surrounds": tuple(pad.surround for pad in self._pads),
             "shapes": tuple("box" if shape.solid is None else "own" for shape in self._shapes),
+            "contents": tuple(shape.contents for shape in self._shapes),
             "ambient": ambient,
             "air": air,
             "chain": self._chain,
@@ -170,13 +171,17 @@ class ThermalTouch:
         names = *self.objects, *self.fingertips, ""
         self._electronics = Electronics(
             np.tile(np.concatenate(chains), count),
-            Layout(len(self._pads), len(chains), len(self._shapes), names, self._many),
+            Layout(
+                *(len(self._pads), len(chains), len(self._shapes), names, self._many),
+                tuple(o for o, shape in enumerate(self._shapes) if shape.contents is not None),
+            ),
             Noise([first + w for w in range(count)], len(chains)),  # pyright: ignore[reportOperatorIssue]
             touches=reader.touches,
             beside=reader.beside,
             sent=self._sent,
             drop=heat.drop,
             warmth=heat.warmth,
+            inner=heat.inner,
             substeps=self._substeps,
             ambient=ambient,
         )

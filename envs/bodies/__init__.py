@@ -7,20 +7,16 @@ from .meshes import MeshShape, load_mesh
 from .object_solids import object_solid
 from .object_spec import DEFAULT_FRICTION, DEFAULT_MASS, ObjectSpec, placeless, scaled
 from .parts import Part, checked_size
-from .reservoir import RESERVOIR_ROW, Reservoir, ice, reservoir_step, reservoir_temperature, water
 
 __all__ = [
     "DEFAULT_FRICTION",
     "DEFAULT_MASS",
-    "RESERVOIR_ROW",
     "Assembly",
     "MeshShape",
     "ObjectPreset",
     "ObjectSpec",
     "Part",
-    "Reservoir",
     "checked_size",
-    "ice",
     "library_object",
     "load_mesh",
     "load_objects",
@@ -28,8 +24,5 @@ __all__ = [
     "objects",
     "placeless",
     "read_surface",
-    "reservoir_step",
-    "reservoir_temperature",
     "scaled",
-    "water",
 ]

@@ -19,11 +19,10 @@ from thermograsp.errors import InvalidValueError, ThermograspError, celsius, fin
 from thermograsp.files import cached_file, read_toml
 
 from ...assets import asset
-from ...thermal import material
+from ...thermal import Reservoir, material
 from .object_spec import ObjectSpec
 from .parts import Part
 from .recipes import Solid, make
-from .reservoir import Reservoir
 from .solids import Triangles
 
 ROOM = 24.0  # °C

@@ -22,7 +22,7 @@ from thermograsp.errors import (
     within,
 )
 
-from ...thermal import Material, material
+from ...thermal import Material, Reservoir, material
 from ..limits import (
     CLEARANCE,
     MAX_OPENING,
@@ -32,7 +32,6 @@ from ..limits import (
 from .meshes import MeshShape, load_mesh
 from .parts import Part, checked_size
 from .primitives import unit_inertia
-from .reservoir import Reservoir
 
 if TYPE_CHECKING:
     from .assembly import Assembly

@@ -202,7 +202,7 @@ class SimulationConfig:
             return any(shape.shape != "box" or self._anywhere(shape) for shape in every)
         if self.anywhere is False or self.mode == "O" or self.heated is not None:
             return False
-        plain = not any(shape.parts or shape.reservoir is not None for shape in every)
+        plain = not any(shape.parts for shape in every)
         ideal = self.thermostat is None and self.face_temperature is None
         return plain and ideal and any(shape.shape != "box" for shape in every)
 

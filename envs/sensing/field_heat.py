@@ -102,6 +102,7 @@ class FieldScenes:
         # J at the last step's end: from fingertips to objects, in elements and pads, in objects, to the air
         self._given, self._stored = np.zeros((num_envs, 2, objects)), np.zeros((num_envs, 2))
         self._gained, self._air = np.zeros((num_envs, objects)), np.zeros(num_envs)
+        self._fed = np.zeros((num_envs, objects))  # J, from contents
         # Meshes, whose contact follows the place: where the pads closed, and how far they have gone.
         self._meshes: list[tuple[int, int]] = []
         self._closed = np.zeros((num_envs, objects, 4))
@@ -144,14 +145,15 @@ class FieldScenes:
         while number < last:
             row, k = divmod(number, self._samples)
             one = self._heats[row]
-            one.heat.advance(one.touches[k], 1)
+            if one.heat.advance(one.touches[k], 1):
+                self._list(row)
             drop[row, k, : one.heat.drop.shape[1]] = one.heat.drop[0]
-            self._list(row)
             number = advance_fields(*arrays, number + 1)
         seconds = self._samples * self._dt
         books = self._given, self._stored, self._gained, self._air
         tell_fields(self._listed, self._rows, seconds, self._info, *books)
         tell_temperatures(self._listed, self._rows, self._ambient, self._info)
+        self._tell_contents(seconds)
         return self._step(drop)
 
     def rest(self) -> SceneHeatStep:
@@ -159,6 +161,7 @@ class FieldScenes:
         self._info[:] = np.zeros(1, HEAT_INFO)
         self._info["reservoir_temperature"] = np.nan
         tell_temperatures(self._listed, self._rows, self._ambient, self._info)
+        self._tell_contents()
         return self._step(np.zeros((len(self._rows), self._samples, 2)))
 
     def state(self, rows: Sequence[int]) -> FieldHeatState:
@@ -180,6 +183,8 @@ class FieldScenes:
             self._list(row)
             books = self._given[row], self._stored[row], self._gained[row]
             self._air[row] = tell_books(self._listed[row, HEAT], *books)
+            for inside in self._heats[row].heat.contents:
+                self._fed[row, inside.object] = inside.given[0]
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """A copy, whose arrays are elsewhere."""
@@ -207,6 +212,8 @@ class FieldScenes:
         one.heat.reset([0], np.array([[body.temperature for body in scene]]))
         self._scenes[row], self._ambient[row] = scene, ambient
         self._given[row], self._stored[row], self._gained[row], self._air[row] = 0.0, 0.0, 0.0, 0.0
+        self._fed[row] = 0.0
+        self._info["reservoir_temperature"][row], self._info["reservoir_flow"][row] = np.nan, 0.0
         self._meshes = [each for each in self._meshes if each[0] != row]
         self._steps[row] = 0
         one.slipped.clear()
@@ -244,7 +251,24 @@ class FieldScenes:
         """Where the row's heat is from now on; to be called whenever anything but compiled code has changed it."""
         one = self._heats[row]
         one.told = one.heat.telling()
-        self._listed[row] = one.told.ctypes.data, *one.heat.hearing(one.touches), one.touches.shape[2]
+        heard, _ = one.heat.hearing(one.touches)
+        self._listed[row] = one.told.ctypes.data, heard, one.touches.ctypes.data, one.touches.shape[2]
+
+    def _tell_contents(self, seconds: float | None = None) -> None:
+        """Fills what info tells of contents after a control step of so many seconds, or at rest, and puts them into
+        the books."""
+        for row, one in self._heats.items():
+            for inside in one.heat.contents:
+                step, o = self._info[row, inside.object], inside.object
+                step["reservoir_temperature"] = inside.temperature[0]
+                if seconds is None:
+                    continue
+                passed, self._fed[row, o] = inside.given[0] - self._fed[row, o], inside.given[0]
+                step["reservoir_flow"] = passed / seconds
+                books = self._rows[row, o]["books"]
+                books[1] += abs(passed)
+                step["exchanged"] = books[1]
+                self._info[row, 0]["imbalance"] -= inside.given[0]
 
     def _slip(self, force: np.ndarray, place: np.ndarray) -> None:
         """What the pads touch of meshes that have slipped or turned between them."""
@@ -347,5 +371,6 @@ def _shape(body: GraspBody) -> BodyShape:
         axes=np.eye(3),
         extent=extent,
         surface=spec.surface,
+        contents=spec.reservoir,
         solid=body.solid if spec.mesh else None,
     )

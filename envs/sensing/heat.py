@@ -19,7 +19,7 @@ from ...thermal import (
 )
 from ...thermal.batch import carry_matrix
 from ...thermal.contact import FOOTPRINT_LAW
-from ..bodies import RESERVOIR_ROW
+from ...thermal.matter import RESERVOIR_ROW
 from ..footprint import GraspBody
 from .boxes import BoxHeat
 from .kernel import advance_boxes, advance_grasps

@@ -25,9 +25,9 @@ from ...thermal.batch import (
     forget_row,
 )
 from ...thermal.contact import FLAT, beside_face, footprint, gas_conduction, solid_conduction
+from ...thermal.matter import reservoir_step, reservoir_temperature
 from ...thermal.network import NODE, workspace
 from ...thermal.numerics import FAST
-from ..bodies import reservoir_step, reservoir_temperature
 from .rows import (
     NEW_PATCH,
     OFF_ELEMENT,

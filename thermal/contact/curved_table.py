@@ -119,8 +119,10 @@ def _power(values):
             most = max(most, values[-1, i, j, _CONTACT])
     for i in range(values.shape[1]):
         for j in range(values.shape[2]):
-            at = values[:, i, j, _CONTACT]
-            if at.min() <= 0.0:
+            at, everywhere = values[:, i, j, _CONTACT], True
+            for k in range(len(at)):
+                everywhere &= at[k] > 0.0
+            if not everywhere:
                 continue
             for k in range(1, len(at)):
                 if at[k] > _LITTLE * most:

@@ -28,7 +28,17 @@ and meshes are still in plates/, network/ and meshes/.
 """
 
 from .box import BoxSamples, Patches, box_kernel, box_samples
-from .contact import Resolution, Tip, at_rates, box_side, contact_weight, residues, tip, tip_at
+from .contact import (
+    Resolution,
+    Tip,
+    at_rates,
+    box_side,
+    compile_tip_states,
+    contact_weight,
+    residues,
+    tip,
+    tip_at,
+)
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
 from .glued import GluedElement, glued_element
@@ -70,6 +80,7 @@ __all__ = [
     "box_kernel",
     "box_samples",
     "box_side",
+    "compile_tip_states",
     "contact_patterns",
     "contact_weight",
     "element",

@@ -124,7 +124,7 @@ def images(one, order, other, other_order, same, length, film, tau, out):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def ends_felt(one, other, length, tau):
+def ends_reached(one, other, length, tau):
     """Whether anything comes from one to the other by way of the axis' first end, and of its last; as in images."""
     reach = _REACH * 2 * math.sqrt(tau)
     return one[0] + other[0] <= reach, 2 * length - one[-1] - other[-1] <= reach
@@ -136,7 +136,7 @@ def add_images(one, order, other, other_order, same, length, film, tau, out):
     total = order + other_order
     turned = -1.0 if total == 1 else 1.0
     scale = 2 * math.sqrt(tau)
-    low_end, high_end = ends_felt(one, other, length, tau)
+    low_end, high_end = ends_reached(one, other, length, tau)
     if not low_end and not high_end:
         return
     if total == 2 and film * scale / 2 <= _FEW:
@@ -200,12 +200,12 @@ def free_kernels(half, jumps, nodes, taus):
             places = half[n, w] * nodes
             for t in range(len(taus)):
                 _free_strips(places, places, 2 * math.sqrt(taus[t]), table)
-                add_met(jumps[n, w], table, jumps[n, w], False, done, found[n, w], t)
+                add_projected(jumps[n, w], table, jumps[n, w], False, done, found[n, w], t)
     return found
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def add_met(by, table, beside, same, done, out, t):
+def add_projected(by, table, beside, same, done, out, t):
     """Adds to out (F one, F other, T), at number t, jumps (F one, E one) times the table times jumps (F other,
     E other). same: these are the same, and only the lower half is wanted. done: room (E other,)."""
     count = len(done)

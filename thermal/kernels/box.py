@@ -21,8 +21,8 @@ from .axis import (
     MODES,
     SWITCH,
     add_images,
-    add_met,
-    ends_felt,
+    add_projected,
+    ends_reached,
     free_kernels,
     images,
     left_inside,
@@ -33,7 +33,7 @@ from .patterns import ALONG, GRAM, JUMPS, NODES, along_axes
 from .samples import MOMENTS, TIMES, TO_MOMENTS, TO_SLOPES, before
 
 _FADED = 1e-12  # of an eigenfunction, from which on it counts for nothing
-_UNSEEN = 160.0  # squared distance over diffusion length squared: exp(-40)
+_UNREACHED = 160.0  # squared distance over diffusion length squared: exp(-40)
 
 
 class Patches(NamedTuple):
@@ -228,17 +228,17 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                 others = functions if order[m] == 1 else 1
                 b = places[m] if order[m] == 1 else places[m, :1]
                 beside = jumps[m, which[axis, m]] if order[m] == 1 else point
-                first, last = _felt(size, face, n, m, taus), len(taus)
+                first, last = _first_reached(size, face, n, m, taus), len(taus)
                 one, other = (evenly[n], evenly[n]) if n == m else (alike[n], alike[m])
                 if one < n or other < m:
                     # opposite fingertips often differ along one axis only
-                    last = max(_felt(size, face, one, other, taus), first)
+                    last = max(_first_reached(size, face, one, other, taus), first)
                 for t in range(first, min(begun, last)):
                     if n == m and across:
                         for f in range(functions):
                             for g in range(f + 1):
                                 between[axis, n, f, m, g, t] = free[n, which[axis, n], f, g, t]
-                        low_end, high_end = ends_felt(a, b, length, taus[t])
+                        low_end, high_end = ends_reached(a, b, length, taus[t])
                         if not low_end and not high_end:
                             continue
                         for k in range(len(a)):
@@ -247,7 +247,7 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                         add_images(a, 1, b, 1, True, length, film, taus[t], table)
                     else:
                         images(a, order[n], b, order[m], n == m, length, film, taus[t], table)
-                    add_met(by, table, beside, n == m, half_done[: len(b)], between[axis, n, :, m], t)
+                    add_projected(by, table, beside, n == m, half_done[: len(b)], between[axis, n, :, m], t)
                 for f in range(axis_functions):
                     for g in range(f + 1 if n == m else others):
                         along = between[axis, n, f, m, g]
@@ -344,17 +344,17 @@ def _fading(wave, tau):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def _unseen(size, face, n, m, tau):
-    """Whether patches n and m are on opposite faces, of which neither has felt the other by then to round-off."""
+def _unreached(size, face, n, m, tau):
+    """Whether patches n and m are on opposite faces, whose heat has not reached the other by then, to round-off."""
     axis = face[n] // 2
-    return face[m] // 2 == axis and face[m] != face[n] and size[axis] * size[axis] > _UNSEEN * tau
+    return face[m] // 2 == axis and face[m] != face[n] and size[axis] * size[axis] > _UNREACHED * tau
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def _felt(size, face, n, m, taus):
-    """The number of the first time at which they have, as many as there are for never."""
+def _first_reached(size, face, n, m, taus):
+    """The number of the first time at which it has; len(taus) for never."""
     first = 0
-    while first < len(taus) and _unseen(size, face, n, m, taus[first]):
+    while first < len(taus) and _unreached(size, face, n, m, taus[first]):
         first += 1
     return first
 

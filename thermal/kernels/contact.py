@@ -153,6 +153,12 @@ def _rest(known: Element) -> tuple[np.ndarray, np.ndarray]:
     return known.drop_rest[OF_GRASP], known.heat_rest[OF_GRASP]
 
 
+def compile_tip_states() -> None:
+    """Compiles what makes a fingertip's network of residues, as `tip` calls it."""
+    samples, slow, decay = np.ones(len(GRASP)), np.ones(1), Resolution(2, 1).decay
+    _element_states(np.ones((1, 1, 2)), samples, GRASP, decay, 1.0, slow, slow, slow, slow, samples, samples)
+
+
 @njit(cache=True, short_loops=True, error_model="numpy")
 def _element_states(found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest):
     """Rates, ports, drop and heat of an element's states: the slow ones of rates slow (K,), ports seen (K,), drops and

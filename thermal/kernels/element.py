@@ -25,7 +25,7 @@ from ..matter import SensorStack
 from ..numerics import Sampled, dot
 from ..plates import from_nodes, log_nodes, stack_impedance, stack_profile
 from .alone import alone
-from .axis import MODES, SWITCH, add_images, add_met, ends_felt, images, overlaps
+from .axis import MODES, SWITCH, add_images, add_projected, ends_reached, images, overlaps
 from .patterns import ALONG, EACH_FUNCTION, GRAM, JUMPS, NODES
 from .samples import (
     GRASP,
@@ -373,12 +373,12 @@ def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below)
                 for r in range(sums.shape[1]):
                     below[f, g, r] += both * sums[w, r]
     for t in range(early):
-        low_end, high_end = ends_felt(places, places, width, taus[t])
+        low_end, high_end = ends_reached(places, places, width, taus[t])
         if not low_end and not high_end:
             continue
         table[:] = 0.0
         add_images(places, 1, places, 1, True, width, 0.0, taus[t], table)
-        add_met(jumps, table, jumps, True, done, within, t)
+        add_projected(jumps, table, jumps, True, done, within, t)
     for f in range(functions):
         for g in range(f):
             for t in range(len(taus)):

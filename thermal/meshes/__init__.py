@@ -4,7 +4,7 @@ from .film import wetted_area
 from .modes import body_modes
 from .network import body_network
 from .placed import LEVEL as PLACED_LEVEL
-from .placed import PLACED_SHARE, placed_body
+from .placed import PLACED_SHARE, own_network, placed_body
 from .press import press_body
 from .ringed import body_in_pads, surface_patch, wall_below
 from .touched import TouchedBody, field_carried, surface_normal, touched_body
@@ -17,6 +17,7 @@ __all__ = [
     "body_modes",
     "body_network",
     "field_carried",
+    "own_network",
     "placed_body",
     "press_body",
     "surface_normal",

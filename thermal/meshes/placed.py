@@ -166,6 +166,14 @@ def placed_network(
     )
 
 
+def own_network(body: Solid, film: float, *, cache: bool = True) -> ThermalNetwork:
+    """The states of placed_network that are the body's own wherever it is touched, with its outputs and without ports.
+    Arguments and errors as its."""
+    inside = film_of(body, film)
+    modes = body_modes(body, inside, cache=cache)
+    return _slow(modes, np.zeros((0, len(modes.rates))), inside).network
+
+
 class FaceImpedance(NamedTuple):
     """Of sensors' faces on a body. modes: the body's. one: the sensor's element under its contact. places: where the
     patches are. impedance: (S, P M, P M) K/W at GRASP, less that of the slow modes."""
@@ -322,11 +330,14 @@ def _placed(
     return Placed(below, seen, None, impedance)
 
 
-def is_touchable(body: Solid, patch: SurfacePatch, stack: SensorStack, *, cache: bool = True) -> bool:
-    """Whether an empty body has a surface at a patch that can be touched. What is found out about the place is kept for
-    its network."""
+def is_touchable(
+    body: Solid, patch: SurfacePatch, stack: SensorStack, film: float = 0.0, *, cache: bool = True
+) -> bool:
+    """Whether a body has a surface at a patch that can be touched. What is found out about the place is kept for its
+    network. film: W/K to contents."""
+    inside = film_of(body, film)
     try:
-        _placed(body, patch, stack, None, _EMPTY, cache)
+        _placed(body, patch, stack, inside, _EMPTY if inside is None else _FILLED, cache)
     except MeshError:
         return False
     return True

@@ -62,20 +62,22 @@ def body_in_pads(
     sides: tuple[float, ...],
     *,
     whole: Sequence[bool] | None = None,
+    film: float = 0.0,
     cache: bool = True,
 ) -> tuple[ThermalNetwork, np.ndarray, int]:
     """The body's network of P M ports, in orthonormal patterns of the sensor's whole face, its output "heat" the J that
     it has gained; (n, P R) ports of even flows into rings of the pads around; and how many of its states, the first
     ones, are the body's own wherever it is touched. sides: (R,) m, the rings' outer sides, none without pads. whole:
-    whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. Raises
-    MeshError where a patch meets no surface, or the body is no solid in one piece."""
+    whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. film: W/K
+    to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in
+    one piece."""
     told = None
     if whole is not None:
         told = np.repeat(whole, LEVEL.patterns)
         told[:: LEVEL.patterns] = True
         told = np.concatenate((told, np.repeat(whole, len(sides))))
     if not sides:
-        alone = placed_network(body, patches, stack, told=told, cache=cache)
+        alone = placed_network(body, patches, stack, film, told=told, cache=cache)
         return alone.network, np.zeros((len(alone.network.rates), 0)), alone.slow
     found = face_impedance(body, patches, stack, None, cache)
     around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]
@@ -92,17 +94,23 @@ def body_in_pads(
 
 
 def surface_patch(
-    body: Solid, centre: np.ndarray, outward: np.ndarray, stack: SensorStack, *, cache: bool = True
+    body: Solid,
+    centre: np.ndarray,
+    outward: np.ndarray,
+    stack: SensorStack,
+    film: float = 0.0,
+    *,
+    cache: bool = True,
 ) -> SurfacePatch:
     """The sensor's face on the surface that looks along an outward unit vector, across it: where a line that way
     through a place (3,) m leaves the body, or at the nearest point where the line meets it far from there. Where
     nothing of the surface there can be touched, since the body covers it or it is too steep, at the nearest point of
     all the surface, or else where the body reaches farthest that way: simulations touch a mesh's hull, which spans
-    openings."""
+    openings. film: W/K to contents."""
     places = _places(body.outside, centre, outward, stack.width / 2)
     patch = SurfacePatch(*next(places), stack.face_area)
     for place in places:
-        if is_touchable(body, patch, stack, cache=cache):
+        if is_touchable(body, patch, stack, film, cache=cache):
             break
         patch = SurfacePatch(*place, stack.face_area)
     return patch

@@ -77,6 +77,12 @@ def install(
     found = pads(model, fingertips, shapes)
     warn_of_fixed_bodies(model, fingertips, found, shapes)
     refuse_sleep(model, found, shapes)
+    for shape in shapes:
+        if shape.contents is not None:
+            raise InvalidValueError(
+                f"object {shape.name!r}: heat inside MuJoCo's step knows no contents: leave contents out, or call "
+                "ThermalTouch.update after every step"
+            )
     for pad in found:
         if pad.surround is not None:
             raise InvalidValueError(

@@ -25,6 +25,7 @@ from ..contacts import FORCE, GluedContacts
 from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .backs import HeatedBack, ThermostatBack
+from .contents import HeldContents
 from .fixed import FixedNetworks, FixedPlaces, JoinedWorld, world_networks, world_places
 from .march import TABLE, sample
 from .narrow import STEPS, wall_of
@@ -127,6 +128,11 @@ class JoinedHeat:
         self._backs = tuple(
             self._back(f, pad, worlds) for f, pad in enumerate(pads) if pad.heated or pad.thermostat
         )
+        inside = [(o, shape.contents) for o, shape in enumerate(shapes) if shape.contents is not None]
+        self.inner = np.zeros((worlds, len(inside)))
+        """(W, C) °C of the contents of the objects that have any, in their order. It stays where it is."""
+        self.contents = tuple(HeldContents(o, each, self.inner, c, dt) for c, (o, each) in enumerate(inside))
+        """Of these."""
         self._busy, self._seconds, self._reach = np.zeros(fields, bool), np.array([dt]), NEAR * self._widths
         kept = np.exp(-dt * self._level.decay)
         self._decay = np.array([self._level.decay, kept, (1 - kept) / self._level.decay])
@@ -146,6 +152,8 @@ class JoinedHeat:
             self._held_by[w] = [field.heat[0] for field in self._fields[w]]
             self._x[w] = 0.0
             self._x[w, : len(self._shapes), 0] = (celsius - self._ambient) * self._held_by[w]
+            for each in self.contents:
+                each.reset(w, float(celsius[each.object]), self._fields[w][each.object])
             for e, o in enumerate(self._glued_on, len(self._pads) - len(self._glued_on)):
                 warm = celsius[o] - self._ambient
                 self._x[w, len(self._shapes) + e, : self._uniform.shape[1]] = warm * self._uniform[e]
@@ -180,15 +188,18 @@ class JoinedHeat:
         """How many groups of fields are known."""
         return len(self._pool)
 
-    def advance(self, touches: np.ndarray, substeps: int) -> None:
-        """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps."""
+    def advance(self, touches: np.ndarray, substeps: int) -> bool:
+        """One step of dt. touches: (W, F, O + F, COLUMNS) of the fingertips, sums over so many substeps. Returns
+        whether places or contacts have changed."""
         if self._glued is not None:
             touches = self._glued.redirected(touches, substeps)
         if touches is not self._touches:
             self._touches = np.ascontiguousarray(touches, float)
             self._touches_at = self._touches.ctypes.data
         before = [(back.held(self._field_of(back)), self._passed(back)) for back in self._backs]
-        if sample(self._address(), self._touches_at, substeps, 0):
+        self._exchange()
+        changed = sample(self._address(), self._touches_at, substeps, 0) > 0
+        if changed:
             for w, o in np.argwhere((self._new_faces >= 0).any(axis=1)).tolist():
                 self._settle(w, o, np.flatnonzero(self._new_faces[w, :, o] >= 0).tolist())
             while self._stale.any():
@@ -196,6 +207,11 @@ class JoinedHeat:
                     self._stale[w] = False
                     self._join(w)
             sample(self._address(), self._touches_at, substeps, 1)
+        if self.contents:
+            self._exchange()
+            for inside in self.contents:
+                inside.end()
+            self._warm_up()
         for back, (held, passed) in zip(self._backs, before, strict=True):
             f = back.tip
             force = touches[:, f, :, FORCE].sum(axis=1) + touches[:, :, len(self._shapes) + f, FORCE].sum(
@@ -204,13 +220,19 @@ class JoinedHeat:
             out = self._passed(back) - passed
             back.step(self._field_of(back), held, out, self.drop[:, f], force / substeps)
             self._warm[:, f] = back.temperature - self._ambient
+        return changed
 
     def hearing(self, touches: np.ndarray) -> tuple[int, int]:
         """What `sample` takes first, until a call of anything else here: addresses of all arrays and of the touches.
         Zeros where a step is more than that."""
-        if self._backs or self._glued is not None:
+        if self._backs or self.contents or self._glued is not None:
             return 0, 0
         return self._address(), touches.ctypes.data
+
+    def _exchange(self) -> None:
+        """Half a step of contents and walls."""
+        for each in self.contents:
+            each.exchange(self._x[:, each.object], self._ambient)
 
     def telling(self) -> np.ndarray:
         """What the functions of told.py take of a heat of one world, until a call of anything else here."""
@@ -319,6 +341,11 @@ class JoinedHeat:
         return bool((self._current >= 0).any())
 
     def _refuse_backs(self) -> None:
+        if self.contents:
+            raise InvalidValueError(
+                "fixed places know empty objects alone: leave contents= of the objects out, or update a ThermalTouch "
+                "step by step"
+            )
         if self._around:
             raise InvalidValueError(
                 "fixed places know elements without a pad alone: leave surround= of the fingertips out, or update a "
@@ -396,12 +423,16 @@ class JoinedHeat:
         tips = self._current.shape[1] - len(self._glued_on)
         for e, o in enumerate(self._glued_on, tips):
             given[:, o] += given[:, objects + e]
+        contents = np.zeros(objects)
+        for each in self.contents:
+            contents[each.object] = each.given[world]
         return HeatBalance(
             given[:tips, :objects],
             given[:tips, objects : objects + tips],
             float(self._air[world]),
             elements[:tips],
             self._held(world) - self._started[world],
+            contents,
         )
 
     def state(self) -> HeatState:
@@ -417,6 +448,7 @@ class JoinedHeat:
             self._air.copy(),
             self.drop.copy(),
             tuple(back.state() for back in self._backs),
+            tuple(each.state() for each in self.contents),
         )
 
     def set_state(self, state: HeatState) -> None:
@@ -434,6 +466,9 @@ class JoinedHeat:
         for back, saved in zip(self._backs, state.backs, strict=True):
             back.set_state(saved)
             self._warm[:, back.tip] = back.temperature - self._ambient
+        bare = [self._known.bare(materials) for materials in self._materials] if self.contents else []
+        for each, saved in zip(self.contents, state.contents, strict=True):
+            each.set_state(saved, [fields[each.object] for fields in bare])
         for w, f, o in np.ndindex(self._current.shape):
             self._place(w, f, o)
         self._forget()

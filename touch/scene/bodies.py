@@ -17,7 +17,7 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError, celsius, unknown_name
 
-from ...thermal import Material, SensorStack, Solid
+from ...thermal import Material, Reservoir, SensorStack, Solid
 from ...thermal import material as named_material
 from .faces import rotation, triangles
 from .names import collides, find, geom_label, geoms_of
@@ -54,11 +54,14 @@ class SensorElement:
 class ThermalBody:
     """What an object is to heat. material: a name of thermal.materials() or a Material. temperature: °C at the start,
     None for that of the air. elements: sensor elements that are glued on it, on an object that is one box; they start
-    as warm as it."""
+    as warm as it. contents: what keeps it hot or cold from inside, thermal.water or another Reservoir, None for
+    nothing; they wet the walls of the hollow of a mesh or of several geoms, and meet any other object at its mean
+    temperature."""
 
     material: str | Material
     temperature: float | None = None
     elements: Sequence[SensorElement] = ()
+    contents: Reservoir | None = None
 
     def __post_init__(self) -> None:
         if self.temperature is not None:
@@ -69,6 +72,11 @@ class ThermalBody:
             raise InvalidValueError(
                 f"ThermalBody: elements must be a list of SensorElement, got {self.elements!r}"
             )
+        if self.contents is not None and not isinstance(self.contents, Reservoir):
+            raise InvalidValueError(
+                "ThermalBody: contents must be a thermal.Reservoir such as thermal.water(0.2, conductance=8.0), got "
+                f"{self.contents!r}"
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +85,7 @@ class BodyShape:
 
     name: as it was asked for. body: number of the MuJoCo body. geoms: their numbers. material. temperature: °C. size
     (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the body's frame. extent
-    (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on it.
+    (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on it. contents: in it.
 
     A box stands as it is; a round or composed object is a box of its volume and proportions. solid: what heat flows in
     instead (own_shape.py), a body of that material in the box's frame, which is as large as it."""
@@ -93,6 +101,7 @@ class BodyShape:
     extent: np.ndarray
     surface: float
     elements: tuple[SensorElement, ...] = ()
+    contents: Reservoir | None = None
     solid: Solid | None = None
 
     @property
@@ -209,6 +218,11 @@ def materials_by_world(
         bodies_ = [_thermal_body(name, each) for each in every]
         if any(tuple(body.elements) != known[name].elements for body in bodies_ if body.elements):
             raise InvalidValueError(f"object {name!r}: its elements must be the same in every world")
+        if any(body.contents != known[name].contents for body in bodies_ if body.contents is not None):
+            raise InvalidValueError(
+                f"object {name!r}: its contents must be the same in every world and after every reset, those that the "
+                "ThermalTouch was made with"
+            )
         materials[name] = [named_material(body.material) for body in bodies_]
         first = [ambient if body.temperature is None else float(body.temperature) for body in bodies_]
         temperatures[name] = np.array(first)
@@ -270,6 +284,7 @@ def _body(model: mujoco.MjModel, name: str, described: BodyMaterial, ambient: fl
         extent,
         surface,
         tuple(body.elements),
+        body.contents,
     )
 
 

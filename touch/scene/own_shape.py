@@ -14,7 +14,7 @@ from importlib.util import find_spec
 import mujoco
 import numpy as np
 
-from thermograsp.errors import MeshError, MissingDependencyError, ThermograspError
+from thermograsp.errors import InvalidValueError, MeshError, MissingDependencyError, ThermograspError
 from thermograsp.errors import install as how_to_install
 from thermograsp.notice import busy
 
@@ -44,6 +44,12 @@ def own_shapes(
     alike = len({(pad.stack, pad.surround) for pad in pads}) == 1
     if not alike:
         warn_of_boxes(model, shapes, "its fingertips have different sensors, skins or pads")
+    for shape in shapes:
+        if shape.contents is not None and any(pad.surround is not None for pad in pads):
+            raise InvalidValueError(
+                f"object {shape.name!r}: its contents do not go with a pad around a sensor, whose heat is known on "
+                "empty objects: leave surround= of the fingertips out"
+            )
     return tuple(_own(model, shape) if alike and _has_own(model, shape) else shape for shape in shapes)
 
 
@@ -51,7 +57,7 @@ def warn_of_boxes(model: mujoco.MjModel, shapes: Sequence[BodyShape], why: str) 
     """Says of which objects the heat flows in boxes where their own shape might have been taken."""
     for shape in shapes:
         if _has_own(model, shape):
-            _warn(shape, why)
+            _keep_box(shape, why)
 
 
 def _has_own(model: mujoco.MjModel, shape: BodyShape) -> bool:
@@ -60,8 +66,12 @@ def _has_own(model: mujoco.MjModel, shape: BodyShape) -> bool:
     return len(shape.geoms) > 1 or all(model.geom_type[geom] == mesh for geom in shape.geoms)
 
 
-def _warn(shape: BodyShape, why: str) -> None:
-    _LOG.warning("object %r: its heat flows in a box of its volume and proportions: %s", shape.name, why)
+def _keep_box(shape: BodyShape, why: str) -> None:
+    """Says so, or raises InvalidValueError where that would be no vessel."""
+    told = f"object {shape.name!r}: its heat flows in a box of its volume and proportions: {why}"
+    if shape.contents is not None:
+        raise InvalidValueError(f"{told}. A box has no hollow for its contents")
+    _LOG.warning(told)
 
 
 def _own(model: mujoco.MjModel, shape: BodyShape) -> BodyShape:
@@ -83,7 +93,7 @@ def _own(model: mujoco.MjModel, shape: BodyShape) -> BodyShape:
             solid = Solid((SolidPart(*_welded(vertices - middle, faces), shape.material),))
             body_modes(solid)
     except ThermograspError as error:
-        _warn(shape, f"it is no closed body in one piece: {error}")
+        _keep_box(shape, f"it is no closed body in one piece: {error}")
         return shape
     size = high - low
     return replace(shape, size=size, extent=size, centre=offset + turn @ middle, axes=turn, solid=solid)

@@ -15,10 +15,9 @@ from thermograsp.envs import (
     ObjectSpec,
     action_of,
 )
-from thermograsp.envs.bodies.reservoir import Reservoir, ice, water
 from thermograsp.envs.sensing.heat import GraspHeat
 from thermograsp.errors import InvalidValueError
-from thermograsp.thermal import Mode
+from thermograsp.thermal import Mode, Reservoir, ice, water
 
 from ..scripted import grasp_action
 

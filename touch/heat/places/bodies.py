@@ -5,7 +5,7 @@ n: states, M: patterns of a contact, N: places.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -29,7 +29,9 @@ class BodyField:
     ports: (n, N M) sqrt(K/J). heat: (n,) J and loss: (n,) W of a state; only the first one, the mean temperature's, has
     any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. own: how
     many of the states, the first ones, are the object's wherever it is touched. below: of each place the share of the
-    sensor's face under which the object is, and how thick m it is there."""
+    sensor's face under which the object is, and how thick m it is there. walls: (own, own) 1/s, of an object
+    with contents that nothing has touched: how its own states fade towards contents that are held, by the film
+    alone."""
 
     places: tuple[Place, ...]
     whole: tuple[bool, ...]
@@ -40,6 +42,7 @@ class BodyField:
     beside: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     own: int = 1
     below: tuple[tuple[float, float], ...] = ()
+    walls: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def port(self, place: int, patterns: int) -> np.ndarray:
         """(n, M) of one place."""
@@ -50,12 +53,28 @@ class BodyField:
         return self.beside[:, place * RINGS : (place + 1) * RINGS]
 
 
-def untouched(shape: BodyShape, film: float) -> BodyField:
-    """An object that nothing has touched: its mean temperature and no more. film: W/(m2 K) of the air."""
-    capacity = shape.heat_capacity
+def untouched(shape: BodyShape, film: float, cache: bool = True) -> BodyField:
+    """An object that nothing has touched: its mean temperature, and where contents wet its walls what else is its own.
+    film: W/(m2 K) of the air."""
+    capacity, inside = shape.heat_capacity, shape.contents
     held = np.array([np.sqrt(capacity)])
     rate = np.array([film * shape.surface / capacity])
-    return BodyField((), (), rate, np.zeros((1, 0)), held, held * rate)
+    bare = BodyField((), (), rate, np.zeros((1, 0)), held, held * rate)
+    if inside is None:
+        return bare
+    if shape.solid is not None:
+        from ....thermal.meshes import own_network
+
+        with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+            network = own_network(shape.solid, inside.conductance, cache=cache)
+        wet = [row for name, row in network.outputs.items() if name.startswith("film:")]
+        if wet:
+            rows = np.stack(wet)
+            rows[:, 0] *= network.outputs["heat"][0] / held[0]  # the body's mean, by its own heat capacity
+            none = np.zeros((len(network.rates), 0))
+            found = _with_mean(held[0], rate[0], (), (), network, none, len(network.rates), ())
+            return replace(found, walls=inside.conductance * rows.T @ rows)
+    return replace(bare, walls=np.array([[inside.conductance / capacity]]))
 
 
 def touched(
@@ -70,13 +89,15 @@ def touched(
 ) -> BodyField:
     """An object and its places. whole: as in BodyField. pads, tips: of all fingertips, by number. cache: keep on disk
     what takes long. The air takes heat from the object's mean temperature."""
-    bare = untouched(shape, film)
+    bare = untouched(replace(shape, contents=None), film)
     x, y, z = shape.size.tolist()
     held, rate = float(bare.heat[0]), float(bare.rates[0])
     around = tuple(rings_of(pads[place.fingertip]) for place in places)
     if shape.solid is not None:
-        stack = pads[places[0].fingertip].stack
-        return _solid_field(shape.solid, (x, y, z), held, rate, places, whole, stack, around[0] or (), cache)
+        stack, inside = pads[places[0].fingertip].stack, shape.contents
+        wet = 0.0 if inside is None else inside.conductance
+        rings = around[0] or ()
+        return _solid_field(shape.solid, (x, y, z), held, rate, places, whole, stack, rings, wet, cache)
     seen = tuple(tips[place.fingertip] for place in places)
     widths = tuple(pads[place.fingertip].stack.width for place in places)
     return _box_field(shape.material, (x, y, z), held, rate, places, whole, seen, around, widths, level)
@@ -113,15 +134,17 @@ def _solid_field(
     whole: tuple[bool, ...],
     stack: SensorStack,
     rings: Rings,
+    wet: float,
     cache: bool,
 ) -> BodyField:
-    """The same of a body of any shape, which is as large as that box. rings: around all sensors."""
+    """The same of a body of any shape, which is as large as that box. rings: around all sensors. wet: W/K to its
+    contents."""
     from ....thermal.meshes import body_in_pads
 
     with _BLAS.limit(limits=1, user_api="blas"):
-        found = [_patch(solid, size, place, stack, cache) for place in places]
+        found = [_patch(solid, size, place, stack, wet, cache) for place in places]
         patches, below = [patch for patch, _ in found], tuple(each for _, each in found)
-        side, beside, own = body_in_pads(solid, patches, stack, rings, whole=whole, cache=cache)
+        side, beside, own = body_in_pads(solid, patches, stack, rings, whole=whole, film=wet, cache=cache)
     # the body's mean, by its own heat capacity
     side.ports[0] *= side.outputs["heat"][0] / held
     beside[0] *= side.outputs["heat"][0] / held
@@ -152,10 +175,10 @@ def _under(size: tuple[float, float, float], place: Place, width: float) -> tupl
 
 @lru_cache(maxsize=2048)
 def _patch(
-    solid: Solid, size: tuple[float, float, float], place: Place, stack: SensorStack, cache: bool
+    solid: Solid, size: tuple[float, float, float], place: Place, stack: SensorStack, wet: float, cache: bool
 ) -> tuple[SurfacePatch, tuple[float, float]]:
     """Of a sensor's face, on a body that is as large as that box; and the share of it where the body is, and how thick
-    m it is there."""
+    m it is there. wet: W/K to its contents."""
     from ....thermal.meshes import surface_patch, wall_below
 
     outward, centre = np.zeros(3), np.zeros(3)
@@ -163,7 +186,7 @@ def _patch(
     outward[axis] = 1.0 if far else -1.0
     across_last = [*(i for i in range(3) if i != axis), axis]
     centre[across_last] = np.array(place.whole) - np.array(size)[across_last] / 2
-    patch = surface_patch(solid, centre, outward, stack, cache=cache)
+    patch = surface_patch(solid, centre, outward, stack, wet, cache=cache)
     return patch, wall_below(solid, patch)
 
 

@@ -41,7 +41,7 @@ class KnownFields:
             self._known[key] = (
                 touched(shape, self._film, places, whole, *of_tips)
                 if places
-                else untouched(shape, self._film)
+                else untouched(shape, self._film, self._cache)
             )
         return self._known[key]
 
