@@ -126,8 +126,7 @@ def grasp(settings: SolverSettings, placed: list[ObjectSpec]) -> Grasp:
             kept["offset"].append(position - lifted)
             kept["height"].append(position[:, 2])
     arrays = {name: np.array(rows) for name, rows in kept.items()}
-    failed = np.array([bool(reason) for reason in mechanics.failure])
-    return Grasp(**arrays, failed=failed, seconds=np.array(seconds))
+    return Grasp(**arrays, failed=mechanics.failed, seconds=np.array(seconds))
 
 
 @contextmanager

@@ -73,13 +73,14 @@ def info_of(reading: Reading, outcome: Outcome | None, row: int) -> dict[str, An
         if outcome.terminated[row]:
             info |= {name: True for name, ended in outcome.reasons.items() if ended[row]}
         for name, values in outcome.info.items():
-            info[name] = values[row].copy() if values.ndim > 1 else values[row].item()
+            info[name] = _item(values[row])
         if reading.error[row]:
             info["error"] = reading.error[row]
-    info |= {name: _item(reading.truth[name][row]) for name in reading.info_names}
-    randomized = reading.truth.get("randomized")
-    if randomized:
-        info["randomized"] = {name: float(values[row]) for name, values in randomized.items()}
+    truth = reading.truth
+    for name in reading.info_names:
+        info[name] = _item(truth[name][row])
+    if truth.get("randomized"):
+        info["randomized"] = {name: float(values[row]) for name, values in truth["randomized"].items()}
     return info
 
 
@@ -115,9 +116,10 @@ def infos_of(
         if judged.any():
             for name, values in outcome.info.items():
                 add(name, values, judged)
-        broken = np.array([bool(error) for error in reading.error]) & rows
-        if broken.any():
-            add("error", np.array(reading.error, object), broken)
+        if any(reading.error):
+            broken = np.array([bool(error) for error in reading.error]) & rows
+            if broken.any():
+                add("error", np.array(reading.error, object), broken)
     for name in reading.info_names:
         add(name, np.array(reading.truth[name]), rows)
     randomized = reading.truth.get("randomized")
@@ -219,7 +221,7 @@ class GraspBatch:
         if any(reading.error):
             running = np.array([not error for error in reading.error])
         seen = self._observer.observe(reading, command.force_limit, running)
-        self._judged, outcome = self.task.judge(self._judged, self.dt, action, reading)
+        self._judged, outcome = self.task.judge(self._judged, self.plant.dt, action, reading)
         if running is not self._all:
             outcome = stopped(outcome, ~running)
         return Step(seen, outcome.reward, outcome.terminated, outcome.truncated, outcome, reading)
@@ -277,5 +279,5 @@ class GraspBatch:
     def _all_reset_before(self, call: str) -> None:
         if self._never_reset:
             raise InvalidValueError(
-                f"environments {sorted(self._never_reset)} have never been reset: call reset for them before {call}"
+                f"environments {sorted(self._never_reset)} have never been reset: call reset before {call}"
             )

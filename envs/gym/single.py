@@ -54,7 +54,6 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
         self._picture = (camera, whole_number("width", width, 1), whole_number("height", height, 1))
         self._spec: EnvSpec | None = None
         self._renderer: Any = None
-        self._started = False
 
     @property
     def spec(self) -> EnvSpec | None:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -91,26 +90,17 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
         self.batch.require_open("reset")
         super().reset(seed=seed)
         seen, reading = self.batch.reset([0], [self.np_random], options)
-        self._started = True
         if self.render_mode == "human":
             self.render()
         return _first(seen), info_of(reading, None, 0)
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """One control step of 20 ms."""
-        self.batch.require_open("step")
-        if not self._started:
-            raise InvalidValueError("call reset before step")
-        step = self.batch.step(np.asarray(action)[None])
+        seen, reward, terminated, truncated, outcome, reading = self.batch.step(np.asarray(action)[None])
         if self.render_mode == "human":
             self.render()
-        return (
-            _first(step.observation),
-            float(step.reward[0]),
-            bool(step.terminated[0]),
-            bool(step.truncated[0]),
-            step.info(0),
-        )
+        info = info_of(reading, outcome, 0)
+        return _first(seen), float(reward[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def render(self) -> np.ndarray | None:
         """(height, width, 3) uint8 in "rgb_array", None in "human" (a window). Fingertips and object are coloured by
@@ -120,7 +110,7 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
         if self.render_mode is None:
             gymnasium.logger.warn("render() without a render_mode: give render_mode='rgb_array' or 'human'")
             return None
-        if not self._started:
+        if self.batch.never_reset(0):
             raise InvalidValueError("call reset before render")
         if self._renderer is None:
             from ..pictures import GraspPicture  # loads GL
@@ -135,7 +125,6 @@ class TouchEnv(Copied, gymnasium.Env[Observation, np.ndarray]):
     def set_state(self, state: BatchState) -> None:
         """Continues from a state, bit for bit, in this or another environment of the same keywords."""
         (self._np_random,) = self.batch.set_state(state)
-        self._started = True
 
     def close(self) -> None:
         """Closes the window, if any, and the plant."""

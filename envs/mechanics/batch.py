@@ -9,7 +9,7 @@ Environment i's numbers do not depend on B or on the number of threads, to the l
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -53,7 +53,6 @@ _RANGES = (
     ("force_limit", 0.0, MAX_FORCE),
     ("lift_rate", -MAX_LIFT_RATE, MAX_LIFT_RATE),
 )
-_HIGHEST = tuple(high for _, _, high in _RANGES)
 _RECORD: tuple = ("sensordata", "site_xmat")
 # The families of model fields that objects decide; what depends on the gripper alone is left out for speed.
 _FAMILIES = ("body_", "bvh_", "cam_", "dof_", "geom_", "light_", "qpos")
@@ -138,7 +137,9 @@ class Mechanics:
         self._resized = Resized(self.model, self.names, gripper, self._base) if primitive(at_origin) else None
         self._expanded: dict[str, np.ndarray] = {}
         self._index(self.model)
-        self.failure = [""] * num_envs
+        self.failure, self.failed = ("",) * num_envs, np.zeros(num_envs, bool)
+        """Why each environment can't go on, "" where it can, and which can't. Replaced, never written to: readings keep
+        them."""
         self.reset()
 
     def _build(self, objects: tuple[ObjectSpec, ...]) -> mujoco.MjModel:
@@ -175,11 +176,10 @@ class Mechanics:
             "body": 0,
             "sensor": self._contacts[2],
         }
-        self._layouts = []
+        self._layout = np.zeros(len(free), ADDRESSES)
         for number, pose in enumerate(free):
             places.update(poses=pose, body=model.body(self.names[number]).id, object=number)
-            self._layouts.append(np.array([tuple(places[name] for name in ADDRESSES.names or ())], ADDRESSES))
-        self._layout = self._layouts[0]
+            self._layout[number] = tuple(places[name] for name in ADDRESSES.names or ())
         self._at: Any = self._layout.view(np.recarray)[0]
         self._lateral = (
             (model.joint("lateral").qposadr[0], model.actuator("lateral").id) if self._sideways else None
@@ -237,7 +237,7 @@ class Mechanics:
             self._qpos[i, self._poses] = np.concatenate([item.pose for item in self.objects[i]])
             self._act[i, self._at.grip_act] = opening
             self._act[i, self._at.lift_act] = height
-            self.failure[i] = ""
+        self._note(dict.fromkeys(rows.tolist(), ""))
 
     def step(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
@@ -249,23 +249,36 @@ class Mechanics:
         Raises InvalidValueError for a shape, a non-finite value or one outside its range, naming it.
         """
         out = self._roll(opening, force_limit, lift_rate, substeps, FULL_RECORD)
-        failed = np.array([bool(reason) for reason in self.failure])
-        return contact_record(out, self._contacts, self._poses, self._at, failed)
+        if any_risen(self._warning, self._warned):
+            self._note_warned()
+        return contact_record(out, self._contacts, self._poses, self._at, self.failed)
 
     def advance(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
     ) -> Motion:
-        """The same step, with the first object's results alone: all that heat and observations need, at a fraction of
-        the cost. The arrays are the caller's own."""
-        self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
-        return self._motion(self._latest, self._layout, substeps)
+        """The same step, with what heat and observations need of the first object, at a fraction of the cost. The arrays
+        are the caller's own, without the axis O."""
+        return self.advance_all(opening, force_limit, lift_rate, substeps).of(0)
 
     def advance_all(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
-    ) -> tuple[Motion, ...]:
-        """The same step, with results for each object."""
-        self._latest = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
-        return tuple(self._motion(self._latest, layout, substeps) for layout in self._layouts)
+    ) -> Motion:
+        """The same of all objects."""
+        self._latest = out = self._roll(opening, force_limit, lift_rate, substeps, self._recorded)
+        rows, objects, tips = self.num_envs, len(self.names), len(TIPS)
+        motion = Motion(
+            np.empty((rows, objects, substeps, tips)),
+            np.empty((rows, objects, tips, 3)),
+            np.empty((rows, objects, tips, 3)),
+            np.empty(rows),
+            np.empty(rows),
+            np.empty(rows),
+            np.empty((rows, objects)),
+        )
+        recorded = out["sensordata"], out["site_xmat"]
+        if summarise(self._layout, *recorded, *self._moved, self._warning, self._warned, *motion):
+            self._note_warned()
+        return motion
 
     def slide(
         self,
@@ -274,13 +287,12 @@ class Mechanics:
         lift_rate: np.ndarray,
         lateral_rate: np.ndarray,
         substeps: int = SUBSTEPS,
-    ) -> tuple[Motion, ...]:
-        """The same step of an arm that moves along y as well, lateral_rate (B,) m/s, -0.1 .. 0.1, with results for each
-        object. Raises InvalidValueError without such an axis."""
+    ) -> Motion:
+        """The same of an arm that moves along y as well, lateral_rate (B,) m/s, -0.1 .. 0.1. Raises InvalidValueError
+        without such an axis."""
         servo = self._along_y()[1]
-        rate = within(
-            "lateral_rate", self._batched("lateral_rate", lateral_rate), -MAX_LATERAL_RATE, MAX_LATERAL_RATE
-        )
+        rate = self._batched("lateral_rate", lateral_rate)
+        within("lateral_rate", rate, -MAX_LATERAL_RATE, MAX_LATERAL_RATE)
         change = LIFT_ACCELERATION * substeps * self._settings.timestep
         last = self._ctrl[:, servo]
         self._ctrl[:, servo] = np.clip(rate, last - change, last + change)
@@ -293,15 +305,14 @@ class Mechanics:
 
         out, tips = self._latest, len(TIPS)
         found = []
-        for layout in self._layouts:
+        for number in range(len(self.names)):
             contacts = PadContacts(
                 np.empty((self.num_envs, tips)),
                 np.empty((self.num_envs, tips, 2)),
                 np.empty((self.num_envs, tips, 4, 3)),
             )
-            pad_contacts(
-                layout, out["sensordata"], out["site_xpos"], out["site_xmat"], *self._moved[1:3], *contacts
-            )
+            records = out["sensordata"], out["site_xpos"], out["site_xmat"]
+            pad_contacts(self._layout[number : number + 1], *records, *self._moved[1:3], *contacts)
             found.append(contacts)
         return tuple(found)
 
@@ -310,20 +321,6 @@ class Mechanics:
         if self._lateral is None:
             raise InvalidValueError("this arm has no axis along y: build Mechanics with lateral=True")
         return self._lateral
-
-    def _motion(self, out: dict[Any, np.ndarray], layout: np.ndarray, substeps: int) -> Motion:
-        rows, tips = self.num_envs, len(TIPS)
-        motion = Motion(
-            np.empty((rows, substeps, tips)),
-            np.empty((rows, tips, 3)),
-            np.empty((rows, tips, 3)),
-            np.empty(rows),
-            np.empty(rows),
-            np.empty(rows),
-            np.empty(rows),
-        )
-        summarise(layout, out["sensordata"], out["site_xmat"], *self._moved, *motion)
-        return motion
 
     def state(self, ids: Sequence[int] | np.ndarray | None = None) -> MechanicsState:
         """A copy of the state of some environments (None: all), for `set_state` here or in another batch."""
@@ -347,9 +344,9 @@ class Mechanics:
             )
         for items in state.objects:
             self._check_layout(items)
-        for k, i in enumerate(rows):
-            self._set_objects(int(i), state.objects[k])
-            self.failure[i] = state.failure[k]
+        for i, items in zip(rows.tolist(), state.objects, strict=True):
+            self._set_objects(i, items)
+        self._note(dict(zip(rows.tolist(), state.failure, strict=True)))
         self._rows[rows] = state.rows
         self._force_range[rows, self._at.grip, 0] = -state.force_limit
 
@@ -424,14 +421,12 @@ class Mechanics:
             self._batched("lift_rate", lift_rate),
         )
         if self._weaker:
-            for (name, low, high), values in zip(_RANGES, command, strict=True):
-                within(name, values, low, high)
+            _check_ranges(command)
             widest, strongest = self.gripper.widest, self.gripper.strongest
             command = np.minimum(command[0], widest), np.minimum(command[1], strongest), command[2]
         duration = substeps * self._settings.timestep
-        if not set_points(self._layout, *command, duration, self._stiffness, _HIGHEST, *self._live):
-            for (name, low, high), values in zip(_RANGES, command, strict=True):
-                within(name, values, low, high)
+        if not set_points(self._layout, *command, duration, self._stiffness, *self._live):
+            _check_ranges(command)
         out = self._out.get((substeps, record))
         if out is None:
             # Made here, so that those who run on have their records where another one raises.
@@ -440,8 +435,6 @@ class Mechanics:
             self._batch.rollout(substeps, record=record, out=out)
         except mujoco.batch.SimulationError as error:
             self._note_raised(error.ids)
-        if any_risen(self._warning, self._warned):
-            self._note_failures(self._warning[:, :, 1] > self._warned)
         return out
 
     def _room(self, substeps: int, record: tuple) -> dict[Any, np.ndarray]:
@@ -452,24 +445,42 @@ class Mechanics:
 
     def _note_raised(self, rows: np.ndarray) -> None:
         """Rows in which MuJoCo raised keep the state that they had; the others ran."""
-        for env in rows.tolist():
-            if not self.failure[env]:
-                message = self._batch.error(env)
-                self.failure[env] = f"the simulation broke down (MuJoCo: {message}); reset this environment"
+        self._note_broken({row: f": {self._batch.error(row)}" for row in rows.tolist()})
+
+    def _note_warned(self) -> None:
+        """Rows of which MuJoCo has warned in the last step."""
+        kinds = {}
+        for row, kind in np.argwhere(self._warning[:, :, 1] > self._warned).tolist():
+            kinds.setdefault(row, f" warning {mujoco.mjtWarning(kind).name.removeprefix('mjWARN_')}")
+        self._note_broken(kinds)
+
+    def _note_broken(self, reasons: Mapping[int, str]) -> None:
+        """The first reason stays."""
+        self._note(
+            {
+                row: f"the simulation broke down (MuJoCo{reason}); reset this environment"
+                for row, reason in reasons.items()
+                if not self.failure[row]
+            }
+        )
+
+    def _note(self, failures: Mapping[int, str]) -> None:
+        """By row."""
+        failure = list(self.failure)
+        for row, reason in failures.items():
+            failure[row] = reason
+        self.failure, self.failed = tuple(failure), np.array([bool(reason) for reason in failure])
 
     def _batched(self, name: str, values: np.ndarray) -> np.ndarray:
-        array = np.ascontiguousarray(values, dtype=float)
+        array = np.ascontiguousarray(values, float)
         if array.shape != (self.num_envs,):
             raise InvalidValueError(f"{name} has shape {np.shape(values)}, expected ({self.num_envs},)")
         return array
 
-    def _note_failures(self, risen: np.ndarray) -> None:
-        for env, kind in np.argwhere(risen):
-            warning = mujoco.mjtWarning(int(kind)).name.removeprefix("mjWARN_")
-            if not self.failure[env]:
-                self.failure[env] = (
-                    f"the simulation broke down (MuJoCo warning {warning}); reset this environment"
-                )
+
+def _check_ranges(command: Sequence[np.ndarray]) -> None:
+    for (name, low, high), values in zip(_RANGES, command, strict=True):
+        within(name, values, low, high)
 
 
 def within(name: str, values: np.ndarray, low: float, high: float) -> np.ndarray:

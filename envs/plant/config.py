@@ -353,10 +353,12 @@ class SimulationConfig:
                     f"object {spec.name!r} has parts of other materials, which mode 'O' cannot tell: use mode 'T'"
                 )
             spec = replace(spec, friction=spec.sliding_friction)
-        elif spec.mass is None and spec.density is None:
-            spec = replace(spec, density=chosen.density)
+        own: dict[str, Any] = {}
+        if not spec.parts and spec.mass is None and spec.density is None:
+            own["density"] = chosen.density
         if spec.friction is None and chosen.friction is not None:
-            spec = replace(spec, friction=chosen.friction)
+            own["friction"] = chosen.friction
+        spec = replace(spec, **own) if own else spec
         spec = scaled(
             spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
         )

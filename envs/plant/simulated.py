@@ -62,6 +62,7 @@ class SimulatedPlant:
         self.layout: Layout = SceneLayout(config) if layout is None else layout
         self.num_envs, self.config, self._stack = whole_number("num_envs", num_envs, 1), config, config.stack
         possible, objects = self.layout.possible, len(self.layout.specs)
+        self._alone = objects == 1  # and its heat needs no owner of each fingertip
         self.heat: Any = self._heat()
         self.mechanics = Mechanics(
             self.layout.specs,
@@ -152,7 +153,7 @@ class SimulatedPlant:
         if not self._alone:
             rest, scene = rest.fingertips, rest
         force = np.zeros((self.num_envs, self._rest.shape[1], 2, 3))
-        truth, error = self._truth(self.mechanics.object_pose[:, :, 2], force, rest, scene)
+        truth = self._truth(self.mechanics.object_pose[:, :, 2], force, rest, scene)
         return Reading(
             opening=self.mechanics.opening,
             opening_rate=np.zeros(self.num_envs),
@@ -161,7 +162,7 @@ class SimulatedPlant:
             voltage=np.zeros((self.num_envs, self.config.samples, 2)) + self._rest_voltage,
             thermostat=self._thermostats.measured,
             truth=truth,
-            error=error,
+            error=self.mechanics.failure,
             info_names=self._info,
             lateral=self._lateral,
             pressure=None if self._taxels is None else self._taxels.nothing(self.num_envs),
@@ -170,30 +171,25 @@ class SimulatedPlant:
 
     def step(self, command: Command) -> Reading:
         """One control step of all environments."""
-        motions = self._move(command)
-        scene = owner = None
+        motion, scene, owner = self._move(command), None, None
         if self._alone:
-            step = self.heat.advance(motions[0].normal, motions[0].place)
+            step = self.heat.advance(motion.normal[:, 0], motion.place[:, 0])
         else:
-            scene = self.heat.advance(
-                _by_object([motion.normal for motion in motions]),
-                _by_object([motion.place for motion in motions]),
-            )
+            scene = self.heat.advance(motion.normal, motion.place)
             step, owner = scene.fingertips, scene.owner
-        force = _by_object([motion.force for motion in motions])
+        force = _summed(motion.force)
         if not self._thermostats.ideal:
-            self._regulate(step, np.linalg.norm(_summed(force), axis=2))
-        heights = _by_object([motion.object_height for motion in motions])
-        truth, error = self._truth(heights, force, step, scene)
+            self._regulate(step, np.linalg.norm(force, axis=2))
+        truth = self._truth(motion.object_height, motion.force, step, scene)
         return Reading(
-            opening=motions[0].opening,
-            opening_rate=motions[0].opening_rate,
-            height=motions[0].height,
-            force=_summed(force),
+            opening=motion.opening,
+            opening_rate=motion.opening_rate,
+            height=motion.height,
+            force=force,
             voltage=self._electronics.measure(self._sent(step), self._rngs),
             thermostat=self._thermostats.measured,
             truth=truth,
-            error=error,
+            error=self.mechanics.failure,
             info_names=self._info,
             lateral=self._lateral,
             pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
@@ -253,11 +249,6 @@ class SimulatedPlant:
         return rngs
 
     @property
-    def _alone(self) -> bool:
-        """Whether there is one object, whose heat needs no owner of each fingertip."""
-        return len(self.layout.specs) == 1
-
-    @property
     def _lateral(self) -> np.ndarray | None:
         return self.mechanics.lateral if self.layout.lateral else None
 
@@ -274,14 +265,14 @@ class SimulatedPlant:
 
         return SceneHeat(rows, objects, **settings)
 
-    def _move(self, command: Command) -> tuple[Motion, ...]:
-        """One control step of the mechanics, with its results for each object."""
+    def _move(self, command: Command) -> Motion:
+        """One control step of the mechanics."""
         mechanics, substeps = self.mechanics, self.config.substeps
         arm = command.opening, command.force_limit, command.lift_rate
         if self.layout.lateral:
             sideways = np.zeros(self.num_envs) if command.lateral_rate is None else command.lateral_rate
             return mechanics.slide(*arm, sideways, substeps)
-        return (mechanics.advance(*arm, substeps),) if self._alone else mechanics.advance_all(*arm, substeps)
+        return mechanics.advance_all(*arm, substeps)
 
     def _place(self, rows: list[int]) -> None:
         """Puts the rows' scenes on the table, all at its first temperature."""
@@ -329,10 +320,9 @@ class SimulatedPlant:
 
     def _truth(
         self, heights: np.ndarray, force: np.ndarray, step: HeatStep, scene: SceneHeatStep | None
-    ) -> tuple[Truth, tuple[str, ...]]:
-        """What is known of a step, and why an environment can't go on. heights: (B, O) m. force: (B, O, F, 3) N."""
+    ) -> Truth:
+        """What is known of a step. heights: (B, O) m. force: (B, O, F, 3) N."""
         heat, labels, lift = step.info, self._labels, heights - self._rest
-        error = tuple(self.mechanics.failure)
         truth: Truth = {
             "mode": self.config.mode,
             "material": labels.material,
@@ -355,18 +345,13 @@ class SimulatedPlant:
             "lift": lift[:, 0],
             "crushing_force": labels.crushing_force,
             "randomized": self._randomized,
-            "failed": np.array(error, bool),
+            "failed": self.mechanics.failed,
         }
         if scene is not None:
             truth["object_temperatures"] = scene.objects["object_temperature"].copy()
             truth["touched"] = scene.owner.copy()
         self.layout.extend(truth, self._task, lift, force)
-        return truth, error
-
-
-def _by_object(each: list[np.ndarray]) -> np.ndarray:
-    """(B, O, ...) from each object's (B, ...)."""
-    return each[0][:, None] if len(each) == 1 else np.stack(each, axis=1)
+        return truth
 
 
 def _summed(force: np.ndarray) -> np.ndarray:

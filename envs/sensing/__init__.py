@@ -9,11 +9,10 @@ if TYPE_CHECKING:
     from .boxes import served_anywhere, served_in_the_middle
     from .field_heat import FieldHeat, FieldHeatState, FieldScenes
     from .heat import GraspHeat, HeatState, HeatStep
-    from .rows import EVENTS, NEW_PATCH, OVER_TEMPERATURE
+    from .rows import NEW_PATCH, OVER_TEMPERATURE
     from .scene_heat import SceneHeat, SceneHeatState, SceneHeatStep
 
 __all__ = [
-    "EVENTS",
     "NEW_PATCH",
     "OVER_TEMPERATURE",
     "GraspHeat",

@@ -25,7 +25,7 @@ from .boxes import BoxHeat
 from .kernel import advance_boxes, advance_grasps
 from .networks import HeatNetworks
 from .places import Touched
-from .rows import EVENTS, HEAT_INFO, HEAT_ROW, RELEASE
+from .rows import HEAT_ROW, RELEASE, events_of, heat_info
 
 if TYPE_CHECKING:
     from ...thermal import SurfacePatch
@@ -67,8 +67,7 @@ class HeatStep(NamedTuple):
     @property
     def events(self) -> np.ndarray:
         """(B,) of tuples of (kind, fingertip)."""
-        codes = self.info["events"]
-        return EVENTS[codes[:, 0], codes[:, 1]]
+        return events_of(self.info["events"])
 
 
 class GraspHeat:
@@ -157,13 +156,13 @@ class GraspHeat:
         """One control step. force: (B, S, F) N, normal, of each substep, 0 where apart. place: (B, F, 3) m, the
         sensor faces' middles in the object's frame at the end of the step. carried: (sample, source, target,
         fingertip) of fields that go from one row to another as that sample begins, as in carry."""
-        for row in [row for row in self._waiting if force[row].any()]:
-            self._build(row)
+        if self._waiting:
+            for row in [row for row in self._waiting if force[row].any()]:
+                self._build(row)
         if self._meshes:
             self._slip(force, place)
         moved = self._moved(force, place) if self._touches else []
-        drop = np.empty((len(force), self._samples, 2))
-        info = np.empty(len(force), HEAT_INFO)
+        drop, info = np.empty((len(force), self._samples, 2)), heat_info(len(force))
         normal, middles = np.ascontiguousarray(force, dtype=float), np.ascontiguousarray(place, dtype=float)
         boxed = len(self._boxed)
         strayed = self._boxes.strayed(normal, middles, self._samples) if boxed else []
@@ -190,7 +189,7 @@ class GraspHeat:
 
     def rest(self) -> HeatStep:
         """What a step would tell of a batch in which nothing has touched yet."""
-        info = np.zeros(len(self._rows), HEAT_INFO)
+        info = heat_info(len(self._rows))
         info["sensor_surface"] = self._rows["sensor_temperature"] + self._rows["offset"]
         info["object_surface"] = info["sensor_surface"] - self._rows["difference"]
         info["object_temperature"] = info["object_surface"][:, 0]

@@ -67,6 +67,12 @@ HEAT_INFO = np.dtype(
     ]
 )
 
+
+def heat_info(rows: int) -> np.ndarray:
+    """That many HEAT_INFO records, all 0. NumPy's own zeros would take longer, since they look at each field."""
+    return np.ndarray(rows, HEAT_INFO, bytearray(rows * HEAT_INFO.itemsize))
+
+
 TOUCH, RELEASE, NEW_PATCH, OFF_ELEMENT, OVER_TEMPERATURE = 1, 2, 4, 8, 16
 _KINDS = (
     (TOUCH, "touch"),
@@ -89,5 +95,13 @@ def _all_events() -> np.ndarray:
     return events
 
 
-EVENTS = _all_events()
-"""Tuples of (kind, fingertip) by the codes of the left and the right one."""
+_EVENTS = _all_events()
+
+
+def events_of(codes: np.ndarray) -> np.ndarray:
+    """(B,) of tuples of (kind, fingertip), from the codes (B, F) of the left and the right one."""
+    if np.count_nonzero(codes):
+        return _EVENTS[codes[:, 0], codes[:, 1]]
+    nothing = np.empty(len(codes), object)  # as in most steps
+    nothing.fill(())
+    return nothing

@@ -18,7 +18,7 @@ import numpy as np
 from ...thermal.batch import LEAST_STATES
 from ..footprint import GraspBody
 from .heat import GraspHeat, HeatState, HeatStep
-from .rows import HEAT_INFO
+from .rows import heat_info
 
 _OF_FINGERTIPS = ("conductance", "area", "sensor_surface", "object_surface", "flow", "drawn")
 _SUMMED = ("air_loss", "reservoir_flow", "imbalance", "exchanged")
@@ -152,7 +152,7 @@ def of_fingertips(objects: np.ndarray, owner: np.ndarray) -> np.ndarray:
         """(B, F) of each fingertip's own object from (B, O, F)."""
         return np.take_along_axis(values, owner[:, None], axis=1)[:, 0]
 
-    info = np.zeros(len(objects), HEAT_INFO)
+    info = heat_info(len(objects))
     for name in _OF_FINGERTIPS:
         info[name] = picked(objects[name])
     # What flowed into an object that is not the fingertip's own, such as one that it left within the step.

@@ -46,8 +46,8 @@ class Observer:
     def __init__(self, num_envs: int) -> None:
         self.space = observation_space()
         self._fresh = np.ones(num_envs, bool)  # nothing has been observed since a restart
-        self._values = np.zeros((num_envs, len(_LOW)))  # as read last: all of an environment in a row
-        self._read = _by_key(self._values.view(_record(float)))
+        self._values = np.zeros((num_envs, _LOW.size), np.float32)  # as read last, an environment in a row
+        self._read = _by_name(self._values, _READ)
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
@@ -62,7 +62,7 @@ class Observer:
         """Observations (B, ...) after a reading; arrays of their own. force_limit: (B,) N, as commanded. Rows of which
         `observed` (B,) is False keep what they last observed."""
         before = None if np.count_nonzero(observed) == len(observed) else self._values.copy()
-        gripper, force, voltage, thermostat = self._read.values()
+        read, voltage = self._read, self._read["voltage"]
         samples = reading.voltage.transpose(0, 2, 1)[:, :, -HISTORY:]
         if np.count_nonzero(self._fresh):
             begins = self._fresh & observed
@@ -70,14 +70,13 @@ class Observer:
         kept = HISTORY - samples.shape[2]
         voltage[:, :, :kept] = voltage[:, :, samples.shape[2] :]
         voltage[:, :, kept:] = samples
-        gripper[:, 0], gripper[:, 1] = reading.opening, reading.opening_rate
-        gripper[:, 2], gripper[:, 3] = reading.height, force_limit
-        force[:], thermostat[:] = reading.force, reading.thermostat
+        read["opening"], read["opening_rate"] = reading.opening, reading.opening_rate
+        read["height"], read["force_limit"] = reading.height, force_limit
+        read["force"], read["thermostat"] = reading.force, reading.thermostat
         if before is not None:
             self._values[~observed] = before[~observed]
-        # Rounding to float32 keeps the bounds: those of the space are rounded alike.
-        clipped = np.minimum(np.maximum(self._values, _LOW), _HIGH).astype(np.float32)
-        return _by_key(clipped.view(_OBSERVED))
+        clipped = _by_name(np.minimum(np.maximum(self._values, _LOW), _HIGH), _OBSERVED)
+        return {name: clipped[name] for name in _SHAPES}
 
 
 _SHAPES = {"gripper": (4,), "force": (2, 3), "voltage": (2, HISTORY), "thermostat": (2,)}
@@ -93,21 +92,23 @@ _BOUNDS: dict[str, tuple[Any, Any]] = {
 
 
 def _row(end: int) -> np.ndarray:
-    """The lower (0) or upper (1) bounds of a row's numbers."""
-    return np.concatenate(
-        [np.broadcast_to(_BOUNDS[name][end], shape).ravel() for name, shape in _SHAPES.items()]
-    )
+    """(1, n) the lower (0) or upper (1) bounds of a row's numbers, of the same shape as one environment's: NumPy takes
+    a quicker way with equal shapes."""
+    bounds = [np.broadcast_to(_BOUNDS[name][end], shape).ravel() for name, shape in _SHAPES.items()]
+    return np.concatenate(bounds)[None].astype(np.float32)
 
 
-def _record(kind: type) -> np.dtype:
-    """All numbers of an environment in a row."""
-    return np.dtype([(name, kind, shape) for name, shape in _SHAPES.items()])
+def _by_name(rows: np.ndarray, names: np.dtype) -> np.ndarray:
+    """The same numbers (B, n) as records (B,)."""
+    return np.ndarray(len(rows), names, rows)
 
 
-def _by_key(records: np.ndarray) -> Observation:
-    """Views (B, ...) of records (B, 1)."""
-    rows = records[:, 0]
-    return {name: rows[name] for name in _SHAPES}
-
-
-_LOW, _HIGH, _OBSERVED = _row(0), _row(1), _record(np.float32)
+_LOW, _HIGH = _row(0), _row(1)
+_OBSERVED = np.dtype([(name, "f4", shape) for name, shape in _SHAPES.items()])
+_READ = np.dtype(
+    [
+        *(("opening", "f4"), ("opening_rate", "f4"), ("height", "f4"), ("force_limit", "f4")),
+        *(("force", "f4", (2, 3)), ("voltage", "f4", (2, HISTORY)), ("thermostat", "f4", (2,))),
+    ]
+)
+"""All numbers of an environment in a row: as observed, and as read, the gripper's one by one."""

@@ -28,8 +28,8 @@ GRASP_STATE = np.dtype(
         ("pressed", "?"),
     ]
 )
-"""s; s at 5 cm without a break; m, how high the object was above the arm when both pads came to press (0 where it may
-slip); see progress.py; has been at 5 cm; both pads pressed at the last step."""
+"""s; s at 5 cm without a break; m, how high the object was above the arm when both pads came to press; see progress.py;
+has been at 5 cm; both pads pressed at the last step. What only slips need is 0 where the object may slip."""
 LIFTED = 0.05  # m
 TOUCHING = 0.2  # N on each pad that counts as holding
 
@@ -82,33 +82,29 @@ class GraspTask:
         left, right = reading.force[:, 0, 0], reading.force[:, 1, 0]
         pressing = np.minimum(left, right) > TOUCHING
         at_height = pressing & (lift >= LIFTED * 0.98)
-        after = np.empty_like(state)
-        after["elapsed"] = elapsed = state["elapsed"] + dt
-        after["held"] = held = at_height * (state["held"] + dt)
-        after["gripped"] = state["gripped"]
-        after["lifted"] = lifted = state["lifted"] | at_height
-        after["pressed"] = pressing
+        elapsed, held = state["elapsed"] + dt, at_height * (state["held"] + dt)
+        lifted = state["lifted"] | at_height
+        share = np.minimum(np.maximum(lift / LIFTED, 0.0), 1.0)
+        progress = lift_progress(pressing, share, np.minimum(held / self.hold_seconds, 1.0), PRESSED)
+        after = self.fresh(len(state))
+        after["elapsed"], after["held"], after["lifted"], after["progress"] = elapsed, held, lifted, progress
         crushed = np.maximum(left, right) > crushing
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
         failed = crushed | dropped
         reasons = {"dropped": dropped, "crushed": crushed}
         if self.most_slip < np.inf:
             above = lift - height
-            after["gripped"] = gripped = np.where(state["pressed"], state["gripped"], above)
+            gripped = np.where(state["pressed"], state["gripped"], above)
+            after["gripped"], after["pressed"] = gripped, pressing
             reasons["slipped"] = slipped = pressing & (gripped - above > self.most_slip)
             failed |= slipped
         # In float steps of dt a rounding must not cost a control step.
-        success = (held >= self.hold_seconds - dt / 2) & ~failed
-        share = np.minimum(np.maximum(lift / LIFTED, 0.0), 1.0)
-        after["progress"] = progress = lift_progress(
-            pressing, share, np.minimum(held / self.hold_seconds, 1.0), PRESSED
-        )
-        ended = success | failed
+        ended = failed | (held >= self.hold_seconds - dt / 2)
         outcome = Outcome(
             reward=step_reward(state["progress"], progress, ended, failed, elapsed, self.seconds),
-            success=success,
+            success=ended & ~failed,
             terminated=ended,
-            truncated=~ended & (elapsed >= self.seconds - dt / 2),
+            truncated=(elapsed >= self.seconds - dt / 2) & ~ended,
             reasons=reasons,
             info={},
         )

@@ -76,26 +76,23 @@ class SortTask:
         lift, other = heights[rows, right], heights[rows, 1 - right]
         pressing = told & (normal[rows, right].min(axis=1) > TOUCHING)
         at_height = pressing & (lift >= LIFTED * 0.98)
-        after = np.empty_like(state)
-        after["elapsed"] = elapsed = state["elapsed"] + dt
-        after["held"] = held = np.where(at_height, state["held"] + dt, 0.0)
-        after["lifted"] = lifted = state["lifted"] | at_height
+        elapsed, held = state["elapsed"] + dt, at_height * (state["held"] + dt)
+        lifted = state["lifted"] | at_height
+        share = np.minimum(np.maximum(lift / LIFTED, 0.0), 1.0)
+        progress = lift_progress(pressing, share, np.minimum(held / self.hold_seconds, 1.0), 0.0)
+        after = self.fresh(len(state))
+        after["elapsed"], after["held"], after["lifted"], after["progress"] = elapsed, held, lifted, progress
         wrong = told & (other >= WRONG)
         crushed = (normal.max(axis=2) > crushing).any(axis=1)
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
         failed = wrong | crushed | dropped
         # In float steps of dt a rounding must not cost a control step.
-        success = (held >= self.hold_seconds - dt / 2) & ~failed
-        share = np.clip(lift / LIFTED, 0.0, 1.0)
-        after["progress"] = progress = lift_progress(
-            pressing, share, np.minimum(held / self.hold_seconds, 1.0), 0.0
-        )
-        ended = success | failed
+        ended = failed | (held >= self.hold_seconds - dt / 2)
         outcome = Outcome(
             reward=step_reward(state["progress"], progress, ended, failed, elapsed, self.seconds),
-            success=success,
+            success=ended & ~failed,
             terminated=ended,
-            truncated=~ended & (elapsed >= self.seconds - dt / 2),
+            truncated=(elapsed >= self.seconds - dt / 2) & ~ended,
             reasons=dict(zip(self.reasons, (wrong, dropped, crushed), strict=True)),
             info={},
         )
