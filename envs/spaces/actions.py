@@ -16,8 +16,8 @@ from thermograsp.plant import Command
 
 from ..limits import MAX_FORCE, MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
 
-# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE, within _LOW .. _HIGH. They have
-# the shape of one environment's action: NumPy takes a quicker way with equal shapes and types.
+# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE, within _LOW .. _HIGH. They
+# have the shape of one environment's action: NumPy takes a quicker way with equal shapes and types.
 _MIDDLE = np.array([[1.0, 1.0, 0.0]])
 _HALF_RANGE = np.array([[MAX_OPENING / 2, MAX_FORCE / 2, MAX_LIFT_RATE]])
 _LOW, _HIGH = (_MIDDLE - 1.0) * _HALF_RANGE, (_MIDDLE + 1.0) * _HALF_RANGE
