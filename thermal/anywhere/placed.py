@@ -5,7 +5,7 @@ that the local one: of a box as thick as the body is there and as wide as its fa
 of first and second order in the curvature, from the impedances of cylinder and sphere). So a network is a function of
 place in milliseconds. Where that box would not be the body (rims, edges, feet, layers of other materials), the kernel
 is that of cells along the face, unrolled, in a few more (unrolled/), between places that feel each other there too.
-Where the surface is curved too much for that, as rods below 9 mm of radius are, or contents wet it, or heat goes too far
+Where the surface is curved too much for that, as thin rods are, or contents wet it, or heat goes too far
 along another material, a patch's own impedance is a grid's that is fine there, in tenths of a second. Its states are
 the body's slowest modes, whatever the place, and what fades sooner, at rates that are the same for all places, its
 residues positive semidefinite. Contents behind a film on the walls of a hollow make modes of their own, and a wall that
