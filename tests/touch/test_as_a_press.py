@@ -244,6 +244,7 @@ def test_a_smaller_tolerance_is_nearer_to_a_press(name: str) -> None:
         assert error < tolerance / 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["stainless_steel", "polypropylene"])
 def test_the_air_cools_a_sheet_where_it_is_warm(name: str) -> None:
     """A grid in three dimensions has the film at every place. Where the air took heat by the sheet's mean temperature
@@ -260,9 +261,9 @@ def test_the_air_cools_a_sheet_where_it_is_warm(name: str) -> None:
     for n in range(2500):
         mujoco.mj_step(model, data)
         reading = touch.update(data)
-        if n % 10 == 9:
+        if n % 50 == 49:
             drops.append(reading.temperature_drop[0])
     pressure = float(flat_contact(Pad(), 10.0).face_pressure)
     h = float(contact_conductance(face_joint(None, Surface.of(material(name))), pressure))
-    curves = press(name, conductance=h, object_size=size, air=film, seconds=5.0, dt=0.02, rung="grid_3d")
-    assert np.abs(np.array(drops) - curves.temperature_drop[1:])[25:].max() < 0.05
+    curves = press(name, conductance=h, object_size=size, air=film, seconds=5.0, dt=0.1, rung="grid_3d")
+    assert np.abs(np.array(drops) - curves.temperature_drop[1:])[5:].max() < 0.05

@@ -85,7 +85,7 @@ def touched(
     cache: bool,
 ) -> BodyField:
     """An object and its places. whole: as in BodyField. pads, tips: of all fingertips, by number. cache: keep on disk
-    what takes long. The air takes heat from the object's mean temperature."""
+    what takes long. The air takes heat from the object's mean temperature, and levels the rest (`levelled`)."""
     bare = untouched(shape, film)
     x, y, z = shape.size.tolist()
     held, rate, crossing = float(bare.heat[0]), float(bare.rates[0]), crossing_rate(shape)
