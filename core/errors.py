@@ -159,7 +159,9 @@ def within(name: str, value: Any, low: float, high: float, unit: str) -> np.ndar
     import numpy as np  # commands that need no arrays start without it
 
     slack = 1e-6 * high
-    if isinstance(value, float) and low - slack <= value <= high + slack:  # as most are; arrays take ten times as long
+    if (
+        isinstance(value, float) and low - slack <= value <= high + slack
+    ):  # as most are; arrays take ten times as long
         return np.asarray(value)
     try:
         values = np.asarray(value, float)

@@ -30,7 +30,9 @@ def action_space() -> gymnasium.spaces.Box:
 
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
-    array = checked_action(action, 3, "opening, force limit, lift rate", np.float32).astype(float)  # as the space's
+    array = checked_action(action, 3, "opening, force limit, lift rate", np.float32).astype(
+        float
+    )  # as the space's
     command = np.minimum(np.maximum((array + _MIDDLE) * _HALF_RANGE, _LOW), _HIGH)
     return Command(command[:, 0], command[:, 1], command[:, 2])
 

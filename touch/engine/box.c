@@ -8,6 +8,7 @@ exponentials.py. */
 #include "heat.h"
 
 enum { MODES = 24, STEPS = 12 };
+#define IN_AIR 0.5 /* of a sheet's faces, as touch/heat/places/bodies.py */
 #define SWITCH 0.0075 /* diffusion length squared over length squared from which eigenfunctions serve */
 #define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
@@ -351,7 +352,7 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
       for (int m = 0; m < few; m++) {
         double value = own[m * few + m], left = value - pow(least * numbers->decay[k], 2) / value;
         if (!(value > 0 && left > 0)) continue;
-        network->rates[network->n] = numbers->decay[k];
+        network->rates[network->n] = numbers->decay[k] + IN_AIR * box[LOSS] / (1 + numbers->decay[k] / box[CROSSING]);
         for (int j = 0; j < few; j++)
           network->ports[(size_t)told[j] * numbers->states + network->n] = turn[m * few + j] * sqrt(left);
         network->n++;

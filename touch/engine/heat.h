@@ -18,8 +18,9 @@ substeps that touched, area m2 in contact, and it times its length m and shares 
 enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, AREA, LENGTH, ASIDE, COLUMNS = ASIDE + 4 };
 /* a pad: position m, axes, half sides m and its sensor's width m */
 enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
-/* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air, first state, early K s^.5 */
-enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, FIRST, EARLY, BOX };
+/* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air and across, first state, early
+   K s^.5 */
+enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, CROSSING, FIRST, EARLY, BOX };
 /* a place: face of the box, middle m along its two axes, fingertip; and 1 where the fingertip is or has just left for
    another, whose patterns are all told, 0 where the even one alone is */
 enum { FACE, MIDDLE, TIP = 3, PLACED, ALL = PLACED, SLOT };

@@ -19,11 +19,11 @@ from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
 from ..contacts import BOND, GluedContacts, bends, curves, pair_laws
-from ..heat import TipField, Wall, narrow_tables, resolution, tip_field, untouched, wall_of
+from ..heat import TipField, Wall, crossing_rate, narrow_tables, resolution, tip_field, untouched, wall_of
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 11
+_VERSION = 12
 
 
 def packed(
@@ -116,7 +116,7 @@ def _box(shape: BodyShape, film: float, ambient: float) -> tuple[float, ...]:
     return (
         *(*shape.size, *shape.extent, *shape.centre, *shape.axes.ravel()),
         *(matter.conductivity, matter.volumetric_heat_capacity),
-        *(bare.rates[0], (shape.temperature - ambient) * bare.heat[0]),
+        *(bare.rates[0], crossing_rate(shape), (shape.temperature - ambient) * bare.heat[0]),
         before(diffusivity) / matter.volumetric_heat_capacity,
     )
 

@@ -5,7 +5,7 @@ from .fixed import FixedNetworks, FixedPlaces, network_tables
 from .joined import JoinedHeat
 from .march import sample
 from .narrow import Wall, narrow_tables, wall_of
-from .places import TipField, resolution, tip_field, untouched
+from .places import TipField, crossing_rate, resolution, tip_field, untouched
 from .records import HeatBalance, HeatState
 from .told import tell_books, tell_drop, tell_warmth
 
@@ -27,6 +27,7 @@ __all__ = [
     "tell_drop",
     "tell_warmth",
     "tip_field",
+    "crossing_rate",
     "untouched",
     "wall_of",
 ]

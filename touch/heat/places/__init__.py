@@ -1,6 +1,6 @@
 """Where fingertips touch objects, and the heat fields that are seen there."""
 
-from .bodies import BodyField, untouched
+from .bodies import BodyField, crossing_rate, untouched
 from .carry import carried_states
 from .forgetting import MOST_PLACES
 from .known import KnownFields
@@ -21,5 +21,6 @@ __all__ = [
     "resolution",
     "rings_of",
     "tip_field",
+    "crossing_rate",
     "untouched",
 ]

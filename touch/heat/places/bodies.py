@@ -20,6 +20,7 @@ from .place import Place
 from .tips import Rings, rings_of
 
 _BLAS = ThreadpoolController()
+_IN_AIR = 0.5  # of a sheet's faces, where a fingertip touches one of them
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,6 +54,21 @@ class BodyField:
         return self.beside[:, place * RINGS : (place + 1) * RINGS]
 
 
+def levelled(rates: np.ndarray, loss: np.ndarray | float, crossing: np.ndarray | float) -> np.ndarray:
+    """(n,) 1/s at which states of these rates fade that the air levels too. loss: 1/s of the mean temperature;
+    crossing: of heat from face to face. In a sheet the air takes from each place by its own temperature, on the face
+    that no fingertip covers; what fades before it has crossed the object does not come to that face. These states hold
+    no heat in all, so that none is lost: the mean temperature's alone gives to the air."""
+    return rates + _IN_AIR * loss / (1 + rates / crossing)
+
+
+def crossing_rate(shape: BodyShape) -> float:
+    """1/s: diffusivity over the square of a sheet's thickness, which is twice volume over surface."""
+    matter = shape.material
+    thickness = 2 * shape.heat_capacity / matter.volumetric_heat_capacity / shape.surface
+    return matter.conductivity / matter.volumetric_heat_capacity / thickness**2
+
+
 def untouched(shape: BodyShape, film: float, cache: bool = True) -> BodyField:
     """An object that nothing has touched: its mean temperature, and where contents wet its walls what else is its own.
     film: W/(m2 K) of the air."""
@@ -63,14 +79,18 @@ def untouched(shape: BodyShape, film: float, cache: bool = True) -> BodyField:
     if inside is None:
         return bare
     if shape.solid is not None:
-        found = _filled_field(shape.solid, float(held[0]), float(rate[0]), inside.conductance, cache)
+        found = _filled_field(
+            shape.solid, float(held[0]), float(rate[0]), crossing_rate(shape), inside.conductance, cache
+        )
         if found is not None:
             return found
     return replace(bare, walls=np.array([[inside.conductance / capacity]]))
 
 
 @lru_cache(maxsize=512)
-def _filled_field(solid: Solid, held: float, rate: float, wet: float, cache: bool) -> BodyField | None:
+def _filled_field(
+    solid: Solid, held: float, rate: float, crossing: float, wet: float, cache: bool
+) -> BodyField | None:
     """Of a body with contents behind walls that conduct W/K to them; None where it has no hollow."""
     from ....thermal.anywhere import own_network
 
@@ -82,7 +102,7 @@ def _filled_field(solid: Solid, held: float, rate: float, wet: float, cache: boo
         return None
     rows, none = np.stack(felt), np.zeros((len(network.rates), 0))
     rows[:, 0] *= outputs["heat"][0] / held  # the body's mean, by its own heat capacity
-    found = _with_mean(held, rate, (), (), network, none, len(network.rates), ())
+    found = _with_mean(held, rate, crossing, (), (), network, none, len(network.rates), ())
     return replace(found, walls=wet * rows.T @ rows)
 
 
@@ -97,19 +117,23 @@ def touched(
     cache: bool,
 ) -> BodyField:
     """An object and its places. whole: as in BodyField. pads, tips: of all fingertips, by number. cache: keep on disk
-    what takes long. The air takes heat from the object's mean temperature."""
+    what takes long. The air takes heat from the object's mean temperature, and levels the rest (`levelled`)."""
     bare = untouched(replace(shape, contents=None), film)
     x, y, z = shape.size.tolist()
-    held, rate = float(bare.heat[0]), float(bare.rates[0])
+    held, rate, crossing = float(bare.heat[0]), float(bare.rates[0]), crossing_rate(shape)
     around = tuple(rings_of(pads[place.fingertip]) for place in places)
     if shape.solid is not None:
         stack, inside = pads[places[0].fingertip].stack, shape.contents
         wet = 0.0 if inside is None else inside.conductance
         rings = around[0] or ()
-        return _solid_field(shape.solid, (x, y, z), held, rate, places, whole, stack, rings, wet, cache)
+        return _solid_field(
+            shape.solid, (x, y, z), held, rate, crossing, places, whole, stack, rings, wet, cache
+        )
     seen = tuple(tips[place.fingertip] for place in places)
     widths = tuple(pads[place.fingertip].stack.width for place in places)
-    return _box_field(shape.material, (x, y, z), held, rate, places, whole, seen, around, widths, level)
+    return _box_field(
+        shape.material, (x, y, z), held, rate, crossing, places, whole, seen, around, widths, level
+    )
 
 
 @lru_cache(maxsize=512)
@@ -118,6 +142,7 @@ def _box_field(
     size: tuple[float, float, float],
     held: float,
     rate: float,
+    crossing: float,
     places: tuple[Place, ...],
     whole: tuple[bool, ...],
     seen: tuple[Tip, ...],
@@ -130,7 +155,7 @@ def _box_field(
     with _BLAS.limit(limits=1, user_api="blas"):
         side, beside = _side(material, size, places, whole, seen, around, level)
     below = tuple(_under(size, place, width) for place, width in zip(places, widths, strict=True))
-    return _with_mean(held, rate, places, whole, side, beside, 1, below)
+    return _with_mean(held, rate, crossing, places, whole, side, beside, 1, below)
 
 
 @lru_cache(maxsize=512)
@@ -139,6 +164,7 @@ def _solid_field(
     size: tuple[float, float, float],
     held: float,
     rate: float,
+    crossing: float,
     places: tuple[Place, ...],
     whole: tuple[bool, ...],
     stack: SensorStack,
@@ -157,12 +183,13 @@ def _solid_field(
     # the body's mean, by its own heat capacity
     side.ports[0] *= side.outputs["heat"][0] / held
     beside[0] *= side.outputs["heat"][0] / held
-    return _with_mean(held, rate, places, whole, side, beside, own, below)
+    return _with_mean(held, rate, crossing, places, whole, side, beside, own, below)
 
 
 def _with_mean(
     held: float,
     rate: float,
+    crossing: float,
     places: tuple[Place, ...],
     whole: tuple[bool, ...],
     side: ThermalNetwork,
@@ -171,7 +198,8 @@ def _with_mean(
     below: tuple[tuple[float, float], ...],
 ) -> BodyField:
     """The mean temperature's state is as that of an object that nothing has touched."""
-    rates, heat, loss = side.rates.copy(), np.zeros(len(side.rates)), np.zeros(len(side.rates))
+    rates = levelled(side.rates, rate, crossing)
+    heat, loss = np.zeros(len(rates)), np.zeros(len(rates))
     rates[0], heat[0], loss[0] = rate, held, held * rate
     return BodyField(places, whole, rates, side.ports, heat, loss, beside, own, below)
 
