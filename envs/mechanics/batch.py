@@ -256,8 +256,8 @@ class Mechanics:
     def advance(
         self, opening: np.ndarray, force_limit: np.ndarray, lift_rate: np.ndarray, substeps: int = SUBSTEPS
     ) -> Motion:
-        """The same step, with what heat and observations need of the first object, at a fraction of the cost. The arrays
-        are the caller's own, without the axis O."""
+        """The same step, with what heat and observations need of the first object, at a fraction of the cost. The
+        arrays are the caller's own, without the axis O."""
         return self.advance_all(opening, force_limit, lift_rate, substeps).of(0)
 
     def advance_all(
