@@ -159,10 +159,8 @@ def within(name: str, value: Any, low: float, high: float, unit: str) -> np.ndar
     import numpy as np  # commands that need no arrays start without it
 
     slack = 1e-6 * high
-    if (
-        isinstance(value, float) and low - slack <= value <= high + slack
-    ):  # as most are; arrays take ten times as long
-        return np.asarray(value)
+    if isinstance(value, float) and low - slack <= value <= high + slack:
+        return np.asarray(value)  # as most are, in a tenth of the time
     try:
         values = np.asarray(value, float)
     except (TypeError, ValueError):

@@ -16,7 +16,7 @@ from thermograsp.plant import Command
 
 from ..limits import MAX_FORCE, MAX_LATERAL_RATE, MAX_LIFT_RATE, MAX_OPENING
 
-# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE, within _LOW .. _HIGH. They
+# Opening m, force limit N and lift rate m/s of an action a are (a + _MIDDLE) _HALF_RANGE, within _LOW .. _HIGH. These
 # have the shape of one environment's action: NumPy takes a quicker way with equal shapes and types.
 _MIDDLE = np.array([[1.0, 1.0, 0.0]])
 _HALF_RANGE = np.array([[MAX_OPENING / 2, MAX_FORCE / 2, MAX_LIFT_RATE]])
@@ -30,9 +30,8 @@ def action_space() -> gymnasium.spaces.Box:
 
 def command_of(action: np.ndarray) -> Command:
     """Commands of actions (B, 3), clipped to -1 .. 1. Raises InvalidValueError for what checked_action refuses."""
-    array = checked_action(action, 3, "opening, force limit, lift rate", np.float32).astype(
-        float
-    )  # as the space's
+    array = checked_action(action, 3, "opening, force limit, lift rate", np.float32)  # as the space's
+    array = array.astype(float)
     command = np.minimum(np.maximum((array + _MIDDLE) * _HALF_RANGE, _LOW), _HIGH)
     return Command(command[:, 0], command[:, 1], command[:, 2])
 
