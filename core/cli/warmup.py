@@ -60,6 +60,7 @@ def stages() -> dict[str, Callable[[], None]]:
             "Grasp-v0", taxels=(4, 4), face_temperature=(4, 4)
         ),
         "an object of any shape": lambda: _close("Grasp-v0", objects=_MESH),
+        "the same in networks": lambda: _close("Grasp-v0", objects=_MESH, anywhere=False),
         "ThermalTouch on a ball": lambda: _touch('type="sphere" size=".02"'),
         "ThermalTouch on a mesh": lambda: _touch('type="mesh" mesh="octahedron"'),
     }
