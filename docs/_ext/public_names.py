@@ -92,6 +92,8 @@ def _class(path: str, value: type) -> str:
     fields = getattr(value, "_fields", None)
     if fields:  # a named tuple's have texts of their own that say nothing
         lines.append(f"   :exclude-members: {', '.join([*fields, 'count', 'index'])}")
+    if not value.__module__.startswith(f"{path.rpartition('.')[0]}."):
+        lines.append("   :no-index:")  # of another package, on whose page it stands under its own name
     return "\n".join(lines)
 
 
