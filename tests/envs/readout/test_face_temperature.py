@@ -11,6 +11,7 @@ from thermograsp.envs import (
     ObjectSpec,
     SortEnv,
 )
+from thermograsp.envs.sensing.scene_heat import SceneHeat
 from thermograsp.envs.spaces.map_observation import FACE_TEMPERATURE
 from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import Thermostat
@@ -144,8 +145,9 @@ def test_of_several_objects_the_touched_one_s_face_counts() -> None:
         for _ in range(60):
             seen, *_ = env.step(CLOSE)
         found.append(seen["face_temperature"])
+    assert isinstance(getattr(scene.batch.plant, "heat"), SceneHeat)  # noqa: B009
     assert np.ptp(found[0]) > 0.5
-    assert found[0] == pytest.approx(found[1], abs=0.01)
+    assert found[0] == pytest.approx(found[1], abs=0.5)  # the tolerance of the networks, which differ
 
 
 def test_a_fingertip_without_a_sensor_stays_even() -> None:
@@ -165,3 +167,14 @@ def test_where_there_is_none() -> None:
         GraspEnv(mode="O", face_temperature=(4, 4))
     with pytest.raises(InvalidValueError, match="a real fingertip has one heat flux sensor"):
         GraspEnv(plant="serial:///dev/null?gripper=robotiq:///dev/null", face_temperature=(4, 4))
+
+
+def test_no_place_of_a_face_on_a_skinned_ball_is_warmer_than_its_thermostat() -> None:
+    """Beside fields, which tell the mean over the face and not over the contact, a map was 9 K above it."""
+    ball = ObjectSpec(shape="sphere", size=(0.04, 0.04, 0.04))
+    env = GraspEnv(objects=ball, material="aluminium", face_temperature=(6, 6), **STILL)
+    env.reset(seed=0)
+    for _ in range(60):
+        seen, *_ = env.step(CLOSE)
+    assert np.ptp(seen["face_temperature"][0]) > 1.0
+    assert (seen["face_temperature"] < 36.0).all() and (seen["face_temperature"] > 23.9).all()
