@@ -149,7 +149,7 @@ reference: build/.dev
 # The site in build/site, where a warning is an error, and the code of its pages.
 docs: build/.dev
 	$(PY) -m sphinx -E -W --keep-going -q -b html docs build/site
-	THERMOGRASP_SITE=build/site $(PY) -m pytest $(TEST_FLAGS) tests/docs
+	THERMOGRASP_SITE=build/site $(PY) -m pytest -n $(WORKERS) --dist worksteal $(TEST_FLAGS) tests/docs
 
 lint: build/.dev
 	$(PY) -m ruff check .

@@ -88,12 +88,15 @@ def _first_sentence(text: str) -> str:
 
 
 def _class(path: str, value: type) -> str:
-    lines = [f".. autoclass:: {path}", "   :members:"]
+    ours = value.__module__.startswith(f"{path.rpartition('.')[0]}.")
+    # One of another package is indexed under its own name, and links lead to it under this one too.
+    anchor = [] if ours else [".. raw:: html", "", f'   <span id="{path}"></span>', ""]
+    lines = [*anchor, f".. autoclass:: {path}", "   :members:"]
     fields = getattr(value, "_fields", None)
     if fields:  # a named tuple's have texts of their own that say nothing
         lines.append(f"   :exclude-members: {', '.join([*fields, 'count', 'index'])}")
-    if not value.__module__.startswith(f"{path.rpartition('.')[0]}."):
-        lines.append("   :no-index:")  # of another package, on whose page it stands under its own name
+    if not ours:
+        lines.append("   :no-index:")
     return "\n".join(lines)
 
 

