@@ -52,7 +52,7 @@ TIPS: dict[str, tuple[str, str, dict[str, str | Fingertip]]] = {
     "flat": (BOX, BOX, {**FLAT}),
     "round": (
         'type="sphere" size=".008"',
-        'type="capsule" size=".008 .01" euler="30 0 0"',
+        'type="capsule" size=".008 .01" euler="0 5 0"',
         {"left": "left_pad", "right": "right_pad"},
     ),
     "one round": (BOX, 'type="ellipsoid" size=".006 .008 .01"', {**FLAT, "right": "right_pad"}),

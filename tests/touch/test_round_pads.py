@@ -13,6 +13,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from thermograsp.thermal import IDEAL, Pad
 from thermograsp.thermal.contact import cylinder_contact, sphere_contact
@@ -22,17 +23,17 @@ from thermograsp.touch.scene import bodies, pads
 
 PAD = Pad()
 STIFFNESS = PAD.foundation_modulus / PAD.thickness
-ALONG = np.array([1.0, 0.0, 0.0, 1.0])
+ALONG = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
 WIDE = 10.0
 
 
 def bend(first: float, second: float, half: float = PAD.width / 2, face: float = PAD.face / 2) -> np.ndarray:
-    return np.array([first, second, STIFFNESS, half, half, face, face])
+    return np.array([first, second, STIFFNESS, half, half, face, face, STIFFNESS, half, half])
 
 
 def turned(degrees: float) -> np.ndarray:
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return np.array([c, s, -s, c])
+    return np.array([c, s, -s, c, 0.0, 0.0])
 
 
 FORCES = 0.05, 0.5, 5.0, 50.0
@@ -100,10 +101,11 @@ def test_area_and_load_are_integrals_of_the_pressure(force: float, curvatures: t
 
 def test_arrays_do_as_compiled_code_does() -> None:
     rng = np.random.default_rng(0)
-    count = 500
+    count = 1500
     bend_ = np.column_stack(
         (rng.uniform(0, 400, (count, 2)) * (rng.random((count, 2)) < 0.7), np.full(count, STIFFNESS),
-         rng.uniform(0.003, 0.01, (count, 2)), rng.uniform(0.002, 0.003, (count, 2)))
+         rng.uniform(0.003, 0.01, (count, 2)), rng.uniform(0.002, 0.003, (count, 2)),
+         STIFFNESS * rng.choice([0.2, 1.0], count), rng.uniform(0.01, 0.015, (count, 2)))
     )  # fmt: skip
     bend_[:, 0] += 1.0
     curve = np.column_stack(
@@ -113,13 +115,52 @@ def test_arrays_do_as_compiled_code_does() -> None:
         )
     )
     sides = np.array([turned(angle) for angle in rng.uniform(-180, 180, count)])
+    sides[:, 4:] = rng.uniform(-0.05, 0.05, (count, 2)) * (rng.random((count, 1)) < 0.7)
     force = 10 ** rng.uniform(-3, 2, count)
     y, z = rng.uniform(-0.006, 0.006, (2, count))
     expected = np.array([round_contact(*row) for row in zip(bend_, curve, sides, force, y, z, strict=True)])
-    found = np.stack(array_round_contact(bend_, curve, sides.reshape(count, 2, 2), force, y, z), axis=1)
-    np.testing.assert_allclose(found[:, :2], expected[:, :2], rtol=1e-7)
+    axes, rise = sides[:, :4].reshape(count, 2, 2), sides[:, 4:]
+    found = np.stack(array_round_contact(bend_, curve, axes, rise, force, y, z), axis=1)
+    assert ((sides[:, 4] != 0) & (bend_[:, 1] == 0) & (curve[:, :2].sum(1) == 0)).sum() > 40
+    np.testing.assert_allclose(found[:, :2], expected[:, :2], rtol=1e-7, atol=1e-15)
     np.testing.assert_allclose(found[:, 2], expected[:, 2], rtol=1e-7, atol=1e-12)
     np.testing.assert_allclose(found[:, 3], expected[:, 3], rtol=1e-7)
+
+
+def summed_springs(rod: np.ndarray, curvature: float, force: float, angle: float) -> tuple[float, float]:
+    """Area and force on the face of a rod that leans, from the pressure over strips across it."""
+    _, _, firm, _, _, face, _, soft, reach, half = rod
+    s = np.linspace(0, 2 * half, 100_001)
+    on = (s >= half - face) & (s <= half + face)
+    stiffness = np.where(on, firm, soft)
+
+    def strips(depth: float, most: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        sunk = np.where(on | (soft == firm), depth, min(depth, (half + face) * angle))
+        sunk = np.maximum(sunk - angle * s, 0)
+        wide = np.minimum(np.sqrt(2 * sunk / curvature), most)
+        return 2 * wide, 2 * stiffness * (sunk * wide - curvature * wide**3 / 6)
+
+    whole = np.where(on & (soft < firm), face, reach)
+    depth: Any = brentq(lambda depth: np.trapezoid(strips(depth, whole)[1], s) - force, 1e-9, 0.1)
+    area, load = strips(depth, np.minimum(whole, face))
+    return float(np.trapezoid(np.where(on, area, 0), s)), float(np.trapezoid(np.where(on, load, 0), s))
+
+
+@pytest.mark.parametrize("force", [0.5, 5.0, 50.0])
+@pytest.mark.parametrize("degrees", [1e-4, 0.1, 1.0, 4.0])
+@pytest.mark.parametrize("skinned", [False, True])
+def test_a_rod_that_leans_presses_its_lower_end(skinned: bool, degrees: float, force: float) -> None:
+    half = (0.0045, 0.0045) if skinned else (0.0064, 0.012)
+    rod = np.array(
+        [125.0, 0, STIFFNESS, *half, 0.0045, 0.0045, STIFFNESS / (6 if skinned else 1), 0.0064, 0.012]
+    )
+    flat, angle = np.array([0, 0, WIDE, WIDE]), math.tan(math.radians(degrees))
+    area, load, share, _ = round_contact(rod, flat, np.array([1, 0, 0, 1, 0, angle]), force, 0.0, 0.0)
+    assert (area, load) == pytest.approx(summed_springs(rod, 125.0, force, angle), rel=2e-3, abs=1e-12)
+    assert share == (1.0 if area > 0 else 0.0)
+    if degrees < 1e-3:
+        level = round_contact(rod, flat, ALONG, force, 0.0, 0.0)
+        assert (area, load) == pytest.approx(level[:2], rel=1e-4)
 
 
 TIPS = {
@@ -201,10 +242,39 @@ def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> No
     on_block, along, across = (dropped("tip", "capsule", target) for target in ("block", "can along", "can"))
     assert across > 1.2 * along
     assert across > on_block > along
-    rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045])
+    rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045, STIFFNESS, 0.0064, 0.012])
     can = np.array([1 / 0.03, 0.0, WIDE, 0.04])
     assert round_contact(rod, can, ALONG, 5.0, 0.0, 0.0)[1] == pytest.approx(5.0 * 9 / 24, rel=1e-4)
     assert round_contact(rod, can, turned(90.0), 5.0, 0.0, 0.0)[1] == pytest.approx(5.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize("tip", ["capsule", "rod"])
+def test_a_rod_that_leans_feels_less_and_less(tip: str, skin: str | None) -> None:
+    """Held down at an angle, from flat to where the sensor's face is off the block."""
+    drops = []
+    for degrees in (0.0, 0.2, 0.5, 1.0, 2.0, 3.3, 3.8, 8.0):
+        xml = scene(tip, "block").replace('<body name="finger"', f'<body name="finger" euler="0 {degrees} 0"')
+        words: dict[str, Any] = {
+            "fingertips": {"tip": Fingertip("tip", skin=skin)},
+            "objects": {"object": "glass"},
+        }
+        model = mujoco.MjModel.from_xml_string(xml.replace('axis="0 0 -1"', f'axis="{lowered(degrees)}"'))
+        data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+        data.ctrl[0], reading = 10.0, touch.reading
+        for _ in range(250):
+            mujoco.mj_step(model, data)
+            reading = touch.update(data)
+        drops.append(float(reading.temperature_drop[0]))
+    steps = np.diff(drops)
+    assert drops[0] > 0.4 and abs(drops[-1]) < 0.01
+    assert (steps < 0.005).all() and steps.min() > -0.75 * drops[0]
+
+
+def lowered(degrees: float) -> str:
+    """Straight down in the frame of a body that is turned by so much about y."""
+    turn = math.radians(degrees)
+    return f"{math.sin(turn)} 0 {-math.cos(turn)}"
 
 
 @pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler")
@@ -213,9 +283,11 @@ def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> No
 )
 @pytest.mark.parametrize("tip", TIPS)
 @pytest.mark.parametrize("target", OBJECTS)
-def test_inside_mujoco_s_step_it_is_the_same(tip: str, target: str) -> None:
+@pytest.mark.parametrize("degrees", [0.0, 0.3])
+def test_inside_mujoco_s_step_it_is_the_same(tip: str, target: str, degrees: float) -> None:
     words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
-    model = install(mujoco.MjSpec.from_string(scene(tip, target)), **words)
+    leaning = scene(tip, target).replace('<body name="finger"', f'<body name="finger" euler="0 {degrees} 0"')
+    model = install(mujoco.MjSpec.from_string(leaning), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
     data.ctrl[0], reading = 5.0, touch.reading
     for _ in range(100):

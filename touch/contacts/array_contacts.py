@@ -232,12 +232,19 @@ class ArrayContacts:
         seen = (geom_turn[:, None, :, :, :, None] * axes[:, :, None, :, None, 1:]).sum(-3)  # (B, F, G, 3, 2)
         picked = (of_axis[..., None, None] * self.across).sum(-3)  # (B, F, G, 2, 3)
         sides = (picked[..., None] * seen[..., None, :, :]).sum(-2)
+        facing = (of_axis[..., None] * seen).sum(-2)  # what a flat face looks along
+        ahead = (of_axis * _seen(geom_turn[:, None], axes[:, :, None, :, 0])).sum(-1)
+        flat = (curve[..., 0] + curve[..., 1] == 0) & (ahead != 0)
+        rise = xp.where(
+            flat[..., None], facing / xp.where(flat, ahead, 1.0 + 0.0 * ahead)[..., None], 0.0 * facing
+        )
         touching = pressed > 0
         force = xp.where(touching, pressed, 1.0 + 0.0 * pressed)
         found = array_round_contact(
             self.bend[:, None, None],
             curve[..., None, :],
             sides[..., None, :, :],
+            rise[..., None, :],
             force,
             off[..., None, 0],
             off[..., None, 1],
@@ -299,7 +306,7 @@ def array_contacts(
     return ArrayContacts(
         position=as_like(np.array([pad.position for pad in pads]), like),
         axes=as_like(np.array([pad.axes for pad in pads]), like),
-        half=as_like(np.array([pad.size / 2 for pad in pads]), like),
+        half=as_like(np.array([pad.half_sides for pad in pads]), like),
         width=as_like(np.array([pad.stack.width for pad in pads]), like),
         laws=array_laws(laws.reshape(-1), like),
         tables=as_like(np.concatenate(tables).ravel(), like),

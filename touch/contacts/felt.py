@@ -22,7 +22,7 @@ from ...thermal.contact import (
 from ...thermal.padded import RINGS
 from ..pointers import asked
 from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
-from .round_pads import round_contact
+from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
 from .tilt import tilted
 from .views import viewed
@@ -37,8 +37,8 @@ heat, stand behind its position m in the frame of its body; and how many numbers
 KNOWN, PLACED = 12, 13
 """Of a pad in the world: its middle m, normal, y and z, and behind them whether these are of this substep; and how many
 numbers these are."""
-SPOT = 11 + RINGS
-"""Numbers of a contact under way: a place, two axes of the pad, by how much it lies at ends, and areas of rings."""
+SPOT = 3 + SIDES + 4 + RINGS
+"""Numbers of a contact under way: a place, how the other lies, by how much it lies at ends, and areas of rings."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -127,7 +127,8 @@ def feel(
 ):  # fmt: skip
     """Adds what presses on the pads to the touches. Returns whether every table that it needs could be made."""
     tips, part_count = len(pads), len(parts)
-    place, sides, shares, rings = spot[:3], spot[3:7], spot[7:11], spot[11:]
+    place, sides = spot[:3], spot[3 : 3 + SIDES]
+    shares, rings = spot[3 + SIDES : 7 + SIDES], spot[7 + SIDES :]
     for f in range(tips):
         if frames[f, KNOWN] == 0.0:
             continue  # nothing has met it
@@ -210,6 +211,8 @@ def feel(
                     whole, lying = tilted(tilts[f, g, axis], force, slope, second)
             elif bulging:
                 _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
+                if curve[g, axis, 0] + curve[g, axis, 1] > 0:
+                    sides[4], sides[5] = 0.0, 0.0
                 area, share, kept, longer = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
@@ -271,18 +274,19 @@ def feel(
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _sides(geom_xmat, frames, f, geom, other, axis, sides):
-    """Fills sides (4,) with where the two axes of what a pad meets that lie across point, along the pad's y and z: of a
-    geom, or of the other fingertip's pad."""
+    """Fills sides (SIDES,) with where the two axes of what a pad meets that lie across point, along the pad's y and z,
+    and the rise of the plane across the third: of a geom, or of the other fingertip's pad."""
     n = 0
+    across = axis if geom >= 0 else 0
     for i in range(3):
-        if geom >= 0 and i == axis:
-            continue
-        if geom < 0 and i == 0:
-            continue
-        y, z = 0.0, 0.0
+        x, y, z = 0.0, 0.0, 0.0
         for k in range(3):
             points = geom_xmat[geom, 3 * k + i] if geom >= 0 else frames[other, 3 + 3 * i + k]
+            x += points * frames[f, 3 + k]
             y += points * frames[f, 6 + k]
             z += points * frames[f, 9 + k]
-        sides[2 * n], sides[2 * n + 1] = y, z
-        n += 1
+        if i == across:
+            sides[4], sides[5] = y / x, z / x
+        else:
+            sides[2 * n], sides[2 * n + 1] = y, z
+            n += 1

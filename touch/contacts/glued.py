@@ -69,7 +69,7 @@ class GluedContacts:
 @njit(cache=True, error_model="numpy")
 def _redirect(touches, substeps, places, laws, small, bend, curve, redirected):
     worlds, tips, targets = touches.shape[:3]
-    place, sides = np.zeros(3), np.array([1.0, 0.0, 0.0, 1.0])
+    place, sides = np.zeros(3), np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):

@@ -53,7 +53,7 @@ class ContactReader:
         self._pads = np.zeros((count, PAD))
         for f, pad in enumerate(pads):
             self._role[list(pad.geoms)] = f
-            self._pads[f, :AROUND] = (*pad.position, *pad.axes.ravel(), *(pad.size / 2), pad.stack.width)
+            self._pads[f, :AROUND] = (*pad.position, *pad.axes.ravel(), *pad.half_sides, pad.stack.width)
             if pad.surround is not None:
                 self._pads[f, AROUND:] = np.array(ring_sides(pad.stack.width, pad.surround)) / 2
         geoms = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]

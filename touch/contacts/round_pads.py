@@ -4,7 +4,8 @@ Two bodies of principal curvatures touch as one of their sum touches a flat one 
 4.1): the gap is x^2 k1/2 + y^2 k2/2, with k1 >= k2 (1/m) of the sum of both bodies' curvatures in the tangent plane,
 which need not lie along one another. Sunk in by D into the pad, an elastic foundation as in thermal/contact/area.py,
 p = K/d (D - x^2 k1/2 - y^2 k2/2) over the ellipse of half axes sqrt(2 D/k1) and sqrt(2 D/k2), cut off where either body
-ends; the sensor's face takes what of it lies on it.
+ends; the sensor's face takes what of it lies on it. A straight fingertip, a capsule or a cylinder's side, may lean on a
+flat face: tilt.py.
 
 F: fingertips, N: what a pad may meet.
 """
@@ -24,13 +25,16 @@ from thermograsp.compiled import njit
 
 from ...thermal.numerics import Array, namespace_of
 from ..scene import BodyShape, PadPlace
+from .tilt import array_leaning, leaning
 
-BEND, CURVES = 7, 4
-"""Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half its sides m, and half the face's m along them. Of
-what it meets: curvatures 1/m and half lengths m along two axes of its frame."""
+BEND, CURVES, SIDES = 10, 4, 6
+"""Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half the sides m of what bears force, half the face's m
+along them, stiffness Pa/m beside a skinned sensor and half the whole pad's sides m. Of what it meets: curvatures 1/m
+and half lengths m along two axes of its frame; and how the two lie to one another, round_contact's `sides`."""
 _WIDE = 10.0  # m, half of what no pad reaches the end of
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
 _NEWTON_STEPS = 8
+_LEANS = 1e-7  # m per m, below which a line lies level
 
 
 def bends(pads: Sequence[PadPlace]) -> np.ndarray:
@@ -42,7 +46,8 @@ def bends(pads: Sequence[PadPlace]) -> np.ndarray:
         stiffness, half = sheet.foundation_modulus / sheet.thickness, pad.size / 2
         if pad.skin is not None:  # the sensor's face is under it and takes nearly all
             stiffness, half = pad.skin.stiffness, face
-        row[:] = (*pad.curvature, stiffness, *half, *face)
+        soft = sheet.foundation_modulus / sheet.thickness
+        row[:] = (*pad.curvature, stiffness, *half, *face, soft, *(pad.size / 2))
     return rows
 
 
@@ -81,8 +86,9 @@ def _geom(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float, fl
 @njit(cache=True, borrows=True, error_model="numpy")
 def round_contact(bend, curve, sides, force, y, z):
     """(area m2 and force N on the face were it met in its middle, share of that area that is on it, how many times as
-    long as broad it is) at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (4,) the
-    other's first axis along the pad's y and z, then its second one."""
+    long as broad it is) at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (SIDES,) the
+    other's first axis along the pad's y and z, then its second one, and how much its flat face rises towards the pad
+    along the pad's y and z, m per m."""
     first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2]
     both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3]
     second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3]
@@ -102,6 +108,17 @@ def round_contact(bend, curve, sides, force, y, z):
     face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], reach)
     face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
     depth = _depth(force / bend[2], most, least, reach, width)
+    leans = abs(along * sides[5] - aside * sides[4])
+    if leans > _LEANS and middle - spread <= least:
+        area, load, lower = leaning(
+            bend, force, leans, most, first_share, width, face_reach, face_width, depth
+        )
+        if area <= 0:
+            return 0.0, 0.0, 0.0, 1.0
+        a, b = math.sqrt(2 * lower / most), lower / leans
+        share = _kept(along * y + aside * z, a, face_reach)
+        longer = min(b, 2 * face_width) / (2 * min(a, face_reach))
+        return area, load, share, max(longer, 1 / longer)
     a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
     area, load = _clipped(min(face_reach / a, 1.0), min(face_width / b, 1.0))
     share = _kept(along * y + aside * z, a, face_reach) * _kept(along * z - aside * y, b, face_width)
@@ -155,10 +172,10 @@ def _kept(at, reach, half):
 
 
 def array_round_contact(
-    bend: Array, curve: Array, sides: Array, force: Array, y: Array, z: Array
+    bend: Array, curve: Array, sides: Array, rise: Array, force: Array, y: Array, z: Array
 ) -> tuple[Array, Array, Array, Array]:
     """(area m2, force N, share, length over breadth) of round_contact, of the force's shape. bend (..., BEND) of the
-    pads, curve (..., CURVES) and sides (..., 2, 2) of what they meet; force: N > 0. y, z: m."""
+    pads, curve (..., CURVES), sides (..., 2, 2) and rise (..., 2) of what they meet; force: N > 0. y, z: m."""
     xp = namespace_of(force)
     (c1, c2), (half1, half2) = (curve[..., 0], curve[..., 1]), (curve[..., 2], curve[..., 3])
     y1, z1, y2, z2 = (sides[..., i, j] for i in range(2) for j in range(2))
@@ -188,12 +205,27 @@ def array_round_contact(
     depth = _depths(xp, force / bend[..., 2], most, least, reach, width)
     a, b = (2 * depth / most) ** 0.5, (2 * depth / least) ** 0.5
     area, load = _clippings(xp, (face_reach / a).clip(None, 1.0), (face_width / b).clip(None, 1.0))
-    share = _kept_of(xp, along * y + aside * z, a, face_reach) * _kept_of(
-        xp, along * z - aside * y, b, face_width
-    )
+    crosswise, lengthwise = along * y + aside * z, along * z - aside * y
+    share = _kept_of(xp, crosswise, a, face_reach) * _kept_of(xp, lengthwise, b, face_width)
     longer = xp.minimum(b, face_width) / xp.minimum(a, face_reach)
-    longer = xp.maximum(longer, 1 / longer)
-    return 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load, share, longer
+    area, load = 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load
+
+    fall = abs(along * rise[..., 1] - aside * rise[..., 0])
+    leans = (fall > _LEANS) & (middle - spread <= least)
+    fall = xp.where(leans, fall, 1.0 + 0.0 * fall)
+    leant = array_leaning(bend, force, fall, most, first_part, width, face_reach, face_width, depth)
+    reached = leant[0] > 0
+    lower = xp.where(reached, leant[2], 1.0 + 0.0 * depth)
+    a, b = (2 * lower / most) ** 0.5, lower / fall
+    leant_share = xp.where(reached, _kept_of(xp, crosswise, a, face_reach), 0.0 * depth)
+    leant_longer = xp.minimum(b, 2 * face_width) / (2 * xp.minimum(a, face_reach))
+    longer = xp.where(leans, xp.where(reached, leant_longer, 1.0 + 0.0 * depth), longer)
+    return (
+        xp.where(leans, leant[0], area),
+        xp.where(leans, leant[1], load),
+        xp.where(leans, leant_share, share),
+        xp.maximum(longer, 1 / longer),
+    )
 
 
 def _depths(xp, load, most, least, reach, width):

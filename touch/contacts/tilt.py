@@ -1,4 +1,4 @@
-"""Rods that lie at an angle to a flat pad: only one end of them touches.
+"""Rods at an angle to a flat pad, and fingertips that are rods at an angle to a flat face: one end touches first.
 
 Over a rod's line of contact the gap between it and the pad grows from the end that touches. Three things give way,
 and `angle` is what they leave of the angle. The sensor's face lies on the pad's springs, as it does under flat
@@ -18,6 +18,11 @@ as in a wedge (thermal/contact/gas_beside.py), d the gap of faces that touch wit
 tangent is taken as the mean of both ends'.
 
 What is left of the line is its `share`: the contact conducts as that part of a line with the same force would.
+
+A fingertip that is a rod itself is as stiff as what it is made of, and its pad follows it: the pad's springs are
+pressed in by depth - angle s at s from the lower end, in strips of half width sqrt(2 R (depth - angle s)), cut off
+where the pad ends: the skin's on a skinned sensor, and softer ones beside it, of what sinks in deeper than the far end
+of its face. Their sum is the force, from which the depth follows.
 
 F: fingertips, N: what a pad may meet.
 """
@@ -39,6 +44,7 @@ m of the gap (0 under a skin), the rod's radius m, half its length and half the 
 _LEAST = math.exp(FIRST_FORCE)  # N, of a face that the rod does not press: what gas conducts alone
 _LEVEL = 1e-7  # rad, below which there is no angle
 _STEPS = 4  # Newton's, of an increasing convex function, from above
+_LEANING_STEPS = 14  # likewise, from farther above
 
 
 def tilt_row(
@@ -132,3 +138,107 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     pressed = xp.where(skinned_face, on_skin, pressed)
     rest = xp.minimum(load, _LEAST * share)
     return xp.where(is_tilted, share, one), xp.where(is_tilted, xp.maximum(pressed, rest), force)
+
+
+@njit(cache=True, borrows=True, error_model="numpy")
+def leaning(bend, force, angle, curvature, line_share, width, face_reach, face_width, depth):
+    """(area m2 on the sensor's face, force N on it, depth m at its lower end) of a rod-shaped pad whose line falls by
+    angle m per m towards a flat face; all 0 where the face does not reach it. bend: round_pads.py's. curvature: 1/m
+    across the line. line_share: how much the pad's y lies across the line. width, face_reach and face_width: half
+    lengths m of what touches along the line, and of the face across and along it. depth: m at which the level line would
+    bear the force."""
+    soft_reach = line_share * bend[8] + (1 - line_share) * bend[9]
+    soft_width = max((1 - line_share) * bend[8] + line_share * bend[9], width)
+    firm_reach = line_share * bend[3] + (1 - line_share) * bend[4]
+    near, far, end = (
+        (soft_width - face_width) * angle,
+        (soft_width + face_width) * angle,
+        2 * soft_width * angle,
+    )
+    firm, soft, load = bend[2], bend[7], force * angle
+    most_soft = far if soft < firm else math.inf
+    depth += angle * (soft_width + width)  # no less, whatever the springs beside the face bear
+    for _ in range(_LEANING_STEPS):
+        sunk = min(depth, most_soft)
+        held, rate = 0.0, 0.0
+        # springs begin at one place and end at the other
+        for stiffness, reach, below, behind in (
+            (soft, soft_reach, sunk, sunk - near),
+            (firm, firm_reach, depth - near, depth - far),
+            (soft, soft_reach, sunk - far, sunk - end),
+        ):
+            one, rises = _strips(max(below, 0.0), curvature, reach)
+            other, falls = _strips(max(behind, 0.0), curvature, reach)
+            held += stiffness * (one - other)
+            if stiffness == firm or depth < most_soft:
+                rate += stiffness * (rises - falls)
+        change = (held - load) / rate
+        depth = max(depth - change, depth / 4)
+        if abs(change) < 1e-14 * depth:
+            break
+    lower, upper = depth - near, max(depth - far, 0.0)
+    if lower <= 0:
+        return 0.0, 0.0, 0.0
+    most, wide = _strips(lower, curvature, face_reach)
+    least, narrow = _strips(upper, curvature, face_reach)
+    return (wide - narrow) / angle, firm * (most - least) / angle, lower
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _strips(depth, curvature, reach):
+    """Of strips whose depth grows from 0 to `depth` m, integrated over the depth: their load over the stiffness, m4,
+    and their widths, m2, which is the load's derivative."""
+    wide, shallow = math.sqrt(2 / curvature), min(depth, curvature * reach * reach / 2)
+    root, beyond = math.sqrt(shallow), depth - shallow
+    held, area = 8 / 15 * wide * shallow * shallow * root, 4 / 3 * wide * shallow * root
+    return held + beyond * (area + reach * beyond), area + 2 * reach * beyond
+
+
+def array_leaning(
+    bend: Array,
+    force: Array,
+    angle: Array,
+    curvature: Array,
+    line_share: Array,
+    width: Array,
+    face_reach: Array,
+    face_width: Array,
+    depth: Array,
+) -> tuple[Array, Array, Array]:
+    """leaning as a pure function of arrays of one shape, but for bend (..., BEND); angles above 0."""
+    xp = namespace_of(force)
+
+    def strips(below: Array, reach: Array) -> tuple[Array, Array]:
+        wide, shallow = (2 / curvature) ** 0.5, xp.minimum(below, curvature * reach * reach / 2)
+        beyond, area = below - shallow, 4 / 3 * wide * shallow**1.5
+        return 8 / 15 * wide * shallow**2.5 + beyond * (area + reach * beyond), area + 2 * reach * beyond
+
+    def blend(share: Array, one: int) -> Array:
+        return share * bend[..., one] + (1 - share) * bend[..., one + 1]
+
+    soft_reach, firm_reach = blend(line_share, 8), blend(line_share, 3)
+    soft_width = xp.maximum(blend(1 - line_share, 8), width)
+    near, far, end = (
+        (soft_width - face_width) * angle,
+        (soft_width + face_width) * angle,
+        2 * soft_width * angle,
+    )
+    firm, soft, load = bend[..., 2], bend[..., 7], force * angle
+    most_soft = xp.where(soft < firm, far, math.inf + far)
+    depth = depth + angle * (soft_width + width)
+    for _ in range(_LEANING_STEPS):
+        sunk, held, rate = xp.minimum(depth, most_soft), 0.0 * depth, 0.0 * depth
+        for stiffness, reach, below, behind in (
+            (soft, soft_reach, sunk, sunk - near),
+            (firm, firm_reach, depth - near, depth - far),
+            (soft, soft_reach, sunk - far, sunk - end),
+        ):
+            one, rises = strips(below.clip(0.0, None), reach)
+            other, falls = strips(behind.clip(0.0, None), reach)
+            held = held + stiffness * (one - other)
+            moves = (stiffness == firm) | (depth < most_soft)
+            rate = rate + xp.where(moves, stiffness * (rises - falls), 0.0 * depth)
+        depth = xp.maximum(depth - (held - load) / rate, depth / 4)
+    lower, upper = (depth - near).clip(0.0, None), (depth - far).clip(0.0, None)
+    (most, wide), (least, narrow) = strips(lower, face_reach), strips(upper, face_reach)
+    return (wide - narrow) / angle, firm * (most - least) / angle, lower

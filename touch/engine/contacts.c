@@ -105,11 +105,12 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     area *= whole;
     length *= whole;
   } else if (bulging) {
-    double sides[4], longer;
-    for (int i = 0, n = 0; i < 3; i++) {
-      if (i == axis) continue;
-      for (int k = 1; k < 3; k++) sides[n++] = dot(facing[i], at->axes[k]);
-    }
+    double sides[SIDES], longer;
+    bool flat = curve[0] + curve[1] <= 0;
+    for (int i = 0, n = 0; i < 3; i++)
+      for (int k = 1; k < 3; k++)
+        if (i != axis) sides[n++] = dot(facing[i], at->axes[k]);
+        else sides[3 + k] = flat ? dot(facing[i], at->axes[k]) / dot(facing[i], at->axes[0]) : 0;
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
     length = sqrt(area * on_face * longer);
   } else {

@@ -17,7 +17,7 @@ static bool meets(const Numbers* numbers, const double* touch, int e, const Law*
 
 /* What a pad met of an object where an element lies it met of the element, and every element is on its object. */
 void heat_redirect(const Numbers* numbers, double* touches) {
-  static const double sides[4] = {1, 0, 0, 1};
+  static const double sides[SIDES] = {1, 0, 0, 1, 0, 0};
   int fingers = numbers->fingers, elements = numbers->tips - fingers, targets = numbers->targets;
   for (int e = 0; e < elements; e++) {
     const double *glued = numbers->glued + e * GLUED, *pad = numbers->pads + (fingers + e) * PAD;

@@ -33,8 +33,9 @@ enum { ON, SMALL, BOND, GLUED };
 enum { OF_CONTACT, OF_GAS, PATCH, WIDE_PATCH, PATCH_LENGTH, WIDE_LENGTH, VALUES };
 enum { PLACES = 24, FORCES = 14, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES * PLACES * PLACES,
        CURVED = SHARES + ENDS * FORCES * PLACES * PLACES + 1 };
-/* a round pad: curvatures, stiffness, half sides and half the face's; what it meets: curvatures and half lengths */
-enum { BEND = 7, CURVES = 4 };
+/* a round pad: curvatures, stiffness, half sides, half the face's, stiffness beside it and half the whole pad's sides; what
+   it meets: curvatures and half lengths; how they lie to one another: two axes and the rise of a flat face */
+enum { BEND = 10, CURVES = 4, SIDES = 6 };
 /* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
 enum { VIEW = 11 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
@@ -150,7 +151,7 @@ void heat_behind(const Numbers* numbers, int f, double drawn, double force, doub
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
 double heat_flat_patch(const Law* law, double area, const double place[3], double shares[4]);
-double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
+double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
                           double* area, double* share, double* longer);
 
 double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed);

@@ -23,7 +23,7 @@ from ..heat import TipField, Wall, crossing_rate, narrow_tables, resolution, tip
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 12
+_VERSION = 13
 
 
 def packed(
@@ -64,7 +64,7 @@ def packed(
         header,
         roles,
         owner,
-        *((*pad.position, *pad.axes.T.ravel(), *(pad.size / 2), pad.stack.width) for pad in sensors),
+        *((*pad.position, *pad.axes.T.ravel(), *pad.half_sides, pad.stack.width) for pad in sensors),
         *(_box(shape, film, ambient) for shape in shapes),
         _columns(laws),
         curved,

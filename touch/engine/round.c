@@ -1,4 +1,4 @@
-/* Contact of a pad that is round itself, as touch/contacts/round_pads.py. */
+/* Contact of a pad that is round itself, as touch/contacts/round_pads.py, and of one that leans, as touch/contacts/tilt.py. */
 
 #include <math.h>
 
@@ -6,6 +6,8 @@
 
 #define LEAST 1e-7 /* of the larger curvature: what is straighter counts as that */
 #define NEWTON_STEPS 8
+#define LEANS 1e-7 /* m per m, below which a line lies level */
+#define LEANING_STEPS 14
 static const double pi = 3.14159265358979323846;
 
 static double disc(double s) { return (s * sqrt(1 - s * s) + asin(s)) / 2; }
@@ -42,7 +44,48 @@ static double kept(double at, double reach, double half) {
   return lesser(greater(lesser(half, at + reach) - greater(-half, at - reach), 0) / (2 * lesser(reach, half)), 1);
 }
 
-double heat_round_contact(const double* bend, const double* curve, const double sides[4], double force, double y, double z,
+/* What strips bear whose depth grows from 0, integrated over it and over the stiffness; their widths likewise. */
+static double strips(double depth, double curvature, double reach, double* area) {
+  double wide = sqrt(2 / curvature), shallow = lesser(depth, curvature * reach * reach / 2);
+  double root = sqrt(shallow), beyond = depth - shallow, first = 4.0 / 3 * wide * shallow * root;
+  *area = first + 2 * reach * beyond;
+  return 8.0 / 15 * wide * shallow * shallow * root + beyond * (first + reach * beyond);
+}
+
+/* Area and force on the face of a straight pad that leans, and the depth at the face's lower end; 0 where it is off. */
+static double leaning(const double* bend, double force, double angle, double curvature, double own, double width,
+                      double face_reach, double face_width, double depth, double* area, double* lower) {
+  double soft_reach = own * bend[8] + (1 - own) * bend[9], firm_reach = own * bend[3] + (1 - own) * bend[4];
+  double soft_width = greater((1 - own) * bend[8] + own * bend[9], width), load = force * angle;
+  double near = (soft_width - face_width) * angle, far = (soft_width + face_width) * angle, end = 2 * soft_width * angle;
+  double firm = bend[2], soft = bend[7], most_soft = soft < firm ? far : INFINITY, wide, narrow;
+  depth += angle * (soft_width + width);
+  for (int i = 0; i < LEANING_STEPS; i++) {
+    double sunk = lesser(depth, most_soft), held = 0, rate = 0;
+    /* springs: stiffness, reach, and how deep they are where they begin and end */
+    double springs[3][4] = {{soft, soft_reach, sunk, sunk - near},
+                            {firm, firm_reach, depth - near, depth - far},
+                            {soft, soft_reach, sunk - far, sunk - end}};
+    for (int n = 0; n < 3; n++) {
+      double one = strips(greater(springs[n][2], 0), curvature, springs[n][1], &wide);
+      double other = strips(greater(springs[n][3], 0), curvature, springs[n][1], &narrow);
+      held += springs[n][0] * (one - other);
+      if (springs[n][0] == firm || depth < most_soft) rate += springs[n][0] * (wide - narrow);
+    }
+    double change = (held - load) / rate;
+    depth = greater(depth - change, depth / 4);
+    if (fabs(change) < 1e-14 * depth) break;
+  }
+  *area = 0;
+  *lower = depth - near;
+  if (*lower <= 0) return 0;
+  double most = strips(*lower, curvature, face_reach, &wide);
+  double least = strips(greater(depth - far, 0), curvature, face_reach, &narrow);
+  *area = (wide - narrow) / angle;
+  return bend[2] * (most - least) / angle;
+}
+
+double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
                           double* area, double* share, double* longer) {
   double first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2];
   double both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3];
@@ -57,6 +100,17 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double face_reach = lesser(own * bend[5] + (1 - own) * bend[6], reach);
   double face_width = lesser((1 - own) * bend[5] + own * bend[6], width);
   double depth = depth_of(force / bend[2], most, least, reach, width), load;
+  double leans = fabs(along * sides[5] - aside * sides[4]);
+  if (leans > LEANS && middle - apart <= least) {
+    double lower;
+    *share = leaning(bend, force, leans, most, own, width, face_reach, face_width, depth, area, &lower);
+    *longer = 1;
+    if (!(*area > 0)) return 0;
+    double across = sqrt(2 * lower / most);
+    *longer = lesser(lower / leans, 2 * face_width) / (2 * lesser(across, face_reach));
+    *longer = greater(*longer, 1 / *longer);
+    return kept(along * y + aside * z, across, face_reach);
+  }
   double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least);
   *area = 4 * a * b * clipped(lesser(face_reach / a, 1), lesser(face_width / b, 1), &load);
   *share = 4 * bend[2] * depth * a * b * load;

@@ -27,6 +27,7 @@ SMALLEST = 4e-6  # m2, of a face that can be a pad
 _METAL = 1.74e-3  # m, of the seed's thermostat plate
 _STEP = 0.01  # s; what is in front of a heater does not depend on it
 _DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
+_LEANING = 10.0  # degrees of a straight fingertip, beyond which its sensor's face is off what it touches
 _WITHIN = 0.8  # of a round geom's radius, half the width of its pad
 
 
@@ -116,6 +117,17 @@ class PadPlace:
     def face(self) -> Surface:
         """What touches."""
         return touching(self.skin)
+
+    @property
+    def half_sides(self) -> np.ndarray:
+        """(2,) m from its middle along y and z up to which contacts are on it. A capsule that leans touches with its
+        round end, beyond its straight part."""
+        (y, z), leaning = self.curvature, math.sin(math.radians(_LEANING))
+        if y > 0 and z == 0:
+            return self.size / 2 + (0.0, leaning / y)
+        if z > 0 and y == 0:
+            return self.size / 2 + (leaning / z, 0.0)
+        return self.size / 2
 
     @property
     def silicone(self) -> Pad:
