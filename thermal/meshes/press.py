@@ -72,7 +72,7 @@ def press_body(
             f"tolerance {tolerance:g} K is finer than a mesh's grid is sure to keep, {least:.2g} K at a difference of "
             f"{abs(difference):g} K: ask for a larger one"
         )
-    demand = Demand(tolerance, difference, expected(pressed.conductance, t), max(float(t[-1]), 0.1))
+    demand = Demand(tolerance, difference, expected(problem.conductance, t), max(float(t[-1]), 0.1))
     touched = touched_body(body, (patch,), stack, demand, fingertips=1, cache=cache)
     system = touched.system((0,))
     curves = network_press.solve(problem, t, system)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, non_negative
+from thermograsp.errors import InvalidValueError
 
 from ..numerics import (
     BOTTOM,
@@ -181,7 +181,7 @@ def march(
     given = problem.conductance
 
     def conductance(time: float) -> float:
-        return non_negative(f"conductance at {time:g} s", given(time)) if callable(given) else given
+        return given(time) if callable(given) else given
 
     marching = March(grid, conductance)
     knots = [0.0]

@@ -256,5 +256,5 @@ def expected(conductance: Conductance, t: np.ndarray) -> tuple[float, ...]:
     samples t (n,) s."""
     if not callable(conductance):
         return (float(conductance),)
-    most = max(float(conductance(float(time))) for time in t)
+    most = max(map(conductance, t.tolist()))
     return (*_VARYING, most) if most > max(_VARYING) else _VARYING

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, non_negative
+from thermograsp.errors import InvalidValueError
 
 from .layered import sample_times
 from .problem import PressCurves, PressProblem
@@ -81,7 +81,7 @@ def _conductance(problem: PressProblem, time: float) -> float:
     """W/K from thermostat to object at that time."""
     h = problem.conductance
     if callable(h):
-        h = non_negative(f"conductance at t = {time:g} s", h(time))
+        h = h(time)
     return 1 / (_sensor_resistance(problem) + 1 / (h * problem.area)) if h > 0 else 0.0
 
 

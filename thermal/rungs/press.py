@@ -18,7 +18,7 @@ from ..readout import Thermostat
 from ..stack import HeatedStack, any_sensor, heated_core
 from .ladder import Rung, solve_rung
 from .network import LONGEST_STEP
-from .problem import Conductance, PressCurves, PressProblem
+from .problem import Conductance, PressCurves, PressProblem, checked
 
 _MOST_SAMPLES = 10_000_000
 _USUAL, _FACE = 1e4, 81e-6  # W/(m2 K), m2
@@ -228,8 +228,7 @@ def _by_force(heated: HeatedStack, force: Conductance) -> Conductance:
     """What a heated sensor's contact conducts."""
 
     def at(newton: float) -> float:
-        if not newton >= 0 or not np.isfinite(newton):
-            raise InvalidValueError(f"force must be finite and >= 0 N, got {newton!r}")
         return float(heated.contact.at(np.array(newton)))
 
-    return (lambda time: at(float(force(time)))) if callable(force) else at(float(force))
+    force = checked("force", force, "N")
+    return (lambda time: at(force(time))) if callable(force) else at(force)

@@ -17,6 +17,28 @@ Conductance = float | Callable[[float], float]
 
 
 @dataclass(frozen=True, slots=True)
+class _Checked:
+    """A function of time in s whose values are finite numbers, 0 or above; raises InvalidValueError for others."""
+
+    name: str
+    unit: str
+    function: Callable[[float], float]
+
+    def __call__(self, time: float) -> float:
+        value = self.function(float(time))
+        # libraries' own numbers, which have no axis, count as such
+        number = value.item() if np.shape(value) == () and hasattr(value, "item") else value  # pyright: ignore[reportAttributeAccessIssue]
+        return non_negative(f"{self.name} at t = {time:g} s ({self.unit})", number)
+
+
+def checked(name: str, given: Conductance, unit: str = "W/(m2 K)") -> Conductance:
+    """A number as it is, a function with its values checked when it is asked. Raises InvalidValueError."""
+    if callable(given):
+        return _Checked(name, unit, given)
+    return non_negative(f"{name} ({unit})", given)
+
+
+@dataclass(frozen=True, slots=True)
 class PressProblem:
     """A patch in the middle of an object's face pressed on the sensor, both bodies uniform at first.
 
@@ -56,10 +78,9 @@ class PressProblem:
             raise InvalidValueError(f"mode must be 'T' or 'O', got {self.mode!r}")
         if self.shape not in ("square", "round"):
             raise InvalidValueError(f"shape must be 'square' or 'round', got {self.shape!r}")
-        if not callable(self.conductance):
-            non_negative("conductance (W/(m2 K))", self.conductance)
-        if self.opposite is not None and not callable(self.opposite):
-            non_negative("opposite (W/(m2 K))", self.opposite)
+        object.__setattr__(self, "conductance", checked("conductance", self.conductance))
+        if self.opposite is not None:
+            object.__setattr__(self, "opposite", checked("opposite", self.opposite))
         positive("area (m2)", self.area)
         if self.surround is not None:
             self._check_surround()

@@ -145,8 +145,8 @@ def leaning(bend, force, angle, curvature, line_share, width, face_reach, face_w
     """(area m2 on the sensor's face, force N on it, depth m at its lower end) of a rod-shaped pad whose line falls by
     angle m per m towards a flat face; all 0 where the face does not reach it. bend: round_pads.py's. curvature: 1/m
     across the line. line_share: how much the pad's y lies across the line. width, face_reach and face_width: half
-    lengths m of what touches along the line, and of the face across and along it. depth: m at which the level line would
-    bear the force."""
+    lengths m of what touches along the line, and of the face across and along it. depth: m at which the level line
+    would bear the force."""
     soft_reach = line_share * bend[8] + (1 - line_share) * bend[9]
     soft_width = max((1 - line_share) * bend[8] + line_share * bend[9], width)
     firm_reach = line_share * bend[3] + (1 - line_share) * bend[4]

@@ -116,7 +116,12 @@ def test_colder_sensor_mirrors_a_warmer_one() -> None:
         ({"mode": "X"}, "mode"),
         ({"conductance": -1.0}, "conductance"),
         ({"conductance": float("nan")}, "conductance"),
-        ({"conductance": lambda time: 1e4 if time < 0.3 else -5.0}, r"conductance\(0\.3\d* s\) is .*-5"),
+        ({"conductance": lambda time: 1e4 if time < 0.3 else -5.0}, r"conductance at t = 0\.3\d* s .*got -5"),
+        (
+            {"conductance": lambda time: np.array([2e3])},
+            r"conductance at t = 0 s .*must be a number, got array",
+        ),
+        ({"opposite": lambda time: "2000"}, "opposite at t = .*must be a number, got '2000'"),
         ({"conductance": lambda time: float("nan")}, "nan"),
         ({"area": 82e-6}, "more than the face"),
         ({"area": 0.0}, "area"),

@@ -110,7 +110,7 @@ def test_voltage_and_record_are_the_sensors_own() -> None:
         ({"mode": "O"}, "heater of its own"),
         ({"thermostat": thermal.Thermostat()}, "heater of its own"),
         ({"rung": "layered"}, "heater's own law"),
-        ({"force": -1.0}, "force must be finite"),
+        ({"force": -1.0}, r"force \(N\) must be a finite number, 0 or above"),
     ],
 )
 def test_what_a_heated_press_refuses(keywords: dict[str, Any], message: str) -> None:
