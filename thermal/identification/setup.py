@@ -16,6 +16,7 @@ from ..readout import ADS1115, SignalChain, saturated
 from ..stack import HeatedCore, HeatedStack, any_sensor, converter, fallen, heated_core, require_linear
 
 _STEP = 0.01  # s; curves take nothing of it
+_MOST = 2000.0  # K across an element, which nothing that is touched comes near
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +137,14 @@ class TouchSetup:
         sends."""
         if isinstance(self.stack, HeatedStack):
             return fallen(self.stack, voltage, self.sensor_temperature[0])
-        return voltage / self.stack.seebeck
+        kelvin = voltage / self.stack.seebeck
+        most = float(np.abs(kelvin).max(initial=0.0))
+        if most > _MOST:
+            raise InvalidValueError(
+                f"voltage is up to {np.abs(voltage).max():g} V, which sensor {self.stack.name!r} would send at {most:.3g} K: "
+                "give it in V, not in mV or counts, and the sensor that sent it"
+            )
+        return kelvin
 
     def saturated(self, kelvin: np.ndarray) -> np.ndarray:
         """Which samples lie at an end of the converter's range."""

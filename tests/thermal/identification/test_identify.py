@@ -210,6 +210,7 @@ def test_bad_input_is_refused(identifier: thermal.Identifier) -> None:
         ([0.03, 0.04], [0.0], "t must be"),
         ([0.03], [np.nan], "finite"),
         ([0.03], [[0.0, 0.0]], "1 columns before"),
+        ([0.03], [4.2], "would send at 4.2e\\+03 K: give it in V, not in mV"),
     ):
         with pytest.raises(InvalidValueError, match=words):
             identifier.update(np.array(t), np.array(voltage))
