@@ -141,8 +141,8 @@ class TouchSetup:
         most = float(np.abs(kelvin).max(initial=0.0))
         if most > _MOST:
             raise InvalidValueError(
-                f"voltage is up to {np.abs(voltage).max():g} V, which sensor {self.stack.name!r} would send at {most:.3g} K: "
-                "give it in V, not in mV or counts, and the sensor that sent it"
+                f"voltage is up to {np.abs(voltage).max():g} V, which sensor {self.stack.name!r} would send at "
+                f"{most:.3g} K: give it in V, not in mV or counts, and the sensor that sent it"
             )
         return kelvin
 
