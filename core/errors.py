@@ -186,12 +186,12 @@ def likely_unit(value: float, low: float, high: float, unit: str) -> str:
     return f"; {value:.6g} looks like {mistaken}: give {meant:.6g}" if likely else ""
 
 
-def told_apart(value: float, limit: float, decimals: int = 1) -> str:
+def distinct_text(value: float, limit: float, decimals: int = 1) -> str:
     """A value that is beyond a limit, with so many decimals that it is still when it is read; `decimals` at least."""
     for count in range(decimals, 16):
-        told = f"{value:.{count}f}"
-        if (float(told) - limit) * (value - limit) > 0:
-            return told
+        text = f"{value:.{count}f}"
+        if (float(text) - limit) * (value - limit) > 0:
+            return text
     return repr(value)
 
 

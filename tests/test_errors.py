@@ -14,13 +14,13 @@ from thermograsp.errors import (
     UnknownNameError,
     WriteError,
     celsius,
+    distinct_text,
     finite,
     install,
     length,
     non_negative,
     numbers,
     positive,
-    told_apart,
     unknown_name,
     whole_number,
     within,
@@ -149,5 +149,5 @@ def test_where_nothing_is_near_all_names_are_listed() -> None:
     ],
 )
 def test_what_is_beyond_a_limit_reads_so(value: float, limit: float, told: str) -> None:
-    assert told_apart(value, limit) == told
+    assert distinct_text(value, limit) == told
     assert (float(told) > limit) == (value > limit)

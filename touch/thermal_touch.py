@@ -59,7 +59,7 @@ from .scene import (
 
 _NOBODY = object()
 """In place of an MjData. None would do for update(None) too."""
-_TOLD = 200  # characters of what a message tells
+_SHOWN_CHARACTERS = 200  # characters of what a message tells
 _ON_TIME = 1e-3  # of a step, by which the data's time may be off for each step since the last update
 
 
@@ -447,9 +447,9 @@ class ThermalTouch:
             raise InvalidValueError(f"set_state takes what state() returned, got {type(state).__name__}")
         for name, expected in self._identity.items():
             if (saved := state.of.get(name)) != expected:
-                told = f"{saved!r} in place of {expected!r}"
+                difference = f"{saved!r} in place of {expected!r}"
                 differ = (
-                    f"are {told}" if len(told) < _TOLD else "differ"
+                    f"are {difference}" if len(difference) < _SHOWN_CHARACTERS else "differ"
                 )  # a sensor's layers would fill a page
                 raise InvalidValueError(
                     f"the state is of another ThermalTouch, whose {name} {differ}: make this one alike"

@@ -106,10 +106,10 @@ def imitate(
         chosen = torch.randint(count, (min(recipe.batch, count),), generator=generator)
         acting, valuing = policy.mlp_extractor(vector[chosen])
         wanted = right[chosen]
-        apart = (
+        deviation = (
             policy.action_net(acting) - wanted.nan_to_num()
         )  # not even a NaN without weight has a gradient
-        errors_of = torch.where(squared, apart**2, _even(apart.abs(), recipe.even_from))
+        errors_of = torch.where(squared, deviation**2, _even(deviation.abs(), recipe.even_from))
         error = errors_of[~wanted.isnan()].mean()
         known = ~gained[chosen].isnan()
         loss = error

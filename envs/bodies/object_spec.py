@@ -13,11 +13,11 @@ from thermograsp.errors import (
     LONGEST,
     InvalidValueError,
     celsius,
+    distinct_text,
     finite,
     non_negative,
     numbers,
     positive,
-    told_apart,
     unknown_name,
     within,
 )
@@ -129,7 +129,7 @@ class ObjectSpec:
         room = MAX_OPENING - CLEARANCE
         if self.width > room:
             raise InvalidValueError(
-                f"object {self.name!r} is {told_apart(1e3 * self.width, 1e3 * room)} mm wide along x, the gripper "
+                f"object {self.name!r} is {distinct_text(1e3 * self.width, 1e3 * room)} mm wide along x, the gripper "
                 f"opens {1e3 * MAX_OPENING:.0f} mm: make it at most {1e3 * room:.0f} mm or turn it (yaw)"
             )
 
@@ -267,9 +267,9 @@ class ObjectSpec:
         ):
             if given < least * (1 - 1e-9):
                 raise InvalidValueError(
-                    f"object {self.name!r} is {told_apart(1e3 * given, 1e3 * least)} mm {name}: in mode O elements of "
-                    f"{1e3 * side:g} mm are glued to its sides, their middles {1e3 * self.grasp_height:g} mm above the "
-                    f"table, and would stick out; make it {1e3 * least:g} mm at least, or use mode T"
+                    f"object {self.name!r} is {distinct_text(1e3 * given, 1e3 * least)} mm {name}: in mode O elements "
+                    f"of {1e3 * side:g} mm are glued to its sides, their middles {1e3 * self.grasp_height:g} mm above "
+                    f"the table, and would stick out; make it {1e3 * least:g} mm at least, or use mode T"
                 )
 
 

@@ -107,9 +107,9 @@ class GraspBody:
         if self.mode == "O" or self.spec.shape == "box":
             return "flat"
         if self.spec.mesh:
-            from .mesh_contact import is_met
+            from .mesh_contact import is_mesh_contact
 
-            return "mesh" if is_met(self.pad, self.spec) else "flat"
+            return "mesh" if is_mesh_contact(self.pad, self.spec) else "flat"
         return self.spec.shape
 
     @cached_property
@@ -194,7 +194,7 @@ class GraspBody:
             return 0.0
         return self.closed_mesh.patch_length(self.skin, self.touched, NOMINAL_FORCE)
 
-    def check_felt(self) -> None:
+    def check_sensed(self) -> None:
         """Raises InvalidValueError for an object on the table that fingers close on below the sensors' faces: forces
         would tell of a touch, and heat of none."""
         spec, lowest = self.spec, self.spec.grasp_height - self.stack.width / 2

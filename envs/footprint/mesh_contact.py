@@ -42,7 +42,7 @@ def mesh_contact(pad: Pad, spec: ObjectSpec, forces: tuple[float, ...]) -> Conta
     return ContactArea(*np.mean([side[:3] for side in touched], axis=0))
 
 
-def is_met(pad: Pad, spec: ObjectSpec) -> bool:
+def is_mesh_contact(pad: Pad, spec: ObjectSpec) -> bool:
     """Whether either of those pads meets the mesh."""
     return any(_seen(each) is not None for each in _both(pad, spec))
 

@@ -13,7 +13,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, told_apart
+from thermograsp.errors import InvalidValueError, distinct_text
 
 from ..bodies import ObjectSpec
 from ..limits import CLEARANCE
@@ -55,13 +55,13 @@ class Gripper(FoundGripper):
         room = self.widest - CLEARANCE
         if item.width > room:
             raise InvalidValueError(
-                f"object {item.name!r} is {told_apart(1e3 * item.width, 1e3 * room)} mm wide along x, {self.name} "
+                f"object {item.name!r} is {distinct_text(1e3 * item.width, 1e3 * room)} mm wide along x, {self.name} "
                 f"opens {1e3 * self.widest:.1f} mm: make it at most {math.floor(1e4 * room + 1e-6) / 10:.1f} mm or "
                 "turn it (yaw)"
             )
         if item.width < self.narrowest:
             raise InvalidValueError(
-                f"object {item.name!r} is {told_apart(1e3 * item.width, 1e3 * self.narrowest)} mm thin along x, "
+                f"object {item.name!r} is {distinct_text(1e3 * item.width, 1e3 * self.narrowest)} mm thin along x, "
                 f"{self.name} closes to {1e3 * self.narrowest:.1f} mm: its pads would never meet it; make it thicker "
                 "or turn it (yaw)"
             )

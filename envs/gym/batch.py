@@ -126,8 +126,8 @@ def infos_of(
     if randomized:
         nested: dict[str, Any] = {}
         for name, values in randomized.items():
-            told = values.copy() if complete else np.where(rows, values, 0.0)
-            nested[name], nested["_" + name] = told, rows.copy()
+            reported = values.copy() if complete else np.where(rows, values, 0.0)
+            nested[name], nested["_" + name] = reported, rows.copy()
         infos["randomized"], infos["_randomized"] = nested, rows.copy()
     return infos
 

@@ -356,12 +356,12 @@ class SimulationConfig:
                     f"object {spec.name!r} has parts of other materials, which mode 'O' cannot tell: use mode 'T'"
                 )
             spec = replace(spec, friction=spec.sliding_friction)
-        own: dict[str, Any] = {}
+        changes: dict[str, Any] = {}
         if not spec.parts and spec.mass is None and spec.density is None:
-            own["density"] = chosen.density
+            changes["density"] = chosen.density
         if spec.friction is None and chosen.friction is not None:
-            own["friction"] = chosen.friction
-        spec = replace(spec, **own) if own else spec
+            changes["friction"] = chosen.friction
+        spec = replace(spec, **changes) if changes else spec
         spec = scaled(
             spec, drawn["size_factor"], mass=drawn["mass_factor"], friction=drawn["friction_factor"]
         )
@@ -388,11 +388,13 @@ class SimulationConfig:
         """A body of every shape and size that may come, so that one too large or too low, or of a material whose
         touches are not known, is refused at once and not in some later episode."""
         if self.mode == "T":
-            own = [shape.material for shape in (*self.shapes, *self.others) if shape.material is not None]
-            for touched in (*self.choices, *own):
+            of_shapes = [
+                shape.material for shape in (*self.shapes, *self.others) if shape.material is not None
+            ]
+            for touched in (*self.choices, *of_shapes):
                 Surface.of(material(touched))
-        own_temperatures = {shape.temperature for shape in (*self.shapes, *self.others)}
-        starts = [self.object_temperature if own is None else own for own in own_temperatures]
+        given_temperatures = {shape.temperature for shape in (*self.shapes, *self.others)}
+        starts = [self.object_temperature if start is None else start for start in given_temperatures]
         check_drawn_temperatures(self.randomize, starts, self.sensor_temperatures)
         plain, first = draw((), np.random.default_rng(0)), self.choices[0]
         factors = (cause.extremes for cause in self.causes if isinstance(cause, Size))
@@ -401,7 +403,7 @@ class SimulationConfig:
         for shape, size in product(self.shapes, sizes):
             try:
                 bodies.append(self.body(stack, first, shape, {**plain, "size_factor": size}))
-                bodies[-1].check_felt()
+                bodies[-1].check_sensed()
             except InvalidValueError as error:
                 if size == 1.0:
                     raise

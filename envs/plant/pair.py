@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from thermograsp.errors import InvalidValueError, celsius, told_apart, unknown_name
+from thermograsp.errors import InvalidValueError, celsius, distinct_text, unknown_name
 
 from ..bodies import DEFAULT_FRICTION, DEFAULT_MASS, ObjectSpec
 from ..footprint import GraspBody
@@ -186,8 +186,8 @@ class PairLayout:
         most = 2 * (LATERAL_REACH - self.config.placement[0]) - GAP
         if _depth(spec) > most:
             raise InvalidValueError(
-                f"objects are {told_apart(1e3 * _depth(spec), 1e3 * most)} mm deep along y: two beside each other are "
-                f"in the gripper's reach up to {1e3 * most:.1f} mm"
+                f"objects are {distinct_text(1e3 * _depth(spec), 1e3 * most)} mm deep along y: two beside each other "
+                f"are in the gripper's reach up to {1e3 * most:.1f} mm"
             )
 
 

@@ -226,12 +226,12 @@ class SimulatedPlant:
         """Puts the rows into a state; what follows is bit-identical to what followed it first. Returns the generators
         the rows now draw from. Raises InvalidValueError for a state of other keywords, which says of which."""
         for name, ours in self._of.items():
-            theirs = state.of[name]
-            if theirs != ours:
+            saved = state.of[name]
+            if saved != ours:
                 brief = isinstance(ours, str | float | int)  # all of a sensor's layers are not
-                told = f"is {theirs!r} in place of {ours!r}" if brief else "is another one"
+                difference = f"is {saved!r} in place of {ours!r}" if brief else "is another one"
                 raise InvalidValueError(
-                    f"the state is of environments whose {name} {told}: make these like those"
+                    f"the state is of environments whose {name} {difference}: make these like those"
                 )
         chosen = list(rows)
         self.mechanics.set_state(state.mechanics, np.array(chosen))

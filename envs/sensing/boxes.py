@@ -154,10 +154,14 @@ class BoxHeat:
         (B, F, 3) m from now on. The heat of the objects and of fingertips in the state (B, n) stays to round-off."""
         tables, moved, before = self.tables, {}, {}
         for row, fingertips in strayed:
-            own = state[row]
-            if own.any():  # or nothing has flowed yet, and there is nothing to keep
-                before[row] = fixed_heat(tables, row, own), self._touched[row], self._prints.get(row, ())
-            touched = self._moved(row, fingertips, middles[row], own)
+            row_state = state[row]
+            if row_state.any():  # or nothing has flowed yet, and there is nothing to keep
+                before[row] = (
+                    fixed_heat(tables, row, row_state),
+                    self._touched[row],
+                    self._prints.get(row, ()),
+                )
+            touched = self._moved(row, fingertips, middles[row], row_state)
             if touched.places:
                 moved[row] = touched
         self.set_touched(moved)
@@ -305,7 +309,7 @@ class BoxHeat:
         material, size, prints = body.material, body.spec.size, self._prints[row]
         count = sum(number >= 0 for number in touched.contacts)
         under = _under(material, size, film, _stand_ins(prints, numbers[:count], size, body.stack.width))
-        found = under.own
+        found = under.bare
         if len(numbers) > count:
             feet = [(prints[number].place.face, prints[number].foot) for number in numbers]
             patches = Patches(

@@ -66,7 +66,7 @@ class _Row:
     contacts: list[PadContact]
     slipped: dict[int, PadContact]
     touches: np.ndarray
-    told: np.ndarray
+    reading_table: np.ndarray
 
 
 class FieldScenes:
@@ -261,9 +261,14 @@ class FieldScenes:
     def _list(self, row: int) -> None:
         """Where the row's heat is from now on; to be called whenever anything but compiled code has changed it."""
         one = self._heats[row]
-        one.told = one.heat.telling()
+        one.reading_table = one.heat.telling()
         heard, _ = one.heat.hearing(one.touches)
-        self._listed[row] = one.told.ctypes.data, heard, one.touches.ctypes.data, one.touches.shape[2]
+        self._listed[row] = (
+            one.reading_table.ctypes.data,
+            heard,
+            one.touches.ctypes.data,
+            one.touches.shape[2],
+        )
 
     def _tell_contents(self, seconds: float | None = None) -> None:
         """Fills what info tells of contents after a control step of so many seconds, or at rest, and puts them into

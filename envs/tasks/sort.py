@@ -71,10 +71,10 @@ class SortTask:
         del action
         heights, normal, crushing = _objects(reading)
         rows = np.arange(len(state))
-        told = np.full(len(state), "right" in reading.truth)
+        known = np.full(len(state), "right" in reading.truth)
         right = np.asarray(reading.truth.get("right", np.zeros(len(state), int)))
         lift, other = heights[rows, right], heights[rows, 1 - right]
-        pressing = told & (normal[rows, right].min(axis=1) > TOUCHING)
+        pressing = known & (normal[rows, right].min(axis=1) > TOUCHING)
         at_height = pressing & (lift >= LIFTED * 0.98)
         elapsed, held = state["elapsed"] + dt, at_height * (state["held"] + dt)
         lifted = state["lifted"] | at_height
@@ -82,7 +82,7 @@ class SortTask:
         progress = lift_progress(pressing, share, np.minimum(held / self.hold_seconds, 1.0), 0.0)
         after = self.fresh(len(state))
         after["elapsed"], after["held"], after["lifted"], after["progress"] = elapsed, held, lifted, progress
-        wrong = told & (other >= WRONG)
+        wrong = known & (other >= WRONG)
         crushed = (normal.max(axis=2) > crushing).any(axis=1)
         dropped = lifted & ~pressing & (lift < LIFTED / 2)
         failed = wrong | crushed | dropped

@@ -160,11 +160,11 @@ def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None
                 curvature[n] -= height / ((_BEND * half) ** 2 + height**2)
         for k, sign in enumerate((-1.0, 1.0)):
 
-            def there(u: float, n: int = n, way: np.ndarray = sign * along) -> bool:
+            def is_inside(u: float, n: int = n, way: np.ndarray = sign * along) -> bool:
                 found = heights(base + u * way) - level + curvature[n] * u * u / 2
                 return bool(len(found)) and float(np.abs(found).min()) < 0.2 * u
 
-            ends[n, k] = _end(there, half) + sign * base[n]
+            ends[n, k] = _end(is_inside, half) + sign * base[n]
 
     def thickness(offset: np.ndarray) -> float:
         """m from the surface down to the next; 0 where it is not within half a side of the place's height."""
@@ -216,14 +216,14 @@ def _within(along: np.ndarray, reach: float) -> np.ndarray:
     return np.all((along.min(axis=1) <= reach) & (along.max(axis=1) >= -reach), axis=1)
 
 
-def _end(there: Callable[[float], bool], half: float) -> float:
+def _end(is_inside: Callable[[float], bool], half: float) -> float:
     low = 0.0
     for share in _SAMPLES:
         high = share * half
-        if not there(high):
+        if not is_inside(high):
             for _ in range(8):
                 middle = (low + high) / 2
-                low, high = (middle, high) if there(middle) else (low, middle)
+                low, high = (middle, high) if is_inside(middle) else (low, middle)
             return low
         low = high
     return _FAR

@@ -40,15 +40,17 @@ def box_kernels(
             through *= (1 - round_) / (1 - round_ / 2)  # what is wet of a round wall, by its middle
             bent = bent * filmed(taus, each.depth, through)[:, None, None]
         for m, other in enumerate(below):
-            if (other.plain and m > n) or (met := _met(each, other, one, diffusivity)) is None:
+            if (other.plain and m > n) or (
+                seen_by_other := _seen_by_other(each, other, one, diffusivity)
+            ) is None:
                 continue
-            pair = bent * met
+            pair = bent * seen_by_other
             kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     return kernel
 
 
 @lru_cache(maxsize=_PAIRS)
-def _met(each: Beneath, other: Beneath, one: Tip, diffusivity: float) -> np.ndarray | None:
+def _seen_by_other(each: Beneath, other: Beneath, one: Tip, diffusivity: float) -> np.ndarray | None:
     """(T, M, M) 1/m3 at TIMES of two patches on the box beneath the first, or of that one by itself; None where the
     second is not on it."""
     on, far = each.on_box(each.placed), each.on_box(other.placed)

@@ -78,9 +78,9 @@ def placed_at(
     hollow = below.curvature.min() <= -FLAT  # heat goes outward there, and no box widens as such a wall does
     if below.plain and len(body.parts) == 1 and not rounds and not hollow:
         return Placed(below, seen, None, None)
-    told = crossover_time(modes, len(body.parts))
-    if (cells := unrolled_cells(body, below, stack, film, told)) is not None:
-        return Placed(below, seen, cells.kernel(TIMES[modal_share(told) < 1]), None)
+    crossover = crossover_time(modes, len(body.parts))
+    if (cells := unrolled_cells(body, below, stack, film, crossover)) is not None:
+        return Placed(below, seen, cells.kernel(TIMES[modal_share(crossover) < 1]), None)
     fine, slow = place_fields(body, patch, stack, film, level), slow_states(modes, seen, film)
     fading = slice(1 if film is None else 0, None)  # the body's mean is on both grids
     impedance = modal_impedance(fine.ports[fading].T, fine.rates[fading])
@@ -103,11 +103,11 @@ def is_touchable(
 
 @lru_cache(maxsize=_CELLS)
 def unrolled_cells(
-    body: Solid, below: Beneath, stack: SensorStack, film: Film | None, told: float
+    body: Solid, below: Beneath, stack: SensorStack, film: Film | None, crossover: float
 ) -> LocalCells | None:
     """What lies beneath a place that is no box, until the modes tell, told s. None where the surface is curved too
     much or contents wet it, or heat goes too far along another material."""
-    farthest = max(part.material.diffusivity for part in body.parts) * told
+    farthest = max(part.material.diffusivity for part in body.parts) * crossover
     reach = _REACH if len(body.parts) == 1 else math.sqrt(farthest)
     bent = below.curvature * below.placed.half_width
     rod = film is None and len(body.parts) == 1 and below.curvature.max() < 1 / _THINNEST

@@ -97,19 +97,19 @@ def placed_network(
     stack: SensorStack,
     film: float = 0.0,
     *,
-    told: np.ndarray | None = None,
+    reported: np.ndarray | None = None,
     cache: bool = True,
 ) -> PlacedNetwork:
-    """film: W/K between the walls of the body's hollow, if it has one, and contents. told: (P M,) bool, the ports whose
-    heat has states that fade sooner than the body's own; None: all of them. Raises MeshError where a patch meets no
-    surface, or the body is no solid in one piece."""
+    """film: W/K between the walls of the body's hollow, if it has one, and contents. reported: (P M,) bool, the ports
+    whose heat has states that fade sooner than the body's own; None: all of them. Raises MeshError where a patch meets
+    no surface, or the body is no solid in one piece."""
     inside = film_of(body, film)
     found = face_impedance(body, patches, stack, inside, cache)
     seen = np.concatenate([place.seen for place in found.places])
     slow = slow_states(found.modes, seen, inside)
     level = EMPTY if inside is None else FILLED
     return PlacedNetwork(
-        _fitted(found, slow, found.impedance, level, told),
+        _fitted(found, slow, found.impedance, level, reported),
         [place.below for place in found.places],
         len(slow.fades),
     )
@@ -148,22 +148,22 @@ def face_impedance(
     soon = np.zeros(kernel.shape[1:])  # K/W, before the first time
     for place, ports in zip(places, at, strict=True):
         if place.local is not None:
-            told = modal_kernel(place.seen, modes.rates, taus)
-            told[early] += (1 - over[early]) * (place.local.kernel - told[early])
-            kernel[:, ports, ports] = told
-            soon[ports, ports] = np.sqrt(np.pi * TIMES[0]) * before(1.0) * told[0]
+            modal = modal_kernel(place.seen, modes.rates, taus)
+            modal[early] += (1 - over[early]) * (place.local.kernel - modal[early])
+            kernel[:, ports, ports] = modal
+            soon[ports, ports] = np.sqrt(np.pi * TIMES[0]) * before(1.0) * modal[0]
         else:
             soon[ports, ports] = before(modes.diffusivity) / (modes.capacity * one.area) * np.eye(count)
     grids = []
     for n, m in combinations(range(len(places)), 2):
         if not are_close(places[n], places[m]):
             continue
-        told = between_on_cells(body, places[n], places[m], stack, inside, cache)
-        if told is None:
+        crossing = between_on_cells(body, places[n], places[m], stack, inside, cache)
+        if crossing is None:
             grids.append((n, m, between_on_grids(body, patches[n], patches[m], stack, inside, level, cache)))
             continue
         late = modal_kernel(places[n].seen, modes.rates, taus, places[m].seen)
-        late[early] += (1 - over[early]) * (told - late[early])
+        late[early] += (1 - over[early]) * (crossing - late[early])
         kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = late, late.transpose(0, 2, 1)
     kernel -= modal_kernel(slow.held.T, slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1) + soon
@@ -180,11 +180,11 @@ def ringed_network(
     seen: np.ndarray,
     kernel: np.ndarray,
     early: np.ndarray,
-    told: np.ndarray | None = None,
+    reported: np.ndarray | None = None,
 ) -> tuple[ThermalNetwork, int]:
     """Of an empty body's faces and of J other ports behind them, of even flows; and how many of its states are slow.
     seen: (J, R) of the modes by these. kernel: (T, P M + J, P M + J) 1/J K of the boxes beneath, at TIMES, before the
-    modes tell; that of faces is known better. early: (J,) K/W of these before then. told: (P M + J,), as in
+    modes tell; that of faces is known better. early: (J,) K/W of these before then. reported: (P M + J,), as in
     placed_network."""
     modes, faces = found.modes, found.impedance.shape[1]
     every = np.concatenate((*(place.seen for place in found.places), seen))
@@ -197,7 +197,7 @@ def ringed_network(
     others = np.arange(faces, len(every))
     impedance[:, others, others] += early
     impedance[:, :faces, :faces] = found.impedance
-    return _fitted(found, slow, impedance, EMPTY, told), len(slow.fades)
+    return _fitted(found, slow, impedance, EMPTY, reported), len(slow.fades)
 
 
 def _fitted(
@@ -205,7 +205,7 @@ def _fitted(
     slow: SlowStates,
     impedance: np.ndarray,
     level: GridFineness,
-    told: np.ndarray | None,
+    reported: np.ndarray | None,
 ) -> ThermalNetwork:
     """The slow states and what fades sooner, of an impedance less that of the former: of the faces, then of others."""
     modes, one, count = found.modes, found.one, LEVEL.patterns
@@ -214,7 +214,7 @@ def _fitted(
     weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(found.places))], axis=0)
     slowest = max(modes.diffusivity * modes.rates[: state_count(modes)][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(level.pitch)) + 1)
-    fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight, told)
+    fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight, reported)
     none = np.zeros(len(fading))
     return ThermalNetwork(
         np.concatenate((slow.network.rates, fading)),

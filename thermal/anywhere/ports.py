@@ -50,7 +50,7 @@ def seen_on_grid(modes: BodyModes, shares: np.ndarray, normal: np.ndarray) -> np
     seen = each.T @ modes.fields[cells]
     for axis, along in enumerate(normal):
         inward = grid.neighbours[cells, 2 * axis + (0 if along > 0 else 1)]
-        met = inward >= 0
-        rise = modes.fields[cells[met]] - modes.fields[inward[met]]
-        seen += along**2 / 8 * each[met].T @ rise
+        touches = inward >= 0
+        rise = modes.fields[cells[touches]] - modes.fields[inward[touches]]
+        seen += along**2 / 8 * each[touches].T @ rise
     return seen

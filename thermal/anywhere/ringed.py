@@ -69,13 +69,13 @@ def body_in_pads(
     whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. film: W/K
     to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in
     one piece."""
-    told = None
+    reported = None
     if whole is not None:
-        told = np.repeat(whole, LEVEL.patterns)
-        told[:: LEVEL.patterns] = True
-        told = np.concatenate((told, np.repeat(whole, len(sides))))
+        reported = np.repeat(whole, LEVEL.patterns)
+        reported[:: LEVEL.patterns] = True
+        reported = np.concatenate((reported, np.repeat(whole, len(sides))))
     if not sides:
-        alone = placed_network(body, patches, stack, film, told=told, cache=cache)
+        alone = placed_network(body, patches, stack, film, reported=reported, cache=cache)
         return alone.network, np.zeros((len(alone.network.rates), 0)), alone.slow
     found = face_impedance(body, patches, stack, None, cache)
     around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]
@@ -85,7 +85,7 @@ def body_in_pads(
     some = areas > _LEAST * stack.face_area
     early = some * before(modes.diffusivity) / (modes.capacity * np.where(some, areas, 1.0))
     seen = np.concatenate([each.rings for each in around])
-    made, slow = ringed_network(found, seen, kernel, early, told)
+    made, slow = ringed_network(found, seen, kernel, early, reported)
     faces, ports = len(patches) * LEVEL.patterns, made.ports
     network = replace(made, ports=ports[:, :faces], direct=made.direct[:faces, :faces])
     return network, ports[:, faces:], slow
@@ -125,9 +125,9 @@ def _places(
     facing = triangles[across @ outward > FACING * np.linalg.norm(across, axis=1)]
     facing = facing if len(facing) else triangles
     at, normal = nearest_surface(facing, centre)
-    met = crossings(triangles, centre, outward)
-    if len(met):
-        along = met[np.argmin(np.abs(met))]
+    crossed = crossings(triangles, centre, outward)
+    if len(crossed):
+        along = crossed[np.argmin(np.abs(crossed))]
         if abs(along) < _FARTHER * np.linalg.norm(at - centre) + half:
             at, normal = nearest_surface(facing, centre + along * outward)
     yield _triple(at), _triple(outward if normal @ outward > _UPRIGHT else normal)
@@ -147,8 +147,8 @@ def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
     near = triangles[((local.min(axis=1) <= half) & (local.max(axis=1) >= -half)).all(axis=1)]
     thick = []
     for at in _SAMPLED:
-        met = crossings(near, centre + at @ sides, outward)
-        if not len(met) or (face := met[np.abs(met).argmin()]) <= -half or face >= half:
+        crossed = crossings(near, centre + at @ sides, outward)
+        if not len(crossed) or (face := crossed[np.abs(crossed).argmin()]) <= -half or face >= half:
             continue
         left = crossings(near, centre + at @ sides, -outward) + face
         thick.append(min(left[left > 0], default=math.inf))
@@ -215,11 +215,14 @@ def _local(found: FaceImpedance, around: Sequence[_Squares], taus: np.ndarray) -
             turn[:, column + count : column + count + rings] = _between(areas, squares, 0 * squares[0]).T
             ports += [*range(m * count, (m + 1) * count)]
             ports += [*range(places * count + m * rings, places * count + (m + 1) * rings)]
-        told = turn.T @ local @ turn
-        own = count + rings
-        for rows, columns in ((slice(own), slice(None)), (slice(own, None), slice(own))):
+        reported = turn.T @ local @ turn
+        alone_ports = count + rings
+        for rows, columns in (
+            (slice(alone_ports), slice(None)),
+            (slice(alone_ports, None), slice(alone_ports)),
+        ):
             at = np.ix_(ports[rows], ports[columns])
-            kernel[:, at[0], at[1]] += told[:, rows, columns]
+            kernel[:, at[0], at[1]] += reported[:, rows, columns]
             known[at] += 1
     return kernel / np.maximum(known, 1)
 

@@ -17,7 +17,7 @@ from .ports import LEVEL
 
 _SLOW = 60  # modes that are states
 _SWITCH = 1e-5  # m2, diffusivity times time in the middle of going over from the local kernel to the modes, at least
-_TOLD = 3.0  # over the last mode's rate above the first one's, likewise
+_RESOLVED = 3.0  # over the last mode's rate above the first one's, likewise
 _LAYERED = 100.0  # s, the same where there are several materials, whose cells tell layers late
 _TAKEN = 0.2  # the slowest rate behind a film over heat's along a cell, from which on modes tell no places
 
@@ -63,12 +63,12 @@ def crossover_time(modes: BodyModes, parts: int = 1) -> float:
     """s, in the middle of going over from the local kernel to the modes of a body of so many parts."""
     if parts > 1:
         return _LAYERED
-    return max(_SWITCH, _TOLD / (modes.rates[-1] - modes.rates[0])) / modes.diffusivity
+    return max(_SWITCH, _RESOLVED / (modes.rates[-1] - modes.rates[0])) / modes.diffusivity
 
 
-def modal_share(told: float) -> np.ndarray:
+def modal_share(crossover: float) -> np.ndarray:
     """(T,) how far the kernel at TIMES is the modes', from 0 to 1 within a factor of four around told, s."""
-    over = np.clip((np.log2(TIMES / told) + 1) / 2, 0.0, 1.0)
+    over = np.clip((np.log2(TIMES / crossover) + 1) / 2, 0.0, 1.0)
     return over * over * (3 - 2 * over)
 
 

@@ -122,7 +122,7 @@ def set_body(tables: FixedTables, row: int, box: BodyResidues, places: Sequence[
 @njit(cache=True, error_model="numpy")
 def _body(slow, body, index, places, patterns, dt, rate, ports, held, residues, heat, still):
     """Fills one row's slow, body and index, for steps of dt s. The rest is a BodyResidues."""
-    most, touched, told = (len(slow) - HELD - 1), len(residues), len(ports)
+    most, touched, columns = (len(slow) - HELD - 1), len(residues), len(ports)
     slow[:], body[:] = 0.0, 0.0
     slow[0], slow[FADING], slow[HELD] = rate, 1.0, held
     for q in range(PAIRS):  # as in rate_table
@@ -131,7 +131,7 @@ def _body(slow, body, index, places, patterns, dt, rate, ports, held, residues, 
         slow[FADING] -= rate * pushed.real
         slow[SEEN + q], slow[SEEN + PAIRS + q] = scale.real, scale.imag
         slow[PUSHED + q], slow[PUSHED + PAIRS + q] = pushed.real, -pushed.imag
-    for j in range(told):
+    for j in range(columns):
         at = places[j // patterns] * patterns + j % patterns
         slow[HELD + 1 + at] = ports[j]
         for k in range(RATES):

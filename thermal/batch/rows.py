@@ -245,7 +245,7 @@ def shift_thermostats(
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _advance_rows(tables, network, state, conductance, difference, active, reading):
     room = workspace(tables.rows.shape[2], tables.gram.shape[3])
-    apart = np.zeros(conductance.shape[1])
+    open_flow = np.zeros(conductance.shape[1])
     for b in range(len(active)):
         if active[b]:
             for k in range(reading.drop.shape[1]):
@@ -254,7 +254,7 @@ def _advance_rows(tables, network, state, conductance, difference, active, readi
                     network[b],
                     state[b],
                     conductance[b],
-                    apart,
+                    open_flow,
                     difference[b],
                     0.0,
                     room,

@@ -28,7 +28,7 @@ _EVEN_TEMPERATURE = 0.08
 over k times its side (Yovanovich & Marotta, Thermal spreading and contact resistances, in Bejan & Kraus, Heat Transfer
 Handbook, 2003)."""
 
-_FELT = 1.0  # 1/s, of a touch of about a second
+_TOUCH_RATE = 1.0  # 1/s, of a touch of about a second
 _ALIKE = 1e-3  # of a square's side
 _IMAGES, _LEAST = 4, 1e-9  # of a plate's back, to round-off; of depths, below which they tell nothing
 
@@ -38,16 +38,19 @@ def equal_square(stack: SensorStack, skinned: bool, body: Material, area: float,
     """m2 of the square contact in the middle of a sensor's face that impedes heat on both sides as a strip of that area
     m2 and length m does, a second after a touch; no larger than the face. skinned: whether the stack ends with a
     skin."""
-    conducts, felt = CONFORMING if skinned else LAPPED, int(np.argmin(np.abs(np.log(GRASP / _FELT))))
+    conducts, moment = CONFORMING if skinned else LAPPED, int(np.argmin(np.abs(np.log(GRASP / _TOUCH_RATE))))
     whole, long = stack.width, min(length, stack.width)
     if area >= stack.face_area:
         return stack.face_area
 
     def impedance(first: float, second: float) -> float:
         spans = tuple(((whole - side) / 2, (whole + side) / 2) for side in (first, second))
-        own = _under_contact(stack, conducts, *spans)
+        under_contact = _under_contact(stack, conducts, *spans)
         return float(
-            (own + plate_impedance(body, math.inf, conducts, np.array([first, second]))[0, 0, 0, 1])[felt]
+            (
+                under_contact
+                + plate_impedance(body, math.inf, conducts, np.array([first, second]))[0, 0, 0, 1]
+            )[moment]
         )
 
     strip = impedance(min(area / long, whole), long)

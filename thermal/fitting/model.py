@@ -70,11 +70,11 @@ class TouchModel:
         horizon = max(touch.t[-1] for touch in touches) - 2 * MOST_DELAY[0]
         self._times = np.append(0.0, np.arange(_FIRST, np.sqrt(horizon) + 2 * _SPACING, _SPACING))
         of_each = [_geometry(touch, stack) for touch in touches]
-        felt = {
+        of_geometry = {
             geometry: UnitCurves(geometry, self._times**2, bandwidth, core).on(geometry.material)
             for geometry in set(of_each)
         }
-        self._felt = [felt[geometry] for geometry in of_each]
+        self._of_touch = [of_geometry[geometry] for geometry in of_each]
 
     def voltage(self, touch: int, shared: Shared, conductance: float, late: float) -> np.ndarray:
         """(n,) V of a touch of the list. conductance: W/(m2 K). late: s."""
@@ -107,8 +107,8 @@ class TouchModel:
 
     def _curve(self, touch: int, shared: Shared, conductance: float) -> CubicSpline:
         """K per K of difference over the root of the time after the touch, s^0.5."""
-        felt = self._felt[touch](np.array([conductance]), with_shared(self._stack, shared))
-        return CubicSpline(self._times, felt[0], bc_type=_ENDS)  # pyright: ignore[reportArgumentType]
+        of_geometry = self._of_touch[touch](np.array([conductance]), with_shared(self._stack, shared))
+        return CubicSpline(self._times, of_geometry[0], bc_type=_ENDS)  # pyright: ignore[reportArgumentType]
 
     def _roots(self, touch: int, shared: Shared, late: float) -> np.ndarray:
         """s^0.5 after the touch, 0 before."""

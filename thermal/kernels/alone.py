@@ -19,7 +19,7 @@ from .patterns import EACH_FUNCTION, JUMPS, NODES
 _FIRST, _LAST = -18, 14  # ln of diffusivity times time over the half width squared
 _FINE = 16  # nodes a unit of it
 _NEAR = 6  # nodes of an interpolation: what it leaves is 1e-8 of the value
-_APART = tuple(1 / math.prod(a - b for b in range(_NEAR) if b != a) for a in range(_NEAR))
+_SEPARATION = tuple(1 / math.prod(a - b for b in range(_NEAR) if b != a) for a in range(_NEAR))
 
 
 @lru_cache(maxsize=1)
@@ -64,7 +64,7 @@ def _between(table, half, shares, taus, found):
                 return False
             first = int(place) - _NEAR // 2 + 1
             for a in range(_NEAR):
-                weight = half[w] * _APART[a]
+                weight = half[w] * _SEPARATION[a]
                 for b in range(_NEAR):
                     weight *= 1.0 if b == a else place - first - b
                 weights[a] = weight

@@ -288,8 +288,12 @@ def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, f
                     continue
                 images(a, order[n], ends, 1, False, length, film, taus[t], table)
                 everywhere[axis, n, 0, t] = table[0, 1] - table[0, 0]
-    rows, told, skipped = wanted * patterns, total - start * patterns, start * patterns
-    kernel, whole, port = np.zeros((len(taus), rows, told)), np.zeros((len(taus), told)), np.zeros(total)
+    rows, columns, skipped = wanted * patterns, total - start * patterns, start * patterns
+    kernel, whole, port = (
+        np.zeros((len(taus), rows, columns)),
+        np.zeros((len(taus), columns)),
+        np.zeros(total),
+    )
     # from integrals over patterns to means, and without the slowest eigenfunction, which is even where no film is
     slowest = slowest if film > 0.0 else 0.0
     held *= np.sqrt(heat_capacity)

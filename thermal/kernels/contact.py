@@ -198,10 +198,10 @@ def box_side(
     patches: Patches,
     tips: tuple[Tip, ...],
     level: Resolution,
-    told: np.ndarray | None = None,
+    reported: np.ndarray | None = None,
 ) -> ThermalNetwork:
     """The box's network, M ports a patch, its slowest state first; outputs "object" (J in it) and "loss" (W to the
-    air). size: m. film: W/(m2 K), 0 where not all ports are told. tips: on the patches. told: as in at_rates."""
+    air). size: m. film: W/(m2 K), 0 where not all ports are told. tips: on the patches. reported: as in at_rates."""
     kept, bases = level.patterns, [one.basis for one in tips]
     box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, patches, bases)
     port, rest = box.port, box.impedance[OF_GRASP]
@@ -213,8 +213,8 @@ def box_side(
     rate, heat = box.rate, None
     if film > 0:
         rate, rest, heat = _shielded(box, film, rest, tips)
-    fast, ports = at_rates(rest, level, weight, told)
-    rates, port = np.concatenate(([rate], fast)), port if told is None else np.where(told, port, 0.0)
+    fast, ports = at_rates(rest, level, weight, reported)
+    rates, port = np.concatenate(([rate], fast)), port if reported is None else np.where(reported, port, 0.0)
     held = np.zeros(len(rates))
     if heat is None:
         held[0] = box.held
@@ -230,16 +230,16 @@ def box_side(
 
 
 def at_rates(
-    impedance: np.ndarray, level: Resolution, weight: np.ndarray, told: np.ndarray | None = None
+    impedance: np.ndarray, level: Resolution, weight: np.ndarray, reported: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
-    at GRASP. weight: (S,) W/K of its errors. told: (N,) bool, the ports that the network has; zeros for the others, by
-    which it has fewer states. None: all of them."""
-    if told is None or told.all():
+    at GRASP. weight: (S,) W/K of its errors. reported: (N,) bool, the ports that the network has; zeros for the others,
+    by which it has fewer states. None: all of them."""
+    if reported is None or reported.all():
         return states(impedance, level.decay, weight, level.least / weight[-1])
-    rates, few = at_rates(impedance[:, told][:, :, told], level, weight)
-    ports = np.zeros((len(rates), len(told)))
-    ports[:, told] = few
+    rates, few = at_rates(impedance[:, reported][:, :, reported], level, weight)
+    ports = np.zeros((len(rates), len(reported)))
+    ports[:, reported] = few
     return rates, ports
 
 

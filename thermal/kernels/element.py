@@ -412,7 +412,7 @@ def _impedance(
     first layer. The rest as in face_impedance and Rule."""
     moments, sums, kept = len(early), few.shape[1], len(terms)
     functions, known = shares.shape[1], shares.shape[2]
-    own = np.zeros((2, functions, functions, len(times)))
+    along_axis = np.zeros((2, functions, functions, len(times)))
     lower = np.zeros((2, functions, functions, sums))
     for axis in range(2):
         inside, beneath = (within, below) if axis == 0 else (across_within, across_below)
@@ -425,11 +425,11 @@ def _impedance(
                             continue
                         seen = inside[i, j, first:]
                         for t in range(len(times)):
-                            own[axis, f, g, t] += share * seen[t]
+                            along_axis[axis, f, g, t] += share * seen[t]
                         for r in range(sums):
                             lower[axis, f, g, r] += share * beneath[i, j, r]
                 for t in range(len(times)):
-                    own[axis, g, f, t] = own[axis, f, g, t]
+                    along_axis[axis, g, f, t] = along_axis[axis, f, g, t]
                 for r in range(sums):
                     lower[axis, g, f, r] = lower[axis, f, g, r]
     capacity = conductivity / diffusivity
@@ -455,7 +455,7 @@ def _impedance(
                         continue
                     f, g, v, w = terms[i, x, 0], terms[j, y, 0], terms[i, x, 1], terms[j, y, 1]
                     for t in range(len(times)):
-                        kernel[t] += own[0, f, g, t] * own[1, v, w, t]
+                        kernel[t] += along_axis[0, f, g, t] * along_axis[1, v, w, t]
                     for s in range(moments):
                         found[s, i, j] += dot(crossed[s, f, g], lower[1, v, w]) / (area * area)
             for t in range(len(times)):

@@ -198,9 +198,9 @@ def _joined(both, box, elements, first, count, conducts, gram):
             row, of_box = both[n * known + i], box[(first + n) * known + i]
             for j in range(count * known):
                 row[j] = of_box[first * known + j]
-            own = row[n * known :]
+            diagonal = row[n * known :]
             for j in range(known):
-                own[j] += elements[first + n, i, j] + gram[i, j] / conducts[first + n]
+                diagonal[j] += elements[first + n, i, j] + gram[i, j] / conducts[first + n]
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -58,12 +58,12 @@ class BodyResidues(NamedTuple):
 
 
 class UnderTips(NamedTuple):
-    """What of a box follows from the places under its fingertips alone. own: the box with no other place. For others,
+    """What of a box follows from the places under its fingertips alone. bare: the box with no other place. For others,
     at GRASP: opened (S, A M, A M), what the temperatures are that flow elsewhere would bring about if the film covered
     the fingertips too, by these; returned (S, A M) J/K, heat that it does not take there, by what they are. slowest:
     1/s, the rate under such a film. weight (S,): what an error of impedance counts, W/K."""
 
-    own: BodyResidues
+    bare: BodyResidues
     opened: np.ndarray
     returned: np.ndarray
     slowest: float
@@ -93,13 +93,13 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
             box._replace(patches=Patches(*(each[:count] for each in box.patches)), tips=box.tips[:count]),
             level,
         )
-    own = under.own
+    bare = under.bare
     if len(box.tips) == count:
-        return own
-    known, touched, fit = _kernel_of(box, count), len(own.ports), _fit(level)
-    port = np.concatenate((own.ports, known.port[touched:]))
+        return bare
+    known, touched, fit = _kernel_of(box, count), len(bare.ports), _fit(level)
+    port = np.concatenate((bare.ports, known.port[touched:]))
     residues, heat = np.empty((touched, len(port), level.rates)), np.zeros((len(port), level.rates))
-    residues[:, :touched], heat[:touched] = own.residues, own.heat
+    residues[:, :touched], heat[:touched] = bare.residues, bare.heat
     total = np.concatenate([one.even for one in box.tips[count:]]) if box.film > 0 else np.zeros(0)
     _beside(
         known.kernel,
@@ -108,8 +108,8 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
         known.to_grasp,
         known.early,
         port,
-        own.held,
-        own.rate,
+        bare.held,
+        bare.rate,
         under.slowest,
         under.opened,
         under.returned,
@@ -121,7 +121,7 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
         residues,
         heat,
     )
-    return BodyResidues(own.rate, port, own.held, residues, heat, own.still)
+    return BodyResidues(bare.rate, port, bare.held, residues, heat, bare.still)
 
 
 def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
@@ -152,8 +152,8 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
         heat, still = _warmed(found, warmth, even, port, held, whole, fit.seen, fit.share)
     else:
         heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
-    own = BodyResidues(rate, port, held, found, heat, still)
-    return UnderTips(own, opened, returned, known.rate, weight)
+    bare = BodyResidues(rate, port, held, found, heat, still)
+    return UnderTips(bare, opened, returned, known.rate, weight)
 
 
 def _mirrored(box: TouchedBox) -> bool:

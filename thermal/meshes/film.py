@@ -106,11 +106,11 @@ def film_rows(sink: np.ndarray, fields: np.ndarray, film: float) -> dict[str, np
     """Outputs of states with fields (N, K): "wet", the walls' mean temperature, and "film:0" ..., of which the sum of
     squares times the film is what flows through it by a unit of driving temperature. sink (N,), film: in one unit."""
     cells = np.flatnonzero(sink)
-    felt, fields = sink[cells], fields[cells]
-    _, sizes, vectors = np.linalg.svd(np.sqrt(felt / film)[:, None] * fields, full_matrices=False)
+    wetted, fields = sink[cells], fields[cells]
+    _, sizes, vectors = np.linalg.svd(np.sqrt(wetted / film)[:, None] * fields, full_matrices=False)
     kept = sizes > _LEAST * sizes[0]
     rows = sizes[kept, None] * vectors[kept]
-    return {"wet": felt @ fields / felt.sum()} | {f"film:{n}": row for n, row in enumerate(rows)}
+    return {"wet": wetted @ fields / wetted.sum()} | {f"film:{n}": row for n, row in enumerate(rows)}
 
 
 def held_apart(network: ThermalNetwork, film: float) -> tuple[np.ndarray, np.ndarray]:

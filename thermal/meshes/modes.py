@@ -88,9 +88,9 @@ def _states(modes: BodyModes, count: int, film: float) -> _States:
     # what is not even: one less where it is all that a mode is
     sizes, vectors = np.linalg.eigh(np.eye(count) - np.outer(share, share))
     turn = vectors[:, sizes > _EVEN] / np.sqrt(sizes[sizes > _EVEN])
-    apart = np.diag(modes.rates[:count]) - fields.T @ (sink[:, None] * fields)
-    rates, own = np.linalg.eigh(turn.T @ apart @ turn)
-    turn = turn @ own
+    split = np.diag(modes.rates[:count]) - fields.T @ (sink[:, None] * fields)
+    rates, eigenvectors = np.linalg.eigh(turn.T @ split @ turn)
+    turn = turn @ eigenvectors
     felt = np.column_stack((even, (fields - np.outer(even, share)) @ turn)) / np.sqrt(modes.capacity)
     wet = film_rows(sink, felt, film / (modes.diffusivity * modes.capacity))
     return _States(np.append(0.0, np.maximum(rates, 0.0)), turn, share, wet)

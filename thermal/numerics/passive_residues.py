@@ -62,9 +62,9 @@ def _residues(columns, wanted, weight, mirrored):
                 for s in range(samples):
                     value = wanted[s, i, j]
                     if mirrored:
-                        own = value + wanted[s, half + i, half + j]
+                        same = value + wanted[s, half + i, half + j]
                         across = wanted[s, i, half + j] + wanted[s, half + i, j]
-                        value = (own + opposite * across) / 2
+                        value = (same + opposite * across) / 2
                     values[s] = value * weight[s]
                 for n in range(0, wide, LANES):
                     put_sum(seen, at + n, scaled, n, wide, values, 0, samples)
@@ -75,14 +75,14 @@ def _residues(columns, wanted, weight, mirrored):
     for i in range(half):
         for j in range(i + 1):
             for k in range(columns.shape[1]):
-                own, across = inside[i, j, k] / size[k], 0.0
+                same, across = inside[i, j, k] / size[k], 0.0
                 if mirrored:
                     other = inside[i, j, wide + k] / size[k]
-                    own, across = (own + other) / 2, (own - other) / 2
+                    same, across = (same + other) / 2, (same - other) / 2
                 for m in range(groups):  # either half sees its own flows, and the other's
                     to, beside = m * half, (groups - 1 - m) * half
                     found[to + i, beside + j, k] = found[to + j, beside + i, k] = across
-                    found[to + i, to + j, k] = found[to + j, to + i, k] = own
+                    found[to + i, to + j, k] = found[to + j, to + i, k] = same
     return found
 
 
@@ -199,9 +199,9 @@ def _in_cone(solve, seen, inside):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
-def _put_products(out, at, first, i, second, j, apart, rates, count):
+def _put_products(out, at, first, i, second, j, spacing, rates, count):
     """out at `at` is the sum of `count` rows of first, from i on, times those of second, from j on: rows of so many
     rates, the next of either that far apart."""
     for n in range(0, rates, LANES):
         put_sum(out, at + n, first, i + n, 0, second, j + n, 0)  # zeros
-        add_products(out, at + n, first, i + n, second, j + n, apart, count)
+        add_products(out, at + n, first, i + n, second, j + n, spacing, count)

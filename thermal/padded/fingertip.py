@@ -51,7 +51,7 @@ class RingedSamples:
         basis[:count, rings + 1 :] = face_basis[:, 1:] * np.sqrt(self._shares[0])
         return basis
 
-    def apart(self, ports: int) -> np.ndarray:
+    def separated(self, ports: int) -> np.ndarray:
         """(ports, ports), what makes of orthonormal's combinations such that are orthonormal over the face alone and
         over the rings alone (RING_PORTS), so that each of the two has a conductance of its own."""
         shares, rings = self._shares, len(self.areas)

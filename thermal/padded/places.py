@@ -116,13 +116,13 @@ def box_in_pads(
         1 / (1 / tip.weight + rest[:, f * kept, f * kept] + port[f * kept] ** 2 / (GRASP + box.rate))
         for f, tip in enumerate(tips)
     ]
-    told = None
+    reported = None
     if whole is not None:
-        told = np.repeat(whole, kept)
-        told[::kept] = True
-        told = np.concatenate((told, np.repeat(whole, RINGS)))
-        port = np.where(told, port, 0.0)
-    fast, ports = at_rates(rest, level, np.min(weights, axis=0), told)
+        reported = np.repeat(whole, kept)
+        reported[::kept] = True
+        reported = np.concatenate((reported, np.repeat(whole, RINGS)))
+        port = np.where(reported, port, 0.0)
+    fast, ports = at_rates(rest, level, np.min(weights, axis=0), reported)
     rates, ports = np.concatenate(([box.rate], fast)), np.concatenate((port[None], ports))
     held = np.zeros(len(rates))
     held[0] = box.held

@@ -74,10 +74,12 @@ class _Squares:
         inside = edges[1:] <= face * (1 + 1e-9)
         middles = (height[1:] + height[:-1]) / 2
         at = np.searchsorted(levels, middles) - 1
-        own = np.array([[each.conductivity, each.volumetric_heat_capacity] for each in stack.layers])[at].T
+        layered = np.array([[each.conductivity, each.volumetric_heat_capacity] for each in stack.layers])[
+            at
+        ].T
         pad = surround.layer
-        beside = np.where(middles < depth, [[pad.conductivity], [pad.volumetric_heat_capacity]], own)
-        conductivity, capacity = np.where(inside[:, None], own[:, None], beside[:, None])
+        beside = np.where(middles < depth, [[pad.conductivity], [pad.volumetric_heat_capacity]], layered)
+        conductivity, capacity = np.where(inside[:, None], layered[:, None], beside[:, None])
         area, thick, wide = 4 * np.diff(edges**2), np.diff(height), np.diff(edges)
         self._capacity = capacity * area[:, None] * thick
         self._half = half = thick / 2 / conductivity

@@ -60,7 +60,7 @@ def padded_sides(
     whole = box.whole()[:, faces[:, None], faces]
     basis = seen.orthonormal(touch_patterns(whole, across, areas, detail.patterns, shared=True)[0])
     made = _tip(seen, basis, detail)
-    body, turn = touch_box(box, film, (made,) * tips, detail), seen.apart(basis.shape[1])
+    body, turn = touch_box(box, film, (made,) * tips, detail), seen.separated(basis.shape[1])
     basis, even = basis @ turn, np.zeros(basis.shape[1])
     even[: RING_PORTS.start + 1] = 1.0
     impedance = np.einsum("p,spq,q->s", basis[:, 0], seen.impedance, basis[:, 0])

@@ -224,7 +224,7 @@ def _contact_moments(points, near, count, touching):
 def _beside(points, heights, cover, touching, gap, rows):
     """(m, moments over m) of what does not touch, over its gap: of the moments' gaps m `gap` has what is above the
     heights and the least of all, and for the first a length more. rows: (C,), room."""
-    apart, narrowest, more = gap
+    gap_height, narrowest, more = gap
     side = round(math.sqrt(len(touching)))
     sums = rows[: 4 * side].reshape(4, side)
     sums[:] = 0.0
@@ -234,7 +234,7 @@ def _beside(points, heights, cover, touching, gap, rows):
         z = points[row * side, 1]
         for k in range(side):
             i = row * side + k
-            free, far = max(cover[i] - touching[i], 0.0), max(apart + heights[i], narrowest)
+            free, far = max(cover[i] - touching[i], 0.0), max(gap_height + heights[i], narrowest)
             flow = free / far
             gently[k] += free / (far + more)
             flows[k] += flow

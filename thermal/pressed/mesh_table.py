@@ -49,7 +49,7 @@ _ALL = ((0, PLACES), (0, PLACES))
 _FINE = 97  # places, among which those of a table are chosen
 _USUAL = slice(4, 11)  # of the forces, 0.5 to 53 N
 _UNFELT = 1e-3  # of the most that can be felt
-_HALF_FELT = 0.4  # W/K, about
+_HALF_CONDUCTING = 0.4  # W/K, about
 _BARE = 0.09  # W/K on a newton of force on the face, and
 _SKINNED = 2e5  # on a m2, about
 _NEAR_CROWN = (0.35, 0.65, 0.85, 1.0)  # of half the face, and
@@ -178,16 +178,16 @@ def _bent(view: PressedView, bare: bool) -> np.ndarray:
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
         some = (every, middle) if axis == 0 else (middle, every)
         signed = _signed(view.touched(some=some), bare)
-        felt = _felt(signed)
+        exact = _conducting(signed)
         face, half = view.pad.face, view.pad.face / 2
         crown = [span / 2 + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
         ends = [each for each in (face, span - face, *crown) if 0 < each < span]
-        touching = np.max([np.interp(ends, fine, row) for row in felt], axis=0) > 0
+        touching = np.max([np.interp(ends, fine, row) for row in exact], axis=0) > 0
         chosen = {0.0, span / 2, span, *np.array(ends)[touching].tolist()}
         while len(chosen) < PLACES - 1:
             at = np.sort(list(chosen))
-            told = [_felt(np.interp(fine, at, np.interp(at, fine, row))) for row in signed]
-            off = np.abs(told - felt).max(axis=0)
+            coarse = [_conducting(np.interp(fine, at, np.interp(at, fine, row))) for row in signed]
+            off = np.abs(coarse - exact).max(axis=0)
             both = np.maximum(off, off[::-1])
             most = int(np.argmax(both))
             if both[most] < _UNFELT:
@@ -198,15 +198,15 @@ def _bent(view: PressedView, bare: bool) -> np.ndarray:
 
 
 def _signed(touched: np.ndarray, bare: bool) -> np.ndarray:
-    """(usual forces, places): about what contacts conduct over _HALF_FELT, W/K, as a table has it."""
+    """(usual forces, places): about what contacts conduct over _HALF_CONDUCTING, W/K, as a table has it."""
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))[:, None, None]
     values = np.zeros((*touched.shape[:3], 6))
     values[..., 0] = touched[..., 1] * forces * _BARE if bare else touched[..., 0] * _SKINNED
     begin_contacts(values)
-    return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_FELT
+    return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_CONDUCTING
 
 
-def _felt(conducts: np.ndarray) -> np.ndarray:
+def _conducting(conducts: np.ndarray) -> np.ndarray:
     """The share of the most that can be felt."""
     return np.maximum(conducts, 0.0) / (1.0 + np.maximum(conducts, 0.0))
 

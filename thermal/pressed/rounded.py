@@ -36,9 +36,9 @@ def corner_normals(vertices: bytes, faces: bytes) -> np.ndarray:
 
 
 @njit(cache=True, error_model="numpy")
-def _mean(points, triangles, corner, met, begin, normals):
-    """Fills normals. corner: (m, 3) the corners' numbers, vertices at one place having the same. met: the triangles
-    that meet at each, from begin to the next one's."""
+def _mean(points, triangles, corner, neighbours, begin, normals):
+    """Fills normals. corner: (m, 3) the corners' numbers, vertices at one place having the same. neighbours: the
+    triangles that meet at each, from begin to the next one's."""
     flat, angle = np.zeros((len(triangles), 3)), np.zeros((len(triangles), 3))
     for f in range(len(triangles)):
         p, q, r = points[triangles[f, 0]], points[triangles[f, 1]], points[triangles[f, 2]]
@@ -54,7 +54,7 @@ def _mean(points, triangles, corner, met, begin, normals):
         for k in range(3):
             total = np.zeros(3)
             for n in range(begin[corner[f, k]], begin[corner[f, k] + 1]):
-                other = met[n]
+                other = neighbours[n]
                 if (flat[f] * flat[other]).sum() > _SMOOTH and _bulge(
                     points, triangles, flat, f, other
                 ) < _BULGE:

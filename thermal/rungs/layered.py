@@ -90,14 +90,14 @@ class Column:
             near, beyond = self.sensed, self.sensed + 1
         profile = stack_profile(layers, far, column, even)
         temperatures, flows = ([each[..., 0] for each in part] for part in profile)
-        own = temperatures[0] / area
+        sensor_side = temperatures[0] / area
         if self.mode == "T":
-            flow = 1 / s / (own + self.contact_resistance + object_side)
-            sensor_fall, object_rise = own * flow, object_side * flow
+            flow = 1 / s / (sensor_side + self.contact_resistance + object_side)
+            sensor_fall, object_rise = sensor_side * flow, object_side * flow
             element, into_object = (flows[-1] - 1) * flow, flow
         else:
-            flow = 1 / s / (own + self.contact_resistance)
-            sensor_fall, object_rise = np.zeros_like(s), own * flow
+            flow = 1 / s / (sensor_side + self.contact_resistance)
+            sensor_fall, object_rise = np.zeros_like(s), sensor_side * flow
             element, into_object = (1 - flows[-1]) * flow, flows[-1] * flow
         drop = (temperatures[near] - temperatures[beyond]) / area * flow
         return np.stack([drop, flow, sensor_fall, object_rise, element / s, into_object / s], axis=-1)

@@ -9,18 +9,18 @@ from .filmed import filmed
 from .local import LocalCells, LocalKernel, local_cells
 from .overlap import overlapped
 from .rays import Face
-from .spread import Between, Felt, Spread, felt_patch, spread_beneath
+from .spread import Between, SensedPatch, Spread, sensed_patch, spread_beneath
 
 __all__ = [
     "Between",
     "Face",
-    "Felt",
+    "SensedPatch",
     "Fineness",
     "LocalCells",
     "LocalKernel",
     "Place",
     "Spread",
-    "felt_patch",
+    "sensed_patch",
     "filmed",
     "local_cells",
     "overlapped",

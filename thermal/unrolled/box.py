@@ -15,7 +15,7 @@ from .filmed import filmed
 from .rays import Face
 
 _FADED = 1e-4  # of the even pattern's kernel, below which that of others is not told
-_TOLD = 2e-5  # m2, diffusivity times time, later than which cells are fine enough by themselves
+_FINE_ENOUGH = 2e-5  # m2, diffusivity times time, later than which cells are fine enough by themselves
 
 
 class Line(NamedTuple):
@@ -62,7 +62,7 @@ class BoxBeside(NamedTuple):
 
     def turn(self, taus: np.ndarray) -> np.ndarray:
         """(T, M, M) X, by which the kernel k of cells is X k X^T without their error, at taus m2."""
-        taus = np.minimum(taus, _TOLD)
+        taus = np.minimum(taus, _FINE_ENOUGH)
         exact, on_cells = self.exact(self.flows, taus), self.on_cells(self.flows, taus)
         # where patterns have faded, both would be singular
         least = _FADED * exact[:, :1, :1] * np.diag(np.arange(exact.shape[1]) > 0)

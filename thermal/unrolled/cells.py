@@ -128,13 +128,13 @@ def _joined(filled: _Filled, pieces: Sequence[Piece], film: float, first: float,
     for axis in range(3):
         if axis == 2:
             through = (filled.solid[..., :-1] > _LEAST) & (filled.solid[..., 1:] > _LEAST)
-            met = _mean(through.astype(float))
-            area = met * x[:, None, None] * y[:, None] * edge.prod(axis=0)[1:-1]
+            crossed = _mean(through.astype(float))
+            area = crossed * x[:, None, None] * y[:, None] * edge.prod(axis=0)[1:-1]
             length, conductivity = np.broadcast_to(z, index.shape), across
         else:
             rays = np.moveaxis(filled.solid, axis, 0)
-            met = np.minimum(rays[1:-1:2], rays[2::2])
-            area = (met[:, ::2] + met[:, 1::2]) / 2 * (y, x)[axis][:, None] * (z * middle[1 - axis])
+            crossed = np.minimum(rays[1:-1:2], rays[2::2])
+            area = (crossed[:, ::2] + crossed[:, 1::2]) / 2 * (y, x)[axis][:, None] * (z * middle[1 - axis])
             length = np.broadcast_to((x[:, None, None], y[:, None])[axis] * middle[axis], index.shape)
             conductivity = along
         numbers, size = np.moveaxis(index, axis, 0), np.moveaxis(length, axis, 0)

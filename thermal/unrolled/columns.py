@@ -14,7 +14,7 @@ _ANGLE = 1.3  # rad, as far round as columns go
 _LEAST_COVER = 0.1  # of a patch's width
 _STEP = 0.1e-3  # m, between rays that look for where a body gets thicker or thinner
 _JUMP = 0.3  # of the thickness, by which it changes from one to the next there
-_APART = 0.2e-3  # m, between planes at least
+_DISTINCT = 0.2e-3  # m, between planes at least
 _ASIDE = 1.3e-6  # m, beside edges of triangles
 
 
@@ -75,18 +75,18 @@ def columns(place: Place, pieces: Sequence[Piece], axis: int, fine: Fineness) ->
     ends = [float(end) for end in place.ends[axis]]
     below, above = (reach if end * bend >= 1 else min(face.along(end, axis), reach) for end in ends)
     # no column is a sliver
-    below, above = (reach if reach - end < _APART else end for end in (below, above))
-    low, high = (end if end - wide < _APART else wide for end in (below, above))
+    below, above = (reach if reach - end < _DISTINCT else end for end in (below, above))
+    low, high = (end if end - wide < _DISTINCT else wide for end in (below, above))
     low = -low
     if high - low < _LEAST_COVER * wide:
         return None
     breaks = [-reach, *sorted({-below, low, high, above} - {-reach, reach}), reach]
     sizes = {low: fine.side, high: fine.side}
     for at in _jumps(place, pieces, axis, (low + high) / 2, reach):
-        apart = min(abs(at - other) for other in breaks)
-        if apart > _APART:
+        distance = min(abs(at - other) for other in breaks)
+        if distance > _DISTINCT:
             breaks.append(at)
-            sizes[at] = float(np.clip(apart / 2, fine.least, fine.side))
+            sizes[at] = float(np.clip(distance / 2, fine.least, fine.side))
     return Columns(
         graded_cells(sorted(breaks), sizes, fine.growth, fine.largest), (-below, above), (low, high)
     )

@@ -61,9 +61,9 @@ def spread(
     """(T, n, P) K/J of cells seen (n,) at times s, the last the longest, after a joule through each port. Others as
     fading's."""
     scaled = _scaled(capacity, neighbours, links, sink, ports, float(times[-1]))
-    met = np.zeros((2 * scaled.half + 1, len(seen), _PORTS))
-    _fields(scaled.diagonal, scaled.off, scaled.neighbours, scaled.x, seen, met)
-    found = np.tensordot(_weights(len(met), scaled.fastest, times), met, axes=1)
+    recorded = np.zeros((2 * scaled.half + 1, len(seen), _PORTS))
+    _fields(scaled.diagonal, scaled.off, scaled.neighbours, scaled.x, seen, recorded)
+    found = np.tensordot(_weights(len(recorded), scaled.fastest, times), recorded, axes=1)
     return found[:, :, : ports.shape[1]] / np.sqrt(capacity[seen])[:, None]
 
 
@@ -106,13 +106,14 @@ def _weights(count: int, fastest: float, times: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, error_model="numpy", short_loops=True)
-def _fields(diagonal, off, neighbours, x, seen, met):
-    """met: (D, n, 3), Chebyshev polynomials of the operator on x (N, 3), in cells seen (n,). Others as _moments'."""
+def _fields(diagonal, off, neighbours, x, seen, recorded):
+    """recorded: (D, n, 3), Chebyshev polynomials of the operator on x (N, 3), in cells seen (n,). Others as
+    _moments'."""
     old, new = np.zeros(x.shape), x.copy()
-    for m in range(len(met)):
+    for m in range(len(recorded)):
         for c in range(len(seen)):
             for p in range(3):
-                met[m, c, p] = new[seen[c], p]
+                recorded[m, c, p] = new[seen[c], p]
         for i in range(len(x)):
             d = diagonal[i]
             s0, s1, s2 = d * new[i, 0] - old[i, 0], d * new[i, 1] - old[i, 1], d * new[i, 2] - old[i, 2]

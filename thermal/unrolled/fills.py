@@ -43,20 +43,20 @@ def planes(hits: Sequence[Hits], above: float, fine: Fineness) -> np.ndarray:
         within = np.arange(max(most - 1, 0), min(most + 2, len(bins)))
         middle = _BIN * float((within + 0.5) @ bins[within] / bins[within].sum()) - fine.deep
         around[max(most - 3, 0) : most + 4] = 0
-        met = [
+        covers = [
             (np.abs(each.heights - middle) < _NEXT * _BIN)
             & (np.abs(each.heights) > _ON)
             & (each.surfaces != 0)
             for each in hits
         ]
-        at = float(np.mean(np.concatenate([each.heights[m] for each, m in zip(hits, met, strict=True)])))
+        at = float(np.mean(np.concatenate([each.heights[m] for each, m in zip(hits, covers, strict=True)])))
         if abs(at) < 2 * _BIN:  # not the other side of a wall that is as thin
-            at, met = 0.0, [m & (each.surfaces > 0) for each, m in zip(hits, met, strict=True)]
+            at, covers = 0.0, [m & (each.surfaces > 0) for each, m in zip(hits, covers, strict=True)]
         elif min(abs(at - other) for other in breaks) > 2 * _BIN:
             breaks.append(at)
         else:
             continue
-        for each, m in zip(hits, met, strict=True):
+        for each, m in zip(hits, covers, strict=True):
             each.heights[m] = at
     sizes = {0.0: fine.first}
     for at in breaks[1:]:  # no cell is thinner than the first
@@ -91,8 +91,8 @@ def wet_area(
     wet = sum(each.ends for each in fills) * du[:, None, None] * dv[:, None]
     for axis, (step, other) in enumerate(((du, dv), (dv, du))):
         full, empty, found = (np.moveaxis(each, axis, 0) for each in (solid, void, wet))
-        for here, there in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
-            beside = np.minimum(full[here], empty[there]) * np.diff(w)
+        for here, far_side in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            beside = np.minimum(full[here], empty[far_side]) * np.diff(w)
             steep = beside.sum(axis=-1, keepdims=True) > np.maximum(step[1:], step[:-1])[:, None, None]
             found[here] += np.where(steep, beside, 0.0) * other[:, None]
     return wet

@@ -45,12 +45,12 @@ def overlapped(spread: Spread, other: Face, tip: Tip) -> Between | None:
     ports = flow_into(place, cells, local.along, values, middle)
     if not ports.any():
         return None
-    told = np.einsum("nj,tni->tji", ports[spread.seen], spread.fields, optimize=True)
-    own = spread.fields[..., 0] @ local.ports[spread.seen, 0]
+    sensed = np.einsum("nj,tni->tji", ports[spread.seen], spread.fields, optimize=True)
+    at_its_port = spread.fields[..., 0] @ local.ports[spread.seen, 0]
     taus = local.diffusivity * spread.times
-    share = own / beside.on_cells(beside.flows, taus)[:, 0, 0]
+    share = at_its_port / beside.on_cells(beside.flows, taus)[:, 0, 0]
     missed = beside.exact(flows, taus) - beside.on_cells(flows, taus)
-    return Between(told + share[:, None, None] * missed.transpose(0, 2, 1), 0.0)
+    return Between(sensed + share[:, None, None] * missed.transpose(0, 2, 1), 0.0)
 
 
 def _axes_at(face: Face, along: np.ndarray) -> np.ndarray:

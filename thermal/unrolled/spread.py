@@ -22,7 +22,7 @@ _NEAR = 3e-3  # m
 _FOUND = 0.9  # of a patch's flow among cells, that these hold at least
 
 
-class Felt(NamedTuple):
+class SensedPatch(NamedTuple):
     """A patch as points (N, 3) m on the surface. inward: (3,), into the body. shares: (N, M) of each pattern's flow
     through these, that of the even one in all 1."""
 
@@ -31,7 +31,7 @@ class Felt(NamedTuple):
     shares: np.ndarray
 
 
-def felt_patch(triangles: np.ndarray, face: Face, half: float, tip: Tip) -> Felt | None:
+def sensed_patch(triangles: np.ndarray, face: Face, half: float, tip: Tip) -> SensedPatch | None:
     """A square of half a side m in the middle of a flat face, on the nearest surface that looks its way, of triangles
     (F, 3, 3) m. None where there is nothing."""
     edges = np.linspace(-1.0, 1.0, _POINTS + 1)
@@ -49,7 +49,7 @@ def felt_patch(triangles: np.ndarray, face: Face, half: float, tip: Tip) -> Felt
     values[1:] -= values[1:].mean(axis=1, keepdims=True)
     i, j = np.nonzero(touched)
     local = np.stack((at[i], at[j], tops[touched]), axis=1)
-    return Felt(face.centre + local @ face.axes, -face.axes[2], values.T / len(local))
+    return SensedPatch(face.centre + local @ face.axes, -face.axes[2], values.T / len(local))
 
 
 class Between(NamedTuple):
@@ -83,7 +83,7 @@ class Spread(NamedTuple):
         u, v = (each.edges for each in self.local.along)
         return u, v, self.local.cells.w
 
-    def felt(self, other: Felt, turn: np.ndarray | None = None) -> Between | None:
+    def sensed_by(self, other: SensedPatch, turn: np.ndarray | None = None) -> Between | None:
         """What of another patch lies beyond the cells feels nothing. turn: (T, M, M) of the other's own cells, if they
         are known; else as these have it. None where cells do not hold what of it lies among them."""
         cells, far = np.full(len(other.points), -1), 0.0

@@ -31,8 +31,8 @@ from ...thermal.contact import (
 )
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
-from .felt import DEPTH, RIM
 from .laws import pair_laws
+from .pad_contacts import DEPTH, RIM
 from .round_pads import array_round_contact, bends, curves
 from .tilt import TILT, array_tilted
 from .views import array_viewed

@@ -24,9 +24,9 @@ from ...thermal.padded import RINGS, ring_sides
 from ..pointers import table
 from ..scene import BodyShape, PadPlace
 from .columns import COLUMNS
-from .felt import AROUND, PAD, PLACED, SPOT
 from .laws import Pressed, pair_laws, stacked
 from .memory import ContactMemory
+from .pad_contacts import AROUND, PAD, PLACED, SPOT
 from .round_pads import bends, curves
 from .sensors import SensorPlaces
 from .step_contacts import read_contacts

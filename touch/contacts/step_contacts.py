@@ -19,7 +19,6 @@ from ...thermal.contact import CURVED_TABLE
 from ...thermal.padded import RINGS
 from ..pointers import flags, floats, integers, laws, words
 from .columns import COLUMNS
-from .felt import PAD, PLACED, SPOT, begin, feel, lies, place_pad, press
 from .memory import (
     CONTACTS,
     DIM,
@@ -36,6 +35,7 @@ from .memory import (
     XMAT,
     XPOS,
 )
+from .pad_contacts import PAD, PLACED, SPOT, begin, feel, lies, place_pad, press
 from .round_pads import BEND, CURVES
 from .sensors import FORCE_AT, PLACE_AT
 from .tilt import TILT

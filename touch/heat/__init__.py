@@ -7,7 +7,7 @@ from .march import sample
 from .narrow import Wall, narrow_tables, wall_of
 from .places import TipField, crossing_rate, resolution, tip_field, untouched
 from .records import HeatBalance, HeatState
-from .told import tell_books, tell_drop, tell_warmth
+from .reported import tell_books, tell_drop, tell_warmth
 
 __all__ = [
     "ArrayNarrow",

@@ -61,10 +61,10 @@ class HeldContents:
     def exchange(self, states: np.ndarray, ambient: float) -> None:
         """Half a step. states: (W, K) of the object, in place. ambient: °C from which its temperature counts."""
         for w, bare in self._bare.items():
-            held, own, kept = bare.heat[0], len(bare.walls), _kept(bare, self._dt / 2)
+            held, modes, kept = bare.heat[0], len(bare.walls), _kept(bare, self._dt / 2)
             even, before = (self.temperature[w] - ambient) * held, states[w, 0]
             states[w, 0] -= even
-            states[w, :own] = kept @ states[w, :own]
+            states[w, :modes] = kept @ states[w, :modes]
             states[w, 0] += even
             self._passed[w] += held * (states[w, 0] - before)  # with what rounding has added to it
 

@@ -242,16 +242,16 @@ class JoinedHeat:
             each.exchange(self._x[:, each.object], self._ambient)
 
     def telling(self) -> np.ndarray:
-        """What the functions of told.py take of a heat of one world, until a call of anything else here."""
+        """What the functions of reported.py take of a heat of one world, until a call of anything else here."""
         ports = np.zeros((*self._current.shape[1:], self._x.shape[2]))
         for f, of_tip in enumerate(self._current[0].tolist()):
             for o, number in enumerate(of_tip):
                 if number >= 0:
                     field = self._fields[0][o]
                     ports[f, o, : len(field.rates)] = field.ports[:, number * self._level.patterns]
-        self._told = self._elements, self._even, self._started, self._current, ports
+        self._books = self._elements, self._even, self._started, self._current, ports
         widths = self._elements.shape[1], self._even.shape[1]
-        return table(self._told, (self._address(), *widths))
+        return table(self._books, (self._address(), *widths))
 
     def _address(self) -> int:
         """Of the table of all arrays that `sample` takes."""

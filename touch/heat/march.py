@@ -257,8 +257,10 @@ def _march(
                         area, length = touch[column + 1] / touch[column + 2], widths[lane]
                         for j in range(4):
                             placed[j] = 0.0
-                    own, other = tables[kinds[w, lane, t, 0]], tables[kinds[w, lane, t, 1]]
-                    spreads = spread(own, other, widths[lane], area, length, placed[:2], placed[2:], root)
+                    first_side, second_side = tables[kinds[w, lane, t, 0]], tables[kinds[w, lane, t, 1]]
+                    spreads = spread(
+                        first_side, second_side, widths[lane], area, length, placed[:2], placed[2:], root
+                    )
                     if not spreads:
                         for k in range(rates):
                             root[k] = 0.0

@@ -78,8 +78,8 @@ def narrow_sides(pad: PadPlace, target: Wall | PadPlace) -> tuple[Side, Side]:
     bare thermostats, which have no impedance, and where an element is glued on, which is met with its whole face."""
     if pad.glued is not None or (isinstance(target, PadPlace) and target.glued is not None):
         return (None, 0.0), (None, 0.0)
-    own = _side(pad)
-    return own, _side(target) if isinstance(target, PadPlace) else (target, own[1])
+    tip_side = _side(pad)
+    return tip_side, _side(target) if isinstance(target, PadPlace) else (target, tip_side[1])
 
 
 def _side(pad: PadPlace) -> Side:
@@ -137,7 +137,7 @@ def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def spread(own, other, width, area, length, aside, ends, root):
+def spread(tip_side, other, width, area, length, aside, ends, root):
     """Fills root (K,) with the b_k of a contact of that area m2 and length m, along the second axis, under a sensor of
     that width m. own, other: of narrow_table, of the pad and of what it touches; aside, ends: (2,) the shares by which
     the contact lies at an end of either. Returns whether there are any: not where the contact is as wide as the face
@@ -149,7 +149,7 @@ def spread(own, other, width, area, length, aside, ends, root):
         return False
     for k in range(len(root)):
         root[k] = 0.0
-    add_squares(own, i, u, j, v, aside, root)
+    add_squares(tip_side, i, u, j, v, aside, root)
     add_squares(other, i, u, j, v, ends, root)
     for k in range(len(root)):
         root[k] = np.sqrt(root[k])
@@ -184,7 +184,7 @@ def add_squares(table, i, u, j, v, shares, squares):
 
 
 @njit(cache=True, error_model="numpy")
-def lean(own, other, width, area, length, aside, ends, shares, curved, root, rest):
+def lean(tip_side, other, width, area, length, aside, ends, shares, curved, root, rest):
     """What a narrow contact of the face (see spread) does to the object under a ring of the pad around it: fills root
     (K,) with what of the face's states the ring sees, and adds to squares, rest (K,), what its own flow does beyond
     that. shares: (STEPS, 2) of ring_shares. curved: the share of the time in which the object is curved. Returns
@@ -195,7 +195,7 @@ def lean(own, other, width, area, length, aside, ends, shares, curved, root, res
     if i < 0:
         return False
     both, object_alone = np.zeros(len(root)), np.zeros(len(root))
-    add_squares(own, i, u, j, v, aside, both)
+    add_squares(tip_side, i, u, j, v, aside, both)
     add_squares(other, i, u, j, v, ends, object_alone)
     # the strip's breadth is what tells
     n, w = (i, u) if area < length * length else (j, v)

@@ -115,28 +115,28 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
         heard[c] = 0.0
     listed, port = at + HEADER + 2 * contacts, integers[at + PORTS]
     for _ in range(fields):
-        field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]
-        paced, first_port = listed + 4 + own, port
-        for b in range(own):
+        field, touched, rates = integers[listed], integers[listed + 1], integers[listed + 2]
+        paced, first_port = listed + 4 + touched, port
+        for b in range(touched):
             state, port = first + field * stride, first_port + LANES * b
             for s in range(rates):
                 size = integers[paced + 1 + s]
-                put_sum(summed, LANES * s, ports, port, LANES * own, states, state, size)
+                put_sum(summed, LANES * s, ports, port, LANES * touched, states, state, size)
                 state += size
-                port += LANES * own * size
+                port += LANES * touched * size
             column, row = LANES * integers[listed + 4 + b], PACE * integers[paced] + _SEEN
             for r in range(2 * _PAIRS):
                 add_sum(heard, r * columns + column, summed, 0, LANES, paces, row + r, PACE, rates)
-        port = first_port + LANES * own * integers[listed + 3]
+        port = first_port + LANES * touched * integers[listed + 3]
         listed = paced + 1 + rates
-    row, own_gram = 2 * LANES * m, integers[at + GRAM]
+    row, touched_gram = 2 * LANES * m, integers[at + GRAM]
     for c in range(contacts):
         for p in range(patterns):
             a = c * patterns + p
             resists, differs = min(resistance[a], _MOST) / dt, difference[a] / dt
             diagonal = a * row + 2 * LANES * a
             for n in range(diagonal, (a + 1) * row, LANES):
-                put(matrix, n, grams, own_gram + n)
+                put(matrix, n, grams, touched_gram + n)
             for q in range(LANES):
                 matrix[diagonal + q] += resists
             for q in range(_PAIRS):
@@ -155,12 +155,12 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
                 flow[c * patterns + p] -= 2 * (_LAGS[q].real * real - _LAGS[q].imag * imag)
     listed, port, lost = at + HEADER + 2 * contacts, integers[at + PORTS], 0.0
     for _ in range(fields):
-        field, own, rates = integers[listed], integers[listed + 1], integers[listed + 2]
-        paced, state = listed + 4 + own, first + field * stride
+        field, touched, rates = integers[listed], integers[listed + 1], integers[listed + 2]
+        paced, state = listed + 4 + touched, first + field * stride
         row = PACE * integers[paced]
         if field < objects:  # of the mean temperature, its first state
             mean = paces[row + _MEAN] * states[state]
-            for b in range(own):
+            for b in range(touched):
                 column = LANES * integers[listed + 4 + b]
                 for r in range(2 * _PAIRS):
                     mean += paces[row + _LAGGED + r] * dot(
@@ -168,13 +168,13 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
                     )
             lost += held[field] * paces[row + _RATE] * mean
         for s in range(rates):
-            for b in range(own):
+            for b in range(touched):
                 column = LANES * integers[listed + 4 + b]
                 put_sum(into, LANES * b, flows, column, columns, paces, row + _PUSHED, 2 * _PAIRS)
             for _ in range(integers[paced + 1 + s]):
-                states[state] = paces[row + _LEFT] * states[state] + dot(ports, port, into, 0, own)
+                states[state] = paces[row + _LEFT] * states[state] + dot(ports, port, into, 0, touched)
                 state += 1
-                port += LANES * own
+                port += LANES * touched
             row += PACE
         listed = paced + 1 + rates
     return lost

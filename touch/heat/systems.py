@@ -59,7 +59,7 @@ class SystemPool:
     ) -> None:
         self._tips, self._faces, self._objects = tuple(tips), tuple(faces), objects
         rings = [_in_place(ports, patterns) for _, ports in pads]
-        self._own_ports = [*(tip.side.ports for tip in tips), *rings]
+        self._touched_ports = [*(tip.side.ports for tip in tips), *rings]
         self.owners = (*range(len(tips)), *(tip for tip, _ in pads))
         self._patterns, self._dt = patterns, dt
         self._known: dict[tuple[object, ...], int] = {}
@@ -95,7 +95,7 @@ class SystemPool:
             seen = {}  # its ports, by contact
             for number, (tip, target) in enumerate(pairs):
                 if member == objects + self.owners[tip]:
-                    seen[number] = -self._own_ports[tip]
+                    seen[number] = -self._touched_ports[tip]
                 elif member == target and target < objects:
                     place = current[self.owners[tip], target]
                     if tip < len(self._tips):
@@ -116,8 +116,8 @@ class SystemPool:
             if member < objects and starts[1] > 1:
                 starts.insert(1, 1)
             spans = [(start, end) for start, end in pairwise(starts) if end > start]
-            own = [number * of_contact + n for number in seen for n in range(of_contact)]
-            integers += [member, len(own), len(spans), len(rates), *own]
+            touched = [number * of_contact + n for number in seen for n in range(of_contact)]
+            integers += [member, len(touched), len(spans), len(rates), *touched]
             integers += [self._pace(tuple(rates[[start for start, _ in spans]].tolist()))]
             integers += [end - start for start, end in spans]
             self.rates = max(self.rates, len(spans))

@@ -171,8 +171,8 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
 def _in_one_place(model: mujoco.MjModel, *geoms: int) -> bool:
     """Whether two geoms of a body have nearly the same box round them."""
     low, high = (np.stack([end(_corners(model, geom), axis=0) for geom in geoms]) for end in (np.min, np.max))
-    apart = np.abs(np.diff((low, high), axis=1)).max()
-    return bool(apart < _SAME * (high - low).min())
+    largest_change = np.abs(np.diff((low, high), axis=1)).max()
+    return bool(largest_change < _SAME * (high - low).min())
 
 
 def _corners(model: mujoco.MjModel, geom: int) -> np.ndarray:

@@ -68,8 +68,8 @@ def _apart(model: mujoco.MjModel, one: PadPlace, other: PadPlace | BodyShape) ->
     if why := _bodies_apart(model, one.body, other.body):
         return why
     kind, affinity = model.geom_contype, model.geom_conaffinity
-    met = any(kind[a] & affinity[b] or kind[b] & affinity[a] for a, b in pairs)
-    return "" if met else _MASKED
+    collide = any(kind[a] & affinity[b] or kind[b] & affinity[a] for a, b in pairs)
+    return "" if collide else _MASKED
 
 
 def _bodies_apart(model: mujoco.MjModel, *bodies: int) -> str:

@@ -68,10 +68,10 @@ def _has_own(model: mujoco.MjModel, shape: BodyShape) -> bool:
 
 def _keep_box(shape: BodyShape, why: str) -> None:
     """Says so, or raises InvalidValueError where that would be no vessel."""
-    told = f"object {shape.name!r}: its heat flows in a box of its volume and proportions: {why}"
+    message = f"object {shape.name!r}: its heat flows in a box of its volume and proportions: {why}"
     if shape.contents is not None:
-        raise InvalidValueError(f"{told}. A box has no hollow for its contents")
-    _LOG.warning(told)
+        raise InvalidValueError(f"{message}. A box has no hollow for its contents")
+    _LOG.warning(message)
 
 
 def _own(model: mujoco.MjModel, shape: BodyShape) -> BodyShape:

@@ -19,7 +19,7 @@ from thermograsp.envs.bodies.solids import (
 )
 from thermograsp.envs.footprint import mesh_contact as contacts
 from thermograsp.envs.footprint.grasp_body import NOMINAL_FORCE, PAD, GraspBody
-from thermograsp.envs.footprint.mesh_contact import is_met, mesh_contact
+from thermograsp.envs.footprint.mesh_contact import is_mesh_contact, mesh_contact
 from thermograsp.envs.footprint.taxels import Taxels
 from thermograsp.thermal import SKINS, ContactArea, cylinder_contact, material, sensor, sphere_contact
 from thermograsp.thermal.contact import TABLE_FORCES, footprint
@@ -169,7 +169,7 @@ def test_an_object_that_can_break_is_pressed_once_and_seen_once(monkeypatch: pyt
 
 def test_pads_that_miss_a_mesh_meet_a_flat_stand_in(tmp_path: Path) -> None:
     spec = saved(rod(0.01, 0.02), tmp_path, position=(0.0, 0.03))
-    assert not is_met(PAD, spec)
+    assert not is_mesh_contact(PAD, spec)
     assert mesh_contact(PAD, spec, (1.0,)) is None
     body = GraspBody(spec, material("steel"), 24.0, "T", sensor("seed"))
     assert body.contact_shape == "flat"

@@ -39,7 +39,7 @@ def test_what_is_under_fingertips_may_be_known():
     for one, other in zip(touched_box(box, LEVEL), touched_box(box, LEVEL, known), strict=True):
         assert np.array_equal(one, other)
     alone = touched_box(touched("stainless_steel", 5.0, 2), LEVEL)
-    assert all(np.array_equal(one, other) for one, other in zip(alone, known.own, strict=True))
+    assert all(np.array_equal(one, other) for one, other in zip(alone, known.bare, strict=True))
 
 
 @pytest.mark.parametrize("name", ["glass", "aluminium", "cotton"])

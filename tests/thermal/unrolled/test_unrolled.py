@@ -15,10 +15,10 @@ from thermograsp.thermal.unrolled import (
     Face,
     Fineness,
     Place,
-    felt_patch,
     filmed,
     local_cells,
     overlapped,
+    sensed_patch,
     spread_beneath,
 )
 from thermograsp.thermal.unrolled.fading import fading
@@ -129,13 +129,13 @@ def test_on_a_block_another_patch_feels_what_it_does_on_the_block(
         (0.03, 0.04, 0.005), 1.0, 1.0, 0.0, patches, jumps, basis_terms(3), 2, taus
     )
     expected = (expected + np.outer(port, port))[:, [0, 0], [0, 3]]
-    felt = felt_patch(body.outside, Face(*place, np.zeros(2)), WIDTH / 2, TIP)
+    felt = sensed_patch(body.outside, Face(*place, np.zeros(2)), WIDTH / 2, TIP)
     assert felt is not None
     for fine, error in ((COARSE, 0.01), (FINE, 0.005)):
         cells = local_cells(body, dry(body), 0.0, here, TIP, fine)
         assert cells is not None
         spread = spread_beneath(cells, taus / GLASS.diffusivity)
-        between = spread.felt(felt)
+        between = spread.sensed_by(felt)
         assert between is not None
         found = between.kernel[:, 0, 0] * GLASS.volumetric_heat_capacity
         assert np.abs((found - expected[:, 1]) / expected[:, 0]).max() < error

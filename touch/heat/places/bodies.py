@@ -28,9 +28,9 @@ class BodyField:
     """An object's network of the places where it is touched. whole: of each place whether it has all ports, or the
     even one alone, which tells what flowed there a while ago, and zeros for the others. rates: (n,) 1/s.
     ports: (n, N M) sqrt(K/J). heat: (n,) J and loss: (n,) W of a state; only the first one, the mean temperature's, has
-    any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. own: how
-    many of the states, the first ones, are the object's wherever it is touched. below: of each place the share of the
-    sensor's face under which the object is, and how thick m it is there. walls: (own, own) 1/s, of an object
+    any. beside: (n, N RINGS) ports under the pads around the elements, no columns where no fingertip has one. modal:
+    how many of the states, the first ones, are the object's wherever it is touched. below: of each place the share of
+    the sensor's face under which the object is, and how thick m it is there. walls: (modal, modal) 1/s, of an object
     with contents that nothing has touched: how its own states fade towards contents that are held, by the film
     alone."""
 
@@ -41,7 +41,7 @@ class BodyField:
     heat: np.ndarray
     loss: np.ndarray
     beside: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
-    own: int = 1
+    modal: int = 1
     below: tuple[tuple[float, float], ...] = ()
     walls: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
@@ -97,10 +97,10 @@ def _filled_field(
     with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
         network = own_network(solid, wet, cache=cache)
     outputs = network.outputs
-    felt = [row for name, row in outputs.items() if name.startswith("film:")]
-    if not felt:
+    film_rows = [row for name, row in outputs.items() if name.startswith("film:")]
+    if not film_rows:
         return None
-    rows, none = np.stack(felt), np.zeros((len(network.rates), 0))
+    rows, none = np.stack(film_rows), np.zeros((len(network.rates), 0))
     rows[:, 0] *= outputs["heat"][0] / held  # the body's mean, by its own heat capacity
     found = _with_mean(held, rate, crossing, (), (), network, none, len(network.rates), ())
     return replace(found, walls=wet * rows.T @ rows)
@@ -179,11 +179,11 @@ def _solid_field(
     with _BLAS.limit(limits=1, user_api="blas"):
         found = [_patch(solid, size, place, stack, wet, cache) for place in places]
         patches, below = [patch for patch, _ in found], tuple(each for _, each in found)
-        side, beside, own = body_in_pads(solid, patches, stack, rings, whole=whole, film=wet, cache=cache)
+        side, beside, modal = body_in_pads(solid, patches, stack, rings, whole=whole, film=wet, cache=cache)
     # the body's mean, by its own heat capacity
     side.ports[0] *= side.outputs["heat"][0] / held
     beside[0] *= side.outputs["heat"][0] / held
-    return _with_mean(held, rate, crossing, places, whole, side, beside, own, below)
+    return _with_mean(held, rate, crossing, places, whole, side, beside, modal, below)
 
 
 def _with_mean(
@@ -194,14 +194,14 @@ def _with_mean(
     whole: tuple[bool, ...],
     side: ThermalNetwork,
     beside: np.ndarray,
-    own: int,
+    modal: int,
     below: tuple[tuple[float, float], ...],
 ) -> BodyField:
     """The mean temperature's state is as that of an object that nothing has touched."""
     rates = levelled(side.rates, rate, crossing)
     heat, loss = np.zeros(len(rates)), np.zeros(len(rates))
     rates[0], heat[0], loss[0] = rate, held, held * rate
-    return BodyField(places, whole, rates, side.ports, heat, loss, beside, own, below)
+    return BodyField(places, whole, rates, side.ports, heat, loss, beside, modal, below)
 
 
 def _under(size: tuple[float, float, float], place: Place, width: float) -> tuple[float, float]:
@@ -245,7 +245,7 @@ def _side(
     patches = Patches(faces, middles, half)
     if any(sides is not None for sides in around):
         return box_in_pads(material, size, patches, seen, around, level, whole)
-    told = np.repeat(whole, level.patterns)
-    told[:: level.patterns] = True
-    side = box_side(material, size, 0.0, patches, seen, level, told)
+    reported = np.repeat(whole, level.patterns)
+    reported[:: level.patterns] = True
+    side = box_side(material, size, 0.0, patches, seen, level, reported)
     return side, np.zeros((len(side.rates), 0))

@@ -34,8 +34,8 @@ def carried_states(before: BodyField, after: BodyField, patterns: int, states: n
     The sum of their squares is what a passive network stores, which nothing but heat from outside makes grow. Networks
     with few states tell a field a little differently, and least squares might let it grow from place to place without
     end. Where the states but the mean would grow by more than _GROWTH, they are made smaller."""
-    found, own = np.zeros(len(after.rates)), min(before.own, after.own)
-    found[:own] = states[:own]
+    found, modal = np.zeros(len(after.rates)), min(before.modal, after.modal)
+    found[:modal] = states[:modal]
     for turn in _turns(before, after, patterns):
         found[turn.now] = turn.matrix @ states[turn.was]
     stored, now = float(np.linalg.norm(states[1:])), float(np.linalg.norm(found[1:]))
@@ -56,8 +56,8 @@ def _turns(before: BodyField, after: BodyField, patterns: int) -> tuple[Turn, ..
         return ()
     seen, wanted = _seen(before, after, common, patterns)
     alike: dict[tuple[int, int], list[tuple[np.ndarray, np.ndarray]]] = {}  # pairs of as many states
-    for rate in dict.fromkeys(after.rates[after.own :].tolist()):
-        was, now = (each.own + np.flatnonzero(each.rates[each.own :] == rate) for each in (before, after))
+    for rate in dict.fromkeys(after.rates[after.modal :].tolist()):
+        was, now = (each.modal + np.flatnonzero(each.rates[each.modal :] == rate) for each in (before, after))
         if len(was):
             alike.setdefault((len(was), len(now)), []).append((was, now))
     found = []

@@ -31,10 +31,10 @@ def forgotten(
         return []
     ports = [n * patterns + m for n, whole in enumerate(field.whole) for m in range(patterns if whole else 1)]
     owner = np.array(ports) // patterns
-    rates = np.unique(field.rates[field.own :])
+    rates = np.unique(field.rates[field.modal :])
     gram, hears = np.zeros((len(rates), len(ports), len(ports))), np.zeros((len(rates), len(ports), 1))
     for k, rate in enumerate(rates):
-        of_rate = field.own + np.flatnonzero(field.rates[field.own :] == rate)
+        of_rate = field.modal + np.flatnonzero(field.rates[field.modal :] == rate)
         seen = field.ports[of_rate][:, ports]
         gram[k], hears[k, :, 0] = seen.T @ seen, seen.T @ states[of_rate]
     diagonal = np.arange(len(ports))
@@ -46,9 +46,9 @@ def forgotten(
         inverse = np.linalg.inv(gram[:, alive[:, None], alive])
         flows, lost = inverse @ hears[:, alive], {}
         for n in (n for n in idle if n not in gone):
-            own = np.flatnonzero(owner[alive] == n)
-            block = np.linalg.solve(inverse[:, own[:, None], own], flows[:, own])
-            lost[n] = float(left @ (flows[:, own] * block).sum(axis=(1, 2)))
+            members = np.flatnonzero(owner[alive] == n)
+            block = np.linalg.solve(inverse[:, members[:, None], members], flows[:, members])
+            lost[n] = float(left @ (flows[:, members] * block).sum(axis=(1, 2)))
         least = min(lost.values()) * (1 + _ALIKE)
         gone.append(next(n for n, each in lost.items() if each <= least))
     return gone

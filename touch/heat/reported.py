@@ -11,7 +11,7 @@ from ...thermal.padded import RINGS
 from ..pointers import floats, words
 from .march import TABLE
 
-_TOLD = 8
+_BOOKS = 8
 """Of JoinedHeat.telling: the addresses of its elements' and even rows, of the objects' heats at the start, of the
 places in use and of their ports, that of the table that `sample` takes, and how long the rows are."""
 
@@ -19,7 +19,7 @@ places in use and of their ports, that of the table that `sample` takes, and how
 @njit(cache=True, borrows=True, error_model="numpy")
 def tell_drop(at, drop):
     """Fills drop (F,) K. at: the address of JoinedHeat.telling."""
-    entries = words(words(at, _TOLD)[5], TABLE)
+    entries = words(words(at, _BOOKS)[5], TABLE)
     found = floats(entries[29], entries[41])
     for f in range(len(found)):
         drop[f] = found[f]
@@ -28,15 +28,15 @@ def tell_drop(at, drop):
 @njit(cache=True, borrows=True, error_model="numpy")
 def tell_books(at, given, elements, gained):
     """JoinedHeat.balance: fills given (F, O) J, elements (F,) J and gained (O,) J, and returns J to the air."""
-    told = words(at, _TOLD)
-    entries = words(told[5], TABLE)
+    books = words(at, _BOOKS)
+    entries = words(books[5], TABLE)
     tips, objects, states, contacts = entries[41], entries[42], entries[50], entries[57]
     x, held = floats(entries[25], (objects + tips, states)), floats(entries[19], objects)
     flowed, owners = floats(entries[27], (entries[58], objects + tips)), words(entries[37], contacts)
-    rows, started = floats(told[0], (tips, told[6])), floats(told[2], objects)
+    rows, started = floats(books[0], (tips, books[6])), floats(books[2], objects)
     for f in range(tips):
         heat = 0.0
-        for k in range(told[6]):
+        for k in range(books[6]):
             heat += rows[f, k] * x[objects + f, k]
         elements[f] = heat
         for o in range(objects):
@@ -52,17 +52,17 @@ def tell_books(at, given, elements, gained):
 @njit(cache=True, borrows=True, error_model="numpy")
 def tell_warmth(at, ambient, sensors, under, means):
     """JoinedHeat.faces and object_temperature: fills sensors (F,), under (O, F) and means (O,) °C. ambient: °C."""
-    told = words(at, _TOLD)
-    entries = words(told[5], TABLE)
+    books = words(at, _BOOKS)
+    entries = words(books[5], TABLE)
     tips, objects, states = entries[41], entries[42], entries[50]
     x, warmth = floats(entries[25], (objects + tips, states)), floats(entries[31], objects)
-    even, warm = floats(told[1], (tips, told[7])), floats(entries[11], tips)
-    current, ports = words(told[3], (tips, objects)), floats(told[4], (tips, objects, states))
+    even, warm = floats(books[1], (tips, books[7])), floats(entries[11], tips)
+    current, ports = words(books[3], (tips, objects)), floats(books[4], (tips, objects, states))
     for o in range(objects):
         means[o] = ambient + warmth[o]
     for f in range(tips):
         total = warm[f]
-        for k in range(told[7]):
+        for k in range(books[7]):
             total += even[f, k] * x[objects + f, k]
         sensors[f] = ambient + total
         for o in range(objects):
