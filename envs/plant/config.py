@@ -194,16 +194,13 @@ class SimulationConfig:
     def by_fields(self) -> bool:
         """Whether heat flows in the fields of ThermalTouch, which know where it enters and how broad a contact is at
         each force: round objects and meshes without parts unless `anywhere` is False, and all that a pad around the
-        sensor may touch beside the middle of boxes' faces. Maps of face_temperature need the mean over the contact,
-        which fields, whose mean is the whole face's, do not tell."""
+        sensor may touch beside the middle of boxes' faces."""
         sizes = (cause.extremes for cause in self.causes if isinstance(cause, Size))
         least = min((1.0, *(factor for some in sizes for factor in some)))
         every = (*(scaled(shape, least) for shape in self.shapes), *self.others)
         if self.surround is not None:
             return any(shape.shape != "box" or self._anywhere(shape) for shape in every)
-        if self.anywhere is False or self.mode == "O" or self.face_temperature is not None:
-            return False
-        if any(shape.parts for shape in every):
+        if self.anywhere is False or self.mode == "O" or any(shape.parts for shape in every):
             return False
         return any(shape.shape != "box" for shape in every)
 

@@ -29,7 +29,7 @@ from .randomization import CAUSES, draw
 from .truth import INFO, Truth
 
 if TYPE_CHECKING:
-    from ..readout import FaceTemperatureState
+    from ..readout import FaceTemperature, FaceTemperatureState
     from ..sensing import FieldHeatState, SceneHeatState, SceneHeatStep
 
 
@@ -193,8 +193,18 @@ class SimulatedPlant:
             info_names=self._info,
             lateral=self._lateral,
             pressure=None if self._taxels is None else self._taxels.pressure(self.mechanics),
-            face_temperature=None if self._faces is None else self._faces.step(self.mechanics, step, owner),
+            face_temperature=None if self._faces is None else self._map_faces(self._faces, step, owner),
         )
+
+    def _map_faces(self, faces: FaceTemperature, step: HeatStep, owner: np.ndarray | None) -> np.ndarray:
+        """(B, F, n, m) °C. While a contact opens, more flows through a narrow one in a sample than at its end: without
+        bounds the map would be hotter or colder at places than anything that takes part."""
+        maps = faces.step(self.mechanics, step, owner)
+        means = step.info["sensor_surface"], step.info["object_surface"]
+        for row, each in enumerate(maps):
+            every = (*self.temperatures(row), *means[0][row], *means[1][row])
+            np.clip(each, min(every), max(every), out=each)
+        return maps
 
     def temperatures(self, row: int) -> tuple[float, ...]:
         """°C between which the row's heat stays: of its thermostats, objects, room and reservoirs."""

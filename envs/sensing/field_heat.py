@@ -59,14 +59,14 @@ class FieldHeatState:
 @dataclass(slots=True)
 class _Row:
     """An environment's heat. bodies: the objects, but for temperatures. contacts: of each as the pads close on it, and
-    slipped: of those that have since the reset. touches: (N, 1, F, O + F, columns). told: JoinedHeat.telling."""
+    slipped: of those that have since the reset. touches: (N, 1, F, O + F, columns). telling: JoinedHeat.telling."""
 
     bodies: tuple[GraspBody, ...]
     heat: JoinedHeat
     contacts: list[PadContact]
     slipped: dict[int, PadContact]
     touches: np.ndarray
-    reading_table: np.ndarray
+    telling: np.ndarray
 
 
 class FieldScenes:
@@ -153,7 +153,7 @@ class FieldScenes:
         seconds = self._samples * self._dt
         books = self._given, self._stored, self._gained, self._air
         tell_fields(self._listed, self._rows, seconds, self._info, *books)
-        tell_temperatures(self._listed, self._rows, self._ambient, self._info)
+        tell_temperatures(self._listed, self._rows, self._ambient, self._samples, self._info)
         self._tell_contents(seconds)
         return self._step(drop)
 
@@ -161,7 +161,7 @@ class FieldScenes:
         """What a step would tell of a batch in which nothing has touched yet."""
         self._info[:] = np.zeros(1, HEAT_INFO)
         self._info["reservoir_temperature"] = np.nan
-        tell_temperatures(self._listed, self._rows, self._ambient, self._info)
+        tell_temperatures(self._listed, self._rows, self._ambient, self._samples, self._info)
         self._tell_contents()
         return self._step(np.zeros((len(self._rows), self._samples, 2)))
 
@@ -261,10 +261,10 @@ class FieldScenes:
     def _list(self, row: int) -> None:
         """Where the row's heat is from now on; to be called whenever anything but compiled code has changed it."""
         one = self._heats[row]
-        one.reading_table = one.heat.telling()
+        one.telling = one.heat.telling()
         heard, _ = one.heat.hearing(one.touches)
         self._listed[row] = (
-            one.reading_table.ctypes.data,
+            one.telling.ctypes.data,
             heard,
             one.touches.ctypes.data,
             one.touches.shape[2],

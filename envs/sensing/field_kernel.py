@@ -35,7 +35,7 @@ def compile_fields() -> None:
     meet_rows(np.zeros((0, 1), FOOTPRINT_LAW), records, force, place, info)
     advance_fields(0, listed, parts, force, place, drop, 0)
     tell_fields(listed, records, 1.0, info, pairs, np.zeros((0, 2)), of_objects, air)
-    tell_temperatures(listed, records, air, info)
+    tell_temperatures(listed, records, air, 1, info)
 
 
 @njit(cache=True, error_model="numpy")
@@ -105,18 +105,21 @@ def tell_fields(rows, records, seconds, info, given, stored, gained, air):
 
 
 @njit(cache=True, error_model="numpy")
-def tell_temperatures(rows, records, ambient, info):
-    """Fills temperatures of info (B, O) HEAT_INFO. records: (B, O) HEAT_ROW. ambient: (B,) °C of the air."""
+def tell_temperatures(rows, records, ambient, samples, info):
+    """Fills temperatures of info (B, O) HEAT_INFO after so many samples. records: (B, O) HEAT_ROW. ambient: (B,) °C of
+    the air."""
     objects = info.shape[1]
-    sensors, under, means = np.empty(2), np.empty((objects, 2)), np.empty(objects)
+    sensors, under, means = np.empty((objects, 2)), np.empty((objects, 2)), np.empty(objects)
     for b in range(len(rows)):
         if rows[b, TOUCHES] == 0:
             continue
-        tell_warmth(rows[b, HEAT], ambient[b], sensors, under, means)
+        tips = rows[b, TIPS]
+        last = rows[b, TOUCHES] + 8 * (samples - 1) * tips * (objects + tips) * COLUMNS
+        tell_warmth(rows[b, HEAT], last, ambient[b], sensors, under, means)
         for o in range(objects):
             step = info[b, o]
             step.object_temperature = means[o]
             for f in range(2):
-                has = f < rows[b, TIPS]
-                step.sensor_surface[f] = sensors[f] if has else records[b, o].sensor_temperature[f]
+                has = f < tips
+                step.sensor_surface[f] = sensors[o, f] if has else records[b, o].sensor_temperature[f]
                 step.object_surface[f] = under[o, f] if has else means[o]

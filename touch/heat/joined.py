@@ -43,6 +43,7 @@ from .places import (
     tip_field,
 )
 from .records import HeatBalance, HeatState
+from .reported import narrow_falls
 from .step import room_size
 from .systems import Pair, SystemPool, groups
 
@@ -399,18 +400,26 @@ class JoinedHeat:
         """The model's name."""
         return f"fields:{self._level.rates}x{self._level.patterns}"
 
-    def faces(self, world: int) -> tuple[np.ndarray, np.ndarray]:
-        """°C of a world's sensors, (F,), and of the objects under each, (F, O): means over the whole face, an object's
-        mean where none has touched it."""
+    def faces(self, world: int, touches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """°C of a world's sensors and of the objects under them, (F, O) each: means over the contacts of the last step,
+        whose touches (F, O + F, COLUMNS) these are, and over the whole face where there is none; an object's mean where
+        none has touched it."""
         objects, patterns = len(self._shapes), self._level.patterns
         x, under = self._x[world], np.empty(self._current.shape[1:])
-        sensors = self._warm[world] + (x[objects:, : self._even.shape[1]] * self._even).sum(axis=1)
+        even = self._warm[world] + (x[objects:, : self._even.shape[1]] * self._even).sum(axis=1)
+        sensors = np.repeat(even[:, None], objects, axis=1)
         under[:] = self.warmth[world]
         for f, of_tip in enumerate(self._current[world].tolist()):
             for o, number in enumerate(of_tip):
-                if number >= 0:
-                    field = self._fields[world][o]
-                    under[f, o] = field.ports[:, number * patterns] @ x[o, : len(field.rates)]
+                if number < 0:
+                    continue
+                field = self._fields[world][o]
+                under[f, o] = field.ports[:, number * patterns] @ x[o, : len(field.rates)]
+                sides = (self._pairs.tables[n] for n in self._pairs.kinds[world, f, o])
+                states = self._narrow[world, f, o]
+                tip, other = narrow_falls(*sides, float(self._widths[f]), touches[f, o], states)
+                sensors[f, o] -= tip
+                under[f, o] += other
         return self._ambient + sensors, self._ambient + under
 
     @property

@@ -139,9 +139,9 @@ def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:
 @njit(cache=True, borrows=True, error_model="numpy")
 def spread(tip_side, other, width, area, length, aside, ends, root):
     """Fills root (K,) with the b_k of a contact of that area m2 and length m, along the second axis, under a sensor of
-    that width m. own, other: of narrow_table, of the pad and of what it touches; aside, ends: (2,) the shares by which
-    the contact lies at an end of either. Returns whether there are any: not where the contact is as wide as the face
-    or its area is not told."""
+    that width m. tip_side, other: of narrow_table, of the pad and of what it touches; aside, ends: (2,) the shares by
+    which the contact lies at an end of either. Returns whether there are any: not where the contact is as wide as the
+    face or its area is not told."""
     if not area > 0.0:
         return False
     i, u, j, v = seen(width, area, length)
@@ -175,12 +175,18 @@ def add_squares(table, i, u, j, v, shares, squares):
     end."""
     for place in range(4):
         a, b = place & 1, place >> 1
-        weight = _of(shares[0], a) * _of(shares[1], b)
+        weight = share_of(shares[0], a) * share_of(shares[1], b)
         if weight > 0.0:  # most contacts are in the middle, where one is
             for k in range(len(squares)):
-                near = (1 - v) * table[a, b, i, j, k] + v * table[a, b, i, j + 1, k]
-                far = (1 - v) * table[a, b, i + 1, j, k] + v * table[a, b, i + 1, j + 1, k]
-                squares[k] += weight * ((1 - u) * near + u * far)
+                squares[k] += weight * table_between(table, a, b, i, u, j, v, k)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def table_between(table, a, b, i, u, j, v, k):
+    """One b_k^2 of a table between the widths that `seen` tells."""
+    near = (1 - v) * table[a, b, i, j, k] + v * table[a, b, i, j + 1, k]
+    far = (1 - v) * table[a, b, i + 1, j, k] + v * table[a, b, i + 1, j + 1, k]
+    return (1 - u) * near + u * far
 
 
 @njit(cache=True, error_model="numpy")
@@ -219,6 +225,7 @@ def _between(ratio):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def _of(share, end):
+def share_of(share, end):
+    """Of a contact that lies at an end of the face by that share, or in the middle by the rest."""
     share = min(max(share, 0.0), 1.0)
     return share if end == 1 else 1 - share

@@ -366,7 +366,7 @@ def test_flows_books_and_temperatures_are_those_of_the_fields() -> None:
     for _ in range(30):
         info = heat.advance(normal, place).info
         for row, one in heat._scenes._heats.items():
-            balance, (sensors, objects) = one.heat.balance(0), one.heat.faces(0)
+            balance, (sensors, objects) = one.heat.balance(0), one.heat.faces(0, one.touches[-1, 0])
             tips = len(sensors)
             flow = (balance.given[:, 0] - given[row, :tips]) / 0.02
             np.testing.assert_allclose(info["flow"][row, :tips], flow, rtol=1e-9, atol=1e-12)
@@ -375,7 +375,7 @@ def test_flows_books_and_temperatures_are_those_of_the_fields() -> None:
             np.testing.assert_allclose(info["heat"][row, :tips], balance.elements, rtol=1e-12)
             assert info["heat"][row, 2] == pytest.approx(balance.objects[0], rel=1e-12)
             assert info["air_loss"][row] == pytest.approx((balance.air - air_loss[row]) / 0.02, rel=1e-9)
-            np.testing.assert_allclose(info["sensor_surface"][row, :tips], sensors, rtol=1e-12)
+            np.testing.assert_allclose(info["sensor_surface"][row, :tips], sensors[:, 0], rtol=1e-12)
             np.testing.assert_allclose(info["object_surface"][row, :tips], objects[:, 0], rtol=1e-12)
             assert info["object_temperature"][row] == one.heat.object_temperature[0, 0]
             given[row, :tips], stored[row, :tips] = balance.given[:, 0], balance.elements

@@ -339,7 +339,7 @@ def test_cubes_are_touched_anywhere_where_that_is_asked_and_cylinders_unless_it_
         (cube, "kernels:"),
         (plain, "fields:"),
         (middle, "network:"),
-        (mapped, "body:"),
+        (mapped, "fields:"),
     )
     for batch, rung in every:
         batch.reset([0], [np.random.default_rng(0)])
