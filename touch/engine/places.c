@@ -237,6 +237,9 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
   return first;
 }
 
+/* How many networks this process has made, by which tests see that they are kept. */
+__attribute__((visibility("default"))) _Atomic unsigned long heat_networks_made;
+
 /* The network of the places that an object has now; made where it is neither in use nor aside, in place of that aside which
 was in use the longest ago. */
 static Network* network_of(const Numbers* numbers, Work* work, const State* state, int o) {
@@ -259,6 +262,7 @@ static Network* network_of(const Numbers* numbers, Work* work, const State* stat
   network->count = count;
   memcpy(network->places, places, count * SLOT * sizeof(double));
   heat_network(numbers, o, network, work->impedances + o * heat_impedances(numbers), work->room);
+  heat_networks_made++;
   return network;
 }
 
