@@ -34,7 +34,7 @@ from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
 from .pad_contacts import DEPTH, RIM
 from .round_pads import array_round_contact, bends, curves
-from .tilt import TILT, array_tilted
+from .tilt import TILT, array_edge_patch, array_edged, array_tilted
 from .views import array_viewed
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
@@ -170,6 +170,12 @@ class ArrayContacts:
         law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
         long, shares = array_flat_patch(law, area, from_geom[..., None, :])
+        most = abs((self.units[axis] * looking).sum(-1))
+        rises = (law.select * (looking / most[..., None])[..., None, None, :]).sum(-1)
+        tilt = self.tilts[which][..., None, :]
+        part, share = array_edged(tilt, law, pressed, share, from_geom[..., None, :], rises)
+        long, shares = array_edge_patch(law, from_geom[..., None, :], rises, part, long, shares)
+        area = area * part
         kept = longer = 1.0 + 0.0 * area
         if self.any_bulging:
             area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
@@ -200,7 +206,7 @@ class ArrayContacts:
             side = xp.where(meshed[..., 0], view, axis)
         table = self.curved[as_integers(pair * self.views.shape[1] + side)][..., None]
         number = as_integers(table.clip(0.0, None))
-        whole, lying = array_tilted(self.tilts[which][..., None, :], pressed, slope + none, along + none)
+        whole, lying = array_tilted(tilt, pressed, slope + none, along + none)
         lies = whole > 0
         share = xp.where(lies, whole, 1.0 + 0.0 * whole)
         lying = lying / share

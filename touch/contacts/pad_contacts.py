@@ -12,6 +12,7 @@ from thermograsp.compiled import njit
 
 from ...thermal.contact import (
     CYLINDER,
+    NARROW,
     beside_face,
     conductance,
     contact,
@@ -24,7 +25,7 @@ from ..pointers import asked
 from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
 from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
-from .tilt import tilted
+from .tilt import edge_patch, edged, tilted
 from .views import viewed
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it, beside half of what both have sunk in
@@ -219,8 +220,15 @@ def feel(
                 long = math.sqrt(area * kept * longer)
             else:
                 area, share = contact(law, force, place)
-                if area > 0:
+                part, first, second = 1.0, 0.0, 0.0
+                if area > 0 and geom >= 0:
+                    first, second = _rises(geom_xmat, geom, axis, law, normal)
+                    part, share = edged(tilts[f, g, axis], law, force, share, place, first, second)
+                if part < NARROW and part > 0:
+                    long = edge_patch(law, place, first, second, part, shares)
+                elif area > 0:
                     long = flat_patch(law, area, place, shares)
+                area *= part
             for ring in range(1 + RINGS if pads[f, AROUND] > 0 else 1):
                 known = curved[f, g, side, ring] if number >= 0 else -1
                 if known >= 0 and tables[known, 1] == 0.0 and asked(make, known) == 0:
@@ -270,6 +278,17 @@ def feel(
                 touch[PLACE + i] = one * x + two * y + three * z
                 touch[NORMAL + i] = one * normal[0] + two * normal[1] + three * normal[2]
     return True
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _rises(geom_xmat, geom, axis, law, normal):
+    """m per m by which the gap between a pad and a geom's face grows along the law's two axes."""
+    into, first, second = 0.0, 0.0, 0.0
+    for k in range(3):
+        into += geom_xmat[geom, 3 * k + axis] * normal[k]
+        first += geom_xmat[geom, 3 * k + law.across[0]] * normal[k]
+        second += geom_xmat[geom, 3 * k + law.across[1]] * normal[k]
+    return first / abs(into), second / abs(into)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -4,8 +4,13 @@ Two bodies of principal curvatures touch as one of their sum touches a flat one 
 4.1): the gap is x^2 k1/2 + y^2 k2/2, with k1 >= k2 (1/m) of the sum of both bodies' curvatures in the tangent plane,
 which need not lie along one another. Sunk in by D into the pad, an elastic foundation as in thermal/contact/area.py,
 p = K/d (D - x^2 k1/2 - y^2 k2/2) over the ellipse of half axes sqrt(2 D/k1) and sqrt(2 D/k2), cut off where either body
-ends; the sensor's face takes what of it lies on it. A straight fingertip, a capsule or a cylinder's side, may lean on a
-flat face: tilt.py.
+ends; the sensor's face takes what of it lies on it.
+
+A straight fingertip, a capsule or a cylinder's side, that leans on a flat face presses its lower end. It is as stiff as
+what it is made of, and its pad follows it: the springs are pressed in by depth - angle s at s from the lower end, in
+strips of half width sqrt(2 R (depth - angle s)), cut off where the pad ends: the skin's on a skinned sensor, and softer
+ones beside it, of what sinks in deeper than the far end of its face. Their sum is the force, from which the depth
+follows.
 
 F: fingertips, N: what a pad may meet.
 """
@@ -25,7 +30,6 @@ from thermograsp.compiled import njit
 
 from ...thermal.numerics import Array, namespace_of
 from ..scene import BodyShape, PadPlace
-from .tilt import array_leaning, leaning
 
 BEND, CURVES, SIDES = 10, 4, 6
 """Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half the sides m of what bears force, half the face's m
@@ -35,6 +39,7 @@ _WIDE = 10.0  # m, half of what no pad reaches the end of
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
 _NEWTON_STEPS = 8
 _LEANS = 1e-7  # m per m, below which a line lies level
+_LEANING_STEPS = 14  # Newton's, of an increasing convex function, from above
 
 
 def bends(pads: Sequence[PadPlace]) -> np.ndarray:
@@ -171,6 +176,60 @@ def _kept(at, reach, half):
     return min(max(both, 0.0) / (2 * min(reach, half)), 1.0)
 
 
+@njit(cache=True, borrows=True, error_model="numpy")
+def leaning(bend, force, angle, curvature, line_share, width, face_reach, face_width, depth):
+    """(area m2 on the sensor's face, force N on it, depth m at its lower end) of a rod-shaped pad whose line falls by
+    angle m per m towards a flat face; all 0 where the face does not reach it. bend: bends'. curvature: 1/m
+    across the line. line_share: how much the pad's y lies across the line. width, face_reach and face_width: half
+    lengths m of what touches along the line, and of the face across and along it. depth: m at which the level line
+    would bear the force."""
+    soft_reach = line_share * bend[8] + (1 - line_share) * bend[9]
+    soft_width = max((1 - line_share) * bend[8] + line_share * bend[9], width)
+    firm_reach = line_share * bend[3] + (1 - line_share) * bend[4]
+    near, far, end = (
+        (soft_width - face_width) * angle,
+        (soft_width + face_width) * angle,
+        2 * soft_width * angle,
+    )
+    firm, soft, load = bend[2], bend[7], force * angle
+    most_soft = far if soft < firm else math.inf
+    depth += angle * (soft_width + width)  # no less, whatever the springs beside the face bear
+    for _ in range(_LEANING_STEPS):
+        sunk = min(depth, most_soft)
+        held, rate = 0.0, 0.0
+        # springs begin at one place and end at the other
+        for stiffness, reach, below, behind in (
+            (soft, soft_reach, sunk, sunk - near),
+            (firm, firm_reach, depth - near, depth - far),
+            (soft, soft_reach, sunk - far, sunk - end),
+        ):
+            one, rises = _strips(max(below, 0.0), curvature, reach)
+            other, falls = _strips(max(behind, 0.0), curvature, reach)
+            held += stiffness * (one - other)
+            if stiffness == firm or depth < most_soft:
+                rate += stiffness * (rises - falls)
+        change = (held - load) / rate
+        depth = max(depth - change, depth / 4)
+        if abs(change) < 1e-14 * depth:
+            break
+    lower, upper = depth - near, max(depth - far, 0.0)
+    if lower <= 0:
+        return 0.0, 0.0, 0.0
+    most, wide = _strips(lower, curvature, face_reach)
+    least, narrow = _strips(upper, curvature, face_reach)
+    return (wide - narrow) / angle, firm * (most - least) / angle, lower
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _strips(depth, curvature, reach):
+    """Of strips whose depth grows from 0 to `depth` m, integrated over the depth: their load over the stiffness, m4,
+    and their widths, m2, which is the load's derivative."""
+    wide, shallow = math.sqrt(2 / curvature), min(depth, curvature * reach * reach / 2)
+    root, beyond = math.sqrt(shallow), depth - shallow
+    held, area = 8 / 15 * wide * shallow * shallow * root, 4 / 3 * wide * shallow * root
+    return held + beyond * (area + reach * beyond), area + 2 * reach * beyond
+
+
 def array_round_contact(
     bend: Array, curve: Array, sides: Array, rise: Array, force: Array, y: Array, z: Array
 ) -> tuple[Array, Array, Array, Array]:
@@ -254,3 +313,53 @@ def _clippings(xp, x, y):
 def _kept_of(xp, at, reach, half):
     both = xp.minimum(half, at + reach) - xp.maximum(-half, at - reach)
     return (both.clip(0.0, None) / (2 * xp.minimum(reach, half))).clip(None, 1.0)
+
+
+def array_leaning(
+    bend: Array,
+    force: Array,
+    angle: Array,
+    curvature: Array,
+    line_share: Array,
+    width: Array,
+    face_reach: Array,
+    face_width: Array,
+    depth: Array,
+) -> tuple[Array, Array, Array]:
+    """leaning as a pure function of arrays of one shape, but for bend (..., BEND); angles above 0."""
+    xp = namespace_of(force)
+
+    def strips(below: Array, reach: Array) -> tuple[Array, Array]:
+        wide, shallow = (2 / curvature) ** 0.5, xp.minimum(below, curvature * reach * reach / 2)
+        beyond, area = below - shallow, 4 / 3 * wide * shallow**1.5
+        return 8 / 15 * wide * shallow**2.5 + beyond * (area + reach * beyond), area + 2 * reach * beyond
+
+    def blend(share: Array, one: int) -> Array:
+        return share * bend[..., one] + (1 - share) * bend[..., one + 1]
+
+    soft_reach, firm_reach = blend(line_share, 8), blend(line_share, 3)
+    soft_width = xp.maximum(blend(1 - line_share, 8), width)
+    near, far, end = (
+        (soft_width - face_width) * angle,
+        (soft_width + face_width) * angle,
+        2 * soft_width * angle,
+    )
+    firm, soft, load = bend[..., 2], bend[..., 7], force * angle
+    most_soft = xp.where(soft < firm, far, math.inf + far)
+    depth = depth + angle * (soft_width + width)
+    for _ in range(_LEANING_STEPS):
+        sunk, held, rate = xp.minimum(depth, most_soft), 0.0 * depth, 0.0 * depth
+        for stiffness, reach, below, behind in (
+            (soft, soft_reach, sunk, sunk - near),
+            (firm, firm_reach, depth - near, depth - far),
+            (soft, soft_reach, sunk - far, sunk - end),
+        ):
+            one, rises = strips(below.clip(0.0, None), reach)
+            other, falls = strips(behind.clip(0.0, None), reach)
+            held = held + stiffness * (one - other)
+            moves = (stiffness == firm) | (depth < most_soft)
+            rate = rate + xp.where(moves, stiffness * (rises - falls), 0.0 * depth)
+        depth = xp.maximum(depth - (held - load) / rate, depth / 4)
+    lower, upper = (depth - near).clip(0.0, None), (depth - far).clip(0.0, None)
+    (most, wide), (least, narrow) = strips(lower, face_reach), strips(upper, face_reach)
+    return (wide - narrow) / angle, firm * (most - least) / angle, lower

@@ -1,4 +1,4 @@
-"""Rods at an angle to a flat pad, and fingertips that are rods at an angle to a flat face: one end touches first.
+"""Rods and flat faces at an angle to a flat pad: only one end of them touches.
 
 Over a rod's line of contact the gap between it and the pad grows from the end that touches. Three things give way,
 and `angle` is what they leave of the angle. The sensor's face lies on the pad's springs, as it does under flat
@@ -19,10 +19,11 @@ tangent is taken as the mean of both ends'.
 
 What is left of the line is its `share`: the contact conducts as that part of a line with the same force would.
 
-A fingertip that is a rod itself is as stiff as what it is made of, and its pad follows it: the pad's springs are
-pressed in by depth - angle s at s from the lower end, in strips of half width sqrt(2 R (depth - angle s)), cut off
-where the pad ends: the skin's on a skinned sensor, and softer ones beside it, of what sinks in deeper than the far end
-of its face. Their sum is the force, from which the depth follows.
+A flat face at an angle beyond ALIGNED does the same, with springs pressed in by depth - angle s at s from its lower
+end, or the pad's, whichever is over the other: silicone that is as broad as what they share takes k b angle s^2/2 over
+the length s, and the rest is the face's. A skin is in contact up to a length; beside the edge on a bare face gas
+conducts as the mean of 1/(gap + angle s), and what conducts as a whole face's gas is a strip at that edge. Along a
+corner the angle is that of the steepest fall, and the strip shrinks along both sides in proportion to its logarithm.
 
 F: fingertips, N: what a pad may meet.
 """
@@ -34,17 +35,31 @@ import math
 from thermograsp.compiled import njit
 
 from ...thermal import Pad, Surface
-from ...thermal.contact import FIRST_FORCE, cylinder_footprint, face_joint, skinned
+from ...thermal.contact import (
+    FIRST_FORCE,
+    NARROW,
+    ArrayLaws,
+    array_patch_ends,
+    array_patch_offset,
+    cylinder_footprint,
+    face_joint,
+    patch_ends,
+    patch_offset,
+    skinned,
+)
 from ...thermal.numerics import Array, namespace_of
 from ..scene import BodyShape, PadPlace
 
 TURN, SOFT, FIRM, GAP, RADIUS, HALF, HALF_PAD, HALF_FACE, TILT = range(9)
 """Of a rod under a pad: rad/N that turn the face, N/m^2.5 of the silicone and of the skin on the face (0 without one),
-m of the gap (0 under a skin), the rod's radius m, half its length and half the pad's and the face's sides m."""
+m of the gap (0 under a skin), the rod's radius m, half its length and half the pad's and the face's sides m. Of a flat
+face: Pa/m in place of N/m^2.5, and no radius and length."""
 _LEAST = math.exp(FIRST_FORCE)  # N, of a face that the rod does not press: what gas conducts alone
+ALIGNED = 0.05
+"""rad, about 3 degrees, up to which flat faces count as aligned beyond what the force turns the face by: fingers and
+what they hold give way, and so do MuJoCo's soft contacts, whose angles say nothing of less."""
 _LEVEL = 1e-7  # rad, below which there is no angle
 _STEPS = 4  # Newton's, of an increasing convex function, from above
-_LEANING_STEPS = 14  # likewise, from farther above
 
 
 def tilt_row(
@@ -60,6 +75,19 @@ def tilt_row(
         return (turn, soft, line * pad.skin.stiffness, 0.0, *sizes)
     law = cylinder_footprint(sheet, face_joint(None, Surface.of(shape.material)), radius, length)
     return (turn, soft, 0.0, float(law["mean_gap"]), *sizes)
+
+
+def edge_row(pad: PadPlace, silicone: Pad, shape: BodyShape) -> tuple[float, ...]:
+    """(TILT,) of a flat face under a flat pad."""
+    springs, halves = (
+        silicone.foundation_modulus / silicone.thickness,
+        (silicone.width / 2, silicone.face / 2),
+    )
+    turn = silicone.face / 2 / (springs * silicone.face**4 / 12)
+    if pad.skin is not None:
+        return (turn, springs, pad.skin.stiffness, 0.0, 0.0, 0.0, *halves)
+    law = cylinder_footprint(skinned(silicone, None), face_joint(None, Surface.of(shape.material)), 1.0, 1.0)
+    return (turn, springs, 0.0, float(law["mean_gap"]), 0.0, 0.0, *halves)
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
@@ -111,7 +139,7 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     start, end = xp.maximum(-along - half, -pad), xp.minimum(half - along, pad)
     first, last = xp.maximum(start, -face), xp.minimum(end, face)
     width = last - first
-    is_tilted = (angle > _LEVEL) & (width > 0) & (force > 0)
+    is_tilted = (angle > _LEVEL) & (width > 0) & (force > 0) & (tilt[..., RADIUS] > 0)
     angle = xp.where(is_tilted, angle, one)
     width, load = xp.where(is_tilted, width, one), xp.where(is_tilted, force, one)
     reach = xp.where(is_tilted, first - start, one)
@@ -121,7 +149,8 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     pressed = (load - soft * reach**2.5).clip(0.0, None)
     skinned_face = tilt[..., FIRM] > 0
     firm, gas_gap = xp.where(skinned_face, tilt[..., FIRM], one), tilt[..., GAP]
-    radius, gas_gap = xp.where(gas_gap > 0, tilt[..., RADIUS], one), xp.where(gas_gap > 0, gas_gap, one)
+    radius = xp.where(is_tilted & (gas_gap > 0), tilt[..., RADIUS], one)
+    gas_gap = xp.where(gas_gap > 0, gas_gap, one)
     near, far = (1 + gap / gas_gap) ** 0.5, (1 + (gap + angle * width) / gas_gap) ** 0.5
     wide = xp.where(face > 0, face, one) / (2 * radius * gas_gap) ** 0.5
     bare = (xp.arctan(wide / near) + xp.arctan(wide / far)) / xp.arctan(wide) / (near + far)
@@ -141,104 +170,121 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def leaning(bend, force, angle, curvature, line_share, width, face_reach, face_width, depth):
-    """(area m2 on the sensor's face, force N on it, depth m at its lower end) of a rod-shaped pad whose line falls by
-    angle m per m towards a flat face; all 0 where the face does not reach it. bend: round_pads.py's. curvature: 1/m
-    across the line. line_share: how much the pad's y lies across the line. width, face_reach and face_width: half
-    lengths m of what touches along the line, and of the face across and along it. depth: m at which the level line
-    would bear the force."""
-    soft_reach = line_share * bend[8] + (1 - line_share) * bend[9]
-    soft_width = max((1 - line_share) * bend[8] + line_share * bend[9], width)
-    firm_reach = line_share * bend[3] + (1 - line_share) * bend[4]
-    near, far, end = (
-        (soft_width - face_width) * angle,
-        (soft_width + face_width) * angle,
-        2 * soft_width * angle,
-    )
-    firm, soft, load = bend[2], bend[7], force * angle
-    most_soft = far if soft < firm else math.inf
-    depth += angle * (soft_width + width)  # no less, whatever the springs beside the face bear
-    for _ in range(_LEANING_STEPS):
-        sunk = min(depth, most_soft)
-        held, rate = 0.0, 0.0
-        # springs begin at one place and end at the other
-        for stiffness, reach, below, behind in (
-            (soft, soft_reach, sunk, sunk - near),
-            (firm, firm_reach, depth - near, depth - far),
-            (soft, soft_reach, sunk - far, sunk - end),
-        ):
-            one, rises = _strips(max(below, 0.0), curvature, reach)
-            other, falls = _strips(max(behind, 0.0), curvature, reach)
-            held += stiffness * (one - other)
-            if stiffness == firm or depth < most_soft:
-                rate += stiffness * (rises - falls)
-        change = (held - load) / rate
-        depth = max(depth - change, depth / 4)
-        if abs(change) < 1e-14 * depth:
-            break
-    lower, upper = depth - near, max(depth - far, 0.0)
-    if lower <= 0:
-        return 0.0, 0.0, 0.0
-    most, wide = _strips(lower, curvature, face_reach)
-    least, narrow = _strips(upper, curvature, face_reach)
-    return (wide - narrow) / angle, firm * (most - least) / angle, lower
+def edged(tilt, law, force, share, place, first, second):
+    """(part of a flat contact's area, force N on it) at a normal force N > 0, of which the level face has `share` N.
+    first, second: m per m by which the gap grows along the law's two axes. place: as contact's."""
+    slope = math.hypot(first, second)
+    angle = slope - ALIGNED - tilt[TURN] * force
+    if not (angle > _LEVEL and law.size[0] > 0 and tilt[SOFT] > 0):
+        return 1.0, share
+    reach, width, along, on_face, on_pad = 0.0, 0.0, 0.0, 1.0, 1.0
+    for side in range(2):
+        rise, pad, size = first if side == 0 else second, place[law.across[side]], law.size[side] / 2
+        middle = -pad if rise > 0 else pad  # of the object from the pad's, where the gap grows
+        start, end = max(middle - size, -law.half_pad), min(middle + size, law.half_pad)
+        begin, stop = max(start, -law.half_face), min(end, law.half_face)
+        part = abs(rise) / slope
+        reach, width, along = (
+            reach + part * (begin - start),
+            width + part * (stop - begin),
+            along + part * (end - start),
+        )
+        on_face, on_pad = on_face * max(stop - begin, 0.0), on_pad * max(end - start, 0.0)
+    if not on_face > 0.0:
+        return 1.0, share
+    soft = tilt[SOFT] * angle * on_pad / along
+    borne = soft * reach * reach / 2
+    if tilt[FIRM] > 0:
+        firm = tilt[FIRM] * angle * on_face / width
+        left, beside = max(force - borne, 0.0), soft * reach
+        long = (math.sqrt(beside * beside + 2 * firm * left) - beside) / firm
+        if long > width:
+            long = (left + firm * width * width / 2) / (firm * width + beside)
+        within = min(long, width)
+        return within / width, min(firm * within * (long - within / 2), share)
+    gap = tilt[GAP] + angle * max(reach - math.sqrt(2 * force / soft), 0.0)
+    part = min(tilt[GAP] / (angle * width) * math.log1p(angle * width / gap), 1.0)
+    return part, max(share * max(1 - borne / force, 0.0), min(share, _LEAST * part))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def _strips(depth, curvature, reach):
-    """Of strips whose depth grows from 0 to `depth` m, integrated over the depth: their load over the stiffness, m4,
-    and their widths, m2, which is the load's derivative."""
-    wide, shallow = math.sqrt(2 / curvature), min(depth, curvature * reach * reach / 2)
-    root, beyond = math.sqrt(shallow), depth - shallow
-    held, area = 8 / 15 * wide * shallow * shallow * root, 4 / 3 * wide * shallow * root
-    return held + beyond * (area + reach * beyond), area + 2 * reach * beyond
+@njit(cache=True, borrows=True, error_model="numpy")
+def edge_patch(law, place, first, second, part, shares):
+    """flat_patch of a part of the area, at the end where the gap is least: m, the second side; fills shares (4,)."""
+    width, slope, length = 2 * law.half_face, first * first + second * second, 0.0
+    for side in range(2):
+        rise, pad, size = first if side == 0 else second, place[law.across[side]], law.size[side]
+        low, high = max(-law.half_face, -pad - size / 2), min(law.half_face, size / 2 - pad)
+        length = (high - low) * part ** (rise * rise / slope)
+        middle = low + length / 2 if rise > 0 else high - length / 2
+        shares[side] = patch_offset(middle, length, width)
+        shares[2 + side] = patch_ends(pad + middle, pad, length, size, width)
+    return length
 
 
-def array_leaning(
-    bend: Array,
-    force: Array,
-    angle: Array,
-    curvature: Array,
-    line_share: Array,
-    width: Array,
-    face_reach: Array,
-    face_width: Array,
-    depth: Array,
-) -> tuple[Array, Array, Array]:
-    """leaning as a pure function of arrays of one shape, but for bend (..., BEND); angles above 0."""
+def array_edged(
+    tilt: Array, laws: ArrayLaws, force: Array, share: Array, place: Array, rises: Array
+) -> tuple[Array, Array]:
+    """edged as a pure function of arrays: NumPy, PyTorch, JAX. tilt: (..., TILT); place (..., 3) and rises (..., 2);
+    force and share of one shape. Forces that are not above 0 count as none."""
     xp = namespace_of(force)
-
-    def strips(below: Array, reach: Array) -> tuple[Array, Array]:
-        wide, shallow = (2 / curvature) ** 0.5, xp.minimum(below, curvature * reach * reach / 2)
-        beyond, area = below - shallow, 4 / 3 * wide * shallow**1.5
-        return 8 / 15 * wide * shallow**2.5 + beyond * (area + reach * beyond), area + 2 * reach * beyond
-
-    def blend(share: Array, one: int) -> Array:
-        return share * bend[..., one] + (1 - share) * bend[..., one + 1]
-
-    soft_reach, firm_reach = blend(line_share, 8), blend(line_share, 3)
-    soft_width = xp.maximum(blend(1 - line_share, 8), width)
-    near, far, end = (
-        (soft_width - face_width) * angle,
-        (soft_width + face_width) * angle,
-        2 * soft_width * angle,
+    one = 1.0 + 0.0 * force
+    square = (rises * rises).sum(-1)
+    slope = xp.where(square > 0, square, one) ** 0.5
+    angle = xp.where(square > 0, slope, 0.0 * one) - ALIGNED - tilt[..., TURN] * force
+    pad, size = (laws.select * place[..., None, :]).sum(-1), laws.size / 2
+    middle, half_pad, half_face = (
+        xp.where(rises > 0, -pad, pad),
+        laws.half_pad[..., None],
+        laws.half_face[..., None],
     )
-    firm, soft, load = bend[..., 2], bend[..., 7], force * angle
-    most_soft = xp.where(soft < firm, far, math.inf + far)
-    depth = depth + angle * (soft_width + width)
-    for _ in range(_LEANING_STEPS):
-        sunk, held, rate = xp.minimum(depth, most_soft), 0.0 * depth, 0.0 * depth
-        for stiffness, reach, below, behind in (
-            (soft, soft_reach, sunk, sunk - near),
-            (firm, firm_reach, depth - near, depth - far),
-            (soft, soft_reach, sunk - far, sunk - end),
-        ):
-            one, rises = strips(below.clip(0.0, None), reach)
-            other, falls = strips(behind.clip(0.0, None), reach)
-            held = held + stiffness * (one - other)
-            moves = (stiffness == firm) | (depth < most_soft)
-            rate = rate + xp.where(moves, stiffness * (rises - falls), 0.0 * depth)
-        depth = xp.maximum(depth - (held - load) / rate, depth / 4)
-    lower, upper = (depth - near).clip(0.0, None), (depth - far).clip(0.0, None)
-    (most, wide), (least, narrow) = strips(lower, face_reach), strips(upper, face_reach)
-    return (wide - narrow) / angle, firm * (most - least) / angle, lower
+    start, end = xp.maximum(middle - size, -half_pad), xp.minimum(middle + size, half_pad)
+    begin, stop = xp.maximum(start, -half_face), xp.minimum(end, half_face)
+    parts, face, both = (
+        abs(rises) / slope[..., None],
+        (stop - begin).clip(0.0, None),
+        (end - start).clip(0.0, None),
+    )
+    on_face, on_pad = face[..., 0] * face[..., 1], both[..., 0] * both[..., 1]
+    is_tilted = (angle > _LEVEL) & (laws.follows > 0) & (tilt[..., SOFT] > 0) & (on_face > 0) & (force > 0)
+
+    def safe(values: Array) -> Array:
+        return xp.where(is_tilted, values, one)
+
+    reach, width = safe((parts * (begin - start)).sum(-1)), safe((parts * face).sum(-1))
+    angle, load = safe(angle), safe(force)
+    soft = safe(tilt[..., SOFT]) * angle * safe(on_pad) / safe((parts * both).sum(-1))
+    borne = soft * reach * reach / 2
+    skinned_face = tilt[..., FIRM] > 0
+    firm = xp.where(skinned_face, tilt[..., FIRM], one) * angle * safe(on_face) / width
+    left, beside = (load - borne).clip(0.0, None), soft * reach
+    reached = left > 0
+    root = (beside * beside + 2 * firm * xp.where(reached, left, one)) ** 0.5
+    long = xp.where(reached, (root - beside) / firm, 0.0 * one)
+    long = xp.where(long > width, (left + firm * width * width / 2) / (firm * width + beside), long)
+    within = xp.minimum(long, width)
+    least = xp.where(tilt[..., GAP] > 0, tilt[..., GAP], one)
+    gap = least + angle * (reach - (2 * load / soft) ** 0.5).clip(0.0, None)
+    bare = (least / (angle * width) * xp.log1p(angle * width / gap)).clip(None, 1.0)
+    part = xp.where(skinned_face, within / width, bare)
+    on_skin = xp.minimum(firm * within * (long - within / 2), share)
+    on_bare = xp.maximum(share * (1 - borne / load).clip(0.0, None), xp.minimum(share, _LEAST * part))
+    pressed = xp.where(skinned_face, on_skin, on_bare)
+    return xp.where(is_tilted, part, one), xp.where(is_tilted, pressed, share)
+
+
+def array_edge_patch(
+    laws: ArrayLaws, place: Array, rises: Array, part: Array, length: Array, shares: Array
+) -> tuple[Array, Array]:
+    """edge_patch as a pure function of arrays: (m, shares (..., 4)); length m and shares are flat_patch's, of what is
+    not narrower than the level contact."""
+    xp = namespace_of(part)
+    narrow = (part < NARROW) & (part > 0)
+    square = (rises * rises).sum(-1)
+    share = rises * rises / xp.where(square > 0, square, 1.0 + square)[..., None]
+    pad, size, half = (laws.select * place[..., None, :]).sum(-1), laws.size, laws.half_face[..., None]
+    low, high = xp.maximum(-half, -pad - size / 2), xp.minimum(half, size / 2 - pad)
+    sides = (high - low) * xp.where(narrow, part, 1.0 + 0.0 * part)[..., None] ** share
+    middle = xp.where(rises > 0, low + sides / 2, high - sides / 2)
+    ends = array_patch_ends(pad + middle, pad, sides, size, 2 * half + 0.0 * sides)
+    found = xp.concatenate((array_patch_offset(middle, sides, 2 * half + 0.0 * sides), ends), -1)
+    return xp.where(narrow, sides[..., 1], length), xp.where(narrow[..., None], found, shares)

@@ -114,8 +114,16 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
     length = sqrt(area * on_face * longer);
   } else {
+    double part = 1, rise[2] = {0, 0};
     heat_contact(law, force, place, &area, &share);
-    if (area > 0) length = heat_flat_patch(law, area, place, shares);
+    if (area > 0 && !other) {
+      const double* tilt = numbers->tilts + ((f * numbers->things + g) * 3 + axis) * TILT;
+      for (int j = 0; j < 2; j++) rise[j] = looking[(int)law->across[j]] / fabs(looking[axis]);
+      part = heat_edged(tilt, law, exp(numbers->grid[0]), force, place, rise, &share);
+    }
+    if (part > 0 && part < 1 - 1e-9) length = heat_edge_patch(law, place, rise, part, shares);
+    else if (area > 0) length = heat_flat_patch(law, area, place, shares);
+    area *= part;
   }
   if (area > 0 && share > 0) {
     conducts = heat_conductance(law, numbers, share / area) * area * on_face;
