@@ -19,7 +19,7 @@ from thermograsp.errors import InvalidValueError
 from thermograsp.thermal import Reservoir, ice, water
 from thermograsp.touch import Fingertip, ThermalBody, ThermalTouch, install, prepare
 
-from .engine_scene import NEEDS_RECORDS
+from .engine_scene import NEEDS_RECORDS, NEEDS_SPECS
 from .test_own_shapes import felt, mesh, spec, touch_of
 
 ROOM = 24.0  # °C
@@ -191,10 +191,15 @@ def test_what_cannot_be_is_refused() -> None:
             ask(np.zeros(0))
     with pytest.raises(InvalidValueError, match="leave surround= of the fingertips out"):
         touch_of(vessel(), inside, fingertips={"tip": Fingertip("tip", surround="silicone")})
-    with pytest.raises(InvalidValueError, match="knows no contents"):
-        install(spec(mesh("tray"), 0.015), fingertips={"tip": "tip"}, objects={"thing": inside})
     with pytest.raises(InvalidValueError, match="A box has no hollow"):
         both = {"tip": Fingertip("tip", skin="filled_silicone"), "other": Fingertip("other")}
         ThermalTouch(spec(mesh("tray"), 0.015, 2).compile(), fingertips=both, objects={"thing": inside})
     with pytest.raises(InvalidValueError, match=r"contents must be a thermal\.Reservoir"):
         ThermalBody("ceramic", contents=80.0)  # pyright: ignore[reportArgumentType]
+
+
+@NEEDS_SPECS
+def test_the_plugin_knows_no_contents() -> None:
+    inside = ThermalBody("ceramic", contents=water(0.02, 4.0))
+    with pytest.raises(InvalidValueError, match="knows no contents"):
+        install(spec(mesh("tray"), 0.015), fingertips={"tip": "tip"}, objects={"thing": inside})

@@ -313,3 +313,51 @@ def test_two_round_fingertips_feel_one_another() -> None:
         reading = touch.update(data)
     assert reading.touching == ("other", "tip")
     assert reading.temperature_drop[0] > 0.05 > -0.05 > reading.temperature_drop[1]
+
+
+@pytest.mark.parametrize("tip", ["ball", "short capsule", "egg"])
+def test_what_is_round_both_ways_leans_nowhere(tip: str) -> None:
+    """A block that is turned by some degrees is met at another place of a ball, and by as much."""
+    drops = []
+    for degrees in (0.0, 0.1, 2.0):
+        xml = scene(tip, "block").replace('<body name="object"', f'<body name="object" euler="0 {degrees} 0"')
+        model = mujoco.MjModel.from_xml_string(xml)
+        words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
+        data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+        data.ctrl[0], reading = 5.0, touch.reading
+        for _ in range(100):
+            mujoco.mj_step(model, data)
+            reading = touch.update(data)
+        drops.append(float(reading.temperature_drop[0]))
+    assert drops[0] > 0.05
+    assert drops[1] == pytest.approx(drops[0], rel=0.01)
+    assert drops[2] == pytest.approx(drops[0], rel=0.1)
+
+
+def test_a_rod_that_leans_on_a_bar_under_its_sensor_presses_on_the_bar_alone() -> None:
+    rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045, STIFFNESS, 0.0064, 0.012])
+    bar = np.array([0.0, 0.0, WIDE, 0.002])
+    level, leaning = (
+        round_contact(rod, bar, np.array([1.0, 0.0, 0.0, 1.0, 0.0, math.radians(angle)]), 5.0, 0.0, 0.0)
+        for angle in (0.0, 0.5)
+    )
+    assert leaning[1] == pytest.approx(5.0, rel=1e-6) == level[1]
+    assert leaning[0] == pytest.approx(level[0], rel=0.01)
+
+
+def test_a_level_face_of_a_mesh_is_level_whatever_its_frame() -> None:
+    """MuJoCo turns a mesh's frame along its inertia, which says nothing of its faces."""
+    wedge = "-.03 -.02 .02 .03 -.02 .02 -.03 .02 .02 .03 .02 .02 -.03 -.02 -.02 -.03 .02 -.02"
+    drops = []
+    for geom in ('type="box" size=".02 .02 .02"', 'type="mesh" mesh="wedge"'):
+        xml = SCENE.format(tip=TIPS["capsule"], target=f"<geom {geom}/>", height=0.0285)
+        xml = xml.replace("<worldbody>", f'<asset><mesh name="wedge" vertex="{wedge}"/></asset><worldbody>')
+        model = mujoco.MjModel.from_xml_string(xml)
+        words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
+        data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+        data.ctrl[0], reading = 5.0, touch.reading
+        for _ in range(100):
+            mujoco.mj_step(model, data)
+            reading = touch.update(data)
+        drops.append(float(reading.temperature_drop[0]))
+    assert drops[1] == pytest.approx(drops[0], rel=0.1)

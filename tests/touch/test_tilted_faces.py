@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -25,8 +26,10 @@ from thermograsp.touch.contacts.tilt import (
     TURN,
     array_edge_patch,
     array_edged,
+    array_fall,
     edge_patch,
     edged,
+    fall,
 )
 from thermograsp.touch.scene import bodies, pads
 
@@ -47,9 +50,9 @@ def scene(about_y: float, aside: float = 0.0, about_x: float = 0.0) -> str:
     return SCENE.format(about_x, about_y, aside, 0.02 * turned + 0.0045)
 
 
-def law_of(skin: str | None) -> tuple[np.ndarray, np.void]:
+def law_of(skin: str | None, geom: str = "box") -> tuple[np.ndarray, np.void]:
     """Of the pad on the block's upper face."""
-    model = mujoco.MjModel.from_xml_string(scene(0.0))
+    model = mujoco.MjModel.from_xml_string(scene(0.0).replace('name="block" type="box"', f'type="{geom}"'))
     shapes = bodies(model, {"object": "steel"}, 24.0)
     found = pair_laws(model, pads(model, {"tip": Fingertip("tip", skin=skin, **PAD)}, shapes), shapes)
     return found.tilts[0, 0, 2], found.laws[0, 0, 2]
@@ -59,7 +62,7 @@ def part_of(
     tilt: np.ndarray, law: np.void, force: float, place: np.ndarray, rise: tuple[float, float]
 ) -> Any:
     area, share = contact(law, force, place)
-    return area, share, *edged(tilt, law, force, share, place, *rise)
+    return area, share, *edged(tilt, law, force, force, share, place[0], place[1], *rise)[:2]
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.012, 0.019])
@@ -119,25 +122,29 @@ def test_what_is_aligned_is_as_it_was(skin: str | None) -> None:
 
 def test_arrays_do_as_compiled_code_does() -> None:
     rng = np.random.default_rng(0)
-    count, narrow = 600, 0
-    for skin in (None, "filled_silicone"):
-        tilt, law = law_of(skin)
+    count, narrow = 300, 0
+    for skin, geom in itertools.product((None, "filled_silicone"), ("box", "cylinder")):
+        tilt, law = law_of(skin, geom)
         place = np.column_stack((rng.uniform(-0.022, 0.022, (count, 2)), np.full(count, 0.024)))
         rises = rng.uniform(-0.4, 0.4, (count, 2)) * (rng.random((count, 2)) < 0.7)
         force = 10 ** rng.uniform(-2, 2, count)
+        together, given = force * rng.choice([1.0, 3.0], count), rises
         level = [contact(law, *each) for each in zip(force, place, strict=True)]
         area, share = np.array(level).T
-        laws = array_laws(np.repeat(law, count), np.zeros(0))
-        part, pressed = array_edged(np.tile(tilt, (count, 1)), laws, force, share, place, rises)
-        length, shares = array_edge_patch(laws, place, rises, part, np.zeros(count), np.zeros((count, 4)))
+        laws, tilts = array_laws(np.repeat(law, count), np.zeros(0)), np.tile(tilt, (count, 1))
+        at, rises = array_fall(tilts, laws, place, rises)
+        found = array_edged(tilts, laws, force, together, share, at, rises)
+        length, shares = array_edge_patch(laws, at, rises, found[0], np.zeros(count), np.zeros((count, 4)))
         for n in range(count):
             if area[n] == 0:
                 continue
-            expected = edged(tilt, law, force[n], share[n], place[n], *rises[n])
-            np.testing.assert_allclose((part[n], pressed[n]), expected, rtol=1e-9, atol=1e-15)
+            row = fall(tilt, place[n, 0], place[n, 1], *given[n])
+            np.testing.assert_allclose(np.concatenate((at[n], rises[n])), row, rtol=1e-12, atol=1e-15)
+            expected = edged(tilt, law, force[n], together[n], share[n], *row)
+            np.testing.assert_allclose([each[n] for each in found], expected, rtol=1e-9, atol=1e-15)
             if 0 < expected[0] < 1 - 1e-9:
                 of, narrow = np.zeros(4), narrow + 1
-                long = edge_patch(law, place[n], *rises[n], expected[0], of)
+                long = edge_patch(law, *row, expected[0], of)
                 assert length[n] == pytest.approx(long, rel=1e-9)
                 np.testing.assert_allclose(shares[n], of, rtol=1e-7, atol=1e-9)
     assert narrow > 300
@@ -193,3 +200,37 @@ def test_the_plugin_feels_the_same(about_y: float, about_x: float, skin: str | N
     mujoco.mj_forward(model, data)
     found = data.sensor("heat").data / touch._pads[0].stack.seebeck
     assert found == pytest.approx(reading.temperature_drop, abs=1e-9)
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_cylinder_s_end_has_no_axes(skin: str | None) -> None:
+    tilt, law = law_of(skin, "cylinder")
+    found = []
+    for turn in np.linspace(0.0, math.pi, 7):
+        c, s = math.cos(turn), math.sin(turn)
+        row = fall(tilt, 0.014 * c, 0.014 * s, 0.12 * c, 0.12 * s)
+        found.append(edged(tilt, law, 60.0, 5.0, 50.0, *row))
+    np.testing.assert_allclose(found, [found[0]] * 7, rtol=1e-9)
+    assert 0 < found[0][0] < 1
+
+
+def test_an_object_s_geoms_turn_the_pad_together() -> None:
+    """A face of two boxes lets the pad turn as far as one box of both."""
+    tilt, law = law_of(None)
+    share, slope = 4.0, ALIGNED + tilt[TURN] * 10.0 - 1e-6
+    assert edged(tilt, law, 5.0, 10.0, share, 0.0, 0.0, slope, 0.0) == (1.0, share, 1.0)
+    assert edged(tilt, law, 5.0, 5.0, share, 0.0, 0.0, slope, 0.0)[0] < 0.5
+
+
+def test_a_pad_around_the_sensor_is_off_the_block_too() -> None:
+    given = []
+    for degrees in (0.0, 12.0):
+        model = mujoco.MjModel.from_xml_string(scene(degrees))
+        data, tip = mujoco.MjData(model), {"tip": Fingertip("tip", surround="silicone", **PAD)}
+        touch = ThermalTouch(model, fingertips=tip, objects={"object": "aluminium"}, chain=IDEAL)
+        data.ctrl[0] = 10.0
+        for _ in range(300):
+            mujoco.mj_step(model, data)
+            touch.update(data)
+        given.append(touch.balance.given.sum())
+    assert 0 < given[1] < 0.2 * given[0]

@@ -14,6 +14,8 @@ import pytest
 from thermograsp.errors import InvalidValueError, MissingDependencyError, UnknownNameError
 from thermograsp.touch import ThermalBody, ThermalTouch, prepare
 
+from .engine_scene import NEEDS_RECORDS
+
 _spec = importlib.util.spec_from_file_location("hand", Path(__file__).with_name("hand.py"))
 assert _spec and _spec.loader
 hand = importlib.util.module_from_spec(_spec)
@@ -157,6 +159,7 @@ def test_sensors_are_added_once_and_to_a_spec(model: mujoco.MjModel) -> None:
         prepare(model, PADS, OBJECTS)  # pyright: ignore[reportArgumentType]
 
 
+@NEEDS_RECORDS
 def test_sensors_that_are_off_are_told_of() -> None:
     """Their numbers are 0, as if nothing were touched."""
     spec = mujoco.MjSpec.from_string(hand.scene())

@@ -16,7 +16,7 @@ from ..readout import ADS1115, SignalChain, saturated
 from ..stack import HeatedCore, HeatedStack, any_sensor, converter, fallen, heated_core, require_linear
 
 _STEP = 0.01  # s; curves take nothing of it
-_MOST = 2000.0  # K across an element, which nothing that is touched comes near
+_MOST = 300.0  # K across an element, which nothing that is touched comes near
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
 from .pad_contacts import DEPTH, RIM
 from .round_pads import array_round_contact, bends, curves
-from .tilt import TILT, array_edge_patch, array_edged, array_tilted
+from .tilt import TILT, array_edge_patch, array_edged, array_fall, array_tilted
 from .views import array_viewed
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
@@ -123,7 +123,9 @@ class ArrayContacts:
         every = xp.broadcast_to(material[:, None], (worlds, substeps, material.shape[-1])).reshape(
             (worlds * substeps, -1)
         )
-        found = self._joined(whole[..., None], off, middle, axes, geom_position, geom_turn, every)
+        together = ((whole[..., None] * of_object).sum(-2)[..., None, :] * of_object).sum(-1)
+        forces = whole[..., None], together[..., None]
+        found = self._joined(*forces, off, middle, axes, geom_position, geom_turn, every)
 
         def summed(values: Array) -> Array:
             """(B, H, F, O) of the objects, from (B H, F, G)."""
@@ -150,6 +152,7 @@ class ArrayContacts:
     def _joined(
         self,
         pressed: Array,
+        together: Array,
         off: Array,
         middle: Array,
         axes: Array,
@@ -158,8 +161,9 @@ class ArrayContacts:
         material: Array,
     ) -> tuple[Array, Array, Array, Array]:
         """(conductance W/K of a contact of the whole face's spread, area m2, length m), (B, F, G, H) each, 0 where
-        nothing conducts, and shares (B, F, G, H, 4). pressed: (B, F, G, H) N on the pads, which acts at off (B, F, G,
-        2) m from the middle (B, F, 3) m of a pad with axes (B, F, 3, 3)."""
+        nothing conducts, and shares (B, F, G, H, 4). pressed: (B, F, G, H) N on the pads, and together that of all
+        geoms of the object, which acts at off (B, F, G, 2) m from the middle (B, F, 3) m of a pad with axes (B, F, 3,
+        3)."""
         xp = namespace_of(pressed)
         tips, geoms = self.numbers.shape
         looking = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # (B, F, G, 3) in the geom's frame
@@ -173,8 +177,9 @@ class ArrayContacts:
         most = abs((self.units[axis] * looking).sum(-1))
         rises = (law.select * (looking / most[..., None])[..., None, None, :]).sum(-1)
         tilt = self.tilts[which][..., None, :]
-        part, share = array_edged(tilt, law, pressed, share, from_geom[..., None, :], rises)
-        long, shares = array_edge_patch(law, from_geom[..., None, :], rises, part, long, shares)
+        along, rises = array_fall(tilt, law, from_geom[..., None, :], rises)
+        part, share, _ = array_edged(tilt, law, pressed, together, share, along, rises)
+        long, shares = array_edge_patch(law, along, rises, part, long, shares)
         area = area * part
         kept = longer = 1.0 + 0.0 * area
         if self.any_bulging:
@@ -240,7 +245,8 @@ class ArrayContacts:
         sides = (picked[..., None] * seen[..., None, :, :]).sum(-2)
         facing = (of_axis[..., None] * seen).sum(-2)  # what a flat face looks along
         ahead = (of_axis * _seen(geom_turn[:, None], axes[:, :, None, :, 0])).sum(-1)
-        flat = (curve[..., 0] + curve[..., 1] == 0) & (ahead != 0)
+        # fingertips and meshes count as level
+        flat = (curve[..., 0] + curve[..., 1] == 0) & (ahead != 0) & (self.meshed + 0.0 * ahead == 0)
         rise = xp.where(
             flat[..., None], facing / xp.where(flat, ahead, 1.0 + 0.0 * ahead)[..., None], 0.0 * facing
         )

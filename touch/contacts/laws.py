@@ -102,7 +102,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                     continue
                 if size is None:
                     if flat:
-                        tilts[f, g, axis] = edge_row(pad, silicone, shape)
+                        tilts[f, g, axis] = edge_row(pad, silicone, shape, _end_radius(model, geom))
                     continue
                 table = curved_table(silicone, pad.skin, shape.material, *size)
                 if size[1] is not None and flat:
@@ -162,6 +162,12 @@ def _curved(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float |
     if kind in (shapes.mjGEOM_SPHERE, shapes.mjGEOM_CAPSULE):
         return a, None
     return None
+
+
+def _end_radius(model: mujoco.MjModel, geom: int) -> float:
+    """m of a cylinder's end, 0 of other geoms."""
+    kind = mujoco.mjtGeom(int(model.geom_type[geom]))
+    return float(model.geom_size[geom][0]) if kind == mujoco.mjtGeom.mjGEOM_CYLINDER else 0.0
 
 
 def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) -> np.void:

@@ -25,7 +25,7 @@ from ..pointers import asked
 from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
 from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
-from .tilt import edge_patch, edged, tilted
+from .tilt import edge_patch, edged, fall, tilted
 from .views import viewed
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it, beside half of what both have sunk in
@@ -174,6 +174,7 @@ def feel(
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
             conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
             number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
+            touched, at_first, at_second = 1.0, 0.0, 0.0
             for k in range(4):
                 shares[k] = 0.0
             if not bulging and parts[g, 3] > 0:
@@ -212,20 +213,29 @@ def feel(
                     whole, lying = tilted(tilts[f, g, axis], force, slope, second)
             elif bulging:
                 _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
-                if curve[g, axis, 0] + curve[g, axis, 1] > 0:
-                    sides[4], sides[5] = 0.0, 0.0
+                if geom < 0 or parts[g, 3] > 0 or curve[g, axis, 0] + curve[g, axis, 1] > 0:
+                    sides[4], sides[5] = 0.0, 0.0  # fingertips and meshes count as level
                 area, share, kept, longer = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
                 long = math.sqrt(area * kept * longer)
             else:
                 area, share = contact(law, force, place)
-                part, first, second = 1.0, 0.0, 0.0
-                if area > 0 and geom >= 0:
+                part = 1.0
+                if geom >= 0:
+                    tilt, together = tilts[f, g, axis], 0.0
+                    for other in range(part_count):  # geoms of one object turn the pad together
+                        if parts[other, 0] == target:
+                            together += max(pushed[f, other, 0], 0.0)
                     first, second = _rises(geom_xmat, geom, axis, law, normal)
-                    part, share = edged(tilts[f, g, axis], law, force, share, place, first, second)
+                    at_first, at_second, first, second = fall(
+                        tilt, place[law.across[0]], place[law.across[1]], first, second
+                    )
+                    part, share, touched = edged(
+                        tilt, law, force, together, share, at_first, at_second, first, second
+                    )
                 if part < NARROW and part > 0:
-                    long = edge_patch(law, place, first, second, part, shares)
+                    long = edge_patch(law, at_first, at_second, first, second, part, shares)
                 elif area > 0:
                     long = flat_patch(law, area, place, shares)
                 area *= part
@@ -259,7 +269,7 @@ def feel(
                     touch[CURVED] += weight
                     noted |= 1 << RINGS
                 for ring in range(RINGS):
-                    conducts, area = through * rings[ring], rings[ring]
+                    conducts, area = through * rings[ring] * touched, rings[ring] * touched
                     if number >= 0 and whole > 0:
                         table = tables[curved[f, g, side, 1 + ring]]
                         conducts, area, _ = curved_contact(table, lying / whole, first, second)

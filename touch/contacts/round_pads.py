@@ -39,7 +39,7 @@ _WIDE = 10.0  # m, half of what no pad reaches the end of
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
 _NEWTON_STEPS = 8
 _LEANS = 1e-7  # m per m, below which a line lies level
-_LEANING_STEPS = 14  # Newton's, of an increasing convex function, from above
+_LEANING_STEPS = 20  # Newton's, or halves where the slope leads out of what is known
 
 
 def bends(pads: Sequence[PadPlace]) -> np.ndarray:
@@ -114,9 +114,10 @@ def round_contact(bend, curve, sides, force, y, z):
     face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
     depth = _depth(force / bend[2], most, least, reach, width)
     leans = abs(along * sides[5] - aside * sides[4])
-    if leans > _LEANS and middle - spread <= least:
+    if leans > _LEANS and middle - spread < least:
+        ends = other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]
         area, load, lower = leaning(
-            bend, force, leans, most, first_share, width, face_reach, face_width, depth
+            bend, force, leans, most, first_share, ends, (reach, width), (face_reach, face_width), depth
         )
         if area <= 0:
             return 0.0, 0.0, 0.0, 1.0
@@ -177,23 +178,24 @@ def _kept(at, reach, half):
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def leaning(bend, force, angle, curvature, line_share, width, face_reach, face_width, depth):
+def leaning(bend, force, angle, curvature, line_share, ends, firm_half, face_half, depth):
     """(area m2 on the sensor's face, force N on it, depth m at its lower end) of a rod-shaped pad whose line falls by
     angle m per m towards a flat face; all 0 where the face does not reach it. bend: bends'. curvature: 1/m
-    across the line. line_share: how much the pad's y lies across the line. width, face_reach and face_width: half
-    lengths m of what touches along the line, and of the face across and along it. depth: m at which the level line
-    would bear the force."""
-    soft_reach = line_share * bend[8] + (1 - line_share) * bend[9]
-    soft_width = max((1 - line_share) * bend[8] + line_share * bend[9], width)
-    firm_reach = line_share * bend[3] + (1 - line_share) * bend[4]
+    across the line. line_share: how much the pad's y lies across the line. Half lengths m, across the line and along
+    it, of the object: ends; of what bears on the level line: firm_half; of the face: face_half. depth: m at which the
+    level line would bear the force."""
+    (firm_reach, width), (face_reach, face_width) = firm_half, face_half
+    soft_reach = min(line_share * bend[8] + (1 - line_share) * bend[9], ends[0])
+    soft_width = max(min((1 - line_share) * bend[8] + line_share * bend[9], ends[1]), width)
     near, far, end = (
         (soft_width - face_width) * angle,
         (soft_width + face_width) * angle,
         2 * soft_width * angle,
     )
     firm, soft, load = bend[2], bend[7], force * angle
-    most_soft = far if soft < firm else math.inf
+    most_soft = far if soft != firm else math.inf
     depth += angle * (soft_width + width)  # no less, whatever the springs beside the face bear
+    low, high = 0.0, depth
     for _ in range(_LEANING_STEPS):
         sunk = min(depth, most_soft)
         held, rate = 0.0, 0.0
@@ -208,9 +210,14 @@ def leaning(bend, force, angle, curvature, line_share, width, face_reach, face_w
             held += stiffness * (one - other)
             if stiffness == firm or depth < most_soft:
                 rate += stiffness * (rises - falls)
-        change = (held - load) / rate
-        depth = max(depth - change, depth / 4)
-        if abs(change) < 1e-14 * depth:
+        if held < load:
+            low = depth
+        else:
+            high = depth
+        before, depth = depth, depth - (held - load) / rate
+        if not low <= depth <= high:
+            depth = (low + high) / 2
+        if abs(depth - before) < 1e-14 * depth:
             break
     lower, upper = depth - near, max(depth - far, 0.0)
     if lower <= 0:
@@ -270,9 +277,11 @@ def array_round_contact(
     area, load = 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load
 
     fall = abs(along * rise[..., 1] - aside * rise[..., 0])
-    leans = (fall > _LEANS) & (middle - spread <= least)
+    leans = (fall > _LEANS) & (middle - xp.where(alike, 0.0 * spread, spread) < least)
     fall = xp.where(leans, fall, 1.0 + 0.0 * fall)
-    leant = array_leaning(bend, force, fall, most, first_part, width, face_reach, face_width, depth)
+    ends = blend(other, half1, half2), blend(1 - other, half1, half2)
+    firm_half, face_half = (reach, width), (face_reach, face_width)
+    leant = array_leaning(bend, force, fall, most, first_part, ends, firm_half, face_half, depth)
     reached = leant[0] > 0
     lower = xp.where(reached, leant[2], 1.0 + 0.0 * depth)
     a, b = (2 * lower / most) ** 0.5, lower / fall
@@ -321,9 +330,9 @@ def array_leaning(
     angle: Array,
     curvature: Array,
     line_share: Array,
-    width: Array,
-    face_reach: Array,
-    face_width: Array,
+    ends: tuple[Array, Array],
+    firm_half: tuple[Array, Array],
+    face_half: tuple[Array, Array],
     depth: Array,
 ) -> tuple[Array, Array, Array]:
     """leaning as a pure function of arrays of one shape, but for bend (..., BEND); angles above 0."""
@@ -337,16 +346,18 @@ def array_leaning(
     def blend(share: Array, one: int) -> Array:
         return share * bend[..., one] + (1 - share) * bend[..., one + 1]
 
-    soft_reach, firm_reach = blend(line_share, 8), blend(line_share, 3)
-    soft_width = xp.maximum(blend(1 - line_share, 8), width)
+    (firm_reach, width), (face_reach, face_width) = firm_half, face_half
+    soft_reach = xp.minimum(blend(line_share, 8), ends[0])
+    soft_width = xp.maximum(xp.minimum(blend(1 - line_share, 8), ends[1]), width)
     near, far, end = (
         (soft_width - face_width) * angle,
         (soft_width + face_width) * angle,
         2 * soft_width * angle,
     )
     firm, soft, load = bend[..., 2], bend[..., 7], force * angle
-    most_soft = xp.where(soft < firm, far, math.inf + far)
+    most_soft = xp.where(soft != firm, far, math.inf + far)
     depth = depth + angle * (soft_width + width)
+    low, high = 0.0 * depth, depth
     for _ in range(_LEANING_STEPS):
         sunk, held, rate = xp.minimum(depth, most_soft), 0.0 * depth, 0.0 * depth
         for stiffness, reach, below, behind in (
@@ -359,7 +370,10 @@ def array_leaning(
             held = held + stiffness * (one - other)
             moves = (stiffness == firm) | (depth < most_soft)
             rate = rate + xp.where(moves, stiffness * (rises - falls), 0.0 * depth)
-        depth = xp.maximum(depth - (held - load) / rate, depth / 4)
+        less = held < load
+        low, high = xp.where(less, depth, low), xp.where(less, high, depth)
+        depth = depth - (held - load) / xp.where(rate > 0, rate, 1.0 + 0.0 * rate)
+        depth = xp.where((depth >= low) & (depth <= high), depth, (low + high) / 2)
     lower, upper = (depth - near).clip(0.0, None), (depth - far).clip(0.0, None)
     (most, wide), (least, narrow) = strips(lower, face_reach), strips(upper, face_reach)
     return (wide - narrow) / angle, firm * (most - least) / angle, lower

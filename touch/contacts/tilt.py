@@ -53,12 +53,13 @@ from ..scene import BodyShape, PadPlace
 TURN, SOFT, FIRM, GAP, RADIUS, HALF, HALF_PAD, HALF_FACE, TILT = range(9)
 """Of a rod under a pad: rad/N that turn the face, N/m^2.5 of the silicone and of the skin on the face (0 without one),
 m of the gap (0 under a skin), the rod's radius m, half its length and half the pad's and the face's sides m. Of a flat
-face: Pa/m in place of N/m^2.5, and no radius and length."""
+face: Pa/m in place of N/m^2.5, no radius, and of a cylinder's end that in place of half the length."""
 _LEAST = math.exp(FIRST_FORCE)  # N, of a face that the rod does not press: what gas conducts alone
 ALIGNED = 0.05
 """rad, about 3 degrees, up to which flat faces count as aligned beyond what the force turns the face by: fingers and
 what they hold give way, and so do MuJoCo's soft contacts, whose angles say nothing of less."""
 _LEVEL = 1e-7  # rad, below which there is no angle
+_THIN = 1e-12  # m, of a line that is not over the face
 _STEPS = 4  # Newton's, of an increasing convex function, from above
 
 
@@ -77,17 +78,17 @@ def tilt_row(
     return (turn, soft, 0.0, float(law["mean_gap"]), *sizes)
 
 
-def edge_row(pad: PadPlace, silicone: Pad, shape: BodyShape) -> tuple[float, ...]:
-    """(TILT,) of a flat face under a flat pad."""
+def edge_row(pad: PadPlace, silicone: Pad, shape: BodyShape, radius: float) -> tuple[float, ...]:
+    """(TILT,) of a flat face under a flat pad. radius: m of a cylinder's end, 0 of others."""
     springs, halves = (
         silicone.foundation_modulus / silicone.thickness,
         (silicone.width / 2, silicone.face / 2),
     )
     turn = silicone.face / 2 / (springs * silicone.face**4 / 12)
     if pad.skin is not None:
-        return (turn, springs, pad.skin.stiffness, 0.0, 0.0, 0.0, *halves)
+        return (turn, springs, pad.skin.stiffness, 0.0, 0.0, radius, *halves)
     law = cylinder_footprint(skinned(silicone, None), face_joint(None, Surface.of(shape.material)), 1.0, 1.0)
-    return (turn, springs, 0.0, float(law["mean_gap"]), 0.0, 0.0, *halves)
+    return (turn, springs, 0.0, float(law["mean_gap"]), 0.0, radius, *halves)
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
@@ -103,9 +104,7 @@ def tilted(tilt, force, slope, middle):
     half = tilt[HALF] * cosine
     start, end = max(-along - half, -tilt[HALF_PAD]), min(half - along, tilt[HALF_PAD])
     first, last = max(start, -tilt[HALF_FACE]), min(end, tilt[HALF_FACE])
-    width = last - first
-    if not width > 0:
-        return 1.0, force  # it is not over the face
+    width = max(last - first, 0.0)  # none where it is not over the face
     steep, reach = angle * math.sqrt(angle), first - start
     soft = tilt[SOFT] * steep
     deep = (force / soft) ** 0.4  # m of the silicone alone
@@ -118,7 +117,7 @@ def tilted(tilt, force, slope, middle):
             held = firm * long**2.5 + soft * ((reach + long) ** 2.5 - long**2.5)
             rate = 2.5 * (firm * long**1.5 + soft * ((reach + long) ** 1.5 - long**1.5))
             long = max(long - (held - force) / rate, 0.0) if pressed > 0 else 0.0
-        share, pressed = min(long / width, 1.0), min(firm * long**2.5, pressed)
+        share, pressed = min(long / max(width, _THIN), 1.0), min(firm * long**2.5, pressed)
     else:
         near, far = math.sqrt(1 + gap / tilt[GAP]), math.sqrt(1 + (gap + angle * width) / tilt[GAP])
         wide = tilt[HALF_FACE] / math.sqrt(2 * tilt[RADIUS] * tilt[GAP])
@@ -138,10 +137,10 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     half, pad, face = tilt[..., HALF] * cosine, tilt[..., HALF_PAD], tilt[..., HALF_FACE]
     start, end = xp.maximum(-along - half, -pad), xp.minimum(half - along, pad)
     first, last = xp.maximum(start, -face), xp.minimum(end, face)
-    width = last - first
-    is_tilted = (angle > _LEVEL) & (width > 0) & (force > 0) & (tilt[..., RADIUS] > 0)
+    width = (last - first).clip(0.0, None)
+    is_tilted = (angle > _LEVEL) & (force > 0) & (tilt[..., RADIUS] > 0)
     angle = xp.where(is_tilted, angle, one)
-    width, load = xp.where(is_tilted, width, one), xp.where(is_tilted, force, one)
+    width, load = xp.where(is_tilted, width, 0.0 * one), xp.where(is_tilted, force, one)
     reach = xp.where(is_tilted, first - start, one)
     steep = angle * angle**0.5
     soft = xp.where(is_tilted, tilt[..., SOFT], one) * steep
@@ -162,7 +161,7 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
         rate = 2.5 * (firm * long**1.5 + soft * ((reach + long) ** 1.5 - long**1.5))
         long = xp.where(reached, (long - (held - load) / rate).clip(1e-12, None), one)
     on_skin = xp.where(reached, xp.minimum(firm * long**2.5, pressed), 0.0 * one)
-    under = xp.where(reached, long / width, 0.0 * one)
+    under = xp.where(reached, long / width.clip(_THIN, None), 0.0 * one)
     share = xp.where(skinned_face, under, bare).clip(None, 1.0)
     pressed = xp.where(skinned_face, on_skin, pressed)
     rest = xp.minimum(load, _LEAST * share)
@@ -170,16 +169,30 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def edged(tilt, law, force, share, place, first, second):
-    """(part of a flat contact's area, force N on it) at a normal force N > 0, of which the level face has `share` N.
-    first, second: m per m by which the gap grows along the law's two axes. place: as contact's."""
+def fall(tilt, pad_first, pad_second, first, second):
+    """The four, as edged takes them: of a cylinder's end, which has no axes, along the steepest fall and across it."""
     slope = math.hypot(first, second)
-    angle = slope - ALIGNED - tilt[TURN] * force
+    if not (tilt[HALF] > 0 and slope > 0):
+        return pad_first, pad_second, first, second
+    one, other = first / slope, second / slope
+    return pad_first * one + pad_second * other, pad_second * one - pad_first * other, slope, 0.0
+
+
+@njit(cache=True, borrows=True, error_model="numpy")
+def edged(tilt, law, force, together, share, pad_first, pad_second, first, second):
+    """(part of a flat contact's area, force N on it, share of the pad's length beside the face that touches) at a
+    normal force N > 0, of which the level face has `share` N. together: N on all geoms of the object, by which the pad
+    turns. first, second: m per m by which the gap grows along the law's two axes; pad_first and pad_second: m, the
+    pad's middle from the object's along them."""
+    slope = math.hypot(first, second)
+    angle = slope - ALIGNED - tilt[TURN] * together
     if not (angle > _LEVEL and law.size[0] > 0 and tilt[SOFT] > 0):
-        return 1.0, share
+        return 1.0, share, 1.0
     reach, width, along, on_face, on_pad = 0.0, 0.0, 0.0, 1.0, 1.0
     for side in range(2):
-        rise, pad, size = first if side == 0 else second, place[law.across[side]], law.size[side] / 2
+        rise, pad, size = (
+            (first, pad_first, law.size[0] / 2) if side == 0 else (second, pad_second, law.size[1] / 2)
+        )
         middle = -pad if rise > 0 else pad  # of the object from the pad's, where the gap grows
         start, end = max(middle - size, -law.half_pad), min(middle + size, law.half_pad)
         begin, stop = max(start, -law.half_face), min(end, law.half_face)
@@ -190,10 +203,12 @@ def edged(tilt, law, force, share, place, first, second):
             along + part * (end - start),
         )
         on_face, on_pad = on_face * max(stop - begin, 0.0), on_pad * max(end - start, 0.0)
-    if not on_face > 0.0:
-        return 1.0, share
+    if not on_pad > 0.0:
+        return 1.0, share, 1.0
     soft = tilt[SOFT] * angle * on_pad / along
-    borne = soft * reach * reach / 2
+    borne, touched = soft * reach * reach / 2, min(math.sqrt(2 * force / soft) / along, 1.0)
+    if not on_face > 0.0:
+        return 1.0, share, touched
     if tilt[FIRM] > 0:
         firm = tilt[FIRM] * angle * on_face / width
         left, beside = max(force - borne, 0.0), soft * reach
@@ -201,18 +216,18 @@ def edged(tilt, law, force, share, place, first, second):
         if long > width:
             long = (left + firm * width * width / 2) / (firm * width + beside)
         within = min(long, width)
-        return within / width, min(firm * within * (long - within / 2), share)
+        return within / width, min(firm * within * (long - within / 2), share), touched
     gap = tilt[GAP] + angle * max(reach - math.sqrt(2 * force / soft), 0.0)
     part = min(tilt[GAP] / (angle * width) * math.log1p(angle * width / gap), 1.0)
-    return part, max(share * max(1 - borne / force, 0.0), min(share, _LEAST * part))
+    return part, max(share * max(1 - borne / force, 0.0), min(share, _LEAST * part)), touched
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def edge_patch(law, place, first, second, part, shares):
+def edge_patch(law, pad_first, pad_second, first, second, part, shares):
     """flat_patch of a part of the area, at the end where the gap is least: m, the second side; fills shares (4,)."""
     width, slope, length = 2 * law.half_face, first * first + second * second, 0.0
     for side in range(2):
-        rise, pad, size = first if side == 0 else second, place[law.across[side]], law.size[side]
+        rise, pad, size = (first, pad_first, law.size[0]) if side == 0 else (second, pad_second, law.size[1])
         low, high = max(-law.half_face, -pad - size / 2), min(law.half_face, size / 2 - pad)
         length = (high - low) * part ** (rise * rise / slope)
         middle = low + length / 2 if rise > 0 else high - length / 2
@@ -221,17 +236,30 @@ def edge_patch(law, place, first, second, part, shares):
     return length
 
 
+def array_fall(tilt: Array, laws: ArrayLaws, place: Array, rises: Array) -> tuple[Array, Array]:
+    """fall as a pure function of arrays: (..., 2) each. place: (..., 3) m."""
+    xp = namespace_of(rises)
+    pad = (laws.select * place[..., None, :]).sum(-1)
+    square = (rises * rises).sum(-1)
+    slope = xp.where(square > 0, square, 1.0 + 0.0 * square) ** 0.5
+    one, other = rises[..., 0] / slope, rises[..., 1] / slope
+    turned = xp.stack((pad[..., 0] * one + pad[..., 1] * other, pad[..., 1] * one - pad[..., 0] * other), -1)
+    down = xp.stack((slope, 0.0 * slope), -1)
+    is_round = ((tilt[..., HALF] > 0) & (tilt[..., RADIUS] == 0) & (square > 0))[..., None]
+    return xp.where(is_round, turned, pad), xp.where(is_round, down, rises)
+
+
 def array_edged(
-    tilt: Array, laws: ArrayLaws, force: Array, share: Array, place: Array, rises: Array
-) -> tuple[Array, Array]:
-    """edged as a pure function of arrays: NumPy, PyTorch, JAX. tilt: (..., TILT); place (..., 3) and rises (..., 2);
-    force and share of one shape. Forces that are not above 0 count as none."""
+    tilt: Array, laws: ArrayLaws, force: Array, together: Array, share: Array, pad: Array, rises: Array
+) -> tuple[Array, Array, Array]:
+    """edged as a pure function of arrays: NumPy, PyTorch, JAX. tilt: (..., TILT); pad and rises (..., 2); force and
+    share of one shape. Forces that are not above 0 count as none."""
     xp = namespace_of(force)
     one = 1.0 + 0.0 * force
     square = (rises * rises).sum(-1)
     slope = xp.where(square > 0, square, one) ** 0.5
-    angle = xp.where(square > 0, slope, 0.0 * one) - ALIGNED - tilt[..., TURN] * force
-    pad, size = (laws.select * place[..., None, :]).sum(-1), laws.size / 2
+    angle = xp.where(square > 0, slope, 0.0 * one) - ALIGNED - tilt[..., TURN] * together
+    size = laws.size / 2
     middle, half_pad, half_face = (
         xp.where(rises > 0, -pad, pad),
         laws.half_pad[..., None],
@@ -245,17 +273,20 @@ def array_edged(
         (end - start).clip(0.0, None),
     )
     on_face, on_pad = face[..., 0] * face[..., 1], both[..., 0] * both[..., 1]
-    is_tilted = (angle > _LEVEL) & (laws.follows > 0) & (tilt[..., SOFT] > 0) & (on_face > 0) & (force > 0)
+    is_tilted = (angle > _LEVEL) & (laws.follows > 0) & (tilt[..., SOFT] > 0) & (on_pad > 0) & (force > 0)
+    is_over = is_tilted & (on_face > 0)
 
     def safe(values: Array) -> Array:
         return xp.where(is_tilted, values, one)
 
-    reach, width = safe((parts * (begin - start)).sum(-1)), safe((parts * face).sum(-1))
+    reach, width = safe((parts * (begin - start)).sum(-1)), (parts * face).sum(-1)
+    width, on_face = xp.where(is_over, width, one), xp.where(is_over, on_face, one)
     angle, load = safe(angle), safe(force)
-    soft = safe(tilt[..., SOFT]) * angle * safe(on_pad) / safe((parts * both).sum(-1))
+    along = safe((parts * both).sum(-1))
+    soft = safe(tilt[..., SOFT]) * angle * safe(on_pad) / along
     borne = soft * reach * reach / 2
     skinned_face = tilt[..., FIRM] > 0
-    firm = xp.where(skinned_face, tilt[..., FIRM], one) * angle * safe(on_face) / width
+    firm = xp.where(skinned_face, tilt[..., FIRM], one) * angle * on_face / width
     left, beside = (load - borne).clip(0.0, None), soft * reach
     reached = left > 0
     root = (beside * beside + 2 * firm * xp.where(reached, left, one)) ** 0.5
@@ -269,11 +300,12 @@ def array_edged(
     on_skin = xp.minimum(firm * within * (long - within / 2), share)
     on_bare = xp.maximum(share * (1 - borne / load).clip(0.0, None), xp.minimum(share, _LEAST * part))
     pressed = xp.where(skinned_face, on_skin, on_bare)
-    return xp.where(is_tilted, part, one), xp.where(is_tilted, pressed, share)
+    touched = ((2 * load / soft) ** 0.5 / along).clip(None, 1.0)
+    return xp.where(is_over, part, one), xp.where(is_over, pressed, share), xp.where(is_tilted, touched, one)
 
 
 def array_edge_patch(
-    laws: ArrayLaws, place: Array, rises: Array, part: Array, length: Array, shares: Array
+    laws: ArrayLaws, pad: Array, rises: Array, part: Array, length: Array, shares: Array
 ) -> tuple[Array, Array]:
     """edge_patch as a pure function of arrays: (m, shares (..., 4)); length m and shares are flat_patch's, of what is
     not narrower than the level contact."""
@@ -281,7 +313,7 @@ def array_edge_patch(
     narrow = (part < NARROW) & (part > 0)
     square = (rises * rises).sum(-1)
     share = rises * rises / xp.where(square > 0, square, 1.0 + square)[..., None]
-    pad, size, half = (laws.select * place[..., None, :]).sum(-1), laws.size, laws.half_face[..., None]
+    size, half = laws.size, laws.half_face[..., None]
     low, high = xp.maximum(-half, -pad - size / 2), xp.minimum(half, size / 2 - pad)
     sides = (high - low) * xp.where(narrow, part, 1.0 + 0.0 * part)[..., None] ** share
     middle = xp.where(rises > 0, low + sides / 2, high - sides / 2)

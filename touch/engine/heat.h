@@ -151,9 +151,10 @@ void heat_behind(const Numbers* numbers, int f, double drawn, double force, doub
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
-double heat_edged(const double* tilt, const Law* law, double first_force, double force, const double place[3], const double rise[2],
-                  double* share);
-double heat_edge_patch(const Law* law, const double place[3], const double rise[2], double part, double shares[4]);
+void heat_fall(const double* tilt, double pad[2], double rise[2]);
+double heat_edged(const double* tilt, const Law* law, double first_force, double force, double together, const double at[2],
+                  const double rise[2], double* share);
+double heat_edge_patch(const Law* law, const double at[2], const double rise[2], double part, double shares[4]);
 double heat_flat_patch(const Law* law, double area, const double place[3], double shares[4]);
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
                           double* area, double* share, double* longer);

@@ -7,7 +7,7 @@
 #define LEAST 1e-7 /* of the larger curvature: what is straighter counts as that */
 #define NEWTON_STEPS 8
 #define LEANS 1e-7 /* m per m, below which a line lies level */
-#define LEANING_STEPS 14
+#define LEANING_STEPS 20
 static const double pi = 3.14159265358979323846;
 
 static double disc(double s) { return (s * sqrt(1 - s * s) + asin(s)) / 2; }
@@ -53,13 +53,15 @@ static double strips(double depth, double curvature, double reach, double* area)
 }
 
 /* Area and force on the face of a straight pad that leans, and the depth at the face's lower end; 0 where it is off. */
-static double leaning(const double* bend, double force, double angle, double curvature, double own, double width,
-                      double face_reach, double face_width, double depth, double* area, double* lower) {
-  double soft_reach = own * bend[8] + (1 - own) * bend[9], firm_reach = own * bend[3] + (1 - own) * bend[4];
-  double soft_width = greater((1 - own) * bend[8] + own * bend[9], width), load = force * angle;
+static double leaning(const double* bend, double force, double angle, double curvature, double own, const double ends[2],
+                      const double firm_half[2], const double face_half[2], double depth, double* area, double* lower) {
+  double firm_reach = firm_half[0], width = firm_half[1], face_reach = face_half[0], face_width = face_half[1];
+  double soft_reach = lesser(own * bend[8] + (1 - own) * bend[9], ends[0]), load = force * angle;
+  double soft_width = greater(lesser((1 - own) * bend[8] + own * bend[9], ends[1]), width);
   double near = (soft_width - face_width) * angle, far = (soft_width + face_width) * angle, end = 2 * soft_width * angle;
-  double firm = bend[2], soft = bend[7], most_soft = soft < firm ? far : INFINITY, wide, narrow;
+  double firm = bend[2], soft = bend[7], most_soft = soft != firm ? far : INFINITY, wide, narrow;
   depth += angle * (soft_width + width);
+  double low = 0, high = depth;
   for (int i = 0; i < LEANING_STEPS; i++) {
     double sunk = lesser(depth, most_soft), held = 0, rate = 0;
     /* springs: stiffness, reach, and how deep they are where they begin and end */
@@ -72,9 +74,12 @@ static double leaning(const double* bend, double force, double angle, double cur
       held += springs[n][0] * (one - other);
       if (springs[n][0] == firm || depth < most_soft) rate += springs[n][0] * (wide - narrow);
     }
-    double change = (held - load) / rate;
-    depth = greater(depth - change, depth / 4);
-    if (fabs(change) < 1e-14 * depth) break;
+    if (held < load) low = depth;
+    else high = depth;
+    double before = depth;
+    depth -= (held - load) / rate;
+    if (!(low <= depth && depth <= high)) depth = (low + high) / 2;
+    if (fabs(depth - before) < 1e-14 * depth) break;
   }
   *area = 0;
   *lower = depth - near;
@@ -101,9 +106,10 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double face_width = lesser((1 - own) * bend[5] + own * bend[6], width);
   double depth = depth_of(force / bend[2], most, least, reach, width), load;
   double leans = fabs(along * sides[5] - aside * sides[4]);
-  if (leans > LEANS && middle - apart <= least) {
-    double lower;
-    *share = leaning(bend, force, leans, most, own, width, face_reach, face_width, depth, area, &lower);
+  if (leans > LEANS && middle - apart < least) {
+    double ends[2] = {other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]}, lower;
+    double firm_half[2] = {reach, width}, face_half[2] = {face_reach, face_width};
+    *share = leaning(bend, force, leans, most, own, ends, firm_half, face_half, depth, area, &lower);
     *longer = 1;
     if (!(*area > 0)) return 0;
     double across = sqrt(2 * lower / most);
