@@ -55,7 +55,7 @@ from .law import (
     sphere_law,
     table_footprint,
 )
-from .patch_place import NARROW, array_patch_ends, array_patch_offset, patch_ends, patch_offset
+from .patch_place import NARROW, patch_ends, patch_offset
 from .rigid import RigidContact, rigid_cylinder, rigid_sphere
 from .rough_faces import (
     AIR,
@@ -102,8 +102,6 @@ __all__ = [
     "array_conductance",
     "array_contact",
     "array_flat_patch",
-    "array_patch_ends",
-    "array_patch_offset",
     "array_curved_contact",
     "array_curved_shares",
     "array_laws",

@@ -34,7 +34,7 @@ from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
 from .pad_contacts import DEPTH, RIM
 from .round_pads import array_round_contact, bends, curves
-from .tilt import TILT, array_edge_patch, array_edged, array_fall, array_tilted
+from .tilt import TILT, array_tilted
 from .views import array_viewed
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
@@ -123,9 +123,7 @@ class ArrayContacts:
         every = xp.broadcast_to(material[:, None], (worlds, substeps, material.shape[-1])).reshape(
             (worlds * substeps, -1)
         )
-        together = ((whole[..., None] * of_object).sum(-2)[..., None, :] * of_object).sum(-1)
-        forces = whole[..., None], together[..., None]
-        found = self._joined(*forces, off, middle, axes, geom_position, geom_turn, every)
+        found = self._joined(whole[..., None], off, middle, axes, geom_position, geom_turn, every)
 
         def summed(values: Array) -> Array:
             """(B, H, F, O) of the objects, from (B H, F, G)."""
@@ -152,7 +150,6 @@ class ArrayContacts:
     def _joined(
         self,
         pressed: Array,
-        together: Array,
         off: Array,
         middle: Array,
         axes: Array,
@@ -161,9 +158,8 @@ class ArrayContacts:
         material: Array,
     ) -> tuple[Array, Array, Array, Array]:
         """(conductance W/K of a contact of the whole face's spread, area m2, length m), (B, F, G, H) each, 0 where
-        nothing conducts, and shares (B, F, G, H, 4). pressed: (B, F, G, H) N on the pads, and together that of all
-        geoms of the object, which acts at off (B, F, G, 2) m from the middle (B, F, 3) m of a pad with axes (B, F, 3,
-        3)."""
+        nothing conducts, and shares (B, F, G, H, 4). pressed: (B, F, G, H) N on the pads, which acts at off (B, F, G,
+        2) m from the middle (B, F, 3) m of a pad with axes (B, F, 3, 3)."""
         xp = namespace_of(pressed)
         tips, geoms = self.numbers.shape
         looking = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # (B, F, G, 3) in the geom's frame
@@ -174,13 +170,6 @@ class ArrayContacts:
         law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
         long, shares = array_flat_patch(law, area, from_geom[..., None, :])
-        most = abs((self.units[axis] * looking).sum(-1))
-        rises = (law.select * (looking / most[..., None])[..., None, None, :]).sum(-1)
-        tilt = self.tilts[which][..., None, :]
-        along, rises = array_fall(tilt, law, from_geom[..., None, :], rises)
-        part, share, _ = array_edged(tilt, law, pressed, together, share, along, rises)
-        long, shares = array_edge_patch(law, along, rises, part, long, shares)
-        area = area * part
         kept = longer = 1.0 + 0.0 * area
         if self.any_bulging:
             area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
@@ -211,7 +200,7 @@ class ArrayContacts:
             side = xp.where(meshed[..., 0], view, axis)
         table = self.curved[as_integers(pair * self.views.shape[1] + side)][..., None]
         number = as_integers(table.clip(0.0, None))
-        whole, lying = array_tilted(tilt, pressed, slope + none, along + none)
+        whole, lying = array_tilted(self.tilts[which][..., None, :], pressed, slope + none, along + none)
         lies = whole > 0
         share = xp.where(lies, whole, 1.0 + 0.0 * whole)
         lying = lying / share

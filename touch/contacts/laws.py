@@ -31,7 +31,7 @@ from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, pad_joint
 from ...thermal.padded import RINGS, ring_sides
 from ...thermal.pressed import PressedMesh, Ring, RoundRing
 from ..scene import BodyShape, PadPlace, is_round, mesh_of
-from .tilt import TILT, edge_row, tilt_row
+from .tilt import TILT, tilt_row
 from .views import stacked_views
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
@@ -46,8 +46,7 @@ class PairLaws(NamedTuple):
     """laws: (F, N, 3) CONTACT_LAW records, and beside: those of the pads around the sensors, zeros without. curved: (F,
     N, A) numbers of the tables of what is curved, by axis, and of meshes, by view; -1 for what is flat. around: (F, N,
     A, RINGS) those of the rings of the pads around the sensors, -1 without. tables: K, (CURVED_TABLE,) each. pressed:
-    of the numbers behind them. tilts: (F, N, 3, TILT) of rods and flat
-    faces, 0 of others. views: (N, A, VIEW) of meshes, and viewed:
+    of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N, A, VIEW) of meshes, and viewed:
     (N,) how many."""
 
     laws: np.ndarray
@@ -98,11 +97,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 if around is not None:
                     beside[f, g, axis] = _law(model, geom, axis, sheet, around)
                 size = _curved(model, geom, axis)
-                if sum(pad.curvature) > 0:
-                    continue
-                if size is None:
-                    if flat:
-                        tilts[f, g, axis] = edge_row(pad, silicone, shape, _end_radius(model, geom))
+                if size is None or sum(pad.curvature) > 0:
                     continue
                 table = curved_table(silicone, pad.skin, shape.material, *size)
                 if size[1] is not None and flat:
@@ -162,12 +157,6 @@ def _curved(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float |
     if kind in (shapes.mjGEOM_SPHERE, shapes.mjGEOM_CAPSULE):
         return a, None
     return None
-
-
-def _end_radius(model: mujoco.MjModel, geom: int) -> float:
-    """m of a cylinder's end, 0 of other geoms."""
-    kind = mujoco.mjtGeom(int(model.geom_type[geom]))
-    return float(model.geom_size[geom][0]) if kind == mujoco.mjtGeom.mjGEOM_CYLINDER else 0.0
 
 
 def _law(model: mujoco.MjModel, geom: int, axis: int, pad: Pad, faces: Joint) -> np.void:

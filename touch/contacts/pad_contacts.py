@@ -12,7 +12,6 @@ from thermograsp.compiled import njit
 
 from ...thermal.contact import (
     CYLINDER,
-    NARROW,
     beside_face,
     conductance,
     contact,
@@ -25,7 +24,7 @@ from ..pointers import asked
 from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
 from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
-from .tilt import edge_patch, edged, fall, tilted
+from .tilt import tilted
 from .views import viewed
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it, beside half of what both have sunk in
@@ -174,7 +173,6 @@ def feel(
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
             conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
             number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
-            touched, at_first, at_second = 1.0, 0.0, 0.0
             for k in range(4):
                 shares[k] = 0.0
             if not bulging and parts[g, 3] > 0:
@@ -221,24 +219,8 @@ def feel(
                 long = math.sqrt(area * kept * longer)
             else:
                 area, share = contact(law, force, place)
-                part = 1.0
-                if geom >= 0:
-                    tilt, together = tilts[f, g, axis], 0.0
-                    for other in range(part_count):  # geoms of one object turn the pad together
-                        if parts[other, 0] == target:
-                            together += max(pushed[f, other, 0], 0.0)
-                    first, second = _rises(geom_xmat, geom, axis, law, normal)
-                    at_first, at_second, first, second = fall(
-                        tilt, place[law.across[0]], place[law.across[1]], first, second
-                    )
-                    part, share, touched = edged(
-                        tilt, law, force, together, share, at_first, at_second, first, second
-                    )
-                if part < NARROW and part > 0:
-                    long = edge_patch(law, at_first, at_second, first, second, part, shares)
-                elif area > 0:
+                if area > 0:
                     long = flat_patch(law, area, place, shares)
-                area *= part
             for ring in range(1 + RINGS if pads[f, AROUND] > 0 else 1):
                 known = curved[f, g, side, ring] if number >= 0 else -1
                 if known >= 0 and tables[known, 1] == 0.0 and asked(make, known) == 0:
@@ -269,7 +251,7 @@ def feel(
                     touch[CURVED] += weight
                     noted |= 1 << RINGS
                 for ring in range(RINGS):
-                    conducts, area = through * rings[ring] * touched, rings[ring] * touched
+                    conducts, area = through * rings[ring], rings[ring]
                     if number >= 0 and whole > 0:
                         table = tables[curved[f, g, side, 1 + ring]]
                         conducts, area, _ = curved_contact(table, lying / whole, first, second)
@@ -288,17 +270,6 @@ def feel(
                 touch[PLACE + i] = one * x + two * y + three * z
                 touch[NORMAL + i] = one * normal[0] + two * normal[1] + three * normal[2]
     return True
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _rises(geom_xmat, geom, axis, law, normal):
-    """m per m by which the gap between a pad and a geom's face grows along the law's two axes."""
-    into, first, second = 0.0, 0.0, 0.0
-    for k in range(3):
-        into += geom_xmat[geom, 3 * k + axis] * normal[k]
-        first += geom_xmat[geom, 3 * k + law.across[0]] * normal[k]
-        second += geom_xmat[geom, 3 * k + law.across[1]] * normal[k]
-    return first / abs(into), second / abs(into)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

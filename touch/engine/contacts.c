@@ -60,11 +60,10 @@ static int viewed(const double* views, int count, const double normal[3], const 
   return best;
 }
 
-/* Adds what presses one pad on one thing to the touch. pushed: force N and its moments; together: N on all geoms of the
-target. again: whether another geom of the
+/* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
-                 double together, Pose* poses, bool again, double* touch) {
+                 Pose* poses, bool again, double* touch) {
   const Pose* at = pose(numbers, work, d, f, poses);
   int geom = work->geom[g], body = work->body[g], axis = 0;
   double force = pushed[0], first = pushed[1] / force, second = pushed[2] / force;
@@ -115,20 +114,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
     length = sqrt(area * on_face * longer);
   } else {
-    double part = 1, rise[2] = {0, 0}, beside[2] = {0, 0};
     heat_contact(law, force, place, &area, &share);
-    if (area > 0 && !other) {
-      const double* tilt = numbers->tilts + ((f * numbers->things + g) * 3 + axis) * TILT;
-      for (int j = 0; j < 2; j++) {
-        rise[j] = looking[(int)law->across[j]] / fabs(looking[axis]);
-        beside[j] = place[(int)law->across[j]];
-      }
-      heat_fall(tilt, beside, rise);
-      part = heat_edged(tilt, law, exp(numbers->grid[0]), force, together, beside, rise, &share);
-    }
-    if (part > 0 && part < 1 - 1e-9) length = heat_edge_patch(law, beside, rise, part, shares);
-    else if (area > 0) length = heat_flat_patch(law, area, place, shares);
-    area *= part;
+    if (area > 0) length = heat_flat_patch(law, area, place, shares);
   }
   if (area > 0 && share > 0) {
     conducts = heat_conductance(law, numbers, share / area) * area * on_face;
@@ -197,11 +184,8 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
       const double* own = pushed + (f * things + g) * 3;
       again = again && target == last; /* an object's geoms follow one another */
       last = target;
-      if (!(own[0] > 0)) continue;
-      double together = own[0];
-      for (int i = 0; g < numbers->geoms && i < numbers->geoms; i++)
-        if (i != g && (int)numbers->owner[i] == target) together += greater(pushed[(f * things + i) * 3], 0);
-      again = feel(numbers, work, d, f, g, own, together, poses, again, touches + (f * numbers->targets + target) * COLUMNS);
+      if (own[0] > 0)
+        again = feel(numbers, work, d, f, g, own, poses, again, touches + (f * numbers->targets + target) * COLUMNS);
     }
   }
 }

@@ -38,8 +38,7 @@ enum { PLACES = 24, FORCES = 14, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES
 enum { BEND = 10, CURVES = 4, SIDES = 6 };
 /* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
 enum { VIEW = 11 };
-/* a rod or a flat face under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin (Pa/m of a face), m of the
-   gap and radius; half lengths m */
+/* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
 enum { TURN_BY, SOFT, FIRM, APART, RADIUS, HALF_ROD, HALF_PAD, HALF_FACE, TILT };
 
 /* what is behind an element, see engine/backs.py: whether it moves, its controller, what its last change keeps back, W of the room, what it
@@ -151,10 +150,6 @@ void heat_behind(const Numbers* numbers, int f, double drawn, double force, doub
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
-void heat_fall(const double* tilt, double pad[2], double rise[2]);
-double heat_edged(const double* tilt, const Law* law, double first_force, double force, double together, const double at[2],
-                  const double rise[2], double* share);
-double heat_edge_patch(const Law* law, const double at[2], const double rise[2], double part, double shares[4]);
 double heat_flat_patch(const Law* law, double area, const double place[3], double shares[4]);
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
                           double* area, double* share, double* longer);

@@ -5,7 +5,6 @@
 #include "heat.h"
 
 #define LEVEL 1e-7   /* rad, below which there is no angle */
-#define ALIGNED 0.05 /* rad, up to which flat faces count as aligned */
 #define THIN 1e-12   /* m: a patch that is narrower is none */
 #define STEPS 4    /* Newton's */
 #define HALF_TURN 3.141592653589793
@@ -56,63 +55,6 @@ double heat_flat_patch(const Law* law, double area, const double place[3], doubl
   }
   return length;
 }
-
-void heat_fall(const double* tilt, double pad[2], double rise[2]) {
-  double slope = hypot(rise[0], rise[1]);
-  if (!(tilt[HALF_ROD] > 0 && slope > 0)) return;
-  double one = rise[0] / slope, other = rise[1] / slope, along = pad[0] * one + pad[1] * other;
-  pad[1] = pad[1] * one - pad[0] * other;
-  pad[0] = along;
-  rise[0] = slope;
-  rise[1] = 0;
-}
-
-/* The part of a flat contact's area that touches at an angle, as touch/contacts/tilt.py. share: N on the face, in place. */
-double heat_edged(const double* tilt, const Law* law, double first_force, double force, double together, const double at[2],
-                  const double rise[2], double* share) {
-  double slope = hypot(rise[0], rise[1]), angle = slope - ALIGNED - tilt[TURN_BY] * together;
-  if (!(angle > LEVEL && law->size[0] > 0 && tilt[SOFT] > 0)) return 1;
-  double reach = 0, width = 0, along = 0, on_face = 1, on_pad = 1;
-  for (int side = 0; side < 2; side++) {
-    double pad = at[side], size = law->size[side] / 2, middle = rise[side] > 0 ? -pad : pad;
-    double start = greater(middle - size, -law->half_pad), end = lesser(middle + size, law->half_pad);
-    double begin = greater(start, -law->half_face), stop = lesser(end, law->half_face), part = fabs(rise[side]) / slope;
-    reach += part * (begin - start);
-    width += part * (stop - begin);
-    along += part * (end - start);
-    on_face *= greater(stop - begin, 0);
-    on_pad *= greater(end - start, 0);
-  }
-  if (!(on_face > 0)) return 1;
-  double soft = tilt[SOFT] * angle * on_pad / along, borne = soft * reach * reach / 2;
-  if (tilt[FIRM] > 0) {
-    double firm = tilt[FIRM] * angle * on_face / width, left = greater(force - borne, 0), beside = soft * reach;
-    double length = (sqrt(beside * beside + 2 * firm * left) - beside) / firm;
-    if (length > width) length = (left + firm * width * width / 2) / (firm * width + beside);
-    double within = lesser(length, width);
-    *share = lesser(firm * within * (length - within / 2), *share);
-    return within / width;
-  }
-  double gap = tilt[APART] + angle * greater(reach - sqrt(2 * force / soft), 0);
-  double part = lesser(tilt[APART] / (angle * width) * log1p(angle * width / gap), 1);
-  *share = greater(*share * greater(1 - borne / force, 0), lesser(*share, first_force * part));
-  return part;
-}
-
-/* heat_flat_patch of a part of the area, where the gap is least. */
-double heat_edge_patch(const Law* law, const double at[2], const double rise[2], double part, double shares[4]) {
-  double width = 2 * law->half_face, square = rise[0] * rise[0] + rise[1] * rise[1], length = 0;
-  for (int side = 0; side < 2; side++) {
-    double pad = at[side], size = law->size[side];
-    double low = greater(-law->half_face, -pad - size / 2), high = lesser(law->half_face, size / 2 - pad);
-    length = (high - low) * pow(part, rise[side] * rise[side] / square);
-    double middle = rise[side] > 0 ? low + length / 2 : high - length / 2;
-    shares[side] = patch_offset(middle, length, width);
-    shares[2 + side] = patch_ends(pad + middle, pad, length, size, width);
-  }
-  return length;
-}
-
 
 /* The place of a table before `at` m, and the share of the way to the next. */
 static int between(const double* places, double at, double* share) {
@@ -176,7 +118,7 @@ double heat_curved(const double* table, const double grid[3], double force, doub
 double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed) {
   double angle = fabs(slope) - tilt[TURN_BY] * force;
   *pressed = force;
-  if (!(angle > LEVEL)) return 1;
+  if (!(angle > LEVEL && tilt[RADIUS] > 0)) return 1;
   double cosine = 1 / sqrt(1 + slope * slope), half = tilt[HALF_ROD] * cosine;
   double along = (slope > 0 ? middle : -middle) - tilt[RADIUS] * fabs(slope) * cosine;
   double start = greater(-along - half, -tilt[HALF_PAD]), end = lesser(half - along, tilt[HALF_PAD]);
