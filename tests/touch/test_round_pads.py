@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from thermograsp.thermal import IDEAL, Pad
 from thermograsp.thermal.contact import cylinder_contact, sphere_contact
 from thermograsp.touch import Fingertip, ThermalTouch, install
-from thermograsp.touch.contacts.round_pads import array_round_contact, round_contact
+from thermograsp.touch.contacts.round_pads import ALIGNED, array_round_contact, round_contact
 from thermograsp.touch.scene import bodies, pads
 
 PAD = Pad()
@@ -115,7 +115,7 @@ def test_arrays_do_as_compiled_code_does() -> None:
         )
     )
     sides = np.array([turned(angle) for angle in rng.uniform(-180, 180, count)])
-    sides[:, 4:] = rng.uniform(-0.05, 0.05, (count, 2)) * (rng.random((count, 1)) < 0.7)
+    sides[:, 4:] = rng.uniform(-0.12, 0.12, (count, 2)) * (rng.random((count, 1)) < 0.7)
     force = 10 ** rng.uniform(-3, 2, count)
     y, z = rng.uniform(-0.006, 0.006, (2, count))
     expected = np.array([round_contact(*row) for row in zip(bend_, curve, sides, force, y, z, strict=True)])
@@ -155,7 +155,9 @@ def test_a_rod_that_leans_presses_its_lower_end(skinned: bool, degrees: float, f
         [125.0, 0, STIFFNESS, *half, 0.0045, 0.0045, STIFFNESS / (6 if skinned else 1), 0.0064, 0.012]
     )
     flat, angle = np.array([0, 0, WIDE, WIDE]), math.tan(math.radians(degrees))
-    area, load, share, _ = round_contact(rod, flat, np.array([1, 0, 0, 1, 0, angle]), force, 0.0, 0.0)
+    area, load, share, _ = round_contact(
+        rod, flat, np.array([1, 0, 0, 1, 0, ALIGNED + angle]), force, 0.0, 0.0
+    )
     assert (area, load) == pytest.approx(summed_springs(rod, 125.0, force, angle), rel=2e-3, abs=1e-12)
     assert share == (1.0 if area > 0 else 0.0)
     if degrees < 1e-3:
@@ -253,7 +255,7 @@ def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> No
 def test_a_rod_that_leans_feels_less_and_less(tip: str, skin: str | None) -> None:
     """Held down at an angle, from flat to where the sensor's face is off the block."""
     drops = []
-    for degrees in (0.0, 0.2, 0.5, 1.0, 2.0, 3.3, 3.8, 8.0):
+    for degrees in (0.0, 2.0, 3.0, 3.5, 4.0, 5.0, 6.5, 14.0):
         xml = scene(tip, "block").replace('<body name="finger"', f'<body name="finger" euler="0 {degrees} 0"')
         words: dict[str, Any] = {
             "fingertips": {"tip": Fingertip("tip", skin=skin)},
@@ -283,7 +285,7 @@ def lowered(degrees: float) -> str:
 )
 @pytest.mark.parametrize("tip", TIPS)
 @pytest.mark.parametrize("target", OBJECTS)
-@pytest.mark.parametrize("degrees", [0.0, 0.3])
+@pytest.mark.parametrize("degrees", [0.0, 3.2])
 def test_inside_mujoco_s_step_it_is_the_same(tip: str, target: str, degrees: float) -> None:
     words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
     leaning = scene(tip, target).replace('<body name="finger"', f'<body name="finger" euler="0 {degrees} 0"')
@@ -339,7 +341,7 @@ def test_a_rod_that_leans_on_a_bar_under_its_sensor_presses_on_the_bar_alone() -
     bar = np.array([0.0, 0.0, WIDE, 0.002])
     level, leaning = (
         round_contact(rod, bar, np.array([1.0, 0.0, 0.0, 1.0, 0.0, math.radians(angle)]), 5.0, 0.0, 0.0)
-        for angle in (0.0, 0.5)
+        for angle in (0.0, 3.4)
     )
     assert leaning[1] == pytest.approx(5.0, rel=1e-6) == level[1]
     assert leaning[0] == pytest.approx(level[0], rel=0.01)

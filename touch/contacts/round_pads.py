@@ -6,11 +6,11 @@ which need not lie along one another. Sunk in by D into the pad, an elastic foun
 p = K/d (D - x^2 k1/2 - y^2 k2/2) over the ellipse of half axes sqrt(2 D/k1) and sqrt(2 D/k2), cut off where either body
 ends; the sensor's face takes what of it lies on it.
 
-A straight fingertip, a capsule or a cylinder's side, that leans on a flat face presses its lower end. It is as stiff as
-what it is made of, and its pad follows it: the springs are pressed in by depth - angle s at s from the lower end, in
-strips of half width sqrt(2 R (depth - angle s)), cut off where the pad ends: the skin's on a skinned sensor, and softer
-ones beside it, of what sinks in deeper than the far end of its face. Their sum is the force, from which the depth
-follows.
+A straight fingertip, a capsule or a cylinder's side, that leans on a flat face by more than ALIGNED presses its lower
+end. It is as stiff as what it is made of, and its pad follows it: the springs are pressed in by depth - angle s at s
+from the lower end, in strips of half width sqrt(2 R (depth - angle s)), cut off where the pad ends: the skin's on a
+skinned sensor, and softer ones beside it, of what sinks in deeper than the far end of its face. Their sum is the force,
+from which the depth follows.
 
 F: fingertips, N: what a pad may meet.
 """
@@ -35,6 +35,9 @@ BEND, CURVES, SIDES = 10, 4, 6
 """Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half the sides m of what bears force, half the face's m
 along them, stiffness Pa/m beside a skinned sensor and half the whole pad's sides m. Of what it meets: curvatures 1/m
 and half lengths m along two axes of its frame; and how the two lie to one another, round_contact's `sides`."""
+ALIGNED = 0.05
+"""m per m, about 3 degrees, up to which a straight fingertip counts as level: fingers and what they hold give way, and
+so do MuJoCo's soft contacts, whose angles say nothing of less."""
 _WIDE = 10.0  # m, half of what no pad reaches the end of
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
 _NEWTON_STEPS = 8
@@ -113,7 +116,7 @@ def round_contact(bend, curve, sides, force, y, z):
     face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], reach)
     face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
     depth = _depth(force / bend[2], most, least, reach, width)
-    leans = abs(along * sides[5] - aside * sides[4])
+    leans = abs(along * sides[5] - aside * sides[4]) - ALIGNED
     if leans > _LEANS and middle - spread < least:
         ends = other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]
         area, load, lower = leaning(
@@ -276,7 +279,7 @@ def array_round_contact(
     longer = xp.minimum(b, face_width) / xp.minimum(a, face_reach)
     area, load = 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load
 
-    fall = abs(along * rise[..., 1] - aside * rise[..., 0])
+    fall = abs(along * rise[..., 1] - aside * rise[..., 0]) - ALIGNED
     leans = (fall > _LEANS) & (middle - xp.where(alike, 0.0 * spread, spread) < least)
     fall = xp.where(leans, fall, 1.0 + 0.0 * fall)
     ends = blend(other, half1, half2), blend(1 - other, half1, half2)

@@ -6,6 +6,7 @@
 
 #define LEAST 1e-7 /* of the larger curvature: what is straighter counts as that */
 #define NEWTON_STEPS 8
+#define ALIGNED 0.05 /* m per m, up to which it counts as level */
 #define LEANS 1e-7 /* m per m, below which a line lies level */
 #define LEANING_STEPS 20
 static const double pi = 3.14159265358979323846;
@@ -105,7 +106,7 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double face_reach = lesser(own * bend[5] + (1 - own) * bend[6], reach);
   double face_width = lesser((1 - own) * bend[5] + own * bend[6], width);
   double depth = depth_of(force / bend[2], most, least, reach, width), load;
-  double leans = fabs(along * sides[5] - aside * sides[4]);
+  double leans = fabs(along * sides[5] - aside * sides[4]) - ALIGNED;
   if (leans > LEANS && middle - apart < least) {
     double ends[2] = {other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]}, lower;
     double firm_half[2] = {reach, width}, face_half[2] = {face_reach, face_width};
