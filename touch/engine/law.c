@@ -6,7 +6,7 @@
 
 #define LEVEL 1e-7   /* rad, below which there is no angle */
 #define THIN 1e-12   /* m: a patch that is narrower is none */
-#define STEPS 4    /* Newton's */
+#define STEPS 4      /* Newton's */
 #define HALF_TURN 3.141592653589793
 
 static double overlap(double reach, double offset, double half) {
