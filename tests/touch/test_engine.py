@@ -196,6 +196,29 @@ def test_fingertips_on_one_another_and_other_shapes() -> None:
 
 
 @NEEDS_SPECS
+@pytest.mark.parametrize("names", [("low", "high"), ("high", "low")])
+def test_round_fingertips_on_one_another(names: tuple[str, str]) -> None:
+    spec = mujoco.MjSpec.from_string("""
+    <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+      <body name="block" pos=".1 0 0"><geom name="block" type="box" size=".02 .02 .02"/></body>
+      <body name="low"><geom name="low" type="capsule" size=".008 .012" euler="0 90 20"/></body>
+      <body name="high" pos=".001 .001 .0165"><joint name="high" type="slide" axis="0 0 -1" damping="20"/>
+        <geom name="high" type="ellipsoid" size=".009 .012 .008" mass=".1"/></body>
+    </worldbody><actuator><motor joint="high"/></actuator></mujoco>""")
+    tips = {"low": Fingertip("low", temperature=46.0), "high": Fingertip("high", skin="filled_silicone")}
+    words = {"fingertips": {name: tips[name] for name in names}, "objects": {"block": "glass"}}
+    model = install(spec, **words)
+    data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
+    data.ctrl[0] = 5.0
+    for _ in range(250):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    drop = voltages(model, data) / np.array([pad.stack.seebeck for pad in touch._pads])
+    assert np.abs(drop - touch.reading.temperature_drop).max() < ROUND_OFF
+    assert np.abs(drop).min() > 0.1
+
+
+@NEEDS_SPECS
 def test_a_pad_that_sinks_in_deep_is_on_its_face_here_too() -> None:
     pads, objects = {"tip": "pad"}, {"ball": "glass"}
     model = install(mujoco.MjSpec.from_string(hand.SOFT), fingertips=pads, objects=objects)

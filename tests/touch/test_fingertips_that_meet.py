@@ -43,6 +43,54 @@ def test_a_fingertip_warms_another() -> None:
     assert isinstance(balance.passed, np.ndarray) and balance.passed[0, 1] < -0.1 and not balance.given.any()
 
 
+SHAPES = {
+    "box": '<geom name="{0}" type="box" size=".01 .01 .008" mass=".1"/>',
+    "small box": '<geom name="{0}" type="box" size=".003 .006 .008" mass=".1"/>',
+    "ball": '<geom name="{0}" type="sphere" size=".008" mass=".1"/>',
+    "capsule": '<geom name="{0}" type="capsule" size=".008 .012" euler="0 90 0" mass=".1"/>',
+    "turned capsule": '<geom name="{0}" type="capsule" size=".008 .012" euler="0 90 30" mass=".1"/>',
+}
+
+
+def pinched(low: str, high: str, skins: tuple[str | None, str | None], names: tuple[str, str]) -> list[float]:
+    """K that the low and the high fingertip feel of one another, named in that order, .5 s after they were pressed."""
+    model = mujoco.MjModel.from_xml_string(f"""
+    <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+      <body name="block" pos=".1 0 0"><geom name="block" type="box" size=".02 .02 .02"/></body>
+      <body name="low"> {SHAPES[low].format("low")} </body>
+      <body name="high" pos=".001 .001 .0165"><joint type="slide" axis="0 0 -1" damping="20"/>
+        {SHAPES[high].format("high")} </body>
+    </worldbody></mujoco>""")
+    tips = {
+        "low": Fingertip("low", temperature=46.0, skin=skins[0]),
+        "high": Fingertip("high", skin=skins[1]),
+    }
+    touch = ThermalTouch(
+        model, fingertips={name: tips[name] for name in names}, objects={"block": "glass"}, chain="ideal"
+    )
+    data = mujoco.MjData(model)
+    for _ in range(250):
+        data.qfrc_applied[0] = 5.0
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    drops = dict(zip(names, touch.reading.temperature_drop.tolist(), strict=True))
+    return [drops["low"], drops["high"]]
+
+
+@pytest.mark.parametrize("skins", [(None, None), ("filled_silicone", None), (None, "filled_silicone")])
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [("box", "box"), ("box", "small box"), ("ball", "box"), ("box", "turned capsule"), ("capsule", "ball"),
+     ("capsule", "turned capsule"), ("ball", "ball")],
+)  # fmt: skip
+def test_the_order_in_which_two_fingertips_are_named_changes_nothing(
+    low: str, high: str, skins: tuple[str | None, str | None]
+) -> None:
+    drops = pinched(low, high, skins, ("low", "high"))
+    assert drops[0] > 0.1
+    assert drops == pytest.approx(pinched(low, high, skins, ("high", "low")), rel=3e-3)
+
+
 def test_a_fingertip_between_another_and_an_object_hands_heat_on() -> None:
     model = mujoco.MjModel.from_xml_string(TWO_TIPS.format(offset=0.0))
     tips = {"a": "a", "b": Fingertip("b", temperature=46.0)}

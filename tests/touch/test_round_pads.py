@@ -18,13 +18,12 @@ from scipy.optimize import brentq
 from thermograsp.thermal import IDEAL, Pad
 from thermograsp.thermal.contact import cylinder_contact, sphere_contact
 from thermograsp.touch import Fingertip, ThermalTouch, install
-from thermograsp.touch.contacts.round_pads import ALIGNED, array_round_contact, round_contact
+from thermograsp.touch.contacts.round_pads import ALIGNED, WIDE, array_round_contact, round_contact
 from thermograsp.touch.scene import bodies, pads
 
 PAD = Pad()
 STIFFNESS = PAD.foundation_modulus / PAD.thickness
-ALONG = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
-WIDE = 10.0
+ALONG = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
 
 
 def bend(first: float, second: float, half: float = PAD.width / 2, face: float = PAD.face / 2) -> np.ndarray:
@@ -33,7 +32,16 @@ def bend(first: float, second: float, half: float = PAD.width / 2, face: float =
 
 def turned(degrees: float) -> np.ndarray:
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return np.array([c, s, -s, c, 0.0, 0.0])
+    return np.array([c, s, -s, c, 0.0, 0.0, 0.0, 0.0])
+
+
+def rising(slope: float) -> np.ndarray:
+    return np.array([1.0, 0.0, 0.0, 1.0, 0.0, slope, 0.0, 0.0])
+
+
+def body(first: float, second: float, half_first: float = WIDE, half_second: float = WIDE) -> np.ndarray:
+    """An object's curvatures 1/m and half lengths m."""
+    return np.array([first, second, half_first, half_second, 0.0, WIDE, WIDE])
 
 
 FORCES = 0.05, 0.5, 5.0, 50.0
@@ -42,7 +50,7 @@ FORCES = 0.05, 0.5, 5.0, 50.0
 @pytest.mark.parametrize("force", FORCES)
 def test_a_ball_on_a_ball_is_one_of_their_summed_curvatures_on_a_plane(force: float) -> None:
     """sphere_contact's disc is cut off by the face as round_contact's ellipse is; both solve one load."""
-    found = round_contact(bend(120.0, 120.0), np.array([30.0, 30.0, WIDE, WIDE]), ALONG, force, 0.0, 0.0)
+    found = round_contact(bend(120.0, 120.0), body(30.0, 30.0), ALONG, force, 0.0, 0.0)
     expected = sphere_contact(PAD, force, 1 / 150.0)
     assert found[0] == pytest.approx(float(expected.face), rel=1e-9)
     assert found[1] == pytest.approx(float(expected.face_force), rel=1e-9)
@@ -51,7 +59,7 @@ def test_a_ball_on_a_ball_is_one_of_their_summed_curvatures_on_a_plane(force: fl
 
 @pytest.mark.parametrize("force", FORCES)
 def test_rods_along_one_another_meet_in_a_line_and_across_in_a_spot(force: float) -> None:
-    rod, other = bend(100.0, 0.0), np.array([30.0, 0.0, WIDE, 0.05])
+    rod, other = bend(100.0, 0.0), body(30.0, 0.0, WIDE, 0.05)
     along = round_contact(rod, other, ALONG, force, 0.0, 0.0)
     line = cylinder_contact(PAD, force, 1 / 130.0)
     assert along[0] == pytest.approx(float(line.face), rel=1e-4)  # what is straight counts as a little curved
@@ -68,7 +76,7 @@ def test_rods_along_one_another_meet_in_a_line_and_across_in_a_spot(force: float
 @pytest.mark.parametrize("degrees", [0.0, 20.0, 45.0, 70.0])
 def test_crossed_rods_follow_hertz_s_curvatures(degrees: float) -> None:
     """k1 k2 = A B sin^2 of the angle between two cylinders of curvatures A and B (Johnson, section 4.1)."""
-    rod, other = bend(100.0, 0.0, WIDE, WIDE), np.array([60.0, 0.0, WIDE, WIDE])
+    rod, other = bend(100.0, 0.0, WIDE, WIDE), body(60.0, 0.0)
     force = 1e-3
     area = round_contact(rod, other, turned(degrees + 10), force, 0.0, 0.0)[0]
     root = math.sqrt(100.0 * 60.0) * math.sin(math.radians(degrees + 10))
@@ -80,9 +88,7 @@ def test_crossed_rods_follow_hertz_s_curvatures(degrees: float) -> None:
 def test_area_and_load_are_integrals_of_the_pressure(force: float, curvatures: tuple[float, float]) -> None:
     """By summing the pressure over 700 x 700 cells of the pad; D from the load that round_contact was given."""
     half, face, cells = 0.006, 0.004, 700
-    area, load, _, _ = round_contact(
-        bend(*curvatures, half, face), np.array([0.0, 0.0, WIDE, WIDE]), ALONG, force, 0, 0
-    )
+    area, load, _, _ = round_contact(bend(*curvatures, half, face), body(0.0, 0.0), ALONG, force, 0, 0)
     middles = (np.arange(cells) + 0.5) / cells * half
     gap = middles[:, None] ** 2 * curvatures[0] / 2 + middles[None] ** 2 * curvatures[1] / 2
     cell = 4 * STIFFNESS * (half / cells) ** 2
@@ -112,14 +118,16 @@ def test_arrays_do_as_compiled_code_does() -> None:
         (
             rng.uniform(0, 100, (count, 2)) * (rng.random((count, 2)) < 0.5),
             rng.uniform(0.002, 0.1, (count, 2)),
+            np.zeros(count),
+            np.full((count, 2), WIDE),
         )
     )
     sides = np.array([turned(angle) for angle in rng.uniform(-180, 180, count)])
-    sides[:, 4:] = rng.uniform(-0.12, 0.12, (count, 2)) * (rng.random((count, 1)) < 0.7)
+    sides[:, 4:6] = rng.uniform(-0.12, 0.12, (count, 2)) * (rng.random((count, 1)) < 0.7)
     force = 10 ** rng.uniform(-3, 2, count)
     y, z = rng.uniform(-0.006, 0.006, (2, count))
     expected = np.array([round_contact(*row) for row in zip(bend_, curve, sides, force, y, z, strict=True)])
-    axes, rise = sides[:, :4].reshape(count, 2, 2), sides[:, 4:]
+    axes, rise = sides[:, :4].reshape(count, 2, 2), sides[:, 4:6]
     found = np.stack(array_round_contact(bend_, curve, axes, rise, force, y, z), axis=1)
     assert ((sides[:, 4] != 0) & (bend_[:, 1] == 0) & (curve[:, :2].sum(1) == 0)).sum() > 40
     np.testing.assert_allclose(found[:, :2], expected[:, :2], rtol=1e-7, atol=1e-15)
@@ -154,10 +162,8 @@ def test_a_rod_that_leans_presses_its_lower_end(skinned: bool, degrees: float, f
     rod = np.array(
         [125.0, 0, STIFFNESS, *half, 0.0045, 0.0045, STIFFNESS / (6 if skinned else 1), 0.0064, 0.012]
     )
-    flat, angle = np.array([0, 0, WIDE, WIDE]), math.tan(math.radians(degrees))
-    area, load, share, _ = round_contact(
-        rod, flat, np.array([1, 0, 0, 1, 0, ALIGNED + angle]), force, 0.0, 0.0
-    )
+    flat, angle = body(0.0, 0.0), math.tan(math.radians(degrees))
+    area, load, share, _ = round_contact(rod, flat, rising(ALIGNED + angle), force, 0.0, 0.0)
     assert (area, load) == pytest.approx(summed_springs(rod, 125.0, force, angle), rel=2e-3, abs=1e-12)
     assert share == (1.0 if area > 0 else 0.0)
     if degrees < 1e-3:
@@ -245,7 +251,7 @@ def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> No
     assert across > 1.2 * along
     assert across > on_block > along
     rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045, STIFFNESS, 0.0064, 0.012])
-    can = np.array([1 / 0.03, 0.0, WIDE, 0.04])
+    can = body(1 / 0.03, 0.0, WIDE, 0.04)
     assert round_contact(rod, can, ALONG, 5.0, 0.0, 0.0)[1] == pytest.approx(5.0 * 9 / 24, rel=1e-4)
     assert round_contact(rod, can, turned(90.0), 5.0, 0.0, 0.0)[1] == pytest.approx(5.0, rel=1e-3)
 
@@ -342,10 +348,9 @@ def test_what_is_round_both_ways_leans_nowhere(tip: str) -> None:
 
 def test_a_rod_that_leans_on_a_bar_under_its_sensor_presses_on_the_bar_alone() -> None:
     rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045, STIFFNESS, 0.0064, 0.012])
-    bar = np.array([0.0, 0.0, WIDE, 0.002])
+    bar = body(0.0, 0.0, WIDE, 0.002)
     level, leaning = (
-        round_contact(rod, bar, np.array([1.0, 0.0, 0.0, 1.0, 0.0, math.radians(angle)]), 5.0, 0.0, 0.0)
-        for angle in (0.0, 3.4)
+        round_contact(rod, bar, rising(math.radians(angle)), 5.0, 0.0, 0.0) for angle in (0.0, 3.4)
     )
     assert leaning[1] == pytest.approx(5.0, rel=1e-6) == level[1]
     assert leaning[0] == pytest.approx(level[0], rel=0.01)

@@ -27,15 +27,16 @@ RADIUS = 0.01
 ANGLES = (0.5, 1.0, 2.0, 5.0, 15.0)  # degrees that are left when the face has turned
 SCENE = """
 <mujoco><option timestep=".002" cone="elliptic" impratio="10"/><worldbody>
-  <body name="rod" euler="0 {} 0"><geom type="cylinder" size=".01 {}" euler="0 90 0"/></body>
+  <body name="rod" euler="0 {} 0" pos="{} 0 0"><geom type="cylinder" size=".01 {}" euler="0 90 0"/></body>
   <body name="tip" pos="0 0 {}"><joint name="tip" type="slide" axis="0 0 -1" damping="20"/>
     <geom name="tip" type="box" size=".01 .01 .004" mass=".05" contype="1"/></body>
 </worldbody><actuator><motor joint="tip"/></actuator></mujoco>"""
 
 
-def scene(degrees: float, half: float = 0.01) -> str:
+def scene(degrees: float, half: float = 0.01, at: float = 0.0) -> str:
+    """Of a rod whose middle is that many m beside the pad's, along its line."""
     up = RADIUS + half * math.sin(math.radians(abs(degrees))) + 0.0045
-    return SCENE.format(degrees, half, up)
+    return SCENE.format(degrees, at, half, up)
 
 
 def tilt_of(name: str, skin: str | None, half: float) -> np.ndarray:
@@ -80,7 +81,7 @@ def centred(row: np.ndarray, force: float, slope: float) -> tuple[float, float]:
     """tilted of a rod of which so much slope is left, and whose whole line lies over the pad's middle."""
     own, whole = row.copy(), slope + row[TURN] * force
     own[HALF] *= math.sqrt(1 + whole**2)
-    return tilted(own, force, whole, RADIUS * whole / math.sqrt(1 + whole**2))
+    return tilted(own, force, whole, 0.0)
 
 
 @pytest.mark.parametrize("half", [0.004, 0.03])
@@ -155,8 +156,10 @@ def test_arrays_do_as_compiled_code_does() -> None:
             assert (share[:20] == 1.0).all() and (pressed[:20] == force[:20]).all()
 
 
-def drop(degrees: float, half: float = 0.01, name: str = "glass", skin: str | None = None) -> float:
-    model = mujoco.MjModel.from_xml_string(scene(degrees, half))
+def drop(
+    degrees: float, half: float = 0.01, name: str = "glass", skin: str | None = None, at: float = 0.0
+) -> float:
+    model = mujoco.MjModel.from_xml_string(scene(degrees, half, at))
     data = mujoco.MjData(model)
     tips = {"tip": Fingertip("tip", skin=skin)}
     touch = ThermalTouch(model, fingertips=tips, objects={"rod": name}, chain=IDEAL)
@@ -178,6 +181,16 @@ def test_the_more_it_is_tilted_the_less_is_felt(half: float, skin: str | None) -
     assert drop(-10.0, half, skin=skin) == pytest.approx(drops[3], rel=0.02)
 
 
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_disc_that_slides_off_at_an_angle_is_felt_less_and_less(skin: str | None) -> None:
+    """Its line ends 4 mm beside its middle, and the middle R sin(angle) beside the disc's."""
+    for degrees, way in ((15.0, 1.0), (15.0, -1.0), (-15.0, 1.0), (5.0, 1.0)):
+        aside = RADIUS * math.sin(math.radians(degrees))
+        drops = [drop(degrees, 0.004, "aluminium", skin, way * at - aside) for at in (0.0, 4e-3, 6e-3, 8e-3)]
+        assert all(less <= 1.15 * more for more, less in zip(drops, drops[1:], strict=False)), drops
+        assert drops[-1] < 0.6 * drops[0]
+
+
 @pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler")
 @pytest.mark.skipif(
     not hasattr(mujoco.MjSpec, "activate_plugin"), reason="specs take plugins from MuJoCo 3.3.2 on"
@@ -185,8 +198,8 @@ def test_the_more_it_is_tilted_the_less_is_felt(half: float, skin: str | None) -
 @pytest.mark.parametrize("skin", [None, "filled_silicone"])
 def test_the_plugin_feels_the_same(skin: str | None) -> None:
     words = {"fingertips": {"tip": Fingertip("tip", skin=skin)}, "objects": {"rod": "glass"}}
-    for degrees in (2.0, 5.0):
-        model = install(mujoco.MjSpec.from_string(scene(degrees)), **words)
+    for degrees, at in ((2.0, 0.0), (5.0, 0.0), (15.0, 4e-3)):
+        model = install(mujoco.MjSpec.from_string(scene(degrees, at=at)), **words)
         data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
         data.ctrl[0] = 8.0
         for _ in range(150):

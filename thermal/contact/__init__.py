@@ -19,7 +19,7 @@ from .curved_table import (
     even_places,
     table_values,
 )
-from .fingertip import element_joint, face_joint, pad_joint, skinned, touching
+from .fingertip import element_joint, face_joint, in_series, pad_joint, skinned, touching
 from .footprint import (
     LOG_LEAST,
     LOG_MOST,
@@ -133,6 +133,7 @@ __all__ = [
     "flat_patch",
     "footprint",
     "gas_conduction",
+    "in_series",
     "joint",
     "pad_joint",
     "pad_law",

@@ -19,6 +19,21 @@ def skinned(pad: Pad, skin: Skin | None) -> Pad:
     return replace(pad, youngs_modulus=softer * pad.youngs_modulus, face_stiffness=skin.stiffness)
 
 
+def in_series(one: Pad, other: Pad) -> Pad:
+    """Two pads that press each other as one does a rigid body: the springs of both are in series, and what bears, and
+    each face, are no wider than the narrower one's."""
+    soft = _in_series(*(pad.foundation_modulus / pad.thickness for pad in (one, other)))
+    firm = _in_series(*(pad.face_ratio * pad.foundation_modulus / pad.thickness for pad in (one, other)))
+    both = replace(
+        one, width=min(one.width, other.width), face=min(one.face, other.face), face_stiffness=firm
+    )
+    return replace(both, youngs_modulus=one.youngs_modulus * soft * both.thickness / both.foundation_modulus)
+
+
+def _in_series(one: float, other: float) -> float:
+    return one * other / (one + other)
+
+
 def touching(skin: Skin | None) -> Surface:
     """The sensor's face, or the skin's."""
     return LAPPED_ALUMINA if skin is None else Surface.of(skin.made_of)

@@ -34,7 +34,7 @@ from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
 from .pad_contacts import DEPTH, RIM
 from .round_pads import array_round_contact, bends, curves
-from .tilt import TILT, array_tilted
+from .tilt import RADIUS, TILT, array_tilted
 from .views import array_viewed
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
@@ -188,7 +188,8 @@ class ArrayContacts:
         flat = tuple(xp.where(closed, each, none) for each in (h * safe, area, long))
         if not self.any_curved:
             return *flat, shares
-        aside, along, slope = self._crown(law, off, from_geom, axes, geom_turn)
+        tilts = self.tilts[which]
+        aside, along, slope = self._crown(law, tilts[..., RADIUS], off, from_geom, axes, geom_turn)
         side = axis
         if self.any_meshed:
             view, *seen = array_viewed(self.views, looking, from_geom, law.half_face[..., 0])
@@ -200,7 +201,7 @@ class ArrayContacts:
             side = xp.where(meshed[..., 0], view, axis)
         table = self.curved[as_integers(pair * self.views.shape[1] + side)][..., None]
         number = as_integers(table.clip(0.0, None))
-        whole, lying = array_tilted(self.tilts[which][..., None, :], pressed, slope + none, along + none)
+        whole, lying = array_tilted(tilts[..., None, :], pressed, slope + none, along + none)
         lies = whole > 0
         share = xp.where(lies, whole, 1.0 + 0.0 * whole)
         lying = lying / share
@@ -259,11 +260,11 @@ class ArrayContacts:
         return area, share, kept, xp.where(bulging, found[3] + zero, 1.0 + zero)
 
     def _crown(
-        self, law: ArrayLaws, off: Array, from_geom: Array, axes: Array, geom_turn: Array
+        self, law: ArrayLaws, radius: Array, off: Array, from_geom: Array, axes: Array, geom_turn: Array
     ) -> tuple[Array, Array, Array]:
         """m, (B, F, G, 1) each, from a pad's middle to where a curved body touches it: of a ball along y and z, of a
-        cylinder across it, and to its own middle along it; and the tangent of its angle to the pad, 0 of a ball. off:
-        (B, F, G, 2) m."""
+        cylinder across it, and along it to the middle of the line that is nearest to the pad; and the tangent of its
+        angle to the pad, 0 of a ball. radius: (B, F, G) m of rods; off: (B, F, G, 2) m."""
         xp = namespace_of(off)
         rod_axis = _seen(axes[:, :, None], geom_turn[:, None, :, :, 2])
         line = rod_axis[..., 1:]  # a cylinder's axis along y and z
@@ -275,7 +276,8 @@ class ArrayContacts:
         normal = _seen(geom_turn[:, None], axes[:, :, None, :, 0])  # in the geom's frame
         slope = xp.where(length > 0, rod_axis[..., 0] / safe, 0.0 * length)
         away = (from_geom * normal).sum(-1)
-        middle = xp.where(length > 0, (from_geom[..., 2] - rod_axis[..., 0] * away) / safe, 0.0 * length)
+        middle = (from_geom[..., 2] - rod_axis[..., 0] * away) / safe - radius * rod_axis[..., 0]
+        middle = xp.where(length > 0, middle, 0.0 * length)
         return (
             xp.where(lies, across, off[..., 0][..., None]),
             xp.where(lies, middle[..., None], off[..., 1][..., None]),

@@ -17,7 +17,7 @@ from ...thermal.contact import conductance, contact, element_joint
 from ..scene import PadPlace
 from .columns import COLUMNS, CONDUCTANCE, FORCE, NORMAL, PLACE
 from .laws import SQUARE
-from .round_pads import CURVES, bends, round_contact
+from .round_pads import CURVES, WIDE, bends, round_contact
 
 BOND = 1e7
 """W/(m2 K) of the glue, a thousand times what a contact conducts: as good as perfect."""
@@ -40,7 +40,7 @@ class GluedContacts:
         for e, element in enumerate(elements):
             width = element.stack.width
             self.small[e] = SQUARE / element.stack.layers[0].conductivity
-            self._curves[e, 2:] = width / 2
+            self._curves[e] = (0.0, 0.0, width / 2, width / 2, 0.0, WIDE, WIDE)
             self._places[e] = (element.glued, width, *element.position, *element.axes.ravel())
             for f, tip in enumerate(fingertips):
                 metal = tip.bare and tip.skin is None
@@ -69,7 +69,7 @@ class GluedContacts:
 @njit(cache=True, error_model="numpy")
 def _redirect(touches, substeps, places, laws, small, bend, curve, redirected):
     worlds, tips, targets = touches.shape[:3]
-    place, sides = np.zeros(3), np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+    place, sides = np.zeros(3), np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
     for w in range(worlds):
         for f in range(tips):
             for t in range(targets):

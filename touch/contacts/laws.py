@@ -27,7 +27,7 @@ from ...thermal import (
     material,
     sphere_law,
 )
-from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, pad_joint, skinned
+from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, in_series, pad_joint, skinned
 from ...thermal.padded import RINGS, ring_sides
 from ...thermal.pressed import PressedMesh, Ring, RoundRing
 from ..scene import BodyShape, PadPlace, is_round, mesh_of
@@ -111,8 +111,10 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                     made.setdefault(of_ring, []).append((f, g, axis, n))
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
-            side = other.silicone.face
-            laws[f, g] = flat_law(sheet, faces, (side, side), (1, 2))
+            side = max(silicone.face, other.silicone.face)
+            laws[f, g] = flat_law(
+                in_series(sheet, skinned(other.silicone, other.skin)), faces, (side, side), (1, 2)
+            )
     for number, pairs in enumerate(made.values(), len(tables)):
         for pair in pairs:
             numbers[pair] = number

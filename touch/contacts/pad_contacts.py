@@ -24,7 +24,7 @@ from ..pointers import asked
 from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
 from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
-from .tilt import tilted
+from .tilt import RADIUS, tilted
 from .views import viewed
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it, beside half of what both have sunk in
@@ -202,15 +202,19 @@ def feel(
                         away += (middle[k] - geom_xpos[geom, k]) * normal[k]
                     first, second = 0.0, 0.0
                     if length > 0:
-                        # along the pad
+                        # along the pad, from the middle of the line that is nearest to it
                         first, second, slope = (
                             across / length,
-                            (place[2] - slope * away) / length,
+                            (place[2] - slope * away) / length - tilts[f, g, axis, RADIUS] * slope,
                             slope / length,
                         )
                     whole, lying = tilted(tilts[f, g, axis], force, slope, second)
             elif bulging:
                 _sides(geom_xmat, frames, f, geom, g - (part_count - tips), axis, sides)
+                sides[6], sides[7] = 0.0, 0.0
+                if geom < 0:
+                    sides[6] = place[1] + pushed[f, g, 1] / force
+                    sides[7] = place[2] + pushed[f, g, 2] / force
                 if geom < 0 or parts[g, 3] > 0 or curve[g, axis, 0] + curve[g, axis, 1] > 0:
                     sides[4], sides[5] = 0.0, 0.0  # fingertips and meshes count as level
                 area, share, kept, longer = round_contact(
@@ -274,8 +278,8 @@ def feel(
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _sides(geom_xmat, frames, f, geom, other, axis, sides):
-    """Fills sides (SIDES,) with where the two axes of what a pad meets that lie across point, along the pad's y and z,
-    and the rise of the plane across the third: of a geom, or of the other fingertip's pad."""
+    """Fills sides (SIDES,) but for the last two with where the two axes of what a pad meets that lie across point,
+    along the pad's y and z, and the rise of the plane across the third: of a geom, or of the other fingertip's pad."""
     n = 0
     across = axis if geom >= 0 else 0
     for i in range(3):

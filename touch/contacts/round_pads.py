@@ -4,7 +4,8 @@ Two bodies of principal curvatures touch as one of their sum touches a flat one 
 4.1): the gap is x^2 k1/2 + y^2 k2/2, with k1 >= k2 (1/m) of the sum of both bodies' curvatures in the tangent plane,
 which need not lie along one another. Sunk in by D into the pad, an elastic foundation as in thermal/contact/area.py,
 p = K/d (D - x^2 k1/2 - y^2 k2/2) over the ellipse of half axes sqrt(2 D/k1) and sqrt(2 D/k2), cut off where either body
-ends; the sensor's face takes what of it lies on it.
+ends; the sensor's face takes what of it lies on it. Of two fingertips the springs of both are in series, and what lies
+on both faces counts, whichever of the two is asked.
 
 A straight fingertip, a capsule or a cylinder's side, that leans on a flat face by more than ALIGNED presses its lower
 end. It is as stiff as what it is made of, and its pad follows it: the springs are pressed in by depth - angle s at s
@@ -31,14 +32,16 @@ from thermograsp.compiled import njit
 from ...thermal.numerics import Array, namespace_of
 from ..scene import BodyShape, PadPlace
 
-BEND, CURVES, SIDES = 10, 4, 6
+BEND, CURVES, SIDES = 10, 7, 8
 """Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half the sides m of what bears force, half the face's m
 along them, stiffness Pa/m beside a skinned sensor and half the whole pad's sides m. Of what it meets: curvatures 1/m
-and half lengths m along two axes of its frame; and how the two lie to one another, round_contact's `sides`."""
+and half lengths m along two axes of its frame, how much its own springs give way, m3/N, and half the sides m of its
+sensor's face, of objects none; and how the two lie to one another, round_contact's `sides`."""
 ALIGNED = 0.05
 """m per m, about 3 degrees, up to which a straight fingertip counts as level: fingers and what they hold give way, and
 so do MuJoCo's soft contacts, whose angles say nothing of less."""
-_WIDE = 10.0  # m, half of what no pad reaches the end of
+WIDE = 10.0
+"""m, half of what no pad reaches the end of."""
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
 _NEWTON_STEPS = 8
 _LEANS = 1e-7  # m per m, below which a line lies level
@@ -64,11 +67,12 @@ def curves(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[Bod
     in their order; and of the pads, along their y and z."""
     geoms = [geom for shape in shapes for geom in shape.geoms]
     rows = np.zeros((len(geoms) + len(pads), 3, CURVES))
+    rows[..., 5:] = WIDE
     for n, geom in enumerate(geoms):
         for axis in range(3):
-            rows[n, axis] = _geom(model, geom, axis)
-    for n, pad in enumerate(pads, len(geoms)):
-        rows[n] = (*pad.curvature, *(pad.size / 2))
+            rows[n, axis, :4] = _geom(model, geom, axis)
+    for n, (pad, bend) in enumerate(zip(pads, bends(pads), strict=True), len(geoms)):
+        rows[n] = (*pad.curvature, *bend[3:5], 1 / bend[2], *bend[5:7])
     return rows
 
 
@@ -76,27 +80,27 @@ def _geom(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float, fl
     kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom].tolist()
     kinds, others = mujoco.mjtGeom, [i for i in range(3) if i != axis]
     if kind == kinds.mjGEOM_SPHERE:
-        return (1 / size[0], 1 / size[0], _WIDE, _WIDE)
+        return (1 / size[0], 1 / size[0], WIDE, WIDE)
     if kind == kinds.mjGEOM_ELLIPSOID:
         first, second = (size[axis] / size[i] ** 2 for i in others)
-        return (first, second, _WIDE, _WIDE)
+        return (first, second, WIDE, WIDE)
     if kind in (kinds.mjGEOM_CYLINDER, kinds.mjGEOM_CAPSULE) and axis < 2:
-        return (1 / size[0], 0.0, _WIDE, size[1])
+        return (1 / size[0], 0.0, WIDE, size[1])
     if kind == kinds.mjGEOM_CAPSULE:
-        return (1 / size[0], 1 / size[0], _WIDE, _WIDE)
+        return (1 / size[0], 1 / size[0], WIDE, WIDE)
     if kind == kinds.mjGEOM_CYLINDER:
         return (0.0, 0.0, size[0], size[0])
     if kind == kinds.mjGEOM_BOX:
         return (0.0, 0.0, size[others[0]], size[others[1]])
-    return (0.0, 0.0, _WIDE, _WIDE)
+    return (0.0, 0.0, WIDE, WIDE)
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
 def round_contact(bend, curve, sides, force, y, z):
     """(area m2 and force N on the face were it met in its middle, share of that area that is on it, how many times as
     long as broad it is) at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (SIDES,) the
-    other's first axis along the pad's y and z, then its second one, and how much its flat face rises towards the pad
-    along the pad's y and z, m per m."""
+    other's first axis along the pad's y and z, then its second one, how much its flat face rises towards the pad along
+    the pad's y and z, m per m, and where the force presses from the other pad's middle, m along them."""
     first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2]
     both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3]
     second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3]
@@ -115,7 +119,8 @@ def round_contact(bend, curve, sides, force, y, z):
     )
     face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], reach)
     face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
-    depth = _depth(force / bend[2], most, least, reach, width)
+    stiffness = bend[2] / (1 + bend[2] * curve[4])
+    depth = _depth(force / stiffness, most, least, reach, width)
     leans = abs(along * sides[5] - aside * sides[4]) - ALIGNED
     if leans > _LEANS and middle - spread < least:
         ends = other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]
@@ -125,14 +130,18 @@ def round_contact(bend, curve, sides, force, y, z):
         if area <= 0:
             return 0.0, 0.0, 0.0, 1.0
         a, b = math.sqrt(2 * lower / most), lower / leans
-        share = _kept(along * y + aside * z, a, face_reach)
+        share = _kept(along * y + aside * z, 0.0, a, face_reach, WIDE)
         longer = min(b, 2 * face_width) / (2 * min(a, face_reach))
         return area, load, share, max(longer, 1 / longer)
     a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
+    other_reach = other * curve[5] + (1 - other) * curve[6]
+    other_width = (1 - other) * curve[5] + other * curve[6]
+    share = _kept(along * y + aside * z, along * sides[6] + aside * sides[7], a, face_reach, other_reach)
+    share *= _kept(along * z - aside * y, along * sides[7] - aside * sides[6], b, face_width, other_width)
+    face_reach, face_width = min(face_reach, other_reach), min(face_width, other_width)
     area, load = _clipped(min(face_reach / a, 1.0), min(face_width / b, 1.0))
-    share = _kept(along * y + aside * z, a, face_reach) * _kept(along * z - aside * y, b, face_width)
     longer = min(b, face_width) / min(a, face_reach)
-    return 4 * a * b * area, 4 * bend[2] * depth * a * b * load, share, max(longer, 1 / longer)
+    return 4 * a * b * area, 4 * stiffness * depth * a * b * load, share, max(longer, 1 / longer)
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
@@ -174,10 +183,11 @@ def _cap(s):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _kept(at, reach, half):
-    """Share of what is -half to half of an interval of half width reach round 0 that is there round `at`."""
-    both = min(half, at + reach) - max(-half, at - reach)
-    return min(max(both, 0.0) / (2 * min(reach, half)), 1.0)
+def _kept(at, other_at, reach, half, other_half):
+    """Share of an interval of half width reach that is on two faces of these half widths, of what would be were all
+    three round one middle. The interval's middle is `at` from the one face's and other_at from the other's."""
+    both = min(half - at, reach, other_half - other_at) + min(half + at, reach, other_half + other_at)
+    return min(max(both, 0.0) / (2 * min(reach, half, other_half)), 1.0)
 
 
 @njit(cache=True, borrows=True, error_model="numpy")

@@ -60,14 +60,13 @@ def tilt_row(
 @njit(cache=True, borrows=True, error_model="numpy")
 def tilted(tilt, force, slope, middle):
     """(share of the line, force N on it) of a rod under a force N > 0. slope: tangent of the angle between the rod and
-    the pad, above 0 where its axis leads away from it; middle: m, the pad's middle from the rod's along the pad."""
+    the pad, above 0 where its axis leads away from it; middle: m, the pad's middle along the pad from that of the line
+    that is nearest to it."""
     angle = abs(slope) - tilt[TURN] * force
     if not (angle > _LEVEL and tilt[RADIUS] > 0):
         return 1.0, force
     cosine = 1 / math.sqrt(1 + slope * slope)
-    # the line that is nearest to the pad is not under the rod's axis
-    along = (middle if slope > 0 else -middle) - tilt[RADIUS] * abs(slope) * cosine
-    half = tilt[HALF] * cosine
+    along, half = middle if slope > 0 else -middle, tilt[HALF] * cosine
     start, end = max(-along - half, -tilt[HALF_PAD]), min(half - along, tilt[HALF_PAD])
     first, last = max(start, -tilt[HALF_FACE]), min(end, tilt[HALF_FACE])
     width = max(last - first, 0.0)  # none where it is not over the face
@@ -99,7 +98,7 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     one = 1.0 + 0.0 * force
     angle = abs(slope) - tilt[..., TURN] * force
     cosine = 1 / (1 + slope * slope) ** 0.5
-    along = xp.where(slope > 0, middle, -middle) - tilt[..., RADIUS] * abs(slope) * cosine
+    along = xp.where(slope > 0, middle, -middle)
     half, pad, face = tilt[..., HALF] * cosine, tilt[..., HALF_PAD], tilt[..., HALF_FACE]
     start, end = xp.maximum(-along - half, -pad), xp.minimum(half - along, pad)
     first, last = xp.maximum(start, -face), xp.minimum(end, face)

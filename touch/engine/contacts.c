@@ -96,8 +96,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       double along_y = dot(facing[2], at->axes[1]), along_z = dot(facing[2], at->axes[2]);
       double line = sqrt(along_y * along_y + along_z * along_z), across = first * along_z - second * along_y;
       first = line > 0 ? across / line : 0;
-      second = line > 0 ? (place[2] - looking[2] * dot(at->axes[0], away)) / line : 0;
       const double* tilt = numbers->tilts + ((f * numbers->things + g) * 3 + axis) * TILT;
+      second = line > 0 ? (place[2] - looking[2] * dot(at->axes[0], away)) / line - tilt[RADIUS] * looking[2] : 0;
       whole = heat_tilted(tilt, exp(numbers->grid[0]), force, line > 0 ? looking[2] / line : 0, second, &lying);
     }
     if (whole > 0)
@@ -111,6 +111,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       for (int k = 1; k < 3; k++)
         if (i != axis) sides[n++] = dot(facing[i], at->axes[k]);
         else sides[3 + k] = flat ? dot(facing[i], at->axes[k]) / dot(facing[i], at->axes[0]) : 0;
+    sides[6] = other ? place[1] + first : 0;
+    sides[7] = other ? place[2] + second : 0;
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
     length = sqrt(area * on_face * longer);
   } else {

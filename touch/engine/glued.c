@@ -17,7 +17,7 @@ static bool meets(const Numbers* numbers, const double* touch, int e, const Law*
 
 /* What a pad met of an object where an element lies it met of the element, and every element is on its object. */
 void heat_redirect(const Numbers* numbers, double* touches) {
-  static const double sides[SIDES] = {1, 0, 0, 1, 0, 0};
+  static const double sides[SIDES] = {1, 0, 0, 1};
   int fingers = numbers->fingers, elements = numbers->tips - fingers, targets = numbers->targets;
   for (int e = 0; e < elements; e++) {
     const double *glued = numbers->glued + e * GLUED, *pad = numbers->pads + (fingers + e) * PAD;
@@ -33,7 +33,7 @@ void heat_redirect(const Numbers* numbers, double* touches) {
       int meeting = 0;
       for (int i = 0; i < elements; i++)
         meeting += numbers->glued[i * GLUED + ON] == on && meets(numbers, touch, i, laws + i, other);
-      const double *bend = numbers->bends + f * BEND, curve[CURVES] = {0, 0, width / 2, width / 2};
+      const double *bend = numbers->bends + f * BEND, curve[CURVES] = {0, 0, width / 2, width / 2, 0, WIDE, WIDE};
       double pressed = touch[FORCE] / numbers->sample_steps / meeting;
       if (bend[0] + bend[1] > 0) heat_round_contact(bend, curve, sides, pressed, 0, 0, &area, &share, &longer);
       else heat_contact(laws + e, pressed, place, &area, &share);

@@ -34,8 +34,10 @@ enum { OF_CONTACT, OF_GAS, PATCH, WIDE_PATCH, PATCH_LENGTH, WIDE_LENGTH, VALUES 
 enum { PLACES = 24, FORCES = 14, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES * PLACES * PLACES,
        CURVED = SHARES + ENDS * FORCES * PLACES * PLACES + 1 };
 /* a round pad: curvatures, stiffness, half sides, half the face's, stiffness beside it and half the whole pad's sides; what
-   it meets: curvatures and half lengths; how they lie to one another: two axes and the rise of a flat face */
-enum { BEND = 10, CURVES = 4, SIDES = 6 };
+   it meets: curvatures, half lengths, m3/N of its springs and half its sensor's face; how they lie to one another: two axes,
+   the rise of a flat face and where the force presses from the other pad's middle */
+enum { BEND = 10, CURVES = 7, SIDES = 8 };
+#define WIDE 10.0 /* m, half of what no pad reaches the end of */
 /* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
 enum { VIEW = 11 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */

@@ -120,7 +120,7 @@ double heat_tilted(const double* tilt, double first_force, double force, double 
   *pressed = force;
   if (!(angle > LEVEL && tilt[RADIUS] > 0)) return 1;
   double cosine = 1 / sqrt(1 + slope * slope), half = tilt[HALF_ROD] * cosine;
-  double along = (slope > 0 ? middle : -middle) - tilt[RADIUS] * fabs(slope) * cosine;
+  double along = slope > 0 ? middle : -middle;
   double start = greater(-along - half, -tilt[HALF_PAD]), end = lesser(half - along, tilt[HALF_PAD]);
   double first = greater(start, -tilt[HALF_FACE]), width = greater(lesser(end, tilt[HALF_FACE]) - first, 0);
   double steep = angle * sqrt(angle), reach = first - start, soft = tilt[SOFT] * steep, share;

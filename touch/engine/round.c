@@ -40,9 +40,12 @@ static double depth_of(double load, double most, double least, double reach, dou
   return depth;
 }
 
-/* Share of an interval of half width reach round `at` that is within -half to half, of the most that can be. */
-static double kept(double at, double reach, double half) {
-  return lesser(greater(lesser(half, at + reach) - greater(-half, at - reach), 0) / (2 * lesser(reach, half)), 1);
+/* Share of an interval of half width reach that is on two faces of these half widths, of the most that can be; its middle is
+`at` from the one face's and other_at from the other's. */
+static double kept(double at, double other_at, double reach, double half, double other_half) {
+  double after = lesser(lesser(half - at, reach), other_half - other_at);
+  double before = lesser(lesser(half + at, reach), other_half + other_at);
+  return lesser(greater(after + before, 0) / (2 * lesser(lesser(reach, half), other_half)), 1);
 }
 
 /* What strips bear whose depth grows from 0, integrated over it and over the stiffness; their widths likewise. */
@@ -105,7 +108,8 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double width = lesser((1 - own) * bend[3] + own * bend[4], (1 - other) * curve[2] + other * curve[3]);
   double face_reach = lesser(own * bend[5] + (1 - own) * bend[6], reach);
   double face_width = lesser((1 - own) * bend[5] + own * bend[6], width);
-  double depth = depth_of(force / bend[2], most, least, reach, width), load;
+  double stiffness = bend[2] / (1 + bend[2] * curve[4]);
+  double depth = depth_of(force / stiffness, most, least, reach, width), load;
   double leans = fabs(along * sides[5] - aside * sides[4]) - ALIGNED;
   if (leans > LEANS && middle - apart < least) {
     double ends[2] = {other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]}, lower;
@@ -116,12 +120,18 @@ double heat_round_contact(const double* bend, const double* curve, const double 
     double across = sqrt(2 * lower / most);
     *longer = lesser(lower / leans, 2 * face_width) / (2 * lesser(across, face_reach));
     *longer = greater(*longer, 1 / *longer);
-    return kept(along * y + aside * z, across, face_reach);
+    return kept(along * y + aside * z, 0, across, face_reach, WIDE);
   }
   double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least);
+  double other_reach = other * curve[5] + (1 - other) * curve[6];
+  double other_width = (1 - other) * curve[5] + other * curve[6];
+  double on_faces = kept(along * y + aside * z, along * sides[6] + aside * sides[7], a, face_reach, other_reach);
+  on_faces *= kept(along * z - aside * y, along * sides[7] - aside * sides[6], b, face_width, other_width);
+  face_reach = lesser(face_reach, other_reach);
+  face_width = lesser(face_width, other_width);
   *area = 4 * a * b * clipped(lesser(face_reach / a, 1), lesser(face_width / b, 1), &load);
-  *share = 4 * bend[2] * depth * a * b * load;
+  *share = 4 * stiffness * depth * a * b * load;
   *longer = lesser(b, face_width) / lesser(a, face_reach);
   *longer = greater(*longer, 1 / *longer);
-  return kept(along * y + aside * z, a, face_reach) * kept(along * z - aside * y, b, face_width);
+  return on_faces;
 }
