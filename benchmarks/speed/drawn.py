@@ -1,5 +1,7 @@
-"""Grasp-v0 whose boxes have any size and are touched anywhere, beside Grasp-v0 as shipped: speed, stalls and memory
-over many short episodes."""
+"""Grasp-v0 whose boxes have any size and are touched anywhere, beside Grasp-v0 as shipped and beside the same draws
+with heat in the middle of each face: speed, stalls and memory over many short episodes.
+
+Boxes that stand off the middle and turned cost MuJoCo more, whatever heat does; the same draws tell heat from that."""
 
 from __future__ import annotations
 
@@ -26,8 +28,10 @@ class Drawn:
     """Times of `num_envs` environments through `episodes` episodes of `seconds` s, in which everything is drawn: sizes
     from a continuous range, where the object stands and so where it is touched. plain and drawn: s of CPU per
     environment and control step, resets among them (means after the first block). ratio: plain time over drawn, median
-    and quartiles of the blocks. longest: s of CPU, a control step of all drawn environments at most, and of plain ones.
-    memory: bytes of the process after each tenth of the episodes, empty where the system does not tell."""
+    and quartiles of the blocks; heat_ratio and heat_quartiles: the same of equal draws whose heat enters in the middle
+    of each face, over those where it enters as they are touched. longest: s of CPU, a control step of all drawn
+    environments at most, and of plain ones. memory: bytes of the process after each tenth of the episodes, empty where
+    the system does not tell."""
 
     num_envs: int
     episodes: int
@@ -36,24 +40,30 @@ class Drawn:
     drawn: float
     ratio: float
     quartiles: tuple[float, float]
+    heat_ratio: float
+    heat_quartiles: tuple[float, float]
     longest: tuple[float, float]
     memory: tuple[int, ...]
 
 
 def compare_drawn(num_envs: int, episodes: int, seed: int, shown: Callable[[float], None]) -> Drawn:
-    """Blocks of an episode each of either, in random order. Actions are random, but close the gripper for half of the
+    """Blocks of an episode each, in random order. Actions are random, but close the gripper for half of the
     time. shown: called with each block's share of the whole."""
     rng = np.random.default_rng(seed)
-    drawn = {"randomize": EVERYTHING, "placement": _PLACEMENT, "anywhere": True}
-    envs = [_environment(num_envs), _environment(num_envs, **drawn)]
+    draws = {"randomize": EVERYTHING, "placement": _PLACEMENT}
+    envs = [
+        _environment(num_envs),
+        _environment(num_envs, **draws, anywhere=True),
+        _environment(num_envs, **draws, anywhere=False),
+    ]
     for env in envs:
         env.reset(seed=seed)
     blocks = max(episodes // num_envs, _PARTS)
-    times, longest, memory = np.zeros((blocks + 1, 2)), np.zeros((blocks + 1, 2)), []
+    times, longest, memory = np.zeros((blocks + 1, len(envs))), np.zeros((blocks + 1, len(envs))), []
     for block in range(blocks + 1):
         actions = rng.uniform(-1.0, 1.0, (_STEPS, num_envs, 3)).astype(np.float32)
         actions[: _STEPS // 2, :, 0] = -1.0
-        for which in rng.permutation(2):
+        for which in rng.permutation(len(envs)):
             spent = [_timed(envs[which], action) for action in actions]
             times[block, which], longest[block, which] = sum(spent), max(spent)
         if block and block % (blocks // _PARTS) == 0 and len(memory) < _PARTS:
@@ -61,8 +71,9 @@ def compare_drawn(num_envs: int, episodes: int, seed: int, shown: Callable[[floa
         shown(1 / (blocks + 1))
     for env in envs:
         env.close()
-    plain, other = times[1:].T
-    low, middle, high = (float(x) for x in np.percentile(plain / other, [25, 50, 75]))
+    plain, other, even = times[1:].T
+    low, middle, high = np.percentile(plain / other, [25, 50, 75]).tolist()
+    heat_low, heat_middle, heat_high = np.percentile(even / other, [25, 50, 75]).tolist()
     slowest = longest[1:].max(axis=0)
     mean = times[1:].mean(axis=0) / (_STEPS * num_envs)
     return Drawn(
@@ -73,6 +84,8 @@ def compare_drawn(num_envs: int, episodes: int, seed: int, shown: Callable[[floa
         float(mean[1]),
         middle,
         (low, high),
+        heat_middle,
+        (heat_low, heat_high),
         (float(slowest[1]), float(slowest[0])),
         tuple(memory),
     )

@@ -80,6 +80,8 @@ def test_boxes_of_any_size_and_place_go_through_their_episodes(written: tuple[Pa
     assert drawn["episodes"] == 40 and drawn["num_envs"] == 4
     low, high = drawn["quartiles"]
     assert 0 < low <= drawn["ratio"] <= high
+    low, high = drawn["heat_quartiles"]
+    assert 0 < low <= drawn["heat_ratio"] <= high
     assert drawn["plain"] > 0 and drawn["drawn"] > 0 and min(drawn["longest"]) > 0
     assert len(drawn["memory"]) in (0, 10)
 

@@ -57,10 +57,14 @@ def report(record: Record, output: Output) -> None:
         + "({:.3f} .. {:.3f}), ".format(*drawn["quartiles"])
         + "longest step {:.1f} ms (without: {:.1f} ms)".format(*(1e3 * each for each in drawn["longest"]))
     )
+    output.line(
+        f"of the speed of the same draws with heat in the middle of each face: {drawn['heat_ratio']:.3f} "
+        + "({:.3f} .. {:.3f})".format(*drawn["heat_quartiles"])
+    )
     if len(drawn["memory"]) > 1:
         first, *_, last = (each / 1e6 for each in drawn["memory"])
         output.line(
-            f"memory of both after a tenth of these episodes {first:.0f} MB, at their end {last:.0f} MB"
+            f"memory of all after a tenth of these episodes {first:.0f} MB, at their end {last:.0f} MB"
         )
     output.line(f"memory per environment {record['memory']['per_env'] / 1e3:.1f} kB")
     start = record["start_up"]
