@@ -51,8 +51,8 @@ from .scene import (
     refuse_overlap,
     refuse_sleep,
     samples_in,
+    warn_of_contact_filters,
     warn_of_fixed_bodies,
-    warn_of_kept_apart,
     warn_of_wide_faces,
     whole_steps,
 )
@@ -128,7 +128,7 @@ class ThermalTouch:
         self._shapes = bodies(model, objects, ambient)
         self._pads = pads(model, fingertips, self._shapes)
         warn_of_fixed_bodies(model, fingertips, self._pads, self._shapes)
-        warn_of_kept_apart(model, self._pads, self._shapes)
+        warn_of_contact_filters(model, self._pads, self._shapes)
         warn_of_wide_faces(model, self._pads)
         refuse_sleep(model, self._pads, self._shapes)
         self._shapes = own_shapes(model, self._shapes, self._pads)

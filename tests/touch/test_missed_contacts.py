@@ -118,7 +118,7 @@ def contacts(model: mujoco.MjModel) -> int:
     ],
     ids=lambda value: "",
 )
-def test_what_is_kept_apart_is_told_of(words: dict, why: str) -> None:
+def test_contacts_that_the_model_filters_out_are_warned_of(words: dict, why: str) -> None:
     """A finger moved as a mocap body over a fixed block, for one, felt nothing, and nothing said so."""
     model = apart(**words)
     assert not contacts(model)

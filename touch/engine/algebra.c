@@ -19,8 +19,8 @@ static void rotate(int count, double* restrict first, double* restrict second, c
 /* Cosines and sines of the rotations that make between 0, and the diagonal after them. */
 static void angle(int count, double* first, double* second, double* between, double* cosine, double* sine) {
   for (int k = 0; k < count; k++) {
-    double twice = 2 * between[k], apart = second[k] - first[k];
-    double tangent = copysign(twice / (fabs(apart) + sqrt(apart * apart + twice * twice) + TINY), apart * twice);
+    double twice = 2 * between[k], difference = second[k] - first[k];
+    double tangent = copysign(twice / (fabs(difference) + sqrt(difference * difference + twice * twice) + TINY), difference * twice);
     cosine[k] = 1 / sqrt(tangent * tangent + 1);
     sine[k] = tangent * cosine[k];
     first[k] -= tangent * between[k];
@@ -50,11 +50,11 @@ void heat_diagonalise(int n, int count, double* matrix, double* turn) {
     if (done) return;
     for (int q = 1; q < n; q++) {
       for (int p = 0; p < q; p++) {
-        double* apart = AT(matrix, q, p);
+        double* off_diagonal = AT(matrix, q, p);
         bool small = true;
-        for (int k = 0; k < count; k++) small = small && apart[k] * apart[k] <= on[k];
+        for (int k = 0; k < count; k++) small = small && off_diagonal[k] * off_diagonal[k] <= on[k];
         if (small) continue;
-        angle(count, AT(matrix, p, p), AT(matrix, q, q), apart, cosine, sine);
+        angle(count, AT(matrix, p, p), AT(matrix, q, q), off_diagonal, cosine, sine);
         for (int m = 0; m < p; m++) rotate(count, AT(matrix, p, m), AT(matrix, q, m), cosine, sine);
         for (int m = p + 1; m < q; m++) rotate(count, AT(matrix, m, p), AT(matrix, q, m), cosine, sine);
         for (int m = q + 1; m < n; m++) rotate(count, AT(matrix, m, p), AT(matrix, m, q), cosine, sine);

@@ -17,10 +17,10 @@ enum { MODES = 24, STEPS = 12 };
 #define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
 static const double pi = 3.14159265358979323846;
 
-/* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. told: with eigenfunctions. */
+/* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. waves: its overlaps with eigenfunctions. */
 typedef struct {
   int order, which;
-  double places[NODES], told[FUNCTIONS][MODES];
+  double places[NODES], waves[FUNCTIONS][MODES];
 } Along;
 
 /* Products with normalised eigenfunctions. */
@@ -38,7 +38,7 @@ static void overlaps(const Numbers* numbers, double length, Along* along) {
     for (int f = 0; f < functions; f++) {
       double total = 0;
       for (int k = 0; k < nodes; k++) total += (along->order ? numbers->jumps[f * NODES + k] : 1) * waved[k];
-      along->told[f][m] = total / sqrt(norm);
+      along->waves[f][m] = total / sqrt(norm);
     }
   }
 }
@@ -66,14 +66,14 @@ static double images(double one, double other, int other_order, int order, doubl
 /* The axis's kernel between the functions of two patches. */
 static void between(const Numbers* numbers, const Along* a, const Along* b, double length, double tau,
                     double out[FUNCTIONS][FUNCTIONS]) {
-  int mine = a->order ? FUNCTIONS : 1, others = b->order ? FUNCTIONS : 1;
+  int first = a->order ? FUNCTIONS : 1, second = b->order ? FUNCTIONS : 1;
   if (tau > SWITCH * length * length) {
     memset(out, 0, FUNCTIONS * FUNCTIONS * sizeof(double));
     for (int w = 0; w < MODES; w++) {
       double wave = w * pi / length, decay = exp(-wave * wave * tau);
       if (decay < 1e-17) return;
-      for (int f = 0; f < mine; f++)
-        for (int g = 0; g < others; g++) out[f][g] += decay * a->told[f][w] * b->told[g][w];
+      for (int f = 0; f < first; f++)
+        for (int g = 0; g < second; g++) out[f][g] += decay * a->waves[f][w] * b->waves[g][w];
     }
     return;
   }
@@ -84,13 +84,13 @@ static void between(const Numbers* numbers, const Along* a, const Along* b, doub
       table[k][q] = a == b && q > k ? 0 : images(a->places[k], b->places[q], b->order, a->order + b->order, length, scale);
   for (int k = 0; a == b && k < rows; k++)
     for (int q = k + 1; q < columns; q++) table[k][q] = table[q][k];
-  for (int f = 0; f < mine; f++) {
+  for (int f = 0; f < first; f++) {
     double half[NODES];
     for (int q = 0; q < columns; q++) {
       half[q] = 0;
       for (int k = 0; k < rows; k++) half[q] += (a->order ? numbers->jumps[f * NODES + k] : 1) * table[k][q];
     }
-    for (int g = 0; g < others; g++) {
+    for (int g = 0; g < second; g++) {
       out[f][g] = 0;
       for (int q = 0; q < columns; q++) out[f][g] += (b->order ? numbers->jumps[g * NODES + q] : 1) * half[q];
     }
@@ -142,18 +142,18 @@ static void impedance(const Numbers* numbers, int object, const Network* network
     double seen[PATTERNS];
     for (int i = 0; i < PATTERNS; i++) seen[i] = 1;
     for (int axis = 0; axis < 3; axis++) {
-      Along* own = &along[axis * count + n];
-      own->order = axis != facing;
-      own->which = axis < facing ? axis : axis - 1;
-      if (own->order) {
+      Along* patch = &along[axis * count + n];
+      patch->order = axis != facing;
+      patch->which = axis < facing ? axis : axis - 1;
+      if (patch->order) {
         double half = lesser(sqrt(numbers->tip_area[tip]), box[axis]) / 2;
         area[n] *= half;
-        for (int k = 0; k < NODES; k++) own->places[k] = place[MIDDLE + own->which] + half * numbers->nodes[k];
+        for (int k = 0; k < NODES; k++) patch->places[k] = place[MIDDLE + patch->which] + half * numbers->nodes[k];
       } else {
-        own->places[0] = box[axis] * ((int)place[FACE] % 2);
+        patch->places[0] = box[axis] * ((int)place[FACE] % 2);
       }
-      overlaps(numbers, box[axis], own);
-      for (int i = 0; i < PATTERNS; i++) seen[i] *= own->told[function(numbers, own, i)][0];
+      overlaps(numbers, box[axis], patch);
+      for (int i = 0; i < PATTERNS; i++) seen[i] *= patch->waves[function(numbers, patch, i)][0];
     }
     for (int p = 0; p < patterns; p++) {
       double total = 0;
@@ -245,10 +245,10 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
   for (int step = 0; step < STEPS; step++) {
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
-        double *own = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
-        for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (own[k] - left[k]);
+        double *residue = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
+        for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (residue[k] - left[k]);
         mju_mulMatVec(free, solve, pulled, rates, rates);
-        for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * own[k] + left[k];
+        for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * residue[k] + left[k];
         memcpy(AT(dual, j, i), left, sizeof free);
       }
     }
@@ -269,13 +269,13 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     double moving = 0;
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
-        double *own = AT(inside, i, j), next[rates];
+        double *residue = AT(inside, i, j), next[rates];
         memset(next, 0, sizeof next);
         for (int m = 0; m < wide; m++)
           for (int k = 0; k < rates; k++) next[k] += AT(turn, m, i)[k] * AT(half, m, j)[k];
         for (int k = 0; k < rates; k++) {
-          moving = greater(moving, fabs(next[k] - own[k]));
-          own[k] = next[k];
+          moving = greater(moving, fabs(next[k] - residue[k]));
+          residue[k] = next[k];
           AT(dual, i, j)[k] -= next[k];
         }
         memcpy(AT(dual, j, i), AT(dual, i, j), sizeof(double) * rates);
@@ -305,7 +305,7 @@ void heat_copy_network(const Numbers* numbers, const Network* from, Network* to)
 }
 
 /* The ports that a network has, by number: of a place all patterns, or the even one alone. Returns how many. */
-int heat_told(const Numbers* numbers, const Network* network, int* ports) {
+int heat_used_ports(const Numbers* numbers, const Network* network, int* ports) {
   int few = 0;
   for (int n = 0; n < network->count; n++)
     for (int p = 0; p < numbers->patterns; p++)
@@ -316,7 +316,7 @@ int heat_told(const Numbers* numbers, const Network* network, int* ports) {
 /* Makes the network of the places that stand in it. impedances: what is kept of the object's last one. */
 void heat_network(const Numbers* numbers, int object, Network* network, double* impedances, double* room) {
   const double* box = numbers->boxes + object * BOX;
-  int count = network->count, patterns = numbers->patterns, wide = count * patterns, rates = numbers->rates, told[wide + 1];
+  int count = network->count, patterns = numbers->patterns, wide = count * patterns, rates = numbers->rates, used[wide + 1];
   size_t square = (size_t)wide * wide;
   double *port = room + 3 * (size_t)count * (sizeof(Along) / sizeof(double) + 1), *rest = port + wide;
   double *weight = rest + MOMENTS * square, *columns = weight + MOMENTS, *found = columns + MOMENTS * rates;
@@ -324,14 +324,14 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
   network->rates[0] = box[LOSS];
   if (count) {
     impedance(numbers, object, network, impedances, port, rest, room);
-    int few = heat_told(numbers, network, told);
+    int few = heat_used_ports(numbers, network, used);
     for (int s = 0; s < MOMENTS; s++) {
       double moment = numbers->moments[s], most = INFINITY;
       for (int n = 0; n < count; n++) {
         double even = port[n * patterns];
-        double own = 1 / numbers->tip_weight[(size_t)network->places[n * SLOT + TIP] * MOMENTS + s];
-        own += rest[((size_t)s * wide + n * patterns) * wide + n * patterns] + even * even / moment;
-        most = lesser(most, 1 / own);
+        double admittance = 1 / numbers->tip_weight[(size_t)network->places[n * SLOT + TIP] * MOMENTS + s];
+        admittance += rest[((size_t)s * wide + n * patterns) * wide + n * patterns] + even * even / moment;
+        most = lesser(most, 1 / admittance);
       }
       weight[s] = most;
       for (int k = 0; k < rates; k++) columns[s * rates + k] = most / (moment + numbers->decay[k]);
@@ -339,22 +339,22 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
     for (int s = 0; s < MOMENTS; s++) /* in place: nothing is written where it is still to be read */
       for (int a = 0; a < few; a++)
         for (int b = 0; b < few; b++)
-          rest[((size_t)s * few + a) * few + b] = rest[((size_t)s * wide + told[a]) * wide + told[b]] * weight[s];
+          rest[((size_t)s * few + a) * few + b] = rest[((size_t)s * wide + used[a]) * wide + used[b]] * weight[s];
     square = (size_t)few * few;
     residues(rates, few, columns, rest, found, found + rates * square);
     double *turn = found + rates * square, least = numbers->least / weight[MOMENTS - 1];
     memset(network->ports, 0, sizeof(double) * wide * numbers->states);
-    for (int j = 0; j < few; j++) network->ports[(size_t)told[j] * numbers->states] = port[told[j]];
+    for (int j = 0; j < few; j++) network->ports[(size_t)used[j] * numbers->states] = port[used[j]];
     for (int k = 0; k < rates; k++) {
-      double* own = found + k * square;
+      double* residue = found + k * square;
       for (int i = 0; i < few * few; i++) turn[i] = i % (few + 1) == 0;
-      heat_diagonalise(few, 1, own, turn);
+      heat_diagonalise(few, 1, residue, turn);
       for (int m = 0; m < few; m++) {
-        double value = own[m * few + m], left = value - pow(least * numbers->decay[k], 2) / value;
+        double value = residue[m * few + m], left = value - pow(least * numbers->decay[k], 2) / value;
         if (!(value > 0 && left > 0)) continue;
         network->rates[network->n] = numbers->decay[k] + IN_AIR * box[LOSS] / (1 + numbers->decay[k] / box[CROSSING]);
         for (int j = 0; j < few; j++)
-          network->ports[(size_t)told[j] * numbers->states + network->n] = turn[m * few + j] * sqrt(left);
+          network->ports[(size_t)used[j] * numbers->states + network->n] = turn[m * few + j] * sqrt(left);
         network->n++;
       }
     }

@@ -60,7 +60,7 @@ static int viewed(const double* views, int count, const double normal[3], const 
   return best;
 }
 
-/* Adds what presses one pad on one thing to the touch. pushed: force N and its moments. again: whether another geom of the
+/* Adds what presses one pad on one partner to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
                  Pose* poses, bool again, double* touch) {
@@ -78,7 +78,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     looking[i] = dot(facing[i], at->axes[0]);
     if (!other && fabs(looking[i]) > fabs(looking[axis])) axis = i;
   }
-  const Law* law = (const Law*)numbers->laws + (f * numbers->things + g) * 3 + axis;
+  const Law* law = (const Law*)numbers->laws + (f * numbers->partners + g) * 3 + axis;
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
   bool bulging = bend[0] + bend[1] > 0 || (other && curve[0] + curve[1] > 0);
   double on_face = 1;
@@ -86,7 +86,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   double seen[2] = {0};
   if (views && !bulging)
     side = viewed(numbers->views + g * numbers->sides * VIEW, views, looking, place, law->half_face, seen);
-  int table = other ? -1 : (int)numbers->curved[(f * numbers->things + g) * numbers->sides + side];
+  int table = other ? -1 : (int)numbers->curved[(f * numbers->partners + g) * numbers->sides + side];
   if (table >= 0 && !bulging) {
     double lying = force, whole = 1;
     if (views) {
@@ -96,7 +96,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       double along_y = dot(facing[2], at->axes[1]), along_z = dot(facing[2], at->axes[2]);
       double line = sqrt(along_y * along_y + along_z * along_z), across = first * along_z - second * along_y;
       first = line > 0 ? across / line : 0;
-      const double* tilt = numbers->tilts + ((f * numbers->things + g) * 3 + axis) * TILT;
+      const double* tilt = numbers->tilts + ((f * numbers->partners + g) * 3 + axis) * TILT;
       second = line > 0 ? (place[2] - looking[2] * dot(at->axes[0], away)) / line - tilt[RADIUS] * looking[2] : 0;
       whole = heat_tilted(tilt, exp(numbers->grid[0]), force, line > 0 ? looking[2] / line : 0, second, &lying);
     }
@@ -141,7 +141,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
 /* Adds the contacts of the step that was just taken to the touches. A force that is not finite is left out: MuJoCo resets
 the simulation then. */
 void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches) {
-  int tips = numbers->fingers, things = numbers->things;
+  int tips = numbers->fingers, partners = numbers->partners;
   bool any = false;
   double* pushed = work->room; /* (F, N, 3) */
   Pose poses[tips];
@@ -163,31 +163,31 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
       for (int k = 1; k < 2 * (contact->dim - 1); k++) force += d->efc_force[contact->efc_address + k];
     if (!(force > 0 && isfinite(force))) continue;
     if (!any) {
-      memset(pushed, 0, sizeof(double) * tips * things * 3);
+      memset(pushed, 0, sizeof(double) * tips * partners * 3);
       for (int f = 0; f < tips; f++) poses[f].known = false;
       any = true;
     }
-    int thing = second >= tips ? second - tips : numbers->geoms + second;
+    int partner = second >= tips ? second - tips : numbers->geoms + second;
     bool on = lies(numbers->pads + first * PAD, pose(numbers, work, d, first, poses), contact, sign, &y, &z);
     if (second < tips) {
       const Pose* other = pose(numbers, work, d, second, poses);
       on = lies(numbers->pads + second * PAD, other, contact, -sign, &other_y, &other_z) && on;
     }
     if (!on) continue;
-    double* own = pushed + (first * things + thing) * 3;
-    own[0] += force;
-    own[1] += force * y;
-    own[2] += force * z;
+    double* push = pushed + (first * partners + partner) * 3;
+    push[0] += force;
+    push[1] += force * y;
+    push[2] += force * z;
   }
   for (int f = 0; any && f < tips; f++) {
     bool again = false;
-    for (int g = 0, last = -1; g < things; g++) {
+    for (int g = 0, last = -1; g < partners; g++) {
       int target = g < numbers->geoms ? (int)numbers->owner[g] : numbers->objects + g - numbers->geoms;
-      const double* own = pushed + (f * things + g) * 3;
+      const double* push = pushed + (f * partners + g) * 3;
       again = again && target == last; /* an object's geoms follow one another */
       last = target;
-      if (own[0] > 0)
-        again = feel(numbers, work, d, f, g, own, poses, again, touches + (f * numbers->targets + target) * COLUMNS);
+      if (push[0] > 0)
+        again = feel(numbers, work, d, f, g, push, poses, again, touches + (f * numbers->targets + target) * COLUMNS);
     }
   }
 }

@@ -15,7 +15,7 @@ static bool meets(const Numbers* numbers, const double* touch, int e, const Law*
   return touch[FORCE] > 0 && dot(touch + NORMAL, pad + AXES) >= FACING && fabs(place[1]) < half && fabs(place[2]) < half;
 }
 
-/* What a pad met of an object where an element lies it met of the element, and every element is on its object. */
+/* Where an element lies, a pad touches the element and not its object; every element is on its object. */
 void heat_redirect(const Numbers* numbers, double* touches) {
   static const double sides[SIDES] = {1, 0, 0, 1};
   int fingers = numbers->fingers, elements = numbers->tips - fingers, targets = numbers->targets;

@@ -22,7 +22,7 @@ enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
    K s^.5 */
 enum { EXTENT = 3, CENTRE = 6, TURN = 9, CONDUCTIVITY = 18, CAPACITY, LOSS, CROSSING, FIRST, EARLY, BOX };
 /* a place: face of the box, middle m along its two axes, fingertip; and 1 where the fingertip is or has just left for
-   another, whose patterns are all told, 0 where the even one alone is */
+   another, whose patterns are all used, 0 where the even one alone is */
 enum { FACE, MIDDLE, TIP = 3, PLACED, ALL = PLACED, SLOT };
 enum { IDLE = 12 }; /* places that an object remembers besides those in use */
 enum { SHAPE_CYLINDER = 1 };
@@ -73,8 +73,8 @@ typedef struct {
   int rates, places, states;     /* K, P, and most states of an object */
   int tips, fingers;             /* fingertips and the elements that are glued on objects behind them; without these */
   int faces;                     /* of a network of either: 2 where elements have one for their object and one for pads */
-  int objects, geoms, targets, things, patterns, tip_states, sample_steps;
-  int tables, sides;             /* of curved contacts; axes or, of meshes, views of a thing, at most */
+  int objects, geoms, targets, partners, patterns, tip_states, sample_steps;
+  int tables, sides;             /* of curved contacts; axes or, of meshes, views of a partner, at most */
   int spreads;                   /* tables of narrow contacts */
   int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
@@ -85,9 +85,9 @@ typedef struct {
   const double *glued, *glued_laws, *first; /* GLUED of each element, Law of each pad on it; K above the air at first */
   const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
   const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */
-  const double *bends, *curves;  /* of each pad; of each thing by the axis of its frame */
-  const double *laws, *curved;   /* Law of each pad on each thing, by the axis of its frame, and its table's number or -1 */
-  const double *views, *viewed;  /* VIEW of each thing by its side, and how many: 0 of what is no mesh */
+  const double *bends, *curves;  /* of each pad; of each partner by the axis of its frame */
+  const double *laws, *curved;   /* Law of each pad on each partner, by the axis of its frame, and its table's number or -1 */
+  const double *views, *viewed;  /* VIEW of each partner by its side, and how many: 0 of what is no mesh */
   const double* tilts;           /* TILT each, alike */
   const double *bent, *grid;     /* CURVED each; logarithms of their first force and of the next one's ratio, least W/K */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights;
@@ -167,7 +167,7 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
 size_t heat_impedances(const Numbers* numbers);
 void heat_copy_network(const Numbers* numbers, const Network* from, Network* to);
 size_t heat_network_room(const Numbers* numbers);
-int heat_told(const Numbers* numbers, const Network* network, int* ports);
+int heat_used_ports(const Numbers* numbers, const Network* network, int* ports);
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room);
 int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone, double* room);
 size_t heat_carry_room(const Numbers* numbers);

@@ -22,8 +22,8 @@ from ..scene import (
     refuse_sleep,
     samples_in,
     warn_of_boxes,
+    warn_of_contact_filters,
     warn_of_fixed_bodies,
-    warn_of_kept_apart,
     warn_of_wide_faces,
     whole_steps,
 )
@@ -80,7 +80,7 @@ def install(
     shapes = bodies(model, objects, ambient)
     found = pads(model, fingertips, shapes)
     warn_of_fixed_bodies(model, fingertips, found, shapes)
-    warn_of_kept_apart(model, found, shapes)
+    warn_of_contact_filters(model, found, shapes)
     warn_of_wide_faces(model, found)
     refuse_sleep(model, found, shapes)
     for shape in shapes:

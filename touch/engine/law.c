@@ -157,11 +157,11 @@ static double separation(const Numbers* numbers, double log_share) {
 }
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure) {
-  double log_pressure = log(pressure), share = law->elastic_share, apart = 0;
-  if (share < 1) apart += (1 - share) * separation(numbers, log_pressure + log(2) - law->log_hardness);
-  if (share > 0) apart += share * separation(numbers, log_pressure + log(4) - law->log_elastic_hardness);
+  double log_pressure = log(pressure), share = law->elastic_share, separated = 0;
+  if (share < 1) separated += (1 - share) * separation(numbers, log_pressure + log(2) - law->log_hardness);
+  if (share > 0) separated += share * separation(numbers, log_pressure + log(4) - law->log_elastic_hardness);
   double solid = exp(lesser(law->spot_scale + law->spot_power * log_pressure, law->spot_most));
-  double gap = law->roughness * apart + law->jump;
+  double gap = law->roughness * separated + law->jump;
   if (law->flatness > 0) return solid + law->gas / law->flatness * log1p(law->flatness / gap);
   return solid + law->gas / gap;
 }

@@ -1,6 +1,6 @@
 /* A sample of heat: the fields that closed contacts join take one rational step of the exponential together;
 touch/heat/systems.py, narrow.py and march.py, thermal/network/coupling.py and kernel.py. Groups that share no field are
-told apart by the zeros between them. */
+distinct by the zeros between them. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -70,8 +70,8 @@ static inline Complex inverse_of(Complex a) {
   return a;
 }
 
-/* What a port tells of n states. */
-static inline Complex told(int n, const double* port, const double* x, const Complex* scale) {
+/* The temperature at a port of n states. */
+static inline Complex seen_at(int n, const double* port, const double* x, const Complex* scale) {
   Complex all = {0};
   for (int k = 0; k < n; k++) all = plus(all, port[k] * x[k], scale[k]);
   return all;
@@ -86,7 +86,7 @@ static void hear(const Numbers* numbers, const Network* network, bool tip) {
     if (!tip && network->places[p / patterns * SLOT + ALL] == 0) continue;
     for (int r = 0; r <= p; r++)
       if (tip || network->places[r / patterns * SLOT + ALL] != 0) network->gram[p * wide + r] = network->gram[r * wide + p] =
-          told(network->n, port, network->ports + (size_t)r * network->stride, network->scale);
+          seen_at(network->n, port, network->ports + (size_t)r * network->stride, network->scale);
   }
 }
 
@@ -117,13 +117,13 @@ static void join(const Numbers* numbers, const Work* work, const Side* sides, in
   memset(work->matrix, 0, sizeof(Complex) * m * m);
   for (int one = 0; one < 2 * pairs; one++) {
     for (int other = 0; other < 2 * (one / 2 + 1); other++) {
-      const Side *own = sides + one, *theirs = sides + other;
-      if (own->field != theirs->field) continue;
-      const Network* network = work->networks + own->field;
+      const Side *one_side = sides + one, *other_side = sides + other;
+      if (one_side->field != other_side->field) continue;
+      const Network* network = work->networks + one_side->field;
       int wide = network->count * patterns;
-      double sign = numbers->dt * own->sign * theirs->sign;
+      double sign = numbers->dt * one_side->sign * other_side->sign;
       for (int p = 0; p < patterns; p++) {
-        const Complex* heard = network->gram + (size_t)(own->place * patterns + p) * wide + theirs->place * patterns;
+        const Complex* heard = network->gram + (size_t)(one_side->place * patterns + p) * wide + other_side->place * patterns;
         Complex* at = work->matrix + (size_t)(one / 2 * patterns + p) * m + other / 2 * patterns;
         for (int r = 0; r < patterns; r++) at[r] = plus(at[r], sign, heard[r]);
       }
@@ -165,7 +165,7 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
   for (int j = 0; j < m; j++) {
     Complex heard = {0};
     for (const Side* side = sides + j / patterns * 2; side < sides + j / patterns * 2 + 2; side++)
-      heard = plus(heard, side->sign, told(side->n, side->ports + j % patterns * side->stride, side->x, side->scale));
+      heard = plus(heard, side->sign, seen_at(side->n, side->ports + j % patterns * side->stride, side->x, side->scale));
     flow[j] = plus((Complex){0}, -1, times(poles, heard));
     if (j % patterns == 0) flow[j] = plus(flow[j], difference[j / patterns], one);
     matrix[j * m + j] = plus(matrix[j * m + j], resistance[j / patterns], one);
@@ -270,7 +270,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
   memset(roots, 0, sizeof roots);
   for (int i = 0; i < pairs; i++) {
     int f = pair[i] / targets, t = pair[i] % targets;
-    const double *touch = state->touches + pair[i] * COLUMNS, *own = state->narrow + pair[i] * rates;
+    const double *touch = state->touches + pair[i] * COLUMNS, *states = state->narrow + pair[i] * rates;
     double* root = roots + i * rates;
     sides[2 * i] = side_of(numbers, work, state, t, t < objects ? (int)state->current[f * objects + t] : numbers->faces - 1, 1);
     sides[2 * i + 1] = side_of(numbers, work, state, objects + f, 0, -1);
@@ -281,7 +281,7 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     if (!spread(numbers, pair[i], touch, axis, share, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
-      difference[i] -= root[k] * part * own[k];
+      difference[i] -= root[k] * part * states[k];
       resistance[i] += root[k] * root[k] * (1 - part) / numbers->decay[k];
     }
   }

@@ -29,10 +29,10 @@ static bool within(const double* values, size_t count, size_t stride, double mos
   return true;
 }
 
-/* Whether all are -1 or numbers of so many things. */
-static bool numbered(const double* values, size_t count, int things) {
+/* Whether all are -1 or numbers of so many partners. */
+static bool numbered(const double* values, size_t count, int partners) {
   for (; count; count--, values++)
-    if (*values != -1 && !within(values, 1, 1, things - 1)) return false;
+    if (*values != -1 && !within(values, 1, 1, partners - 1)) return false;
   return true;
 }
 
@@ -53,7 +53,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       return "the attribute \"numbers\" is of another version or broken: write it with thermograsp.touch.install";
   int tips = n->tips = (int)at[1], objects = n->objects = (int)at[2], geoms = n->geoms = (int)at[3];
   int patterns = n->patterns = (int)at[4], states = n->tip_states = (int)at[6], fingers = n->fingers = (int)at[15];
-  int elements = tips - fingers, things = n->things = fingers + geoms;
+  int elements = tips - fingers, partners = n->partners = fingers + geoms;
   n->rates = (int)at[5];
   n->sample_steps = (int)at[7];
   n->timestep = at[8];
@@ -77,16 +77,16 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->owner, geoms},
       {&n->pads, (size_t)tips * PAD},
       {&n->boxes, (size_t)objects * BOX},
-      {&n->laws, (size_t)fingers * things * 3 * (sizeof(Law) / sizeof(double))},
-      {&n->curved, (size_t)fingers * things * n->sides},
-      {&n->views, (size_t)things * n->sides * VIEW},
-      {&n->viewed, things},
-      {&n->tilts, (size_t)fingers * things * 3 * TILT},
+      {&n->laws, (size_t)fingers * partners * 3 * (sizeof(Law) / sizeof(double))},
+      {&n->curved, (size_t)fingers * partners * n->sides},
+      {&n->views, (size_t)partners * n->sides * VIEW},
+      {&n->viewed, partners},
+      {&n->tilts, (size_t)fingers * partners * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)n->spreads * SPREAD * n->rates},
       {&n->spread, (size_t)tips * n->targets * (1 + AXES)},
       {&n->bends, (size_t)fingers * BEND},
-      {&n->curves, (size_t)things * 3 * CURVES},
+      {&n->curves, (size_t)partners * 3 * CURVES},
       {&n->glued, (size_t)elements * GLUED},
       {&n->glued_laws, (size_t)fingers * elements * (sizeof(Law) / sizeof(double))},
       {&n->first, tips},
@@ -125,17 +125,17 @@ const char* heat_parse(Numbers* n, const char* text) {
     if (total > length / 16) break;
   }
   if (total != length / 16) return "the attribute \"numbers\" has another length than it says itself";
-  size_t law = sizeof(Law) / sizeof(double), laws = (size_t)fingers * things * 3;
+  size_t law = sizeof(Law) / sizeof(double), laws = (size_t)fingers * partners * 3;
   const double *across = n->laws + offsetof(Law, across) / sizeof(double), *glued_across = n->glued_laws + (across - n->laws);
   for (int f = 0; f < tips; f++)
     if (!numbered(&((const Back*)n->backs)[f].read, 1, n->links)) return "the attribute \"numbers\" reads what is not there";
   /* what is used as an index; wrong values elsewhere give wrong temperatures and no more */
-  if (!within(n->roles, n->named, 1, things - 1) || !within(n->owner, geoms, 1, objects - 1) ||
+  if (!within(n->roles, n->named, 1, partners - 1) || !within(n->owner, geoms, 1, objects - 1) ||
       !within(across, laws, law, 2) || !within(across + 1, laws, law, 2) ||
-      !numbered(n->curved, (size_t)fingers * things * n->sides, n->tables) || n->sides < 3 ||
+      !numbered(n->curved, (size_t)fingers * partners * n->sides, n->tables) || n->sides < 3 ||
       !within(n->glued + ON, elements, GLUED, objects - 1) ||
       !within(glued_across, (size_t)fingers * elements, law, 2) || !within(glued_across + 1, (size_t)fingers * elements, law, 2) ||
-      !within(n->spread, (size_t)tips * n->targets * (1 + AXES), 1, n->spreads - 1) || !within(n->viewed, things, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
+      !within(n->spread, (size_t)tips * n->targets * (1 + AXES), 1, n->spreads - 1) || !within(n->viewed, partners, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

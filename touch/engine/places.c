@@ -132,15 +132,15 @@ static void nearest(int columns, int rows, const double* wanted, double* seen, d
   for (int pass = 0; pass < 2; pass++) {
     for (int p = 0; p < columns; p++) {
       const double* column = seen + (size_t)p * stride;
-      double size = 0, met = 0;
+      double size = 0, along = 0;
       for (int r = 0; r < rows; r++) {
         size += column[r] * column[r];
-        met += column[r] * wanted[r];
+        along += column[r] * wanted[r];
       }
       double left = size - LEAST * LEAST * largest;
       if (pass == 0) largest = greater(largest, size);
       else if (left > 0)
-        for (int i = 0; i < columns; i++) x[i] += column[rows + i] * met * left / (size * size);
+        for (int i = 0; i < columns; i++) x[i] += column[rows + i] * along * left / (size * size);
     }
   }
 }
@@ -188,11 +188,11 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
 each other the first. */
 int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone,
                    double* room) {
-  int patterns = numbers->patterns, told[network->count * patterns + 1], few = heat_told(numbers, network, told);
+  int patterns = numbers->patterns, used[network->count * patterns + 1], few = heat_used_ports(numbers, network, used);
   int alive[few + 1], left = 0;
   for (int a = 0; a < few; a++)
-    if (!gone[told[a] / patterns]) alive[left++] = a;
-  double *gram = room, *own = gram + few * few, *inverse = own + left * left, *block = inverse + left * left;
+    if (!gone[used[a] / patterns]) alive[left++] = a;
+  double *gram = room, *remaining = gram + few * few, *inverse = remaining + left * left, *block = inverse + left * left;
   double *turned = block + patterns * patterns, *hears = turned + patterns * patterns, *flows = hears + few;
   double lost[network->count + 1], least = INFINITY;
   memset(lost, 0, sizeof lost);
@@ -200,26 +200,26 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
     last = next_rate(network, first);
     double ridge = 0, share = exp(-2 * network->rates[first] * SOON);
     for (int a = 0; a < few; a++) {
-      const double* port = network->ports + (size_t)told[a] * numbers->states;
+      const double* port = network->ports + (size_t)used[a] * numbers->states;
       hears[a] = 0;
       for (int i = first; i < last; i++) hears[a] += port[i] * x[i];
       for (int b = 0; b < few; b++) {
         gram[a * few + b] = 0;
         for (int i = first; i < last; i++)
-          gram[a * few + b] += port[i] * network->ports[(size_t)told[b] * numbers->states + i];
+          gram[a * few + b] += port[i] * network->ports[(size_t)used[b] * numbers->states + i];
       }
       ridge += RIDGE * gram[a * few + a] / few;
     }
     for (int a = 0; a < left; a++)
-      for (int b = 0; b < left; b++) own[a * left + b] = gram[alive[a] * few + alive[b]] + (a == b ? ridge : 0);
-    heat_inverse(left, own, inverse);
+      for (int b = 0; b < left; b++) remaining[a * left + b] = gram[alive[a] * few + alive[b]] + (a == b ? ridge : 0);
+    heat_inverse(left, remaining, inverse);
     for (int a = 0; a < left; a++) {
       flows[a] = 0;
       for (int b = 0; b < left; b++) flows[a] += inverse[a * left + b] * hears[alive[b]];
     }
     for (int a = 0, end; a < left; a = end) {
-      int n = told[alive[a]] / patterns;
-      for (end = a; end < left && told[alive[end]] / patterns == n; end++) continue;
+      int n = used[alive[a]] / patterns;
+      for (end = a; end < left && used[alive[end]] / patterns == n; end++) continue;
       if (!idle[n]) continue;
       int size = end - a;
       for (int i = 0; i < size * size; i++) block[i] = inverse[(a + i / size) * left + a + i % size];
@@ -270,7 +270,7 @@ static Network* network_of(const Numbers* numbers, Work* work, const State* stat
 static bool moved(const Numbers* numbers, const State* state, int f, int o, int* face, double middle[2]) {
   const double* touch = state->touches + (f * numbers->targets + o) * COLUMNS;
   const double *box = numbers->boxes + o * BOX, width = numbers->pads[f * PAD + WIDTH];
-  double looking[3] = {0}, position[3] = {0}, apart = 0;
+  double looking[3] = {0}, position[3] = {0}, distance = 0;
   int most = 0, current = (int)state->current[f * numbers->objects + o], known = -1;
   const double* place = state->places + (o * numbers->places + (current < 0 ? 0 : current)) * SLOT;
   for (int i = 0; i < 3; i++) {
@@ -290,10 +290,10 @@ static bool moved(const Numbers* numbers, const State* state, int f, int o, int*
     if (i == most) continue;
     double room = greater(box[i] - width, 0) / 2;
     middle[j] = box[i] / 2 + lesser(greater(position[i], -room), room);
-    apart = greater(apart, fabs(middle[j] - place[MIDDLE + j]));
+    distance = greater(distance, fabs(middle[j] - place[MIDDLE + j]));
     j++;
   }
-  return *face != known || apart > NEAR * width;
+  return *face != known || distance > NEAR * width;
 }
 
 /* The place of the grid that is nearest to a middle on a face. */
@@ -315,11 +315,11 @@ static void on_grid(const Numbers* numbers, int f, int o, int face, const double
 touch/heat/places/moves.py. Where more than IDLE would be remembered besides those in use, others are forgotten. */
 static void move(const Numbers* numbers, Work* work, State* state, int o, const int* faces, double (*middles)[2]) {
   int tips = numbers->tips, objects = numbers->objects, before = (int)state->used[o], count = before, kept = 0, over = -IDLE;
-  double *own = state->places + o * numbers->places * SLOT, places[(numbers->places + tips) * SLOT];
+  double *remembered = state->places + o * numbers->places * SLOT, places[(numbers->places + tips) * SLOT];
   bool any = false, idle[numbers->places + tips], gone[numbers->places + tips], left[numbers->places + tips];
   Network* old = &work->networks[numbers->targets];
   heat_copy_network(numbers, network_of(numbers, work, state, o), old);
-  memcpy(places, own, sizeof(double) * before * SLOT);
+  memcpy(places, remembered, sizeof(double) * before * SLOT);
   memset(left, 0, sizeof left);
   for (int f = 0; f < tips; f++) {
     if (faces[f * objects + o] < 0) continue;
@@ -328,8 +328,8 @@ static void move(const Numbers* numbers, Work* work, State* state, int o, const 
     int at = 0, last = (int)state->current[f * objects + o];
     for (; at < count; at++) {
       const double* known = places + at * SLOT;
-      double apart = greater(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
-      if (known[FACE] == place[FACE] && known[TIP] == place[TIP] && apart <= NEAR * width) break;
+      double distance = greater(fabs(known[MIDDLE] - place[MIDDLE]), fabs(known[MIDDLE + 1] - place[MIDDLE + 1]));
+      if (known[FACE] == place[FACE] && known[TIP] == place[TIP] && distance <= NEAR * width) break;
     }
     count += at == count;
     if (at == last) continue;
@@ -347,14 +347,14 @@ static void move(const Numbers* numbers, Work* work, State* state, int o, const 
   for (; over > 0; over--) gone[heat_forgotten(numbers, old, state->x + o * numbers->states, idle, gone, work->room)] = true;
   for (int n = 0; n < count; n++) {
     if (gone[n]) continue;
-    memcpy(own + kept * SLOT, places + n * SLOT, sizeof(double) * SLOT);
+    memcpy(remembered + kept * SLOT, places + n * SLOT, sizeof(double) * SLOT);
     for (int f = 0; f < tips; f++) /* no number is looked at again: they only get smaller */
       if (state->current[f * objects + o] == n) state->current[f * objects + o] = kept;
     kept++;
   }
   state->used[o] = kept;
   const Network* network = network_of(numbers, work, state, o);
-  if (kept == before && !memcmp(own, old->places, sizeof(double) * kept * SLOT)) return;
+  if (kept == before && !memcmp(remembered, old->places, sizeof(double) * kept * SLOT)) return;
   heat_carry(numbers, old, network, state->x + o * numbers->states, work->room);
 }
 

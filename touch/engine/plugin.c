@@ -57,9 +57,9 @@ static size_t lay_out(const Numbers* n, Work* work, const mjModel* m, double* bl
   PART(work->kept, n->rates, double);
   PART(work->grown, n->rates, double);
   PART(work->role, m->ngeom, int);
-  PART(work->geom, n->things, int);
-  PART(work->body, n->things, int);
-  size_t room = heat_network_room(n), other = heat_carry_room(n), forces = (size_t)n->fingers * n->things * 3;
+  PART(work->geom, n->partners, int);
+  PART(work->body, n->partners, int);
+  size_t room = heat_network_room(n), other = heat_carry_room(n), forces = (size_t)n->fingers * n->partners * 3;
   room = room > other ? room : other;
   PART(work->room, room > forces ? room : forces, double);
 #undef PART
@@ -73,7 +73,7 @@ static bool on_time(const Numbers* n, const mjModel* m) { return fabs(m->opt.tim
 static const char* find(const Numbers* n, Work* work, const mjModel* m, const char* names) {
   if (!names) return "the attribute \"geoms\" is missing: write it with thermograsp.touch.install";
   for (int g = 0; g < m->ngeom; g++) work->role[g] = -1;
-  for (int g = 0; g < n->things; g++) work->geom[g] = work->body[g] = -1;
+  for (int g = 0; g < n->partners; g++) work->geom[g] = work->body[g] = -1;
   for (int i = 0; i < n->named; i++) {
     char name[512];
     size_t length = strcspn(names, ",");
@@ -84,13 +84,13 @@ static const char* find(const Numbers* n, Work* work, const mjModel* m, const ch
     int geom = mj_name2id(m, mjOBJ_GEOM, name), role = (int)n->roles[i];
     if (geom < 0) return "the attribute \"geoms\" names a geom that the model does not have: install after all other changes";
     if (work->role[geom] >= 0) return "the attribute \"geoms\" names a geom twice";
-    int thing = role < n->fingers ? n->geoms + role : role - n->fingers;
+    int partner = role < n->fingers ? n->geoms + role : role - n->fingers;
     work->role[geom] = role;
-    work->body[thing] = m->geom_bodyid[geom];
-    if (role >= n->fingers) work->geom[thing] = geom;
+    work->body[partner] = m->geom_bodyid[geom];
+    if (role >= n->fingers) work->geom[partner] = geom;
   }
   if (*names) return "the attribute \"geoms\" has more names than there are numbers for";
-  for (int g = 0; g < n->things; g++)
+  for (int g = 0; g < n->partners; g++)
     if (work->body[g] < 0) return "the attribute \"geoms\" lacks a name";
   if (!on_time(n, m))
     return "the model's timestep has changed since thermograsp.touch.install: install again";

@@ -57,11 +57,11 @@ static double strips(double depth, double curvature, double reach, double* area)
 }
 
 /* Area and force on the face of a straight pad that leans, and the depth at the face's lower end; 0 where it is off. */
-static double leaning(const double* bend, double force, double angle, double curvature, double own, const double ends[2],
+static double leaning(const double* bend, double force, double angle, double curvature, double first_share, const double ends[2],
                       const double firm_half[2], const double face_half[2], double depth, double* area, double* lower) {
   double firm_reach = firm_half[0], width = firm_half[1], face_reach = face_half[0], face_width = face_half[1];
-  double soft_reach = lesser(own * bend[8] + (1 - own) * bend[9], ends[0]), load = force * angle;
-  double soft_width = greater(lesser((1 - own) * bend[8] + own * bend[9], ends[1]), width);
+  double soft_reach = lesser(first_share * bend[8] + (1 - first_share) * bend[9], ends[0]), load = force * angle;
+  double soft_width = greater(lesser((1 - first_share) * bend[8] + first_share * bend[9], ends[1]), width);
   double near = (soft_width - face_width) * angle, far = (soft_width + face_width) * angle, end = 2 * soft_width * angle;
   double firm = bend[2], soft = bend[7], most_soft = soft != firm ? far : INFINITY, wide, narrow;
   depth += angle * (soft_width + width);
@@ -99,22 +99,22 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2];
   double both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3];
   double second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3];
-  double middle = (first + second) / 2, apart = hypot((first - second) / 2, both);
-  double most = middle + apart, least = greater(middle - apart, LEAST * (middle + apart));
-  double own = apart > 0 ? lesser(greater((1 + (first - second) / 2 / apart) / 2, 0), 1) : 1;
-  double along = sqrt(own), aside = copysign(sqrt(1 - own), both), part = along * sides[0] + aside * sides[1];
+  double middle = (first + second) / 2, spread = hypot((first - second) / 2, both);
+  double most = middle + spread, least = greater(middle - spread, LEAST * (middle + spread));
+  double first_share = spread > 0 ? lesser(greater((1 + (first - second) / 2 / spread) / 2, 0), 1) : 1;
+  double along = sqrt(first_share), aside = copysign(sqrt(1 - first_share), both), part = along * sides[0] + aside * sides[1];
   double other = lesser(part * part, 1);
-  double reach = lesser(own * bend[3] + (1 - own) * bend[4], other * curve[2] + (1 - other) * curve[3]);
-  double width = lesser((1 - own) * bend[3] + own * bend[4], (1 - other) * curve[2] + other * curve[3]);
-  double face_reach = lesser(own * bend[5] + (1 - own) * bend[6], reach);
-  double face_width = lesser((1 - own) * bend[5] + own * bend[6], width);
+  double reach = lesser(first_share * bend[3] + (1 - first_share) * bend[4], other * curve[2] + (1 - other) * curve[3]);
+  double width = lesser((1 - first_share) * bend[3] + first_share * bend[4], (1 - other) * curve[2] + other * curve[3]);
+  double face_reach = lesser(first_share * bend[5] + (1 - first_share) * bend[6], reach);
+  double face_width = lesser((1 - first_share) * bend[5] + first_share * bend[6], width);
   double stiffness = bend[2] / (1 + bend[2] * curve[4]);
   double depth = depth_of(force / stiffness, most, least, reach, width), load;
   double leans = fabs(along * sides[5] - aside * sides[4]) - ALIGNED;
-  if (leans > LEANS && middle - apart < least) {
+  if (leans > LEANS && middle - spread < least) {
     double ends[2] = {other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]}, lower;
     double firm_half[2] = {reach, width}, face_half[2] = {face_reach, face_width};
-    *share = leaning(bend, force, leans, most, own, ends, firm_half, face_half, depth, area, &lower);
+    *share = leaning(bend, force, leans, most, first_share, ends, firm_half, face_half, depth, area, &lower);
     *longer = 1;
     if (!(*area > 0)) return 0;
     double across = sqrt(2 * lower / most);

@@ -1,11 +1,11 @@
 """What stands in somebody's MuJoCo model: fingertips with their pads, and the objects that they may touch."""
 
 from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodies, materials_by_world
+from .contact_filters import warn_of_contact_filters
 from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace, is_round, pads
 from .fixed_bodies import warn_of_fixed_bodies
-from .kept_apart import warn_of_kept_apart
 from .names import find, geom_label, geoms_of
 from .overlap import refuse_overlap
 from .own_shape import own_shapes, warn_of_boxes
@@ -42,7 +42,7 @@ __all__ = [
     "triangles",
     "warn_of_boxes",
     "warn_of_fixed_bodies",
-    "warn_of_kept_apart",
+    "warn_of_contact_filters",
     "warn_of_wide_faces",
     "whole_steps",
 ]

@@ -30,20 +30,22 @@ _MASKED = (
 )
 
 
-def warn_of_kept_apart(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> None:
+def warn_of_contact_filters(
+    model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[BodyShape]
+) -> None:
     """Warns the caller's caller of an object that no fingertip can touch, and of a fingertip that can touch neither an
     object nor another fingertip, by the model's filters of contacts."""
     untouched = set()
     for shape in shapes:
         if not any(collides(model, geom) for geom in shape.geoms):
             continue  # `bodies` tells
-        why = [_apart(model, pad, shape) for pad in pads]
+        why = [_filter_between(model, pad, shape) for pad in pads]
         if all(why):
             untouched.add(shape.name)
             _warn(f"object {shape.name!r} is never touched by a fingertip", why[0])
     for pad in pads:
         others = [other for other in (*shapes, *pads) if other is not pad]
-        why = [_apart(model, pad, other) for other in others]
+        why = [_filter_between(model, pad, other) for other in others]
         if all(why) and not untouched.issuperset(shape.name for shape in shapes):
             _warn(f"fingertip {pad.label!r} never touches anything", why[0])
 
@@ -52,7 +54,7 @@ def _warn(what: str, why: str) -> None:
     warnings.warn(f"{what}: {why}", RuntimeWarning, stacklevel=4)
 
 
-def _apart(model: mujoco.MjModel, one: PadPlace, other: PadPlace | BodyShape) -> str:
+def _filter_between(model: mujoco.MjModel, one: PadPlace, other: PadPlace | BodyShape) -> str:
     """Why no geom of the two can meet, "" where one can."""
     for name in ("constraint", "contact"):
         if model.opt.disableflags & getattr(mujoco.mjtDisableBit, f"mjDSBL_{name.upper()}"):
