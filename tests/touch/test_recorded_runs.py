@@ -95,3 +95,39 @@ def test_batch_records_what_a_loop_feels(
         record = worlds.rollout(nstep=CHUNK, record=("sensordata",))["sensordata"]
         touch.update(record)
     agrees(touch, looped)
+
+
+@pytest.mark.parametrize("degrees", [15.0, 40.0])
+@pytest.mark.parametrize(
+    "tip",
+    [
+        'type="sphere" size=".01"',
+        'type="capsule" size=".008 .012" euler="0 90 0"',
+        'type="ellipsoid" size=".008 .012 .01"',
+    ],
+)
+def test_a_round_fingertip_feels_a_slanted_face_alike_by_record(tip: str, degrees: float) -> None:
+    """The face's normal, and so the force, leans from the pad's own."""
+    if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
+        pytest.skip("this MuJoCo has no contact sensors: it needs 3.3.5")
+    words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"block": "aluminium"}}
+    model = prepare(
+        mujoco.MjSpec.from_string(f"""
+        <mujoco><option timestep=".002" gravity="0 0 0" cone="elliptic"/><worldbody>
+          <body name="block" euler="{degrees} 0 0"><geom name="block" type="box" size=".05 .05 .02"/></body>
+          <body name="tip" pos="0 0 .05"><joint type="slide" axis="0 0 -1" damping="20"/>
+            <geom name="tip" {tip} mass=".1"/></body>
+        </worldbody></mujoco>"""),
+        **words,
+    )
+    data, record = mujoco.MjData(model), []
+    looped, recorded = (ThermalTouch(model, **words, chain="ideal", worlds=worlds) for worlds in (None, 1))
+    for _ in range(STEPS):
+        data.qfrc_applied[0] = 8.0
+        mujoco.mj_step(model, data)
+        looped.update(data)
+        record.append(data.sensordata.copy())
+    recorded.update(np.array(record)[None])
+    expected = looped.reading.temperature_drop
+    assert expected[0] > 4.0
+    assert recorded.reading.temperature_drop[0] == pytest.approx(expected, rel=2e-3)

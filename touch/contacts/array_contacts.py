@@ -111,8 +111,13 @@ class ArrayContacts:
         )
         axes = _product(tip_turn, self.axes)  # (B H, F, 3, 3), columns normal, y and z
         middle = tip_position + _rotated(tip_turn, self.position)
-        pressed = (force * axes[:, :, None, None, :, 0]).sum(-1)  # (B H, F, G, L)
         at = _seen(axes[:, :, None, None], place - middle[:, :, None, None])
+        vector = _seen(axes[:, :, None, None], force)
+        pressed = vector[..., 0]  # (B H, F, G, L)
+        if self.any_bulging:  # along the normal where it presses, that of a ball of the pad's curvatures
+            leans = at[..., 1:] * (self.bend[:, :2] * self.bulging[:, None])[:, None, None]
+            upright = (1.0 - (leans * leans).sum(-1)).clip(0.0, None) ** 0.5
+            pressed = upright * pressed + (leans * vector[..., 1:]).sum(-1)
         on = (abs(at[..., 1:]) <= self.half[:, None, None] + RIM).all(-1) & (abs(at[..., 0]) <= DEPTH)
         none = 0.0 * pressed
         pressed = xp.where(pressed > 0, pressed, none)

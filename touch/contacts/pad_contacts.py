@@ -68,13 +68,13 @@ def place_pad(pads, parts, xpos, xmat, frames, f):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def press(data, at, pads, frames, f, part, part_count, pushed, beside):
+def press(data, at, pads, bend, frames, f, part, part_count, pushed, beside):
     """A net force on a pad or beside it; of another fingertip only where it is on that one's pad too."""
     tips = len(pads)
-    on, y, z, force = _bears(data, at, pads[f], frames[f], 1.0)
+    on, y, z, force = _bears(data, at, pads[f], bend[f], frames[f], 1.0)
     if part >= part_count - tips:
         other = part - (part_count - tips)
-        on_other, _, _, back = _bears(data, at, pads[other], frames[other], -1.0)
+        on_other, _, _, back = _bears(data, at, pads[other], bend[other], frames[other], -1.0)
         if not on_other and back > 0:
             beside[other] += back
         on = on and on_other
@@ -88,10 +88,15 @@ def press(data, at, pads, frames, f, part, part_count, pushed, beside):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _bears(data, at, pad, frame, sign):
-    """Whether a net force is on a pad, where (m, along its y and z), and its part along the normal, N."""
+def _bears(data, at, pad, bend, frame, sign):
+    """Whether a net force is on a pad, where (m, along its y and z), and its part along the pad's normal there, N: that
+    of a ball of the pad's curvatures."""
     place, vector = data[at + PLACE_AT : at + PLACE_AT + 3], data[at + FORCE_AT : at + FORCE_AT + 3]
     x, y, z, force = _from_pad(frame, place, vector, sign)
+    leans_y, leans_z = bend[0] * y, bend[1] * z
+    force *= math.sqrt(max(1.0 - leans_y * leans_y - leans_z * leans_z, 0.0))
+    for k in range(3):
+        force += sign * vector[k] * (leans_y * frame[6 + k] + leans_z * frame[9 + k])
     return force > 0 and _within(pad, x, y, z, 0.0), y, z, force
 
 

@@ -223,7 +223,7 @@ def _sense_world(
                 place_pad(pads, parts, xpos, xmat, frames, first_tip)
                 if part >= part_count - tips:
                     place_pad(pads, parts, xpos, xmat, frames, part - (part_count - tips))
-                press(data, pair[p, 2], pads, frames, first_tip, part, part_count, pushed, beside)
+                press(data, pair[p, 2], pads, bend, frames, first_tip, part, part_count, pushed, beside)
         if not feel(
             xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed,
             touches, 1.0, spot, views, make,
