@@ -52,18 +52,28 @@ SHAPES = {
 }
 
 
-def pinched(low: str, high: str, skins: tuple[str | None, str | None], names: tuple[str, str]) -> list[float]:
-    """K that the low and the high fingertip feel of one another, named in that order, .5 s after they were pressed."""
+def pinched(
+    low: str,
+    high: str,
+    names: tuple[str, str],
+    skins: tuple[str | None, str | None] = (None, None),
+    sensors: tuple[str, str] = ("seed", "seed"),
+    aside: tuple[float, float] = (0.001, 0.001),
+    turn: float = 0.0,
+) -> list[float]:
+    """K that the low and the high fingertip feel of one another, named in that order, .5 s after they were pressed.
+    aside: m, turn: degrees, of the high one."""
     model = mujoco.MjModel.from_xml_string(f"""
     <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
       <body name="block" pos=".1 0 0"><geom name="block" type="box" size=".02 .02 .02"/></body>
       <body name="low"> {SHAPES[low].format("low")} </body>
-      <body name="high" pos=".001 .001 .0165"><joint type="slide" axis="0 0 -1" damping="20"/>
+      <body name="high" pos="{aside[0]} {aside[1]} .0165" euler="0 0 {turn}">
+        <joint type="slide" axis="0 0 -1" damping="20"/>
         {SHAPES[high].format("high")} </body>
     </worldbody></mujoco>""")
     tips = {
-        "low": Fingertip("low", temperature=46.0, skin=skins[0]),
-        "high": Fingertip("high", skin=skins[1]),
+        "low": Fingertip("low", temperature=46.0, skin=skins[0], sensor=sensors[0]),
+        "high": Fingertip("high", skin=skins[1], sensor=sensors[1]),
     }
     touch = ThermalTouch(
         model, fingertips={name: tips[name] for name in names}, objects={"block": "glass"}, chain="ideal"
@@ -86,9 +96,27 @@ def pinched(low: str, high: str, skins: tuple[str | None, str | None], names: tu
 def test_the_order_in_which_two_fingertips_are_named_changes_nothing(
     low: str, high: str, skins: tuple[str | None, str | None]
 ) -> None:
-    drops = pinched(low, high, skins, ("low", "high"))
+    drops = pinched(low, high, ("low", "high"), skins)
     assert drops[0] > 0.1
-    assert drops == pytest.approx(pinched(low, high, skins, ("high", "low")), rel=3e-3)
+    assert drops == pytest.approx(pinched(low, high, ("high", "low"), skins), rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "where"),
+    [
+        ("box", "box", {"sensors": ("seed", "biotac_like")}),
+        ("ball", "capsule", {"sensors": ("seed", "biotac_like")}),
+        ("small box", "capsule", {"aside": (0.005, 0.0)}),
+        ("box", "box", {"aside": (0.005, 0.0), "turn": 30.0}),
+        ("box", "small box", {"aside": (0.003, 0.002), "turn": 20.0}),
+    ],
+)
+def test_nor_does_it_where_they_are_aside_turned_or_of_other_sensors(
+    low: str, high: str, where: dict
+) -> None:
+    drops = pinched(low, high, ("low", "high"), **where)
+    assert drops[0] > 0.05
+    assert drops == pytest.approx(pinched(low, high, ("high", "low"), **where), rel=5e-3)
 
 
 def test_a_fingertip_between_another_and_an_object_hands_heat_on() -> None:

@@ -161,7 +161,7 @@ def drop(
 ) -> float:
     model = mujoco.MjModel.from_xml_string(scene(degrees, half, at))
     data = mujoco.MjData(model)
-    tips = {"tip": Fingertip("tip", skin=skin)}
+    tips = {"tip": Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), skin=skin)}
     touch = ThermalTouch(model, fingertips=tips, objects={"rod": name}, chain=IDEAL)
     data.ctrl[0] = 8.0
     for _ in range(200):
@@ -189,6 +189,29 @@ def test_a_disc_that_slides_off_at_an_angle_is_felt_less_and_less(skin: str | No
         drops = [drop(degrees, 0.004, "aluminium", skin, way * at - aside) for at in (0.0, 4e-3, 6e-3, 8e-3)]
         assert all(less <= 1.15 * more for more, less in zip(drops, drops[1:], strict=False)), drops
         assert drops[-1] < 0.6 * drops[0]
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_long_rod_s_end_is_felt_where_it_is(skin: str | None) -> None:
+    half, worn = 0.03, named_skin(skin) if skin else None
+    long, short = (
+        curved_table(PAD, worn, material("steel"), RADIUS, 2 * each) for each in (half, PAD.width / 2)
+    )
+    whole = curved_contact(long, 8.0, 0.0, 0.0)
+    for covered in (1.0, 0.8, 0.5, 0.2):  # of the face, from its one side on
+        end = (covered - 0.5) * PAD.face
+        found = curved_contact(long, 8.0, 0.0, half - end)
+        assert found == pytest.approx(curved_contact(short, 8.0, 0.0, PAD.width / 2 - end), rel=0.02)
+    assert curved_contact(long, 8.0, 0.0, half - PAD.width / 2) == pytest.approx(whole, rel=1e-9)
+    assert curved_contact(long, 8.0, 0.0, half + PAD.face / 2) == (0.0, 0.0, 0.0)
+    level = [
+        drop(0.0, half, "aluminium", skin, half + beside) for beside in (-0.0045, -0.002, 0.0, 0.002, 0.006)
+    ]
+    assert (
+        all(less < 0.95 * more for more, less in zip(level[:-1], level[1:], strict=True)) and level[-1] == 0.0
+    )
+    tilted_ends = [drop(5.0, half, "aluminium", skin, half + beside) for beside in (-0.003, 0.003)]
+    assert tilted_ends[1] < tilted_ends[0] < level[0]
 
 
 @pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc")) is None, reason="needs a C compiler")

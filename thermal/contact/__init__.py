@@ -70,7 +70,7 @@ from .rough_faces import (
     stack_joints,
     typical_slope,
 )
-from .spread import beneath, even_patch
+from .spread import beneath, even_patch, narrowing
 
 __all__ = [
     "AIR",
@@ -135,6 +135,7 @@ __all__ = [
     "gas_conduction",
     "in_series",
     "joint",
+    "narrowing",
     "pad_joint",
     "pad_law",
     "patch_ends",

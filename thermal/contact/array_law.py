@@ -31,6 +31,7 @@ class ArrayLaws(NamedTuple):
     ratio: Array
     half_pad: Array
     half_face: Array
+    narrowing: Array
     spot_scale: Array
     spot_power: Array
     spot_most: Array

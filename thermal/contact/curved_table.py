@@ -163,18 +163,22 @@ def _aside(pad: Pad) -> np.ndarray:
 
 
 def _along(pad: Pad, length: float) -> np.ndarray:
-    """(PLACES,) m: where an end of the cylinder comes to an edge of the face or the pad, and between."""
+    """(PLACES,) m: where an end of the cylinder comes to an edge of the face or the pad, and between, until it has left
+    the pad. As long as both ends are beyond the pad nothing changes."""
     edges = [abs(half + way * length / 2) for half in (pad.width / 2, pad.face / 2) for way in (1, -1)]
-    return even_places(0.0, pad.width / 2 + _RIM, edges)
+    last, still = (length + pad.width) / 2, (length - pad.width) / 2
+    if still > _NEAR:
+        return np.concatenate(([0.0], even_places(still, last, edges, PLACES - 1)))
+    return even_places(0.0, last, edges)
 
 
-def even_places(first: float, last: float, edges: Iterable[float]) -> np.ndarray:
-    """(PLACES,) m from first to last: those of the edges that lie between, and others where there is most room."""
+def even_places(first: float, last: float, edges: Iterable[float], count: int = PLACES) -> np.ndarray:
+    """(count,) m from first to last: those of the edges that lie between, and others where there is most room."""
     places = [first, last]
     for edge in edges:
         if all(abs(edge - place) > _NEAR for place in places) and first < edge < last:
             places.append(edge)
-    while len(places) < PLACES:
+    while len(places) < count:
         places.sort()
         widest = int(np.argmax(np.diff(places)))
         places.append((places[widest] + places[widest + 1]) / 2)

@@ -39,6 +39,8 @@ CONTACT_LAW = np.dtype(
         ("half_face", "f8"),
         ("pad_length", "f8"),
         ("face_length", "f8"),
+        # of a contact that presses unevenly: by how much its patch narrows, see spread.narrowing
+        ("narrowing", "f8"),
         # solid spots: h = exp(min(spot_scale + spot_power log p, spot_most))
         ("spot_scale", "f8"),
         ("spot_power", "f8"),

@@ -175,11 +175,14 @@ class ArrayContacts:
         law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
         long, shares = array_flat_patch(law, area, from_geom[..., None, :])
-        kept = longer = 1.0 + 0.0 * area
+        kept = longer = narrow = 1.0 + 0.0 * area
         if self.any_bulging:
-            area, share, kept, longer = self._of_round(area, share, kept, pressed, off, axis, axes, geom_turn)
+            area, share, kept, longer, even = self._of_round(
+                area, share, kept, pressed, off, axis, axes, geom_turn
+            )
+            narrow = 1.0 - law.narrowing * (1.0 - even)
             bulging = self.bulging[:, None, None] > 0
-            safe = xp.where(area > 0, area * kept * longer, 1.0 + 0.0 * area)
+            safe = xp.where(area > 0, area * kept * narrow * longer, 1.0 + 0.0 * area)
             long = xp.where(bulging, safe**0.5, long)
             shares = xp.where(bulging[..., None], 0.0 * shares, shares)
         width = self.width[:, None, None]
@@ -190,7 +193,7 @@ class ArrayContacts:
         h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
         none = 0.0 * pressed
-        flat = tuple(xp.where(closed, each, none) for each in (h * safe, area, long))
+        flat = tuple(xp.where(closed, each, none) for each in (h * safe, area * narrow, long))
         if not self.any_curved:
             return *flat, shares
         tilts = self.tilts[which]
@@ -228,9 +231,9 @@ class ArrayContacts:
         axis: Array,
         axes: Array,
         geom_turn: Array,
-    ) -> tuple[Array, Array, Array, Array]:
-        """Area, force and share on the face and how many times as long as broad they are, (B, F, G, H) each, of round
-        pads in place of flat ones'."""
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """Area, force and share on the face, how many times as long as broad they are and how evenly they press, (B, F,
+        G, H) each, of round pads in place of flat ones'."""
         xp = namespace_of(pressed)
         of_axis = self.units[axis]  # (B, F, G, 3)
         curve = (of_axis[..., None] * self.curve).sum(-2)
@@ -262,7 +265,7 @@ class ArrayContacts:
         area, share, kept = (
             xp.where(bulging, new, old) for new, old in zip(bulged, (area, share, kept), strict=True)
         )
-        return area, share, kept, xp.where(bulging, found[3] + zero, 1.0 + zero)
+        return area, share, kept, *(xp.where(bulging, each + zero, 1.0 + zero) for each in found[3:])
 
     def _crown(
         self, law: ArrayLaws, radius: Array, off: Array, from_geom: Array, axes: Array, geom_turn: Array

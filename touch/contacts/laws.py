@@ -27,7 +27,15 @@ from ...thermal import (
     material,
     sphere_law,
 )
-from ...thermal.contact import CURVED_TABLE, curved_table, face_joint, in_series, pad_joint, skinned
+from ...thermal.contact import (
+    CURVED_TABLE,
+    curved_table,
+    face_joint,
+    in_series,
+    narrowing,
+    pad_joint,
+    skinned,
+)
 from ...thermal.padded import RINGS, ring_sides
 from ...thermal.pressed import PressedMesh, Ring, RoundRing
 from ..scene import BodyShape, PadPlace, is_round, mesh_of
@@ -94,6 +102,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                         made.setdefault(replace(pressed, ring=ring), []).append((f, g, k, n))
             for axis in range(3):
                 laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
+                if pad.skin is None:
+                    laws["narrowing"][f, g, axis] = narrowing(other, pad.face)
                 if around is not None:
                     beside[f, g, axis] = _law(model, geom, axis, sheet, around)
                 size = _curved(model, geom, axis)
@@ -112,9 +122,10 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = max(silicone.face, other.silicone.face)
-            laws[f, g] = flat_law(
-                in_series(sheet, skinned(other.silicone, other.skin)), faces, (side, side), (1, 2)
-            )
+            both = in_series(sheet, skinned(other.silicone, other.skin))
+            laws[f, g] = flat_law(both, faces, (side, side), (1, 2))
+            if pad.skin is None and other.skin is None:
+                laws["narrowing"][f, g] = narrowing(other.face, pad.face)
     for number, pairs in enumerate(made.values(), len(tables)):
         for pair in pairs:
             numbers[pair] = number

@@ -75,9 +75,9 @@ def press(data, at, pads, bend, frames, f, part, part_count, pushed, beside):
     if part >= part_count - tips:
         other = part - (part_count - tips)
         on_other, _, _, back = _bears(data, at, pads[other], bend[other], frames[other], -1.0)
-        if not on_other and back > 0:
-            beside[other] += back
         on = on and on_other
+        if not on and back > 0:
+            beside[other] += back
     if force > 0:
         if on:
             pushed[f, part, 0] += force
@@ -176,7 +176,7 @@ def feel(
             bulging = bend[f, 0] + bend[f, 1] > 0
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
-            conducts, area, share, kept, long = 0.0, 0.0, 0.0, 1.0, 0.0
+            conducts, area, share, kept, long, narrow = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
             number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
             for k in range(4):
                 shares[k] = 0.0
@@ -222,11 +222,14 @@ def feel(
                     sides[7] = place[2] + pushed[f, g, 2] / force
                 if geom < 0 or parts[g, 3] > 0 or curve[g, axis, 0] + curve[g, axis, 1] > 0:
                     sides[4], sides[5] = 0.0, 0.0  # fingertips and meshes count as level
-                area, share, kept, longer = round_contact(
+                area, share, kept, longer, even = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
-                long = math.sqrt(area * kept * longer)
+                narrow = 1 - law.narrowing * (1 - even)
+                long = math.sqrt(area * kept * narrow * longer)
             else:
+                if geom < 0:
+                    _between_turned(frames, f, g - (part_count - tips), place)
                 area, share = contact(law, force, place)
                 if area > 0:
                     long = flat_patch(law, area, place, shares)
@@ -239,7 +242,7 @@ def feel(
                 curved_shares(tables[number], lying / whole, first, second, shares)
                 conducts, area, long = whole * conducts, whole * area, whole * long
             if share > 0 and area > 0:
-                conducts, area = conductance(law, share / area) * area * kept, area * kept
+                conducts, area = conductance(law, share / area) * area * kept, area * kept * narrow
             touch = touches[f, target]
             if conducts > 0:
                 touch[CONDUCTANCE] += weight * conducts
@@ -279,6 +282,20 @@ def feel(
                 touch[PLACE + i] = one * x + two * y + three * z
                 touch[NORMAL + i] = one * normal[0] + two * normal[1] + three * normal[2]
     return True
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _between_turned(frames, f, other, place):
+    """Turns place, m along pad f's sides, to what lies between these and the sides of the other pad that are nearest to
+    them: so it is the same as seen from either."""
+    along, aside = 0.0, 0.0
+    for k in range(3):
+        along += frames[other, 6 + k] * frames[f, 6 + k]
+        aside += frames[other, 6 + k] * frames[f, 9 + k]
+    turn = math.atan2(aside, along)
+    turn = (turn - math.pi / 2 * math.floor(turn / (math.pi / 2) + 0.5)) / 2
+    y, z = place[1], place[2]
+    place[1], place[2] = y * math.cos(turn) + z * math.sin(turn), z * math.cos(turn) - y * math.sin(turn)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

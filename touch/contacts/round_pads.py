@@ -43,6 +43,9 @@ so do MuJoCo's soft contacts, whose angles say nothing of less."""
 WIDE = 10.0
 """m, half of what no pad reaches the end of."""
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
+_ALIKE = 1e-9  # of the mean curvature, by which the two differ at most where it is round
+LEANT_EVENNESS = 0.7
+"""The square of the mean pressure over the mean of its square where a line's depth falls off to 0."""
 _NEWTON_STEPS = 8
 _LEANS = 1e-7  # m per m, below which a line lies level
 _LEANING_STEPS = 20  # Newton's, or halves where the slope leads out of what is known
@@ -98,25 +101,29 @@ def _geom(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float, fl
 @njit(cache=True, borrows=True, error_model="numpy")
 def round_contact(bend, curve, sides, force, y, z):
     """(area m2 and force N on the face were it met in its middle, share of that area that is on it, how many times as
-    long as broad it is) at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (SIDES,) the
-    other's first axis along the pad's y and z, then its second one, how much its flat face rises towards the pad along
-    the pad's y and z, m per m, and where the force presses from the other pad's middle, m along them."""
+    long as broad it is, and how evenly it presses: its mean pressure's square over the mean of the pressure's square)
+    at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (SIDES,) the other's first axis
+    along the pad's y and z, then its second one, how much its flat face rises towards the pad along the pad's y and z,
+    m per m, and where the force presses from the other pad's middle, m along them."""
     first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2]
     both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3]
     second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3]
     middle, spread = (first + second) / 2, math.hypot((first - second) / 2, both)
     most, least = middle + spread, max(middle - spread, _LEAST * (middle + spread))
     # the direction of the larger curvature, and how much of the pad's and the other's first axes lies along it
-    first_share = (1 + (first - second) / 2 / spread) / 2 if spread > 0 else 1.0
+    if spread > _ALIKE * middle:
+        first_share = (1 + (first - second) / 2 / spread) / 2
+    else:  # any direction is as good: what the other's sides lie along
+        first_share = sides[0] * sides[0] / (sides[0] * sides[0] + sides[1] * sides[1])
+        both = sides[0] * sides[1]
     first_share = min(max(first_share, 0.0), 1.0)
     along, aside = math.sqrt(first_share), math.copysign(math.sqrt(1 - first_share), both)
     other = min((along * sides[0] + aside * sides[1]) ** 2, 1.0)
-    reach = min(
-        first_share * bend[3] + (1 - first_share) * bend[4], other * curve[2] + (1 - other) * curve[3]
-    )
-    width = min(
-        (1 - first_share) * bend[3] + first_share * bend[4], (1 - other) * curve[2] + other * curve[3]
-    )
+    own_reach = first_share * bend[3] + (1 - first_share) * bend[4]
+    own_width = (1 - first_share) * bend[3] + first_share * bend[4]
+    other_reach = other * curve[2] + (1 - other) * curve[3]
+    other_width = (1 - other) * curve[2] + other * curve[3]
+    reach, width = min(own_reach, other_reach), min(own_width, other_width)
     face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], reach)
     face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
     stiffness = bend[2] / (1 + bend[2] * curve[4])
@@ -128,20 +135,27 @@ def round_contact(bend, curve, sides, force, y, z):
             bend, force, leans, most, first_share, ends, (reach, width), (face_reach, face_width), depth
         )
         if area <= 0:
-            return 0.0, 0.0, 0.0, 1.0
+            return 0.0, 0.0, 0.0, 1.0, LEANT_EVENNESS
         a, b = math.sqrt(2 * lower / most), lower / leans
         share = _kept(along * y + aside * z, 0.0, a, face_reach, WIDE)
         longer = min(b, 2 * face_width) / (2 * min(a, face_reach))
-        return area, load, share, max(longer, 1 / longer)
+        return area, load, share, max(longer, 1 / longer), LEANT_EVENNESS
     a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
-    other_reach = other * curve[5] + (1 - other) * curve[6]
-    other_width = (1 - other) * curve[5] + other * curve[6]
+    if curve[4] > 0:  # another fingertip: what is on a face depends on where each pad's own middle is
+        face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], own_reach)
+        face_width = min((1 - first_share) * bend[5] + first_share * bend[6], own_width)
+        other_reach = min(other * curve[5] + (1 - other) * curve[6], other_reach)
+        other_width = min((1 - other) * curve[5] + other * curve[6], other_width)
+    else:
+        other_reach = other_width = WIDE
     share = _kept(along * y + aside * z, along * sides[6] + aside * sides[7], a, face_reach, other_reach)
     share *= _kept(along * z - aside * y, along * sides[7] - aside * sides[6], b, face_width, other_width)
     face_reach, face_width = min(face_reach, other_reach), min(face_width, other_width)
-    area, load = _clipped(min(face_reach / a, 1.0), min(face_width / b, 1.0))
+    x, y = min(face_reach / a, 1.0), min(face_width / b, 1.0)
+    area, load = _clipped(x, y)
     longer = min(b, face_width) / min(a, face_reach)
-    return 4 * a * b * area, 4 * stiffness * depth * a * b * load, share, max(longer, 1 / longer)
+    even = load * load / (area * _squared(x, y))
+    return 4 * a * b * area, 4 * stiffness * depth * a * b * load, share, max(longer, 1 / longer), even
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
@@ -180,6 +194,29 @@ def _disc(s):
 @njit(cache=True, error_model="numpy", inline="always")
 def _cap(s):
     return (s * (5 - 2 * s * s) * math.sqrt(1 - s * s) + 3 * math.asin(s)) / 8
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _squared(x, y):
+    """Of such a quarter in a rectangle, the integral of (1 - r^2)^2 over it."""
+    if x * x + y * y <= 1.0:
+        return x * y * _square_mean(x, y)
+    root = math.sqrt(1 - y * y)
+    return root * y * _square_mean(root, y) + 8 / 15 * (_cap_squared(x) - _cap_squared(root))
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _square_mean(x, y):
+    """Of (1 - r^2)^2 over a rectangle from the middle to x and y."""
+    first, second = x * x, y * y
+    return 1 - 2 / 3 * (first + second) + (first * first + second * second) / 5 + 2 / 9 * first * second
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _cap_squared(s):
+    """The integral of (1 - s^2)^(5/2) from 0 to s."""
+    square = s * s
+    return (s * math.sqrt(1 - square) * (33 + square * (8 * square - 26)) + 15 * math.asin(s)) / 48
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -252,9 +289,9 @@ def _strips(depth, curvature, reach):
 
 def array_round_contact(
     bend: Array, curve: Array, sides: Array, rise: Array, force: Array, y: Array, z: Array
-) -> tuple[Array, Array, Array, Array]:
-    """(area m2, force N, share, length over breadth) of round_contact, of the force's shape. bend (..., BEND) of the
-    pads, curve (..., CURVES), sides (..., 2, 2) and rise (..., 2) of what they meet; force: N > 0. y, z: m."""
+) -> tuple[Array, Array, Array, Array, Array]:
+    """(area m2, force N, share, length over breadth, evenness) of round_contact, of the force's shape. bend (..., BEND)
+    of the pads, curve (..., CURVES), sides (..., 2, 2) and rise (..., 2) of what they meet; force: N > 0. y, z: m."""
     xp = namespace_of(force)
     (c1, c2), (half1, half2) = (curve[..., 0], curve[..., 1]), (curve[..., 2], curve[..., 3])
     y1, z1, y2, z2 = (sides[..., i, j] for i in range(2) for j in range(2))
@@ -263,11 +300,13 @@ def array_round_contact(
     second = bend[..., 1] + c1 * z1 * z1 + c2 * z2 * z2
     middle, half = (first + second) / 2, (first - second) / 2
     square = half * half + both * both
-    alike = square == 0
+    alike = square <= (_ALIKE * middle) ** 2
     spread = xp.where(alike, 1.0 + 0.0 * square, square) ** 0.5
     most = middle + xp.where(alike, 0.0 * spread, spread)
     least = xp.maximum(middle - xp.where(alike, 0.0 * spread, spread), _LEAST * most)
-    first_part = xp.where(alike, 1.0 + 0.0 * spread, (1 + half / spread) / 2).clip(0.0, 1.0)
+    of_other = y1 * y1 / (y1 * y1 + z1 * z1)
+    first_part = xp.where(alike, of_other, (1 + half / spread) / 2).clip(0.0, 1.0)
+    both = xp.where(alike, y1 * z1, both)
     along, aside = (
         first_part**0.5,
         xp.where(both < 0, -1.0 + 0.0 * first_part, 1.0 + 0.0 * first_part) * (1 - first_part) ** 0.5,
@@ -283,7 +322,8 @@ def array_round_contact(
     face_width = xp.minimum(blend(1 - first_part, bend[..., 5], bend[..., 6]), width)
     depth = _depths(xp, force / bend[..., 2], most, least, reach, width)
     a, b = (2 * depth / most) ** 0.5, (2 * depth / least) ** 0.5
-    area, load = _clippings(xp, (face_reach / a).clip(None, 1.0), (face_width / b).clip(None, 1.0))
+    area, load, squared = _clippings(xp, (face_reach / a).clip(None, 1.0), (face_width / b).clip(None, 1.0))
+    even = load * load / (area * squared)
     crosswise, lengthwise = along * y + aside * z, along * z - aside * y
     share = _kept_of(xp, crosswise, a, face_reach) * _kept_of(xp, lengthwise, b, face_width)
     longer = xp.minimum(b, face_width) / xp.minimum(a, face_reach)
@@ -306,6 +346,7 @@ def array_round_contact(
         xp.where(leans, leant[1], load),
         xp.where(leans, leant_share, share),
         xp.maximum(longer, 1 / longer),
+        xp.where(leans, LEANT_EVENNESS + 0.0 * even, even),
     )
 
 
@@ -315,7 +356,7 @@ def _depths(xp, load, most, least, reach, width):
     depth = xp.maximum(depth, (0.375 * load * (least / 2) ** 0.5 / reach) ** (2 / 3))
     for _ in range(_NEWTON_STEPS):
         a, b = (2 * depth / most) ** 0.5, (2 * depth / least) ** 0.5
-        area, held = _clippings(xp, (reach / a).clip(None, 1.0), (width / b).clip(None, 1.0))
+        area, held, _ = _clippings(xp, (reach / a).clip(None, 1.0), (width / b).clip(None, 1.0))
         depth = depth - (depth * held - load / (4 * a * b)) / area
     return depth
 
@@ -329,7 +370,21 @@ def _clippings(xp, x, y):
     cap_x = (x * (5 - 2 * x * x) * cos_x + 3 * asin_x) / 8
     cap_root = (root * (5 - 2 * root * root) * y + 3 * asin_root) / 8
     load = y * root * (1 - y * y / 3 - root * root / 3) + 2 / 3 * (cap_x - cap_root)
-    return xp.where(inside, x * y, area), xp.where(inside, x * y * (1 - (x * x + y * y) / 3), load)
+    squared = (
+        root * y * _square_mean(root, y)
+        + 8
+        / 15
+        * (
+            (x * cos_x * (33 + x * x * (8 * x * x - 26)) + 15 * asin_x)
+            - (root * y * (33 + root * root * (8 * root * root - 26)) + 15 * asin_root)
+        )
+        / 48
+    )
+    return (
+        xp.where(inside, x * y, area),
+        xp.where(inside, x * y * (1 - (x * x + y * y) / 3), load),
+        xp.where(inside, x * y * _square_mean(x, y), squared),
+    )
 
 
 def _kept_of(xp, at, reach, half):

@@ -105,9 +105,9 @@ def read_contacts(count, substeps, memory_at, entries_at):
         if second < tips:
             place_pad(pads, parts, xpos, xmat, frames, second)
             on_other, _, _ = lies(pads[second], frames[second], pos[c], frame[c], -sign, sunk)
-            if not on_other:
-                beside[second] += weight * force
             on = on and on_other
+            if not on:
+                beside[second] += weight * force
         if on:
             pushed[first, part, 0] += force
             pushed[first, part, 1] += force * y

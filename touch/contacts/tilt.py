@@ -88,6 +88,8 @@ def tilted(tilt, force, slope, middle):
         wide = tilt[HALF_FACE] / math.sqrt(2 * tilt[RADIUS] * tilt[GAP])
         # the integral of 1/sqrt(1 + gap/d) over the line
         share = min((math.atan(wide / near) + math.atan(wide / far)) / math.atan(wide) / (near + far), 1.0)
+    if width == 0.0:
+        share = 0.0
     return share, max(pressed, min(force, _LEAST * share))
 
 
@@ -128,6 +130,7 @@ def array_tilted(tilt: Array, force: Array, slope: Array, middle: Array) -> tupl
     on_skin = xp.where(reached, xp.minimum(firm * long**2.5, pressed), 0.0 * one)
     under = xp.where(reached, long / width.clip(_THIN, None), 0.0 * one)
     share = xp.where(skinned_face, under, bare).clip(None, 1.0)
+    share = xp.where(width > 0, share, 0.0 * one)
     pressed = xp.where(skinned_face, on_skin, pressed)
     rest = xp.minimum(load, _LEAST * share)
     return xp.where(is_tilted, share, one), xp.where(is_tilted, xp.maximum(pressed, rest), force)

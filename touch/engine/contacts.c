@@ -8,6 +8,7 @@
 #define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in */
 #define RIM 0.0005   /* m beyond the pad's sides */
 #define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
+static const double pi = 3.14159265358979323846;
 
 /* A pad in the world: its middle and its axes. */
 typedef struct {
@@ -81,7 +82,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   const Law* law = (const Law*)numbers->laws + (f * numbers->partners + g) * 3 + axis;
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
   bool bulging = bend[0] + bend[1] > 0 || (other && curve[0] + curve[1] > 0);
-  double on_face = 1;
+  double on_face = 1, narrow = 1;
   int side = axis, views = other ? 0 : (int)numbers->viewed[g];
   double seen[2] = {0};
   if (views && !bulging)
@@ -105,7 +106,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     area *= whole;
     length *= whole;
   } else if (bulging) {
-    double sides[SIDES], longer;
+    double sides[SIDES], longer, even;
     bool flat = !other && !views && curve[0] + curve[1] <= 0; /* fingertips and meshes count as level */
     for (int i = 0, n = 0; i < 3; i++)
       for (int k = 1; k < 3; k++)
@@ -113,15 +114,23 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
         else sides[3 + k] = flat ? dot(facing[i], at->axes[k]) / dot(facing[i], at->axes[0]) : 0;
     sides[6] = other ? place[1] + first : 0;
     sides[7] = other ? place[2] + second : 0;
-    on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer);
-    length = sqrt(area * on_face * longer);
+    on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer, &even);
+    narrow = 1 - law->narrowing * (1 - even);
+    length = sqrt(area * on_face * narrow * longer);
   } else {
+    if (other) { /* along what lies between both pads' sides */
+      double turn = atan2(dot(other->axes[1], at->axes[2]), dot(other->axes[1], at->axes[1]));
+      turn = (turn - pi / 2 * floor(turn / (pi / 2) + 0.5)) / 2;
+      double y = place[1], z = place[2];
+      place[1] = y * cos(turn) + z * sin(turn);
+      place[2] = z * cos(turn) - y * sin(turn);
+    }
     heat_contact(law, force, place, &area, &share);
     if (area > 0) length = heat_flat_patch(law, area, place, shares);
   }
   if (area > 0 && share > 0) {
     conducts = heat_conductance(law, numbers, share / area) * area * on_face;
-    area *= on_face;
+    area *= on_face * narrow;
   }
   if (conducts > 0) {
     touch[CONDUCTANCE] += conducts;

@@ -27,7 +27,7 @@ void heat_redirect(const Numbers* numbers, double* touches) {
     mju_copy3(bond + PLACE, pad);
     mju_copy3(bond + NORMAL, pad + AXES);
     for (int f = 0; f < fingers; f++) {
-      double *touch = touches + (f * targets + on) * COLUMNS, place[3], other[3], area, share, longer;
+      double *touch = touches + (f * targets + on) * COLUMNS, place[3], other[3], area, share, longer, even;
       const Law* laws = (const Law*)numbers->glued_laws + f * elements;
       if (!meets(numbers, touch, e, laws + e, place)) continue;
       int meeting = 0;
@@ -35,7 +35,7 @@ void heat_redirect(const Numbers* numbers, double* touches) {
         meeting += numbers->glued[i * GLUED + ON] == on && meets(numbers, touch, i, laws + i, other);
       const double *bend = numbers->bends + f * BEND, curve[CURVES] = {0, 0, width / 2, width / 2, 0, WIDE, WIDE};
       double pressed = touch[FORCE] / numbers->sample_steps / meeting;
-      if (bend[0] + bend[1] > 0) heat_round_contact(bend, curve, sides, pressed, 0, 0, &area, &share, &longer);
+      if (bend[0] + bend[1] > 0) heat_round_contact(bend, curve, sides, pressed, 0, 0, &area, &share, &longer, &even);
       else heat_contact(laws + e, pressed, place, &area, &share);
       /* the element stands out: a pad that reaches it at all is on it, and not on the object beside it */
       touch[CONDUCTANCE] = 0;

@@ -53,8 +53,8 @@ them the chain */
 enum { VOLTAGE, READING, PREVIOUS, INTEGRAL, CUT, CHANGE, CHAIN };
 
 typedef struct {
-  double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, spot_scale, spot_power,
-      spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
+  double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, narrowing,
+      spot_scale, spot_power, spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
 } Law;
 
 enum {
@@ -154,7 +154,7 @@ double heat_conductance(const Law* law, const Numbers* numbers, double pressure)
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
 double heat_flat_patch(const Law* law, double area, const double place[3], double shares[4]);
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
-                          double* area, double* share, double* longer);
+                          double* area, double* share, double* longer, double* even);
 
 double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed);
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,

@@ -139,6 +139,7 @@ double heat_tilted(const double* tilt, double first_force, double force, double 
     double wide = tilt[HALF_FACE] / sqrt(2 * tilt[RADIUS] * tilt[APART]);
     share = lesser((atan(wide / near) + atan(wide / far)) / atan(wide) / (near + far), 1);
   }
+  if (!(width > 0)) share = 0;
   *pressed = greater(held, lesser(force, first_force * share));
   return share;
 }

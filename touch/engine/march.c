@@ -231,13 +231,18 @@ static double covered(const Numbers* numbers, const State* state, int f, int o, 
    share: of the face on the object, from less than all of which its network knows how heat spreads. */
 static bool spread(const Numbers* numbers, int pair, const double* touch, int axis, double share, double* root) {
   if (!(touch[AREA] > 0)) return false;
-  double width = numbers->pads[pair / numbers->targets * PAD + WIDTH], area = touch[AREA] / touch[CLOSED];
-  double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = lesser(area / first, width), u, v;
-  if (!(first > 0 && second > 0 && lesser(first, second) < width * (1 - 1e-9))) return false; /* any number may have been written to the state */
-  int rates = numbers->rates, i = before(width / first, &u), j = before(width / second, &v);
+  int tip = pair / numbers->targets, other_tip = pair % numbers->targets - numbers->objects, rates = numbers->rates;
+  double area = touch[AREA] / touch[CLOSED];
+  bool any = false;
   int all = (int)lesser(greater(ceil(2 * log2(1 / greater(share, 1e-3))), 1), WIDTHS - 1);
   memset(root, 0, sizeof(double) * rates);
   for (int side = 0; side < 2; side++) {
+    double width = numbers->pads[(side && other_tip >= 0 ? other_tip : tip) * PAD + WIDTH], u, v;
+    double first = lesser(area / (touch[LENGTH] / touch[AREA]), width), second = lesser(area / first, width);
+    /* any number may have been written to the state */
+    if (!(first > 0 && second > 0 && lesser(first, second) < width * (1 - 1e-9))) continue;
+    int i = before(width / first, &u), j = before(width / second, &v);
+    any = true;
     const double* table = numbers->narrow + (size_t)numbers->spread[(1 + AXES) * pair + (side ? 1 + axis : 0)] * SPREAD * rates;
     double one = lesser(greater(touch[ASIDE + 2 * side] / touch[AREA], 0), 1);
     double other = lesser(greater(touch[ASIDE + 2 * side + 1] / touch[AREA], 0), 1);
@@ -255,7 +260,7 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, int ax
     }
   }
   for (int k = 0; k < rates; k++) root[k] = sqrt(root[k]);
-  return true;
+  return any;
 }
 
 /* Advances every field by a sample. Returns false where there is no memory. */

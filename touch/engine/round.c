@@ -5,10 +5,12 @@
 #include "heat.h"
 
 #define LEAST 1e-7 /* of the larger curvature: what is straighter counts as that */
+#define ALIKE 1e-9 /* of the mean curvature, by which the two differ at most where it is round */
 #define NEWTON_STEPS 8
 #define ALIGNED 0.05 /* m per m, up to which it counts as level */
 #define LEANS 1e-7 /* m per m, below which a line lies level */
 #define LEANING_STEPS 20
+#define LEANT_EVENNESS 0.7 /* of a pressure that falls off to 0 along a line */
 static const double pi = 3.14159265358979323846;
 
 static double disc(double s) { return (s * sqrt(1 - s * s) + asin(s)) / 2; }
@@ -24,6 +26,23 @@ static double clipped(double x, double y, double* load) {
   double root = sqrt(1 - y * y);
   *load = y * root * (1 - y * y / 3 - root * root / 3) + 2.0 / 3 * (cap(x) - cap(root));
   return y * root + disc(x) - disc(root);
+}
+
+static double cap_squared(double s) {
+  double square = s * s;
+  return (s * sqrt(1 - square) * (33 + square * (8 * square - 26)) + 15 * asin(s)) / 48;
+}
+
+static double square_mean(double x, double y) {
+  double first = x * x, second = y * y;
+  return 1 - 2.0 / 3 * (first + second) + (first * first + second * second) / 5 + 2.0 / 9 * first * second;
+}
+
+/* Of such a quarter, the integral of (1 - r^2)^2 over it. */
+static double squared(double x, double y) {
+  if (x * x + y * y <= 1) return x * y * square_mean(x, y);
+  double root = sqrt(1 - y * y);
+  return root * y * square_mean(root, y) + 8.0 / 15 * (cap_squared(x) - cap_squared(root));
 }
 
 static double depth_of(double load, double most, double least, double reach, double width) {
@@ -95,13 +114,17 @@ static double leaning(const double* bend, double force, double angle, double cur
 }
 
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
-                          double* area, double* share, double* longer) {
+                          double* area, double* share, double* longer, double* even) {
   double first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2];
   double both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3];
   double second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3];
   double middle = (first + second) / 2, spread = hypot((first - second) / 2, both);
   double most = middle + spread, least = greater(middle - spread, LEAST * (middle + spread));
-  double first_share = spread > 0 ? lesser(greater((1 + (first - second) / 2 / spread) / 2, 0), 1) : 1;
+  double first_share = lesser(greater((1 + (first - second) / 2 / spread) / 2, 0), 1);
+  if (!(spread > ALIKE * middle)) { /* any direction is as good: what the other's sides lie along */
+    first_share = sides[0] * sides[0] / (sides[0] * sides[0] + sides[1] * sides[1]);
+    both = sides[0] * sides[1];
+  }
   double along = sqrt(first_share), aside = copysign(sqrt(1 - first_share), both), part = along * sides[0] + aside * sides[1];
   double other = lesser(part * part, 1);
   double reach = lesser(first_share * bend[3] + (1 - first_share) * bend[4], other * curve[2] + (1 - other) * curve[3]);
@@ -116,6 +139,7 @@ double heat_round_contact(const double* bend, const double* curve, const double 
     double firm_half[2] = {reach, width}, face_half[2] = {face_reach, face_width};
     *share = leaning(bend, force, leans, most, first_share, ends, firm_half, face_half, depth, area, &lower);
     *longer = 1;
+    *even = LEANT_EVENNESS;
     if (!(*area > 0)) return 0;
     double across = sqrt(2 * lower / most);
     *longer = lesser(lower / leans, 2 * face_width) / (2 * lesser(across, face_reach));
@@ -123,13 +147,20 @@ double heat_round_contact(const double* bend, const double* curve, const double 
     return kept(along * y + aside * z, 0, across, face_reach, WIDE);
   }
   double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least);
-  double other_reach = other * curve[5] + (1 - other) * curve[6];
-  double other_width = (1 - other) * curve[5] + other * curve[6];
+  double other_reach = WIDE, other_width = WIDE;
+  if (curve[4] > 0) { /* another fingertip: what is on a face depends on where each pad's own middle is */
+    face_reach = lesser(first_share * bend[5] + (1 - first_share) * bend[6], first_share * bend[3] + (1 - first_share) * bend[4]);
+    face_width = lesser((1 - first_share) * bend[5] + first_share * bend[6], (1 - first_share) * bend[3] + first_share * bend[4]);
+    other_reach = lesser(other * curve[5] + (1 - other) * curve[6], other * curve[2] + (1 - other) * curve[3]);
+    other_width = lesser((1 - other) * curve[5] + other * curve[6], (1 - other) * curve[2] + other * curve[3]);
+  }
   double on_faces = kept(along * y + aside * z, along * sides[6] + aside * sides[7], a, face_reach, other_reach);
   on_faces *= kept(along * z - aside * y, along * sides[7] - aside * sides[6], b, face_width, other_width);
   face_reach = lesser(face_reach, other_reach);
   face_width = lesser(face_width, other_width);
-  *area = 4 * a * b * clipped(lesser(face_reach / a, 1), lesser(face_width / b, 1), &load);
+  double x = lesser(face_reach / a, 1), breadth = lesser(face_width / b, 1), quarter = clipped(x, breadth, &load);
+  *area = 4 * a * b * quarter;
+  *even = load * load / (quarter * squared(x, breadth));
   *share = 4 * stiffness * depth * a * b * load;
   *longer = lesser(b, face_width) / lesser(a, face_reach);
   *longer = greater(*longer, 1 / *longer);

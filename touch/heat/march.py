@@ -258,8 +258,10 @@ def _march(
                         for j in range(4):
                             placed[j] = 0.0
                     first_side, second_side = tables[kinds[w, lane, t, 0]], tables[kinds[w, lane, t, 1]]
+                    beneath = widths[t - objects] if t >= objects and f < tips else widths[lane]
                     spreads = spread(
-                        first_side, second_side, widths[lane], area, length, placed[:2], placed[2:], root
+                        *(first_side, second_side, (widths[lane], beneath), area, length),
+                        *(placed[:2], placed[2:], root),
                     )
                     if not spreads:
                         for k in range(rates):

@@ -82,6 +82,11 @@ def narrow_sides(pad: PadPlace, target: Wall | PadPlace) -> tuple[Side, Side]:
     return tip_side, _side(target) if isinstance(target, PadPlace) else (target, tip_side[1])
 
 
+def widths_of(pad: PadPlace, target: Wall | PadPlace) -> tuple[float, float]:
+    """m, the sensor's face whose patch the network on either side of that contact knows: an object has the pad's."""
+    return pad.stack.width, target.stack.width if isinstance(target, PadPlace) else pad.stack.width
+
+
 def _side(pad: PadPlace) -> Side:
     return (None if pad.bare else pad.stack, LAPPED if pad.skin is None else CONFORMING)
 
@@ -118,7 +123,11 @@ def narrow_tables(
     pairs: Sequence[tuple[PadPlace, Wall | PadPlace]], level: Resolution
 ) -> tuple[np.ndarray, np.ndarray]:
     """Every narrow_table that pairs need (N, 2, 2, J, J, K), and the numbers (pairs, 2) of those of their sides."""
-    keys = [(side, pad.stack.width) for pad, target in pairs for side in narrow_sides(pad, target)]
+    keys = [
+        (side, width)
+        for pad, target in pairs
+        for side, width in zip(narrow_sides(pad, target), widths_of(pad, target), strict=True)
+    ]
     numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
     tables = np.array([narrow_table(*key, level) for key in numbers])
     return tables, np.array([numbers[key] for key in keys]).reshape(-1, 2)
@@ -137,20 +146,23 @@ def _of_part(impedance: np.ndarray, ratio: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def spread(tip_side, other, width, area, length, aside, ends, root):
-    """Fills root (K,) with the b_k of a contact of that area m2 and length m, along the second axis, under a sensor of
-    that width m. tip_side, other: of narrow_table, of the pad and of what it touches; aside, ends: (2,) the shares by
-    which the contact lies at an end of either. Returns whether there are any: not where the contact is as wide as the
-    face or its area is not told."""
+def spread(tip_side, other, widths, area, length, aside, ends, root):
+    """Fills root (K,) with the b_k of a contact of that area m2 and length m, along the second axis, under a sensor.
+    tip_side, other: of narrow_table, of the pad and of what it touches, and widths_of them, m; aside, ends: (2,) the
+    shares by which the contact lies at an end of either. Returns whether there are any: not where the contact is as
+    wide as both faces or its area is not told."""
     if not area > 0.0:
         return False
-    i, u, j, v = seen(width, area, length)
-    if i < 0:
+    i, u, j, v = seen(widths[0], area, length)
+    m, s, n, t = seen(widths[1], area, length) if widths[1] != widths[0] else (i, u, j, v)
+    if i < 0 and m < 0:
         return False
     for k in range(len(root)):
         root[k] = 0.0
-    add_squares(tip_side, i, u, j, v, aside, root)
-    add_squares(other, i, u, j, v, ends, root)
+    if i >= 0:
+        add_squares(tip_side, i, u, j, v, aside, root)
+    if m >= 0:
+        add_squares(other, m, s, n, t, ends, root)
     for k in range(len(root)):
         root[k] = np.sqrt(root[k])
     return True

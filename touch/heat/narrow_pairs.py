@@ -12,7 +12,7 @@ import numpy as np
 from ...thermal import Material
 from ...thermal.kernels import Resolution
 from ..scene import PadPlace
-from .narrow import Beside, Side, Wall, narrow_sides, narrow_table
+from .narrow import Beside, Side, Wall, narrow_sides, narrow_table, widths_of
 
 
 class NarrowPairs:
@@ -41,8 +41,8 @@ class NarrowPairs:
         """What a world's objects are made of."""
         for f, pad in enumerate(self._pads):
             for t, target in enumerate((*map(Wall, materials), *self._pads)):
-                for s, side in enumerate(narrow_sides(pad, target)):
-                    self.kinds[w, f, t, s] = self._number(side, pad.stack.width)
+                sides = zip(narrow_sides(pad, target), widths_of(pad, target), strict=True)
+                self.kinds[w, f, t] = [self._number(*side) for side in sides]
         for lane, impedance in enumerate(self._rings, len(self._pads)):
             width = float(self._widths[lane])
             self.kinds[w, lane, :, 0] = self._number((Beside(tuple(impedance)), 0.0), width)
