@@ -8,9 +8,10 @@ the mean of the whole face, and by how much a narrow contact is colder or warmer
     python studies/elements/narrow_faces.py                       every case on two meshes, four minutes
     python studies/elements/narrow_faces.py ball/steel --json     cases whose name contains that, as JSON
 
-A ball presses most in its middle and conducts best there, while ThermalTouch takes its contact as even; "even ball" is
-of that conductance all over. Under an uneven contact the mean over the area is not what drives heat: that mean is
-weighted with the conductance of each place, and stands beside it. Needs scikit-fem.
+A ball presses most in its middle and conducts best there; ThermalTouch takes a bare ball's contact as even and narrower
+(thermal/contact/spread.py); "even ball" is of the mean conductance all over. Under an uneven contact the mean over the
+area is not what drives heat: that mean is weighted with the conductance of each place, and stands beside it. With it
+what is said of a ball's contact is compared. Needs scikit-fem.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -34,7 +35,7 @@ from skfem.element import DiscreteField
 
 from thermograsp import Fingertip, ThermalTouch
 from thermograsp.thermal import SKINS, Pad, PressProblem, Surface, material, sensor
-from thermograsp.thermal.contact import conductance, face_joint, flat_law, skinned
+from thermograsp.thermal.contact import conductance, face_joint, flat_law, narrowing, skinned
 from thermograsp.touch.contacts import AREA, CLOSED, CONDUCTANCE, FORCE, LENGTH, NORMAL, PLACE
 
 BLOCK = (0.04, 0.04, 0.01)
@@ -48,6 +49,8 @@ DT = 0.01
 RADIUS, FORCE_N = 0.008, 10.0
 """m and N of the ball, a fingertip whose pad is as wide as its tangents at 53 degrees."""
 PAD = Pad(width=0.0128, face=0.009)
+EVENNESS = 0.75
+"""Of a ball's pressure on springs: its mean's square over the mean of its square."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +70,13 @@ class Case:
     def area(self) -> float:
         """m2."""
         return math.pi / 4 * self.width**2 if self.round else self.width**2
+
+    @property
+    def patch(self) -> float:
+        """m2, as which a fingertip's contact counts."""
+        if self.law is None or self.skin is not None:
+            return self.area
+        return self.area * (1 - (1 - EVENNESS) * narrowing(Surface.of(material(self.material))))
 
     def at(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """W/(m2 K) at places m from the contact's middle; 0 beside it."""
@@ -198,8 +208,8 @@ def by_touch(case: Case) -> Told:
     row = told[0, 0]
     row[[CONDUCTANCE, AREA, LENGTH]] = (
         case.conductance * case.area,
-        case.area,
-        case.area * math.sqrt(case.area),
+        case.patch,
+        case.patch * math.sqrt(case.patch),
     )
     row[[CLOSED, FORCE]] = 1.0, 10.0
     row[PLACE : PLACE + 3], row[NORMAL : NORMAL + 3] = (0.0, 0.0, top), (0.0, 0.0, -1.0)
@@ -238,7 +248,7 @@ def row(name: str, case: Case, levels: Sequence[float] = (0.7, 1.0)) -> dict[str
             "driving": getattr(fine[1], side).round(3).tolist(),
             "touch": getattr(touch, side).round(3).tolist(),
         }
-        off = getattr(touch, side) - getattr(fine[0], side)
+        off = getattr(touch, side) - getattr(fine[0] if case.law is None else fine[1], side)
         found[f"{side}_off_K"] = float(off[np.abs(off).argmax()])
     found["seconds"] = round(time.perf_counter() - begun, 1)
     return found

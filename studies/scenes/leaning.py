@@ -111,13 +111,16 @@ def borne(touch: ThermalTouch, data: mujoco.MjData) -> Borne:
         return Borne(0.0, 0.0)  # beside the pad
     # of the block's axes along the pad's normal, y and z, the block being upright
     seen = data.xmat[pad.body].reshape(3, 3) @ pad.axes
-    sides = np.array([*seen[0, 1:], *seen[1, 1:], *(seen[_DOWN, 1:] / seen[_DOWN, 0])])
-    area, load, share, _ = round_contact(reader._bend[0], reader._curve[0, _DOWN], sides, force, 0.0, 0.0)
+    sides = np.array([*seen[0, 1:], *seen[1, 1:], *(seen[_DOWN, 1:] / seen[_DOWN, 0]), 0.0, 0.0])
+    area, load, share, _, even = round_contact(
+        reader._bend[0], reader._curve[0, _DOWN], sides, force, 0.0, 0.0
+    )
+    patch = area * share * (1 - reader._laws["narrowing"][0, 0, 0, _DOWN] * (1 - even))
     reader.touches[:] = 0.0
     reader.read(data)
     noted = float(reader.touches[0, 0, 0, AREA])
-    if abs(noted - area * share) > 1e-3 * noted + 1e-9:
-        raise RuntimeError(f"the touch noted an area of {noted:g} m2, and its law says {area * share:g} m2")
+    if abs(noted - patch) > 1e-3 * noted + 1e-9:
+        raise RuntimeError(f"the touch noted an area of {noted:g} m2, and its law says {patch:g} m2")
     return Borne(area * share, load * share)
 
 

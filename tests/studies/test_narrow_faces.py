@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
@@ -57,11 +58,14 @@ def test_the_means_of_even_contacts_are_those_of_elements(study: ModuleType, nam
         np.testing.assert_allclose(getattr(found, side), getattr(expected, side), atol=0.1, err_msg=side)
 
 
-def test_an_uneven_contact_is_colder_on_the_mean_by_what_the_docs_say(study: ModuleType) -> None:
-    """Under a bare ball on aluminium. What drives heat is colder still, and what is told lies between the two."""
-    case = study.cases()["ball/aluminium"]
+@pytest.mark.parametrize("name", ["ball/aluminium", "ball/steel"])
+def test_an_uneven_contact_counts_as_narrower(study: ModuleType, name: str) -> None:
+    """What is said of both faces is what drives heat, which is colder than the mean over the area."""
+    case = study.cases()[name]
     (expected, driving), found = study.by_elements(case, 0.7), study.by_touch(case)
-    assert 0.2 < np.abs(found.sensor - expected.sensor).max() < 0.35
-    assert np.abs(found.object - expected.object).max() < 0.1
-    assert 0.35 < (found.drop - expected.drop).max() < 0.55
-    assert (driving.sensor < found.sensor + 0.02).all() and (found.sensor < expected.sensor).all()
+    even = study.by_touch(replace(case, law=None))
+    assert 0.15 < (even.drop - expected.drop).max() < 0.55
+    np.testing.assert_allclose(found.drop, expected.drop, atol=0.08)
+    np.testing.assert_allclose(found.sensor, driving.sensor, atol=0.18)
+    np.testing.assert_allclose(found.object, driving.object, atol=0.08)
+    assert (driving.sensor < expected.sensor).all()

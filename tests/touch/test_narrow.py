@@ -77,7 +77,9 @@ def added(
     root = np.zeros(LEVEL.rates)
     wall = wall_of(made_of, 1.0, thick, pad.stack.width)
     tables, ((own, other),) = narrow_tables([(pad, wall)], LEVEL)
-    assert spread(tables[own], tables[other], pad.stack.width, area, length, aside, ends, root)
+    assert spread(
+        tables[own], tables[other], (pad.stack.width, pad.stack.width), area, length, aside, ends, root
+    )
     return (root**2 / (GRASP[:, None] + LEVEL.decay)).sum(axis=1)
 
 
@@ -132,7 +134,7 @@ def test_a_contact_of_the_whole_face_or_of_no_known_area_has_nothing_to_spread(p
     tables, ((own, other),) = narrow_tables([(pad, Wall(material("glass")))], LEVEL)
     assert (tables >= 0).all()
     for area, length in ((width**2, width), (0.0, np.nan), (1.2 * width**2, 0.9 * width)):
-        assert not spread(tables[own], tables[other], width, area, length, AT_ENDS, AT_ENDS, root)
+        assert not spread(tables[own], tables[other], (width, width), area, length, AT_ENDS, AT_ENDS, root)
     assert not root.any()
 
 
@@ -241,7 +243,9 @@ def test_nothing_jumps_where_a_face_slides_over_an_edge(shape: str, skin: str | 
             if row[AREA] > 0:
                 placed = row[ASIDE:BESIDE] / row[AREA]
                 length = row[LENGTH] / row[AREA]
-                if spread(tables[own], tables[other], FACE, row[AREA], length, placed[:2], placed[2:], root):
+                if spread(
+                    tables[own], tables[other], (FACE, FACE), row[AREA], length, placed[:2], placed[2:], root
+                ):
                     found = float((root**2 / (1.0 + LEVEL.decay)).sum())
                 found += 1 / row[CONDUCTANCE]
                 series.append(12 / (found + 2.0))

@@ -44,8 +44,8 @@ WIDE = 10.0
 """m, half of what no pad reaches the end of."""
 _LEAST = 1e-7  # of the larger curvature: what is straighter counts as that
 _ALIKE = 1e-9  # of the mean curvature, by which the two differ at most where it is round
-LEANT_EVENNESS = 0.7
-"""The square of the mean pressure over the mean of its square where a line's depth falls off to 0."""
+_EVENLY = 5 / 6  # of a line, the square of the mean pressure over the mean of its square
+_NEARLY = 0.999  # of a line's depth at one end to that at the other, from which on it is the same
 _NEWTON_STEPS = 8
 _LEANS = 1e-7  # m per m, below which a line lies level
 _LEANING_STEPS = 20  # Newton's, or halves where the slope leads out of what is known
@@ -135,11 +135,12 @@ def round_contact(bend, curve, sides, force, y, z):
             bend, force, leans, most, first_share, ends, (reach, width), (face_reach, face_width), depth
         )
         if area <= 0:
-            return 0.0, 0.0, 0.0, 1.0, LEANT_EVENNESS
+            return 0.0, 0.0, 0.0, 1.0, 1.0
         a, b = math.sqrt(2 * lower / most), lower / leans
         share = _kept(along * y + aside * z, 0.0, a, face_reach, WIDE)
         longer = min(b, 2 * face_width) / (2 * min(a, face_reach))
-        return area, load, share, max(longer, 1 / longer), LEANT_EVENNESS
+        even = _along_line(max(1 - 2 * face_width * leans / lower, 0.0))
+        return area, load, share, max(longer, 1 / longer), even
     a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
     if curve[4] > 0:  # another fingertip: what is on a face depends on where each pad's own middle is
         face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], own_reach)
@@ -194,6 +195,15 @@ def _disc(s):
 @njit(cache=True, error_model="numpy", inline="always")
 def _cap(s):
     return (s * (5 - 2 * s * s) * math.sqrt(1 - s * s) + 3 * math.asin(s)) / 8
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _along_line(ratio):
+    """How evenly a line presses whose depth falls evenly to this share of what it is at its lower end."""
+    if ratio > _NEARLY:
+        return _EVENLY
+    middle = (1 - ratio**2.5) / 2.5
+    return _EVENLY * middle * middle * 1.5 * 3.5 / ((1 - ratio**1.5) * (1 - ratio**3.5))
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
@@ -340,13 +350,18 @@ def array_round_contact(
     a, b = (2 * lower / most) ** 0.5, lower / fall
     leant_share = xp.where(reached, _kept_of(xp, crosswise, a, face_reach), 0.0 * depth)
     leant_longer = xp.minimum(b, 2 * face_width) / (2 * xp.minimum(a, face_reach))
+    ratio = (1 - 2 * face_width * fall / lower).clip(0.0, None)
+    nearly = ratio > _NEARLY
+    ratio = xp.where(nearly, 0.5 + 0.0 * ratio, ratio)
+    leant_even = _EVENLY * (1 - ratio**2.5) ** 2 / 2.5**2 * 1.5 * 3.5 / ((1 - ratio**1.5) * (1 - ratio**3.5))
+    leant_even = xp.where(nearly, _EVENLY + 0.0 * ratio, leant_even)
     longer = xp.where(leans, xp.where(reached, leant_longer, 1.0 + 0.0 * depth), longer)
     return (
         xp.where(leans, leant[0], area),
         xp.where(leans, leant[1], load),
         xp.where(leans, leant_share, share),
         xp.maximum(longer, 1 / longer),
-        xp.where(leans, LEANT_EVENNESS + 0.0 * even, even),
+        xp.where(leans, xp.where(reached, leant_even, 1.0 + 0.0 * even), even),
     )
 
 

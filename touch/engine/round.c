@@ -10,7 +10,8 @@
 #define ALIGNED 0.05 /* m per m, up to which it counts as level */
 #define LEANS 1e-7 /* m per m, below which a line lies level */
 #define LEANING_STEPS 20
-#define LEANT_EVENNESS 0.7 /* of a pressure that falls off to 0 along a line */
+#define EVENLY (5.0 / 6) /* of a line, the square of the mean pressure over the mean of its square */
+#define NEARLY 0.999 /* of a line's depth at one end to that at the other, from which on it is the same */
 static const double pi = 3.14159265358979323846;
 
 static double disc(double s) { return (s * sqrt(1 - s * s) + asin(s)) / 2; }
@@ -26,6 +27,13 @@ static double clipped(double x, double y, double* load) {
   double root = sqrt(1 - y * y);
   *load = y * root * (1 - y * y / 3 - root * root / 3) + 2.0 / 3 * (cap(x) - cap(root));
   return y * root + disc(x) - disc(root);
+}
+
+/* How evenly a line presses whose depth falls evenly to this share of what it is at its lower end. */
+static double along_line(double ratio) {
+  if (ratio > NEARLY) return EVENLY;
+  double middle = (1 - pow(ratio, 2.5)) / 2.5;
+  return EVENLY * middle * middle * 1.5 * 3.5 / ((1 - pow(ratio, 1.5)) * (1 - pow(ratio, 3.5)));
 }
 
 static double cap_squared(double s) {
@@ -139,11 +147,12 @@ double heat_round_contact(const double* bend, const double* curve, const double 
     double firm_half[2] = {reach, width}, face_half[2] = {face_reach, face_width};
     *share = leaning(bend, force, leans, most, first_share, ends, firm_half, face_half, depth, area, &lower);
     *longer = 1;
-    *even = LEANT_EVENNESS;
+    *even = 1;
     if (!(*area > 0)) return 0;
     double across = sqrt(2 * lower / most);
     *longer = lesser(lower / leans, 2 * face_width) / (2 * lesser(across, face_reach));
     *longer = greater(*longer, 1 / *longer);
+    *even = along_line(greater(1 - 2 * face_width * leans / lower, 0));
     return kept(along * y + aside * z, 0, across, face_reach, WIDE);
   }
   double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least);
