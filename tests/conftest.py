@@ -41,7 +41,8 @@ SLOW = "THERMOGRASP_SLOW"
 def pytest_configure(config: pytest.Config) -> None:
     """A cache for the run, made before the workers start: they inherit the variable."""
     if not hasattr(config, "workerinput"):
-        cache = tempfile.TemporaryDirectory(prefix="thermograsp-tests-")
+        # a process that a test has just ended may still write to it
+        cache = tempfile.TemporaryDirectory(prefix="thermograsp-tests-", ignore_cleanup_errors=True)
         config.add_cleanup(cache.cleanup)
         patch = pytest.MonkeyPatch()
         patch.setenv("THERMOGRASP_CACHE", cache.name)

@@ -115,7 +115,7 @@ def borne(touch: ThermalTouch, data: mujoco.MjData) -> Borne:
     area, load, share, _, even = round_contact(
         reader._bend[0], reader._curve[0, _DOWN], sides, force, 0.0, 0.0
     )
-    patch = area * share * (1 - reader._laws["narrowing"][0, 0, 0, _DOWN] * (1 - even))
+    patch = area * share * (1 - float(reader._laws[0, 0, 0, _DOWN]["narrowing"]) * (1 - even))
     reader.touches[:] = 0.0
     reader.read(data)
     noted = float(reader.touches[0, 0, 0, AREA])
