@@ -107,6 +107,7 @@ def test_the_order_in_which_two_fingertips_are_named_changes_nothing(
         ("box", "box", {"sensors": ("seed", "biotac_like")}),
         ("ball", "capsule", {"sensors": ("seed", "biotac_like")}),
         ("small box", "capsule", {"aside": (0.005, 0.0)}),
+        ("small box", "ball", {"aside": (0.0, 0.0), "turn": 45.0}),
         ("box", "box", {"aside": (0.005, 0.0), "turn": 30.0}),
         ("box", "small box", {"aside": (0.003, 0.002), "turn": 20.0}),
     ],

@@ -130,4 +130,35 @@ def test_a_round_fingertip_feels_a_slanted_face_alike_by_record(tip: str, degree
     recorded.update(np.array(record)[None])
     expected = looped.reading.temperature_drop
     assert expected[0] > 4.0
-    assert recorded.reading.temperature_drop[0] == pytest.approx(expected, rel=2e-3)
+    assert recorded.reading.temperature_drop[0] == pytest.approx(expected, rel=2e-3, abs=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [50.0, 58.0])
+def test_a_ball_is_beside_its_pad_beyond_53_degrees_by_record_too(degrees: float) -> None:
+    if not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
+        pytest.skip("this MuJoCo has no contact sensors: it needs 3.3.5")
+    words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"block": "aluminium"}}
+    # the block lies below the middle of the pad as the model is made, and is then turned aside
+    model = prepare(
+        mujoco.MjSpec.from_string("""
+        <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+          <body name="block" pos="0 0 -.028">
+            <joint name="turn" type="hinge" axis="1 0 0" pos="0 0 .028" armature="1" damping="1e6"/>
+            <geom name="block" type="box" size=".02 .02 .02" contype="2" conaffinity="0" mass="1"/></body>
+          <body name="tip"><joint name="tip" type="slide" axis="0 0 1" armature="1e6"/>
+            <geom name="tip" type="sphere" size=".0081" mass=".1" contype="0" conaffinity="2"/></body>
+        </worldbody></mujoco>"""),
+        **words,
+    )
+    data, record = mujoco.MjData(model), []
+    data.joint("turn").qpos[:] = np.radians(degrees)
+    looped, recorded = (ThermalTouch(model, **words, chain="ideal", worlds=worlds) for worlds in (None, 1))
+    for _ in range(50):
+        mujoco.mj_step(model, data)
+        looped.update(data)
+        record.append(data.sensordata.copy())
+    recorded.update(np.array(record)[None])
+    on, beside = looped.reading.force[0], looped.reading.beside[0]
+    assert (on > 0.0) == (degrees < 53.0) == (not beside > 0.0) and on + beside > 0.1
+    assert recorded.reading.force[0] == pytest.approx([on], rel=0.02)
+    assert recorded.reading.beside[0] == pytest.approx([beside], rel=0.02)

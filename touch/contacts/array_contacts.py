@@ -32,7 +32,7 @@ from ...thermal.contact import (
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
-from .pad_contacts import DEPTH, RIM
+from .pad_contacts import DEPTH, LOOKING, RIM
 from .round_pads import array_round_contact, bends, curves
 from .tilt import RADIUS, TILT, array_tilted
 from .views import array_viewed
@@ -114,11 +114,12 @@ class ArrayContacts:
         at = _seen(axes[:, :, None, None], place - middle[:, :, None, None])
         vector = _seen(axes[:, :, None, None], force)
         pressed = vector[..., 0]  # (B H, F, G, L)
+        on = (abs(at[..., 1:]) <= self.half[:, None, None] + RIM).all(-1) & (abs(at[..., 0]) <= DEPTH)
         if self.any_bulging:  # along the normal where it presses, that of a ball of the pad's curvatures
             leans = at[..., 1:] * (self.bend[:, :2] * self.bulging[:, None])[:, None, None]
             upright = (1.0 - (leans * leans).sum(-1)).clip(0.0, None) ** 0.5
             pressed = upright * pressed + (leans * vector[..., 1:]).sum(-1)
-        on = (abs(at[..., 1:]) <= self.half[:, None, None] + RIM).all(-1) & (abs(at[..., 0]) <= DEPTH)
+            on = on & (upright >= LOOKING)
         none = 0.0 * pressed
         pressed = xp.where(pressed > 0, pressed, none)
         beside = xp.where(on, none, pressed).sum(-1).sum(-1)

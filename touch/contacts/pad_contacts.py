@@ -94,10 +94,11 @@ def _bears(data, at, pad, bend, frame, sign):
     place, vector = data[at + PLACE_AT : at + PLACE_AT + 3], data[at + FORCE_AT : at + FORCE_AT + 3]
     x, y, z, force = _from_pad(frame, place, vector, sign)
     leans_y, leans_z = bend[0] * y, bend[1] * z
-    force *= math.sqrt(max(1.0 - leans_y * leans_y - leans_z * leans_z, 0.0))
+    upright = math.sqrt(max(1.0 - leans_y * leans_y - leans_z * leans_z, 0.0))
+    force *= upright
     for k in range(3):
         force += sign * vector[k] * (leans_y * frame[6 + k] + leans_z * frame[9 + k])
-    return force > 0 and _within(pad, x, y, z, 0.0), y, z, force
+    return force > 0 and upright >= LOOKING and _within(pad, x, y, z, 0.0), y, z, force
 
 
 @njit(cache=True, error_model="numpy", inline="always")

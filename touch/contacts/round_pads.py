@@ -113,7 +113,9 @@ def round_contact(bend, curve, sides, force, y, z):
     # the direction of the larger curvature, and how much of the pad's and the other's first axes lies along it
     if spread > _ALIKE * middle:
         first_share = (1 + (first - second) / 2 / spread) / 2
-    else:  # any direction is as good: what the other's sides lie along
+    elif bend[0] + bend[1] == 0:  # any direction is as good: that of the sides of the one that is flat
+        first_share, both = 1.0, 0.0
+    else:
         first_share = sides[0] * sides[0] / (sides[0] * sides[0] + sides[1] * sides[1])
         both = sides[0] * sides[1]
     first_share = min(max(first_share, 0.0), 1.0)

@@ -129,9 +129,10 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   double middle = (first + second) / 2, spread = hypot((first - second) / 2, both);
   double most = middle + spread, least = greater(middle - spread, LEAST * (middle + spread));
   double first_share = lesser(greater((1 + (first - second) / 2 / spread) / 2, 0), 1);
-  if (!(spread > ALIKE * middle)) { /* any direction is as good: what the other's sides lie along */
-    first_share = sides[0] * sides[0] / (sides[0] * sides[0] + sides[1] * sides[1]);
-    both = sides[0] * sides[1];
+  if (!(spread > ALIKE * middle)) { /* any direction is as good: that of the sides of the one that is flat */
+    bool flat = bend[0] + bend[1] == 0;
+    first_share = flat ? 1 : sides[0] * sides[0] / (sides[0] * sides[0] + sides[1] * sides[1]);
+    both = flat ? 0 : sides[0] * sides[1];
   }
   double along = sqrt(first_share), aside = copysign(sqrt(1 - first_share), both), part = along * sides[0] + aside * sides[1];
   double other = lesser(part * part, 1);
