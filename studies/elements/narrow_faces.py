@@ -2,11 +2,12 @@
 
 A square or a round contact in the middle of the sensor's face, narrower than it, opens at time 0 on a block of 40 x 40
 x 10 mm. Finite elements (see fem.py) tell the mean temperatures over the contact's area on the sensor's side and on the
-object's. ThermalTouch's heat is told of the same area and conductance and says them as touch/heat/reported.py does: by
+object's. ThermalTouch's heat is given the same area and conductance and reports them as touch/heat/reported.py does: by
 the mean of the whole face, and by how much a narrow contact is colder or warmer than that. The drop stands beside them.
 
     python studies/elements/narrow_faces.py                       every case on two meshes, four minutes
     python studies/elements/narrow_faces.py ball/steel --json     cases whose name contains that, as JSON
+    python studies/elements/narrow_faces.py --balls               bare balls of 5 to 15 mm at 1 to 20 N instead
 
 A ball presses most in its middle and conducts best there; ThermalTouch takes a bare ball's contact as even and narrower
 (thermal/contact/spread.py); "even ball" is of the mean conductance all over. Under an uneven contact the mean over the
@@ -48,6 +49,8 @@ DT = 0.01
 """s, a sample of the touch."""
 RADIUS, FORCE_N = 0.008, 10.0
 """m and N of the ball, a fingertip whose pad is as wide as its tangents at 53 degrees."""
+BALLS = (0.008, 1.0), (0.005, 10.0), (0.015, 10.0), (0.008, 20.0)
+"""m and N of others, on pads of the same width."""
 PAD = Pad(width=0.0128, face=0.009)
 EVENNESS = 0.75
 """Of a ball's pressure on springs: its mean's square over the mean of its square."""
@@ -57,7 +60,7 @@ EVENNESS = 0.75
 class Case:
     """material: of the block. width: m, the contact's side or, of a round one, its diameter. conductance: W/(m2 K) on
     the mean. skin: over the sensor, None for a bare one. law: of a ball's contact, which conducts by the pressure of
-    each place, highest in its middle; None for an even one."""
+    each place, highest in its middle, of force N; None for an even one."""
 
     material: str
     width: float
@@ -65,6 +68,7 @@ class Case:
     round: bool = False
     skin: str | None = None
     law: np.void | None = None
+    force: float = FORCE_N
 
     @property
     def area(self) -> float:
@@ -85,24 +89,26 @@ class Case:
         deep = np.maximum(1 - (x**2 + y**2) / (self.width / 2) ** 2, 0.0)
         if self.law is None:
             return np.where(deep > 0, self.conductance, 0.0)
-        found, pressure = np.zeros(deep.shape), 2 * FORCE_N / self.area * deep
+        found, pressure = np.zeros(deep.shape), 2 * self.force / self.area * deep
         found[deep > 0] = [conductance(self.law, each) for each in pressure[deep > 0].tolist()]
         return found
 
 
-def ball(name: str, skin: str | None, even: bool = False) -> Case:
+def ball(
+    name: str, skin: str | None, even: bool = False, radius: float = RADIUS, force: float = FORCE_N
+) -> Case:
     """A ball's contact as the springs of a pad make it; even: of its conductance at the mean pressure all over, which
     is what ThermalTouch takes it to be."""
     sheet, cover = PAD.foundation_modulus / PAD.thickness, None if skin is None else SKINS[skin]
     stiffness = sheet if cover is None else cover.stiffness
-    area = 2 * math.pi * RADIUS * math.sqrt(FORCE_N / (math.pi * stiffness * RADIUS))
+    area = 2 * math.pi * radius * math.sqrt(force / (math.pi * stiffness * radius))
     law = flat_law(skinned(PAD, cover), face_joint(cover, Surface.of(material(name))), (PAD.width, PAD.width))
-    mean = float(conductance(law, FORCE_N / area))
-    return Case(name, math.sqrt(4 * area / math.pi), mean, True, skin, None if even else law)
+    mean = float(conductance(law, force / area))
+    return Case(name, math.sqrt(4 * area / math.pi), mean, True, skin, None if even else law, force)
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Means:
     """At TIMES: drop K, and °C of the contact's sides: sensor_surface and object_surface."""
 
     drop: np.ndarray
@@ -123,12 +129,22 @@ def cases() -> dict[str, Case]:
     return found
 
 
+def balls() -> dict[str, Case]:
+    """Bare balls of several sizes and forces on what conducts well and badly."""
+    names = "aluminium", "copper", "steel", "stainless_steel", "ceramic", "glass", "wood"
+    return {
+        f"{1e3 * radius:g} mm, {force:g} N/{name}": ball(name, None, radius=radius, force=force)
+        for name in names
+        for radius, force in BALLS
+    }
+
+
 @LinearForm
 def _valued(v, w):
     return w.value * v
 
 
-def by_elements(case: Case, refine: float) -> tuple[Told, Told]:
+def by_elements(case: Case, refine: float) -> tuple[Means, Means]:
     """On one mesh: means over the contact's area, and means weighted with its conductance."""
     stack = sensor("seed")
     problem = PressProblem(
@@ -181,15 +197,15 @@ def by_elements(case: Case, refine: float) -> tuple[Told, Told]:
             step, solver = {0.1: 5e-3, 0.3: 2e-2, 1.0: 5e-2}.get(round(now, 6), step), None
     drop, *rest = np.array(found).T
     first, second, third, fourth = (each + COOL for each in rest)
-    return Told(drop, first, second), Told(drop, third, fourth)
+    return Means(drop, first, second), Means(drop, third, fourth)
 
 
-def by_touch(case: Case) -> Told:
-    """ThermalTouch that is told of that contact in the middle of a block's face."""
+def by_touch(case: Case) -> Means:
+    """ThermalTouch that is given that contact in the middle of a block's face."""
     half, top = (" ".join(str(side / 2) for side in BLOCK)), BLOCK[2] / 2
     model = mujoco.MjModel.from_xml_string(f"""
       <mujoco><option timestep="{DT}"/><worldbody>
-        <body name="thing"><geom name="thing" type="box" size="{half}" mass="1"/></body>
+        <body name="block"><geom name="block" type="box" size="{half}" mass="1"/></body>
         <body name="tip" pos="0 0 {top + 0.1}"><joint type="slide" axis="0 0 1"/>
           <geom name="tip" type="box" size=".01 .01 .004"/></body>
       </worldbody></mujoco>""")
@@ -197,15 +213,15 @@ def by_touch(case: Case) -> Told:
     touch = ThermalTouch(
         *(model,),
         fingertips={"tip": tip},
-        objects={"thing": case.material},
+        objects={"block": case.material},
         dt=DT,
         air=0.0,
         ambient=COOL,
         chain="ideal",
     )
     reader, data = touch._reader, mujoco.MjData(model)
-    told = np.zeros_like(reader.touches[0])
-    row = told[0, 0]
+    touches = np.zeros_like(reader.touches[0])
+    row = touches[0, 0]
     row[[CONDUCTANCE, AREA, LENGTH]] = (
         case.conductance * case.area,
         case.patch,
@@ -227,9 +243,9 @@ def by_touch(case: Case) -> Told:
         data.time += DT
         touch.update(data)
         if any(abs(step * DT - mark) < DT / 2 for mark in TIMES):
-            sides = touch._heat.faces(0, told)
+            sides = touch._heat.faces(0, touches)
             found.append((touch.reading.temperature_drop[0], sides[0][0, 0], sides[1][0, 0]))
-    return Told(*np.array(found).T)
+    return Means(*np.array(found).T)
 
 
 def row(name: str, case: Case, levels: Sequence[float] = (0.7, 1.0)) -> dict[str, object]:
@@ -259,11 +275,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("case", nargs="?", default="", help="part of a case's name")
     parser.add_argument("--levels", nargs=2, type=float, default=[0.7, 1.0], help="meshes, coarse and fine")
+    parser.add_argument("--balls", action="store_true", help="bare balls of several sizes and forces")
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     given = parser.parse_args(arguments)
-    for name, case in cases().items():
-        if given.case not in name:
-            continue
+    chosen = {
+        name: case for name, case in (balls() if given.balls else cases()).items() if given.case in name
+    }
+    if not chosen:
+        parser.error(f"no case has {given.case!r} in its name")
+    for name, case in chosen.items():
         found = row(name, case, given.levels)
         if given.json:
             print(json.dumps(found), flush=True)

@@ -47,6 +47,8 @@ RADIUS, HALF, TOP = 0.008, 0.012, 0.02
 """m: of the fingertip, half of its straight part, and half of the block's sides."""
 ANGLES = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0)
 """Degrees."""
+STEEPEST = 30.0
+"""Degrees, far beyond where its pad ends."""
 CELL = 2.5e-5
 """m, sides of the springs' cells, roughly."""
 _DOWN = 2  # the axis of the block that the pad looks along
@@ -83,13 +85,13 @@ def leant(tip: str, skin: str | None, name: str, force: float, slope: float) -> 
     lowest = HALF * math.sin(turn) + RADIUS * (1.0 if tip == "capsule" else math.cos(turn))
     model = mujoco.MjModel.from_xml_string(f"""
       <mujoco><compiler angle="radian"/><option timestep=".002" gravity="0 0 0"/><worldbody>
-        <body name="thing"><geom type="box" size="{TOP} {TOP} {TOP}"/></body>
+        <body name="block"><geom type="box" size="{TOP} {TOP} {TOP}"/></body>
         <body pos="0 0 {TOP + lowest + 0.0005}" euler="0 {turn} 0">
           <joint name="down" type="slide" axis="{math.sin(turn)} 0 {-math.cos(turn)}" damping="20"/>
           <geom name="tip" type="{tip}" size="{RADIUS} {HALF}" euler="0 {math.pi / 2} 0" mass=".1"/></body>
       </worldbody><actuator><motor joint="down"/></actuator></mujoco>""")
     tips = {"tip": Fingertip("tip", skin=skin)}
-    return ThermalTouch(model, fingertips=tips, objects={"thing": name}, air=0.0, chain="ideal")
+    return ThermalTouch(model, fingertips=tips, objects={"block": name}, air=0.0, chain="ideal")
 
 
 def pressed(touch: ThermalTouch, force: float, seconds: float) -> tuple[float, Borne]:
@@ -171,17 +173,17 @@ def row(
     """One angle."""
     slope = math.tan(math.radians(degrees))
     touch = leant(tip, skin, name, force, slope)
-    drop, met = pressed(touch, force, seconds)
+    drop, contact = pressed(touch, force, seconds)
     without_zone, _ = pressed(leant(tip, skin, name, force, slope + ALIGNED), force, seconds)
     pad = touch._pads[0]
     less, whole, with_ends = (
         springs(pad, force, fall, ends, cell)
         for fall, ends in ((max(slope - ALIGNED, 0.0), False), (slope, False), (slope, tip == "capsule"))
     )
-    return Row(tip, skin, name, degrees, drop, without_zone, met, less, whole, with_ends)
+    return Row(tip, skin, name, degrees, drop, without_zone, contact, less, whole, with_ends)
 
 
-def told(found: Row) -> str:
+def line_of(found: Row) -> str:
     """A line of the table."""
     borne = (found.touch, found.less_zone, found.whole_angle, found.with_ends)
     cells = "".join(f"{1e6 * each.area_m2:7.1f}{each.force_N:6.2f}  " for each in borne)
@@ -209,13 +211,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seconds", type=float, default=0.5, help="after the touch (default .5)")
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     given = parser.parse_args(arguments)
+    if not (math.isfinite(given.force) and given.force > 0 and 0 < given.seconds < math.inf):
+        parser.error(f"--force and --seconds must be above 0, got {given.force:g} N and {given.seconds:g} s")
+    if not all(0 <= degrees <= STEEPEST for degrees in given.angles):
+        parser.error(f"--angles must be 0 to {STEEPEST:g} degrees, got {given.angles}")
     last = None
     for name, degrees in product(given.materials, given.angles):
         if not given.json and name != last:
             print(f"{given.tip} on {name}, {given.skin or 'bare'}, {given.force:g} N\n{HEAD}")
         last = name
         found = row(given.tip, given.skin, name, degrees, given.force, given.seconds)
-        print(json.dumps(asdict(found)) if given.json else told(found), flush=True)
+        print(json.dumps(asdict(found)) if given.json else line_of(found), flush=True)
     return 0
 
 

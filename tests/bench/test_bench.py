@@ -1,5 +1,6 @@
 """The benchmarks: methods fail where theory says, ours nowhere; what is written is complete. No timing decides."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -235,6 +236,15 @@ def test_a_saved_record_is_drawn_again_to_the_same_bytes(
     assert cli.main(["bench", "--from", str(folder / f"{name}.json"), "--out", str(tmp_path)]) == 0
     drawn = list(tmp_path.iterdir())
     assert drawn and all(file.read_bytes() == (folder / file.name).read_bytes() for file in drawn)
+
+
+def test_a_record_of_another_version_says_what_it_lacks(
+    written: tuple[Path, dict], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = {**written[1], "peer": {}}
+    (tmp_path / "peer.json").write_text(json.dumps(record))
+    assert cli.main(["bench", "peer", "--from", str(tmp_path / "peer.json"), "--out", str(tmp_path)]) == 2
+    assert "another version wrote it; measure again" in capsys.readouterr().err
 
 
 def test_accuracy_points_are_complete_and_auto_keeps_its_tolerance(written: tuple[Path, dict]) -> None:

@@ -76,3 +76,11 @@ def test_under_a_skin_springs_beside_the_face_bear_a_part_of_a_level_one(
     """N."""
     found = study.row("capsule", "filled_silicone", "aluminium", degrees, cell=COARSE)
     assert 0.0 < abs(found.touch.force_N - found.less_zone.force_N) < bound
+
+
+@pytest.mark.parametrize(
+    "bad", [["--force", "0"], ["--force", "nan"], ["--angles", "80"], ["--seconds", "-1"]]
+)
+def test_what_would_never_touch_is_refused(study: ModuleType, bad: list[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        study.main(bad)

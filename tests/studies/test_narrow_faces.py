@@ -69,3 +69,8 @@ def test_an_uneven_contact_counts_as_narrower(study: ModuleType, name: str) -> N
     np.testing.assert_allclose(found.sensor, driving.sensor, atol=0.18)
     np.testing.assert_allclose(found.object, driving.object, atol=0.08)
     assert (driving.sensor < expected.sensor).all()
+
+
+def test_a_case_that_is_none_is_refused(study: ModuleType) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        study.main(["lead"])

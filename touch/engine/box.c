@@ -15,7 +15,6 @@ enum { MODES = 24, STEPS = 12 };
 #define RIDGE 1e-4    /* of the first guess, without constraint */
 #define RELAXED 1.6
 #define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
-static const double pi = 3.14159265358979323846;
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. waves: its overlaps with eigenfunctions. */
 typedef struct {

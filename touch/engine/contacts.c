@@ -8,7 +8,6 @@
 #define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in */
 #define RIM 0.0005   /* m beyond the pad's sides */
 #define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
-static const double pi = 3.14159265358979323846;
 
 /* A pad in the world: its middle and its axes. */
 typedef struct {

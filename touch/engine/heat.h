@@ -38,6 +38,7 @@ enum { PLACES = 24, FORCES = 14, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES
    the rise of a flat face and where the force presses from the other pad's middle */
 enum { BEND = 10, CURVES = 7, SIDES = 8 };
 #define WIDE 10.0 /* m, half of what no pad reaches the end of */
+static const double pi = 3.14159265358979323846;
 /* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
 enum { VIEW = 11 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */

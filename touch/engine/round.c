@@ -12,7 +12,6 @@
 #define LEANING_STEPS 20
 #define EVENLY (5.0 / 6) /* of a line, the square of the mean pressure over the mean of its square */
 #define NEARLY 0.999 /* of a line's depth at one end to that at the other, from which on it is the same */
-static const double pi = 3.14159265358979323846;
 
 static double disc(double s) { return (s * sqrt(1 - s * s) + asin(s)) / 2; }
 

@@ -54,8 +54,15 @@ def run(args: argparse.Namespace) -> int:
             document[name] = plain(room.measured(args.quick, args.seed, output.progress))
             saved = {key: document[key] for key in ("provenance", "quick", name)}
             write_text(folder / f"{name}.json", json.dumps(saved, allow_nan=False) + "\n")
-        importlib.import_module(f"{__name__}.{name}").report(document[name], output)
-        drawn = room.draw(document[name], folder, caption(document["provenance"]))
+        try:
+            importlib.import_module(f"{__name__}.{name}").report(document[name], output)
+            drawn = room.draw(document[name], folder, caption(document["provenance"]))
+        except KeyError as error:
+            if stored is None:
+                raise
+            raise InvalidValueError(
+                f"{args.source}: the record of {name} has no {error}, as another version wrote it; measure again"
+            ) from error
         for file in [*([] if stored else [folder / f"{name}.json"]), *drawn]:
             output.line(f"wrote {file}")
     output.line(caption(document["provenance"]))
