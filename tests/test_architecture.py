@@ -171,12 +171,20 @@ SOURCES = {
 PACKAGES = {module for module, path in SOURCES.items() if path.name == "__init__.py"}
 
 
+def _tree(source: str) -> ast.Module:
+    """Parsed again where Python 3.11 miscounts the depth of a tree and raises SystemError, as beside a thread."""
+    try:
+        return ast.parse(source)
+    except SystemError:
+        return ast.parse(source)
+
+
 @cache
 def imports(module: str, source: str) -> tuple[tuple[str, bool, int], ...]:
     """(module, relative, line) of each import anywhere in the source of one of our modules."""
     package = module if module in PACKAGES else module.rpartition(".")[0]
     found: list[tuple[str, bool, int]] = []
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(_tree(source)):
         if isinstance(node, ast.Import):
             found += [(alias.name, False, node.lineno) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
@@ -205,7 +213,7 @@ def open_to_others(module: str) -> bool:
 @cache
 def lent(package: str) -> frozenset[str]:
     """The names in a door's `__all__`."""
-    for node in ast.parse(SOURCES[package].read_text(encoding="utf-8")).body:
+    for node in _tree(SOURCES[package].read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.List):
             return frozenset(ast.literal_eval(node.value))
     return frozenset()
@@ -332,9 +340,7 @@ def doors() -> list[str]:
 @pytest.mark.parametrize("module", doors())
 def test_a_door_that_opens_late_lends_what_it_imports_for_type_checkers(module: str) -> None:
     (block,) = [
-        node
-        for node in ast.parse(SOURCES[module].read_text(encoding="utf-8")).body
-        if isinstance(node, ast.If)
+        node for node in _tree(SOURCES[module].read_text(encoding="utf-8")).body if isinstance(node, ast.If)
     ]
     late: set[str] = set()
     modules: set[str] = set()
