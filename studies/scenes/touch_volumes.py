@@ -473,11 +473,23 @@ def shared(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarr
     return on_blocks(refine, {"plate": (made_of, "0 0 0", PLATE)}, fingers, joints, drive, tolerance)
 
 
-def chatter(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
-    """A finger that is driven to and fro faster than the samples pass."""
-    drive = _push(f0=lambda now: 20.0 if now % 0.014 < 0.008 else -12.0)
+def _come_and_go(
+    period: float, closed: float, refine: float, made_of: str, tolerance: float
+) -> tuple[Run, np.ndarray]:
+    """A finger that is driven to for `closed` s of every period s, and away."""
+    drive = _push(f0=lambda now: 20.0 if now % period < closed else -12.0)
     objects = {"block": (made_of, "0.0195 0 0", BLOCK)}
     return on_blocks(refine, objects, [("f0", "0 0 0", "0")], [Joint(0, 0, False)], drive, tolerance)
+
+
+def chatter(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
+    """A finger that comes and goes faster than the samples pass."""
+    return _come_and_go(0.014, 0.008, refine, made_of, tolerance)
+
+
+def tap(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:
+    """A finger that comes and goes in longer than a sample."""
+    return _come_and_go(0.026, 0.014, refine, made_of, tolerance)
 
 
 SHEET = (0.04, 0.004, 0.04)
@@ -518,6 +530,7 @@ SCENES = {
     "regrasp": regrasp,
     "shared": shared,
     "chatter": chatter,
+    "tap": tap,
     "edge": edge,
     "rim": rim,
 }

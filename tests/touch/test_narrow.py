@@ -76,7 +76,7 @@ def added(
     """K/W at GRASP that a contact of that area m2 and length m has beyond the whole face, on so many m."""
     root = np.zeros(LEVEL.rates)
     wall = wall_of(made_of, 1.0, thick, pad.stack.width)
-    tables, ((own, other),) = narrow_tables([(pad, wall)], LEVEL)
+    tables, _, ((own, other),) = narrow_tables([(pad, wall)], LEVEL, 0.01)
     assert spread(
         tables[own], tables[other], (pad.stack.width, pad.stack.width), area, length, aside, ends, root
     )
@@ -131,7 +131,7 @@ def test_a_small_square_ends_with_the_resistance_of_a_half_space(pad: PadPlace) 
 
 def test_a_contact_of_the_whole_face_or_of_no_known_area_has_nothing_to_spread(pad: PadPlace) -> None:
     width, root = pad.stack.width, np.zeros(LEVEL.rates)
-    tables, ((own, other),) = narrow_tables([(pad, Wall(material("glass")))], LEVEL)
+    tables, _, ((own, other),) = narrow_tables([(pad, Wall(material("glass")))], LEVEL, 0.01)
     assert (tables >= 0).all()
     for area, length in ((width**2, width), (0.0, np.nan), (1.2 * width**2, 0.9 * width)):
         assert not spread(tables[own], tables[other], (width, width), area, length, AT_ENDS, AT_ENDS, root)
@@ -226,7 +226,7 @@ def test_nothing_jumps_where_a_face_slides_over_an_edge(shape: str, skin: str | 
     tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), skin=skin)
     touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"block": "steel"}, chain="ideal", air=0.0)
     data, reader = mujoco.MjData(model), touch._reader
-    tables, ((own, other),) = narrow_tables([(touch._pads[0], Wall(material("steel")))], LEVEL)
+    tables, _, ((own, other),) = narrow_tables([(touch._pads[0], Wall(material("steel")))], LEVEL, 0.01)
     root = np.zeros(LEVEL.rates)
     # Its steepest part is the last tenth of a millimetre, where the flow falls in proportion to what is left.
     places = np.concatenate((np.arange(0.014, 0.0244, 2e-5), np.arange(0.0244, 0.024482, 5e-6)))

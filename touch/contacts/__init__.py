@@ -14,6 +14,7 @@ from .columns import (
     LENGTH,
     NORMAL,
     PLACE,
+    PULSES,
 )
 from .glued import BOND, GluedContacts
 from .laws import pair_laws, stacked
@@ -38,6 +39,7 @@ __all__ = [
     "FORCE_AT",
     "LENGTH",
     "NORMAL",
+    "PULSES",
     "PLACE",
     "PLACE_AT",
     "ContactReader",

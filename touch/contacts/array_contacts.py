@@ -56,9 +56,10 @@ class TouchContacts(NamedTuple):
 
 class StepContacts(NamedTuple):
     """Of a step, (B, F, O) each: conductance W/K, its mean; area m2 and length m, along the second of two axes, of the
-    contact while there was one, 0 without; force N on the pad, its mean. shares: (B, F, O, 4) by which the contact lies
-    at an end of the sensor's face along both axes, and of the object (thermal/contact/patch_place.py). beside: (B, F) N
-    off the pads, its mean."""
+    contact while there was one, 0 without; force N on the pad, its mean; closed, the share of the substeps with a
+    contact, and pulses, half of how often one has come or gone within the step. shares: (B, F, O, 4) by which the
+    contact lies at an end of the sensor's face along both axes, and of the object (thermal/contact/patch_place.py).
+    beside: (B, F) N off the pads, its mean."""
 
     conductance: Array
     area: Array
@@ -66,6 +67,8 @@ class StepContacts(NamedTuple):
     shares: Array
     force: Array
     beside: Array
+    closed: Array
+    pulses: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +143,8 @@ class ArrayContacts:
         areas, placed = summed(area), (area[..., None] * found[3][..., 0, :])
         placed = (placed[..., None, :] * of_object[:, :, None]).sum(-3)
         placed = placed.reshape((worlds, substeps, *placed.shape[1:])).sum(1)
-        closed = xp.where(areas > 0, 1.0 + 0.0 * areas, 0.0 * areas).sum(1)
+        there = xp.where(areas > 0, 1.0 + 0.0 * areas, 0.0 * areas)
+        closed, pulses = there.sum(1), abs(there[:, 1:] - there[:, :-1]).sum(1) / 2
         areas = areas.sum(1)
         over = xp.where(areas > 0, areas, 1.0 + areas)
         broken = total[:, None, None]
@@ -151,6 +155,8 @@ class ArrayContacts:
             placed / over[..., None],
             summed(whole).mean(1) + broken,
             beside.reshape((worlds, substeps, -1)).mean(1) + total[:, None],
+            closed / substeps,
+            pulses,
         )
 
     def _joined(

@@ -21,7 +21,20 @@ from ...thermal.contact import (
 )
 from ...thermal.padded import RINGS
 from ..pointers import asked
-from .columns import AREA, ASIDE, BESIDE, CLOSED, CONDUCTANCE, CURVED, FORCE, LENGTH, NORMAL, PLACE
+from .columns import (
+    AREA,
+    ASIDE,
+    BESIDE,
+    CLOSED,
+    CONDUCTANCE,
+    CURVED,
+    FORCE,
+    LENGTH,
+    NORMAL,
+    PAUSED,
+    PLACE,
+    PULSES,
+)
 from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
 from .tilt import RADIUS, tilted
@@ -129,9 +142,10 @@ def _within(pad, x, y, z, sunk):
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def feel(
     xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
-    weight, spot, views, make,
+    weight, before, spot, views, make,
 ):  # fmt: skip
-    """Adds what presses on the pads to the touches. Returns whether every table that it needs could be made."""
+    """Adds what presses on the pads to the touches, which counts as so many substeps (weight), with so many of the
+    sample before. Returns whether every table that it needs could be made."""
     tips, part_count = len(pads), len(parts)
     place, sides = spot[:3], spot[3 : 3 + SIDES]
     shares, rings = spot[3 + SIDES : 7 + SIDES], spot[7 + SIDES :]
@@ -252,6 +266,12 @@ def feel(
                 for k in range(4):
                     touch[ASIDE + k] += weight * area * shares[k]
                 if target != last:
+                    paused = before - touch[CLOSED]
+                    if paused > touch[PAUSED]:
+                        touch[PAUSED] = paused
+                        touch[PULSES] += 1.0
+                    elif before == 0.0:
+                        touch[PULSES] = 0.5
                     touch[CLOSED] += weight
                     last = target
             if pads[f, AROUND] > 0 and geom >= 0:

@@ -138,7 +138,7 @@ class ContactReader:
         arrays = (
             *(self._role, self._pads, self._parts, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._first_laws, self._first_curved, self._tables),
-            *(self._frames, self._spot, self._first_tilts, self._views),
+            *(self._frames, self._spot, self._first_tilts, self._views, self.counted),
         )
         self._places = None
         sizes = len(self._role), *self.touches.shape[1:3], len(self._parts), len(self._tables)
@@ -181,7 +181,7 @@ class ContactReader:
         arrays = *sensed, self._pads, self._parts, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
         sums = self.touches, self.beside, self.broken, self._curved, self._tables
-        sums += self._frames, self._spot, self._tilts, self._views
+        sums += self._frames, self._spot, self._tilts, self._views, self.counted
         sizes = len(self.beside), places.size, *map(len, sensed[:3]), *self._pushed.shape[:2]
         make = self._views.shape[1], ctypes.cast(self._make, ctypes.c_void_p).value or 0
         return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables), *make, 0))

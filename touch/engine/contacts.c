@@ -61,9 +61,9 @@ static int viewed(const double* views, int count, const double normal[3], const 
 }
 
 /* Adds what presses one pad on one partner to the touch. pushed: force N and its moments. again: whether another geom of the
-target has been counted in this step. Returns whether one has now. */
+target has been counted in this step. before: steps of the sample before it. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
-                 Pose* poses, bool again, double* touch) {
+                 Pose* poses, bool again, double before, double* touch) {
   const Pose* at = pose(numbers, work, d, f, poses);
   int geom = work->geom[g], body = work->body[g], axis = 0;
   double force = pushed[0], first = pushed[1] / force, second = pushed[2] / force;
@@ -136,7 +136,16 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     touch[AREA] += area;
     touch[LENGTH] += area * length;
     for (int k = 0; k < 4; k++) touch[ASIDE + k] += area * shares[k];
-    if (!again) touch[CLOSED] += 1;
+    if (!again) {
+      double paused = before - touch[CLOSED];
+      if (paused > touch[PAUSED]) {
+        touch[PAUSED] = paused;
+        touch[PULSES] += 1;
+      } else if (before == 0) {
+        touch[PULSES] = 0.5;
+      }
+      touch[CLOSED] += 1;
+    }
     again = true;
   }
   touch[FORCE] += force;
@@ -146,9 +155,9 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   return again;
 }
 
-/* Adds the contacts of the step that was just taken to the touches. A force that is not finite is left out: MuJoCo resets
+/* Adds the contacts of the step that was just taken to the state's touches. A force that is not finite is left out: MuJoCo resets
 the simulation then. */
-void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches) {
+void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, const State* state) {
   int tips = numbers->fingers, partners = numbers->partners;
   bool any = false;
   double* pushed = work->room; /* (F, N, 3) */
@@ -195,7 +204,8 @@ void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const
       again = again && target == last; /* an object's geoms follow one another */
       last = target;
       if (push[0] > 0)
-        again = feel(numbers, work, d, f, g, push, poses, again, touches + (f * numbers->targets + target) * COLUMNS);
+        again = feel(numbers, work, d, f, g, push, poses, again, *state->count,
+                     state->touches + (f * numbers->targets + target) * COLUMNS);
     }
   }
 }

@@ -14,8 +14,8 @@ fields, M: patterns of a contact, K: rates, P: places of an object. */
 #include <stddef.h>
 
 /* columns of a touch: conductance W/K and force N, sums over substeps; place m and normal, of the last one; sums again:
-substeps that touched, area m2 in contact, and it times its length m and shares of it that are at ends */
-enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, AREA, LENGTH, ASIDE, COLUMNS = ASIDE + 4 };
+substeps that touched, how many before the last of them had not, in how many pulses, a half for one from the start, area m2 in contact, and it times its length m and shares of it that are at ends */
+enum { CONDUCTANCE, FORCE, PLACE, NORMAL = 5, CLOSED = 8, PAUSED, PULSES, AREA, LENGTH, ASIDE, COLUMNS = ASIDE + 4 };
 /* a pad: position m, axes, half sides m and its sensor's width m */
 enum { AXES = 3, HALF = 12, WIDTH = 14, PAD = 15 };
 /* a box: size, extent and centre m, axes row by row; then W/(m K), J/(m3 K), 1/s to the air and across, first state, early
@@ -80,9 +80,9 @@ typedef struct {
   int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
-  const double *roles, *pads, *boxes, *owner, *narrow, *spread, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
+  const double *roles, *pads, *boxes, *owner, *narrow, *ripples, *spread, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double* seebeck;         /* V/K */
-  /* narrow: (spreads, SPREAD, K), and spread: the numbers of each pair, of the pad and of its target across each axis */
+  /* narrow: (spreads, SPREAD, K), ripples: K/W m2 of each one's face, and spread: the numbers of each pair, of the pad and of its target across each axis */
   const double *glued, *glued_laws, *first; /* GLUED of each element, Law of each pad on it; K above the air at first */
   const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
   const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */
@@ -161,7 +161,7 @@ double heat_tilted(const double* tilt, double first_force, double force, double 
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,
                    double* length, double shares[4]);
 
-void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, double* touches);
+void heat_read(const Numbers* numbers, const Work* work, const mjModel* m, const mjData* d, const State* state);
 
 void heat_pace(const Numbers* numbers, Network* network, bool tip);
 void heat_network(const Numbers* numbers, int object, Network* network, double* impedances, double* room);

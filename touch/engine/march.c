@@ -263,6 +263,16 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, int ax
   return any;
 }
 
+/* What a contact that comes and goes within the sample resists beyond its mean, K/W, of faces that resist so much m2 K/W; as
+   touch/heat/ripple.py. */
+static double rippled(const Numbers* numbers, const double* touch, double faces) {
+  double share = touch[CLOSED] / numbers->sample_steps, spread = share * (1 - share), root = sqrt(greater(spread, 0));
+  if (!(spread > 0 && touch[AREA] > 0)) return 0;
+  double pulses = touch[PULSES] - (touch[PAUSED] >= numbers->sample_steps - touch[CLOSED] ? 0.5 : 0); /* one goes on */
+  double ripple = root * spread * (4.0 / 3 - 1.29 * root + 0.83 * spread) / (share * share * sqrt(greater(pulses, 1)));
+  return faces * ripple * touch[CLOSED] / touch[AREA];
+}
+
 /* Advances every field by a sample. Returns false where there is no memory. */
 bool heat_march(const Numbers* numbers, Work* work, State* state) {
   int tips = numbers->tips, objects = numbers->objects, targets = numbers->targets, rates = numbers->rates, pairs = 0;
@@ -283,6 +293,8 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     difference[i] = warm(numbers, state, f) - (t >= objects ? warm(numbers, state, t - objects) : 0);
     int axis = 0;
     double share = t < objects ? covered(numbers, state, f, t, &axis) : 1;
+    const double* faces = numbers->spread + (1 + AXES) * pair[i];
+    resistance[i] += rippled(numbers, touch, numbers->ripples[(int)faces[0]] + numbers->ripples[(int)faces[1 + axis]]);
     if (!spread(numbers, pair[i], touch, axis, share, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */

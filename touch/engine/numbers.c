@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 14, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 15, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
        MOST_SPREADS = (1 + AXES) * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
@@ -84,6 +84,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->tilts, (size_t)fingers * partners * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)n->spreads * SPREAD * n->rates},
+      {&n->ripples, n->spreads},
       {&n->spread, (size_t)tips * n->targets * (1 + AXES)},
       {&n->bends, (size_t)fingers * BEND},
       {&n->curves, (size_t)partners * 3 * CURVES},

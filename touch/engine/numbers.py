@@ -23,7 +23,7 @@ from ..heat import TipField, Wall, crossing_rate, narrow_tables, resolution, tip
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 14
+_VERSION = 15
 
 
 def packed(
@@ -52,7 +52,7 @@ def packed(
     laws, curved, tilts, views, viewed = found.laws, found.curved, found.tilts, found.views, found.viewed
     tables = found.all_tables
     across = [(pad, side) for pad in sensors for side in _across(shapes, sensors, pad.stack.width)]
-    narrow, spread = narrow_tables(across, level)
+    narrow, ripples, spread = narrow_tables(across, level, timestep * steps)
     spread = spread.reshape(-1, 3, 2)
     glued_contacts = GluedContacts(pads, glued, len(shapes), 1)
     header = (
@@ -73,6 +73,7 @@ def packed(
         tilts,
         tables,
         narrow,
+        ripples,
         np.column_stack((spread[:, 0, 0], spread[..., 1])),
         bends(pads),
         curves(model, pads, shapes),

@@ -195,7 +195,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   double* at = d->plugin_state + m->plugin_stateadr[instance];
   State state = heat_state(n, at);
   if (!(*state.count >= 0 && *state.count < n->sample_steps)) heat_reset(n, at);
-  heat_read(n, &heat->work, m, d, state.touches);
+  heat_read(n, &heat->work, m, d, &state);
   if (++*state.count < n->sample_steps) return;
   *state.count = 0;
   if (heat_valid(n, &state)) {

@@ -82,7 +82,13 @@ def fixed_touch(
         array(networks.difference),
         network_tables(networks.rates, networks.ports, networks.drop, networks.dt, like),
         array_narrow(
-            networks.narrow, networks.narrow_number, networks.width, networks.decay, networks.dt, like
+            networks.narrow,
+            networks.ripples,
+            networks.narrow_number,
+            networks.width,
+            networks.decay,
+            networks.dt,
+            like,
         ),
         integers(np.arange(len(tips) * len(objects)) * max(map(len, materials))),
         array(networks.held),

@@ -17,7 +17,7 @@ from thermograsp.errors import InvalidValueError, whole_number
 from ...thermal import ArrayTables, Material, SignalChain, SignalState, array_step, measure_sample
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..contacts import ArrayContacts, TouchContacts
-from ..heat import ArrayNarrow
+from ..heat import ArrayNarrow, array_ripple
 from .checked import check_step, checked_material, checked_temperature, checked_worlds
 from .record import RecordPlaces, recorded_contacts
 from .state import FixedTouchReading, FixedTouchState
@@ -146,12 +146,15 @@ class FixedTouch:
         material, worlds = state.material, state.heat.shape[0]
         found = self.reads.of_step(contacts, material[:, self.owner], self.of_object)
         pairs = (worlds, len(self.fingertips) * len(self.objects))
-        conducts, area, length = (
-            each.reshape(pairs) for each in (found.conductance, found.area, found.length)
+        conducts, area, length, closed, pulses = (
+            each.reshape(pairs)
+            for each in (found.conductance, found.area, found.length, found.closed, found.pulses)
         )
         shares = found.shares.reshape((*pairs, 4))
         network, kind = self._numbers(material)
-        roots, behind, lag = self.narrow.behind(state.narrow, kind, area, length, shares)
+        roots, behind, lag = self.narrow.behind(
+            state.narrow, kind, area, length, shares, array_ripple(closed, pulses)
+        )
         touching = conducts > 0
         joined = xp.where(
             touching, 1 / (1 / xp.where(touching, conducts, 1.0 + 0.0 * conducts) + lag), conducts

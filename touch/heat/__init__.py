@@ -8,6 +8,7 @@ from .narrow import Wall, narrow_tables, wall_of
 from .places import TipField, crossing_rate, resolution, tip_field, untouched
 from .records import HeatBalance, HeatState
 from .reported import tell_books, tell_drop, tell_warmth
+from .ripple import array_ripple
 
 __all__ = [
     "ArrayNarrow",
@@ -19,6 +20,7 @@ __all__ = [
     "TipField",
     "Wall",
     "array_narrow",
+    "array_ripple",
     "narrow_tables",
     "network_tables",
     "resolution",

@@ -16,12 +16,13 @@ from .narrow import STEPS
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArrayNarrow:
-    """Narrow contacts in steps of dt s. tables: (U 2 2 J J, K) K/J of narrow_table, and numbers: (kinds, 2) integers of
-    the sides' tables, by kind of contact. width: (N,) m of the sensors. kept: (K,), of a state after a step. grown:
-    (K,) s, of a flow in a state after a step. mean: (K,), of a state over a step that it fades in. lag: (K,) s of a
-    flow that has begun with the step, in the state's mean over it."""
+    """Narrow contacts in steps of dt s. tables: (U 2 2 J J, K) K/J and ripples: (U,) m2 K/W of narrow_tables, and
+    numbers: (kinds, 2) integers of the sides', by kind of contact. width: (N,) m of the sensors. kept: (K,), of a state
+    after a step. grown: (K,) s, of a flow in a state after a step. mean: (K,), of a state over a step that it fades in.
+    lag: (K,) s of a flow that has begun with the step, in the state's mean over it."""
 
     tables: Array
+    ripples: Array
     numbers: Array
     width: Array
     kept: Array
@@ -30,13 +31,16 @@ class ArrayNarrow:
     lag: Array
 
     def behind(
-        self, states: Array, kind: Array, area: Array, length: Array, shares: Array
+        self, states: Array, kind: Array, area: Array, length: Array, shares: Array, ripple: Array
     ) -> tuple[Array, Array, Array]:
-        """What contacts of that kind (B, N) of integers, area m2 and length m (B, N), and shares (B, N, 4) have beyond
-        those of the whole face: the roots (B, N, K) by which they send and receive, K (B, N) that their states
-        (B, N, K) put against the flow over a step, and K/W (B, N) in series with it."""
-        roots = self._roots(kind, area, length, shares)
-        return roots, (roots * self.mean * states).sum(-1), (roots * roots * self.lag).sum(-1)
+        """What contacts of that kind (B, N) of integers, area m2, length m and array_ripple (B, N), and shares
+        (B, N, 4) have beyond those of the whole face that stay closed: the roots (B, N, K) by which they send and
+        receive, K (B, N) that their states (B, N, K) put against the flow over a step, and K/W (B, N) in series with
+        it."""
+        xp = namespace_of(area)
+        roots, faces = self._roots(kind, area, length, shares), self.ripples[self.numbers[kind]].sum(-1)
+        pulsed = faces * ripple / xp.where(area > 0, area, 1.0 + area)
+        return roots, (roots * self.mean * states).sum(-1), (roots * roots * self.lag).sum(-1) + pulsed
 
     def after(self, states: Array, roots: Array, flow: Array) -> Array:
         """States (B, N, K) after a step with those flows W (B, N)."""
@@ -77,12 +81,19 @@ def _of(share, end):
 
 
 def array_narrow(
-    tables: np.ndarray, numbers: np.ndarray, width: np.ndarray, decay: np.ndarray, dt: float, like: Array
+    tables: np.ndarray,
+    ripples: np.ndarray,
+    numbers: np.ndarray,
+    width: np.ndarray,
+    decay: np.ndarray,
+    dt: float,
+    like: Array,
 ) -> ArrayNarrow:
-    """tables: (U, 2, 2, J, J, K) of narrow_tables, and numbers (kinds, 2). width: (N,) m. decay: (K,) 1/s, the states'
-    rates."""
+    """tables: (U, 2, 2, J, J, K), ripples: (U,) and numbers: (kinds, 2) of narrow_tables. width: (N,) m. decay: (K,)
+    1/s, the states' rates."""
     kept = np.exp(-dt * decay)
     grown = (1 - kept) / decay
     rows = tables.reshape(-1, tables.shape[-1])
     each = (as_like(part, like) for part in (width, kept, grown, grown / dt, (1 - grown / dt) / decay))
-    return ArrayNarrow(as_like(rows, like), as_integers(as_like(numbers.astype(float), like)), *each)
+    sides = as_like(rows, like), as_like(ripples, like)
+    return ArrayNarrow(*sides, as_integers(as_like(numbers.astype(float), like)), *each)

@@ -121,7 +121,7 @@ class JoinedHeat:
         self._started = np.zeros((worlds, objects))
         self._narrow = np.zeros((worlds, lanes, fields, self._level.rates))
         rings = [one for _, padded in around for one in padded.impedance.T.tolist()]
-        self._pairs = NarrowPairs(pads, rings, self._widths, self._level, worlds, fields)
+        self._pairs = NarrowPairs(pads, rings, self._widths, self._level, worlds, fields, dt)
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face. It stays where it is."""
         self.warmth = np.zeros((worlds, objects))
@@ -269,7 +269,7 @@ class JoinedHeat:
                 *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._pairs.tables),
                 *(self._pairs.kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
                 *(self.warmth, self._seconds, self._roots, self._room, self._placed),
-                *(self._around_of, self._owners, self._shares, self._leans),
+                *(self._around_of, self._owners, self._shares, self._leans, self._pairs.ripples),
             )
             worlds, tips, objects = self._current.shape
             sizes = (

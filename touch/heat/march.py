@@ -20,19 +20,23 @@ from ..contacts import (
     CURVED,
     LENGTH,
     NORMAL,
+    PAUSED,
     PLACE,
+    PULSES,
 )
 from ..pointers import flags, floats, words
 from .narrow import STEPS, lean, spread
 from .places import ACROSS
+from .ripple import compiled_ripple
 from .step import CONTACTS, HEADER, PACE, room_of, step
 
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
-TABLE = 59
+TABLE = 60
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 BOX = 19
 """Of a row that tells an object."""
 TURN = 0.1  # by which another face of the box must look more at the pad than the one in use
+_ALL = 1 - 1e-9  # of a sample, of which a contact that is closed in all is summed
 _TIE = 1e-6
 """By how much a face must look more at the pad than the axis before, and a place must be nearer to the next point of
 the grid than to the one before: round-off does not decide where a pad is in the middle."""
@@ -120,7 +124,7 @@ def sample(entries_at, touches_at, substeps, settled):
     were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
     many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
     entries = words(entries_at, TABLE)
-    worlds, tips, objects, contacts, lanes = entries[40], entries[41], entries[42], entries[57], entries[58]
+    worlds, tips, objects, contacts, lanes = entries[41], entries[42], entries[43], entries[58], entries[59]
     targets = tips + objects
     touches, widths = (
         floats(touches_at, (worlds, tips, targets, COLUMNS)),
@@ -144,28 +148,28 @@ def sample(entries_at, touches_at, substeps, settled):
         )
         if moved or stale:
             return moved + stale
-    states, rates = entries[50], entries[53]
+    states, rates = entries[51], entries[54]
     decays = floats(entries[22], (3, rates))
     _march(
         floats(entries[32], 1)[0],
         substeps,
-        entries[43],
+        entries[44],
         touches,
         floats(entries[11], (worlds, tips)),
-        words(entries[12], (worlds, entries[44])),
-        words(entries[13], entries[45]),
-        words(entries[14], entries[46]),
-        floats(entries[15], entries[47]),
-        floats(entries[16], entries[48]),
-        floats(entries[17], entries[54] * PACE),
-        floats(entries[18], (entries[49], states)),
+        words(entries[12], (worlds, entries[45])),
+        words(entries[13], entries[46]),
+        words(entries[14], entries[47]),
+        floats(entries[15], entries[48]),
+        floats(entries[16], entries[49]),
+        floats(entries[17], entries[55] * PACE),
+        floats(entries[18], (entries[50], states)),
         floats(entries[19], (worlds, objects)),
-        floats(entries[20], (tips, entries[51])),
+        floats(entries[20], (tips, entries[52])),
         words(entries[21], (worlds, targets)),
         decays[0],
         decays[1],
         decays[2],
-        floats(entries[23], (entries[52], 2, 2, STEPS, STEPS, rates)),
+        floats(entries[23], (entries[53], 2, 2, STEPS, STEPS, rates)),
         words(entries[24], (worlds, lanes, targets, 2)),
         widths,
         words(entries[37], contacts),
@@ -177,12 +181,13 @@ def sample(entries_at, touches_at, substeps, settled):
         floats(entries[29], (worlds, tips)),
         flags(entries[30], targets),
         floats(entries[31], (worlds, objects)),
-        floats(entries[33], (contacts * targets * entries[43], rates)),
-        floats(entries[34], entries[55]),
+        floats(entries[33], (contacts * targets * entries[44], rates)),
+        floats(entries[34], entries[56]),
         floats(entries[35], 4),
         floats(entries[38], (lanes - tips, STEPS, 2)),
-        floats(entries[39], (contacts * targets * entries[43], rates)),
-        entries[56],
+        floats(entries[39], (contacts * targets * entries[44], rates)),
+        floats(entries[40], entries[53]),
+        entries[57],
     )
     return 0
 
@@ -191,7 +196,7 @@ def sample(entries_at, touches_at, substeps, settled):
 def _march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, ports, grams, paces, fade, held, rows, nets,
     decay, kept, grown, tables, kinds, widths, owners, x, states, narrow, given, air, drop, busy, warmth, roots,
-    numbers, placed, shares, leans, most,
+    numbers, placed, shares, leans, ripples, most,
 ):  # fmt: skip
     """One step of dt s of every world.
 
@@ -206,7 +211,8 @@ def _march(
     widths (F,) m of the sensors, and narrow (W, F, T, R) the states, which go on in place. Behind the fingertips stand
     the rings of pads around sensors, each as a square of its area that is touched from one side to the other; owners
     (F + pads,) tells of contacts whose they are. Under a curved object they see what the face's narrow contact does
-    there, by shares (F RINGS, J, 2) of ring_shares; leans (F T, R) is room. Within a step these states follow
+    there, by shares (F RINGS, J, 2) of ring_shares; leans (F T, R) is room. ripples: (N,) m2 K/W of sides that
+    heat passes in pulses (ripple.py). Within a step these states follow
     the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses in a
     resistance is least where it is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
@@ -257,7 +263,14 @@ def _march(
                         area, length = touch[column + 1] / touch[column + 2], widths[lane]
                         for j in range(4):
                             placed[j] = 0.0
-                    first_side, second_side = tables[kinds[w, lane, t, 0]], tables[kinds[w, lane, t, 1]]
+                    first, second = kinds[w, lane, t, 0], kinds[w, lane, t, 1]
+                    if f < tips and area > 0.0 and touch[CLOSED] < substeps * _ALL:
+                        pulses = touch[PULSES]
+                        if touch[PAUSED] >= substeps - touch[CLOSED]:  # the last goes on
+                            pulses -= 0.5
+                        rippled = compiled_ripple(touch[CLOSED] / substeps, max(pulses, 1.0))
+                        resistance += (ripples[first] + ripples[second]) * rippled / area
+                    first_side, second_side = tables[first], tables[second]
                     beneath = widths[t - objects] if t >= objects and f < tips else widths[lane]
                     spreads = spread(
                         *(first_side, second_side, (widths[lane], beneath), area, length),

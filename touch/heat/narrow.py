@@ -119,10 +119,20 @@ def narrow_table(side: Side, width: float, level: Resolution) -> np.ndarray:
     return table
 
 
+def rippling(side: Side, dt: float) -> float:
+    """m2 K/W, what a side resists pulses of heat in samples of dt s by, see ripple.py."""
+    matter, _ = side
+    if matter is None or isinstance(matter, Beside):
+        return 0.0
+    face = matter.layers[-1] if isinstance(matter, SensorStack) else matter.material
+    return math.sqrt(dt / math.pi) / face.effusivity
+
+
 def narrow_tables(
-    pairs: Sequence[tuple[PadPlace, Wall | PadPlace]], level: Resolution
-) -> tuple[np.ndarray, np.ndarray]:
-    """Every narrow_table that pairs need (N, 2, 2, J, J, K), and the numbers (pairs, 2) of those of their sides."""
+    pairs: Sequence[tuple[PadPlace, Wall | PadPlace]], level: Resolution, dt: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Every narrow_table that pairs need (N, 2, 2, J, J, K), the same sides' `rippling` (N,) m2 K/W, and the numbers
+    (pairs, 2) of those of their sides."""
     keys = [
         (side, width)
         for pad, target in pairs
@@ -130,7 +140,8 @@ def narrow_tables(
     ]
     numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
     tables = np.array([narrow_table(*key, level) for key in numbers])
-    return tables, np.array([numbers[key] for key in keys]).reshape(-1, 2)
+    ripples = np.array([rippling(side, dt) for side, _ in numbers])
+    return tables, ripples, np.array([numbers[key] for key in keys]).reshape(-1, 2)
 
 
 def _known_of(table: np.ndarray, share: float) -> np.ndarray:

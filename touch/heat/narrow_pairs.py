@@ -12,12 +12,12 @@ import numpy as np
 from ...thermal import Material
 from ...thermal.kernels import Resolution
 from ..scene import PadPlace
-from .narrow import Beside, Side, Wall, narrow_sides, narrow_table, widths_of
+from .narrow import Beside, Side, Wall, narrow_sides, narrow_table, rippling, widths_of
 
 
 class NarrowPairs:
-    """tables: of narrow.py, as many as there are and room for more. kinds: (W, L, T, 2) the numbers of those of both
-    sides of a contact. rings: (L - F, moments) K/W of each. widths: (L,) m."""
+    """tables: of narrow.py, as many as there are and room for more, and ripples: m2 K/W of the same sides. kinds: (W,
+    L, T, 2) the numbers of those of both sides of a contact. rings: (L - F, moments) K/W of each. widths: (L,) m."""
 
     def __init__(
         self,
@@ -27,10 +27,13 @@ class NarrowPairs:
         level: Resolution,
         worlds: int,
         targets: int,
+        dt: float,
     ) -> None:
         self._pads, self._rings, self._widths, self._level = tuple(pads), tuple(rings), widths, level
+        self._dt = dt
         self._numbers: dict[tuple[Side, float], int] = {}
         self.tables = narrow_table((None, 0.0), 0.0, level)[None]
+        self.ripples = np.zeros(1)
         self.kinds = np.zeros((worlds, len(widths), targets, 2), np.int64)
 
     def forget(self) -> None:
@@ -59,5 +62,7 @@ class NarrowPairs:
             number = self._numbers[key] = len(self._numbers)
             if number == len(self.tables):
                 self.tables = np.concatenate((self.tables, np.zeros_like(self.tables)))
+                self.ripples = np.concatenate((self.ripples, np.zeros_like(self.ripples)))
             self.tables[number] = narrow_table(side, width, self._level)
+            self.ripples[number] = rippling(side, self._dt)
         return self._numbers[key]

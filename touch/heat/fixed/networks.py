@@ -23,8 +23,8 @@ class FixedNetworks:
     rates (T, K) 1/s. ports (T, K, N M) sqrt(K/J). drop (N, K): what a pair's fingertip feels. difference (N,) K of the
     fingertips above the air. begin (O + 1,): where the states of the objects begin, the first ones those of their mean
     temperatures, and where the last object's end. held (O, V): J in one of the first ones.
-    narrow (U, 2, 2, J, J, S) K/J of narrow.py, narrow_number (N V, 2) of those of each pair's sides, its materials
-    behind one another, width (N,) m and decay (S,) 1/s.
+    narrow (U, 2, 2, J, J, S) K/J and ripples (U,) m2 K/W of narrow_tables, narrow_number (N V, 2) of those of each
+    pair's sides, its materials behind one another, width (N,) m and decay (S,) 1/s.
     state (K,) and narrow_state (N, S): as they are now."""
 
     dt: float
@@ -35,6 +35,7 @@ class FixedNetworks:
     begin: np.ndarray
     held: np.ndarray
     narrow: np.ndarray
+    ripples: np.ndarray
     narrow_number: np.ndarray
     width: np.ndarray
     decay: np.ndarray
@@ -50,14 +51,15 @@ def fixed_networks(
     places: np.ndarray,
     warm: np.ndarray,
     narrow: np.ndarray,
+    ripples: np.ndarray,
     narrow_number: np.ndarray,
     width: np.ndarray,
     decay: np.ndarray,
     states: Sequence[np.ndarray],
     narrow_state: np.ndarray,
 ) -> FixedNetworks:
-    """fields: of the objects, by material. places: (F, O) each pair's among its object's. warm: (F,) K. narrow:
-    tables, and narrow_number, width: by pair. states: of the objects, then of the fingertips."""
+    """fields: of the objects, by material. places: (F, O) each pair's among its object's. warm: (F,) K. narrow,
+    ripples: tables, and narrow_number, width: by pair. states: of the objects, then of the fingertips."""
     objects, most = len(fields), max(map(len, fields))
     lengths = [max(len(field.rates) for field in choices) for choices in fields] + [
         len(tip.side.rates) for tip in tips
@@ -92,6 +94,7 @@ def fixed_networks(
         begin[: objects + 1],
         held,
         narrow,
+        ripples,
         narrow_number,
         width,
         decay,

@@ -125,7 +125,7 @@ def world_networks(
         for o, each in enumerate(kinds)
         for one, field in zip(each, fields[o], strict=True)
     ]
-    tables, number = narrow_tables(pairs, level)
+    tables, ripples, number = narrow_tables(pairs, level, world.dt)
     return fixed_networks(
         world.dt,
         level.patterns,
@@ -134,6 +134,7 @@ def world_networks(
         current,
         world.warm,
         tables,
+        ripples,
         number,
         np.repeat(world.widths, objects),
         level.decay,
