@@ -13,6 +13,7 @@ from .columns import (
     FORCE,
     LENGTH,
     NORMAL,
+    PAUSED,
     PLACE,
     PULSES,
 )
@@ -39,6 +40,7 @@ __all__ = [
     "FORCE_AT",
     "LENGTH",
     "NORMAL",
+    "PAUSED",
     "PULSES",
     "PLACE",
     "PLACE_AT",
