@@ -27,8 +27,8 @@ from ...thermal.contact import (
     TABLE_FORCES,
     beside_face,
     curved_contact,
-    curved_shares,
     curved_table,
+    curved_touch,
     flat_patch,
     footprint,
     gas_conduction,
@@ -105,8 +105,7 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                 continue
             if len(tables) > 0:
                 aside = math.sqrt(at[0] * at[0] + at[1] * at[1])
-                conducts, area, long = curved_contact(tables[0], force, aside, at[2])
-                curved_shares(tables[0], force, aside, at[2], shares)
+                conducts, area, long = curved_touch(tables[0], force, aside, at[2], shares)
                 for ring in range(len(halves)):
                     through[ring], areas[ring], _ = curved_contact(tables[1 + ring], force, aside, at[2])
             elif law[0].shape == TABLE:

@@ -31,8 +31,7 @@ from thermograsp.thermal import SKINS, Pad, Surface, material
 from thermograsp.thermal.contact import (
     conductance,
     contact,
-    curved_contact,
-    curved_shares,
+    curved_touch,
     face_joint,
     flat_law,
     patch_ends,
@@ -177,8 +176,7 @@ def tabled(name: str, aside: float, turn: float) -> Contact:
     number = int(reader._curved[0, 0, 0, view, 0])
     table = next(mesh for mesh, known in reader._pressed.items() if known == number).table()
     shares = np.zeros(4)
-    curved_shares(table, FORCE_N, u, v, shares)
-    conducts, area, long = (float(each) for each in curved_contact(table, FORCE_N, u, v))
+    conducts, area, long = (float(each) for each in curved_touch(table, FORCE_N, u, v, shares))
     return Contact(conducts, area, long, tuple(shares.tolist()))
 
 

@@ -14,8 +14,8 @@ from .curved_table import (
     begin_contacts,
     curved_contact,
     curved_places,
-    curved_shares,
     curved_table,
+    curved_touch,
     even_places,
     table_values,
 )
@@ -117,7 +117,7 @@ __all__ = [
     "constricted",
     "contact",
     "curved_contact",
-    "curved_shares",
+    "curved_touch",
     "curved_places",
     "curved_table",
     "contact_conductance",

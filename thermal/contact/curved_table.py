@@ -219,11 +219,39 @@ def _fill(law, resistance, forces, aside, along, values, shares):
 def curved_contact(table, force, aside, along):
     """(W/K, patch m2, its length m) at a force N > 0 on the pad, the crown that far m from the pad's middle, either
     sign; 0 where nothing conducts. table: of curved_table."""
+    return _contact_between(table, *_placed(table, force, aside, along))
+
+
+@njit(cache=True, borrows=True, error_model="numpy", forceinline=True)
+def curved_touch(table, force, aside, along, shares):
+    """As curved_contact; fills shares (4,): by how much the contact lies at an end of the face along both axes, and of
+    the body."""
+    i, u, j, v, k, w = _placed(table, force, aside, along)
+    for n in range(4):
+        shares[n] = 0.0
+    pressed = max(w, 0.0)
+    for corner in range(8):
+        a, b, c = corner & 1, corner >> 1 & 1, corner >> 2
+        weight = (pressed if a else 1 - pressed) * (u if b else 1 - u) * (v if c else 1 - v)
+        first = _SHARES + 4 * (((k + a) * PLACES + i + b) * PLACES + j + c)
+        for n in range(4):
+            shares[n] += weight * table[first + n]
+    return _contact_between(table, i, u, j, v, k, w)
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
+def _placed(table, force, aside, along):
+    """(number of the place before and share of the way to the next, along both axes, and of the force)."""
     i, u = _between(table[:PLACES], abs(aside))
     j, v = _between(table[PLACES : 2 * PLACES], abs(along))
     at = (math.log(force) - FIRST_FORCE) / FORCE_STEP
     k = min(max(int(at), 0), FORCES - 2)
-    w = min(at - k, 1.0)
+    return i, u, j, v, k, min(at - k, 1.0)
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
+def _contact_between(table, i, u, j, v, k, w):
+    """curved_contact there."""
     low = 2 * PLACES + _VALUES * ((k * PLACES + i) * PLACES + j)
     high = low + _VALUES * PLACES * PLACES
     contact = _by_force(_even(table, low, u, v), _even(table, high, u, v), w, table[CURVED_TABLE - 1])
@@ -249,24 +277,6 @@ def curved_contact(table, force, aside, along):
         broader + part * (broad - broader),
     )
     return total, area, math.sqrt(area * long / broad) if broad > _THIN else long
-
-
-@njit(cache=True, borrows=True, error_model="numpy", forceinline=True)
-def curved_shares(table, force, aside, along, shares):
-    """Fills shares (4,): by how much such a contact lies at an end of the face along both axes, and of the body."""
-    i, u = _between(table[:PLACES], abs(aside))
-    j, v = _between(table[PLACES : 2 * PLACES], abs(along))
-    at = (math.log(force) - FIRST_FORCE) / FORCE_STEP
-    k = min(max(int(at), 0), FORCES - 2)
-    w = min(max(at - k, 0.0), 1.0)
-    for n in range(4):
-        shares[n] = 0.0
-    for corner in range(8):
-        a, b, c = corner & 1, corner >> 1 & 1, corner >> 2
-        weight = (w if a else 1 - w) * (u if b else 1 - u) * (v if c else 1 - v)
-        first = _SHARES + 4 * (((k + a) * PLACES + i + b) * PLACES + j + c)
-        for n in range(4):
-            shares[n] += weight * table[first + n]
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
@@ -297,10 +307,12 @@ def _mixed(table, low, high, u, v, w):
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _by_force(low, high, w, power):
     """What a contact conducts between two forces of a table."""
-    ratio = math.exp(FORCE_STEP * power)
-    if 0.0 < low and 0.0 < high < ratio * low:
-        return low * math.exp(w * math.log(high / low))
-    return max(low + (high - low) * (math.exp(w * FORCE_STEP * power) - 1.0) / (ratio - 1.0), 0.0)
+    step = FORCE_STEP * power
+    if 0.0 < low and 0.0 < high:
+        rise = math.log(high / low)
+        if rise < step:
+            return low * math.exp(w * rise)
+    return max(low + (high - low) * (math.exp(w * step) - 1.0) / (math.exp(step) - 1.0), 0.0)
 
 
 def array_curved_contact(
@@ -360,7 +372,7 @@ def array_curved_contact(
 
 
 def array_curved_shares(tables: Array, number: Array, force: Array, aside: Array, along: Array) -> Array:
-    """curved_shares, (..., 4), as a pure function of arrays."""
+    """The shares of curved_touch, (..., 4), as a pure function of arrays."""
     xp = namespace_of(force)
     start = number * CURVED_TABLE
     i, u = _array_between(xp, tables, start, abs(aside))

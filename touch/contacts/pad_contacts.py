@@ -16,7 +16,7 @@ from ...thermal.contact import (
     conductance,
     contact,
     curved_contact,
-    curved_shares,
+    curved_touch,
     flat_patch,
 )
 from ...thermal.padded import RINGS
@@ -253,8 +253,7 @@ def feel(
                 if known >= 0 and tables[known, 1] == 0.0 and asked(make, known) == 0:
                     return False
             if number >= 0 and whole > 0:
-                conducts, area, long = curved_contact(tables[number], lying / whole, first, second)
-                curved_shares(tables[number], lying / whole, first, second, shares)
+                conducts, area, long = curved_touch(tables[number], lying / whole, first, second, shares)
                 conducts, area, long = whole * conducts, whole * area, whole * long
             if share > 0 and area > 0:
                 conducts, area = conductance(law, share / area) * area * kept, area * kept * narrow

@@ -72,9 +72,11 @@ static double even(const double* value, double u, double v) {
 
 /* What a contact conducts between two forces of a table; step: of that power of theirs which counts, a logarithm. */
 static double by_force(double low, double high, double w, double step) {
-  double ratio = exp(step);
-  if (low > 0 && high > 0 && high < ratio * low) return low * exp(w * log(high / low));
-  return greater(low + (high - low) * (exp(w * step) - 1) / (ratio - 1), 0);
+  if (low > 0 && high > 0) {
+    double rise = log(high / low);
+    if (rise < step) return low * exp(w * rise);
+  }
+  return greater(low + (high - low) * (exp(w * step) - 1) / (exp(step) - 1), 0);
 }
 
 /* W/K, and the patch's area m2, length m and shares, by a table, as thermal/contact/curved_table.py. */

@@ -17,7 +17,7 @@ from thermograsp.thermal.contact import (
     Surface,
     conduction,
     curved_contact,
-    curved_shares,
+    curved_touch,
     face_joint,
     flat_footprint,
     skinned,
@@ -114,7 +114,7 @@ def test_of_any_mesh_more_force_is_more_heat_and_nothing_is_more_than_flat(skin:
             assert 0 <= length.min() and length.max() <= PAD.face * (1 + 1e-9)
             shares = np.zeros(4)
             for force in forces[::8].tolist():
-                curved_shares(table, force, *place, shares)
+                curved_touch(table, force, *place, shares)
                 assert 0 <= shares.min() and shares.max() <= 1 + 1e-12
 
 
