@@ -95,8 +95,8 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _press(
-    axes, corner, height, pitch, begin, places, some, spans, face, of_face, points, areas, stiffness, counted, span,
-    loads, forces, near, soft, law, resistance, found,
+    axes, corner, height, shares, pitch, begin, places, some, spans, face, of_face, points, areas, stiffness, counted,
+    span, loads, forces, near, soft, law, resistance, found,
 ):  # fmt: skip
     """Fills found, of `pressed` or `conducted`. of_face: whether the face is looked at, or a ring. span: from which of
     the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face.
@@ -112,7 +112,7 @@ def _press(
             at = found[:, a - some[0, 0], b - some[1, 0]]
             for k in range(3):
                 frame[0, k] = (begin[0] + places[0, a]) * axes[1, k] + (begin[1] + places[1, b]) * axes[2, k]
-            map_heights(axes, corner, height, pitch, frame, points, heights, cover)
+            map_heights(axes, corner, height, shares, pitch, frame, points, heights, cover)
             cover *= areas
             if cover[:counted].max() == 0.0:
                 continue
@@ -139,7 +139,9 @@ def _press(
                 else:
                     where, load = (areas[0], places[0, a], places[1, b], spans, face), share * forces[n]
                     what = heights, cover, depth, touching, beside
-                    _conduct(points, near, count, what, area, load, where, law, resistance, crown, at[n])
+                    _conduct(
+                        points, near, count, what, area, load, where, law, resistance, crown, flat, at[n]
+                    )
                     if n + 1 < len(loads):
                         _no_more(at[n], at[n + 1])
 
@@ -155,10 +157,12 @@ def _touches(near, count, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(points, near, count, what, area, load, where, law, resistance, crown, row):
+def _conduct(points, near, count, what, area, load, where, law, resistance, crown, flat, row):
     """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m and cover m2; m, by which
     springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
-    without a least length. load: N on the face. crown: of _crown."""
+    without a least length. load: N on the face. crown: of _crown. flat: the share of what the mesh covers of the face
+    that touches. Heat is constricted here from the patch in whose gas it spreads to the contact: not where the two are
+    one, under a flush face."""
     heights, cover, depth, touching, beside = what
     face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
     least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
@@ -179,7 +183,7 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
     solid = 0.0
     if area > 0.0:
         solid = conductance(law, load / area) * area
-        solid = constricted(law, area, solid, law.constriction * _compact(round))
+        solid = constricted(law, area, solid, law.constriction * _compact(round) * (1.0 - min(flat, 1.0)))
         lie(touches, *where, least, found)
         row[4] = found[4]
     gas, less, around = 0.0, 0.0, touches

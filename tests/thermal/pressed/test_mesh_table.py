@@ -15,11 +15,14 @@ from thermograsp.thermal.contact import (
     FORCE_STEP,
     FORCES,
     Surface,
+    conductance,
     conduction,
+    contact,
     curved_contact,
     curved_touch,
     face_joint,
     flat_footprint,
+    flat_law,
     skinned,
 )
 from thermograsp.thermal.pressed import PressedMesh, corner_normals, height_map, pressed_view
@@ -127,3 +130,44 @@ def test_a_straight_wall_below_a_shoulder_stays_straight(name: str) -> None:
     smooth = height_map(vertices, faces, AXES, corner_normals(vertices.tobytes(), faces.tobytes())).height
     both = np.isfinite(flat) & np.isfinite(smooth)
     assert both.any() and np.abs(smooth[both] - flat[both]).max() < 5e-5
+
+
+@pytest.mark.parametrize("name", ["aluminium", "wood"])
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize(
+    ("first", "second"), [(2.0, 40.0), (3.3, 40.0), (5.9, 30.0), (12.0, 40.0), (40.0, 6.1)]
+)
+def test_a_block_is_felt_as_a_box_is(first: float, second: float, skin: str | None, name: str) -> None:
+    """Faces of mm that no grid divides, narrower than the sensor's, in the middle and up to where a millimetre of the
+    sensor is over them."""
+    size = first / 1e3, second / 1e3
+    solid, worn = trimesh.creation.box((0.04, *size)), SKINS[skin] if skin else None
+    of = np.array(solid.vertices).tobytes(), np.array(solid.faces, np.int64).tobytes(), np.eye(3).tobytes()
+    table = PressedMesh(PAD, worn, material(name), *of).table()
+    middle = pressed_view(skinned(PAD, worn), *of).spans / 2
+    joint = face_joint(worn, Surface.of(material(name)))
+    law = flat_law(skinned(PAD, worn), joint, size, (1, 2))
+    for force in (1.0, 8.0, 20.0):
+        for aside in np.linspace(0.0, size[0] / 2 + 0.0035, 9):
+            area, load = contact(law, force, np.array([0.0, aside, 0.0]))
+            found = curved_contact(table, force, middle[0] + aside, middle[1])
+            felt = [each / (each + HALF_FELT) for each in (found[0], conductance(law, load / area) * area)]
+            assert felt[0] == pytest.approx(felt[1], abs=0.012 if skin is None else 0.05)
+            if aside < size[0] / 2 - PAD.face / 2 or aside == 0.0:
+                assert found[1] == pytest.approx(area, rel=0.01)
+
+
+def test_coverage_is_that_of_the_outline() -> None:
+    """Of a disc and of a triangle in nodes of .25 mm, wherever they lie between them."""
+    rng = np.random.default_rng(0)
+    for side in rng.uniform(1e-3, 8e-3, 5):
+        disc = trimesh.creation.cylinder(side, 0.01, sections=64)
+        corners = np.array([[0, 0, 0], [0, side, 0], [0, 0, 2 * side], [1e-3, 0, 0]])
+        wedge = np.array([[0, 1, 2]])
+        for vertices, faces, area in (
+            (np.array(disc.vertices), np.array(disc.faces), 32 * side**2 * np.sin(2 * np.pi / 64)),
+            (corners, wedge, side**2),
+        ):
+            seen = height_map(vertices, faces, np.eye(3) if area == side**2 else AXES[[2, 1, 0]])
+            assert (seen.seen.sum() * seen.pitch**2) == pytest.approx(area, rel=0.02)
+            assert (np.isfinite(seen.height) == (seen.seen > 0)).all()
