@@ -138,8 +138,8 @@ def test_a_straight_wall_below_a_shoulder_stays_straight(name: str) -> None:
     ("first", "second"), [(2.0, 40.0), (3.3, 40.0), (5.9, 30.0), (12.0, 40.0), (40.0, 6.1)]
 )
 def test_a_block_is_felt_as_a_box_is(first: float, second: float, skin: str | None, name: str) -> None:
-    """Faces of mm that no grid divides, narrower than the sensor's, in the middle and up to where two millimetres of the
-    sensor are over them."""
+    """Faces of mm that no grid divides, narrower than the sensor's, in the middle and up to where 2 mm of the sensor
+    are over them."""
     size = first / 1e3, second / 1e3
     solid, worn = trimesh.creation.box((0.04, *size)), SKINS[skin] if skin else None
     of = np.array(solid.vertices).tobytes(), np.array(solid.faces, np.int64).tobytes(), np.eye(3).tobytes()
@@ -152,7 +152,7 @@ def test_a_block_is_felt_as_a_box_is(first: float, second: float, skin: str | No
             area, load = contact(law, force, np.array([0.0, aside, 0.0]))
             found = curved_contact(table, force, middle[0] + aside, middle[1])
             felt = [each / (each + HALF_FELT) for each in (found[0], conductance(law, load / area) * area)]
-            assert felt[0] == pytest.approx(felt[1], abs=0.012 if skin is None else 0.05)
+            assert felt[0] == pytest.approx(felt[1], abs=0.015 if skin is None else 0.05)
             if aside < size[0] / 2 - PAD.face / 2 or aside == 0.0:
                 assert found[1] == pytest.approx(area, rel=0.01)
 
