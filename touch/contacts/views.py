@@ -2,7 +2,8 @@
 
 MuJoCo presses a mesh's hull on pads, so a pad that lies on a mesh looks against a face of its hull. Faces that look
 alike have one view, and a pad belongs to the view that its normal is nearest to. It is turned there about the geom's
-middle, the shortest way: on a round mesh that is the same place.
+middle, the shortest way: on a ball that is the same place. Elsewhere what it touches has gone along the hull by radii
+of curvature in place of the hull's distance from the middle, both times the sines of the angle, and so is the pad.
 
 N: what a pad may meet.
 """
@@ -27,13 +28,18 @@ from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ...thermal.pressed import height_map, map_heights, pressure_map, square_middles
 from ..scene import mesh_of
 
-VIEW = 11
+VIEW = 15
 """Of a view: three axes, the first into the mesh, and m along the others where the mesh begins, all in the geom's
-frame."""
+frame; and (2, 2) m by which the hull's radii of curvature along the others are more than its distance from the
+middle."""
 _DISTINCT = math.cos(math.radians(35))  # views
 _ALIKE = math.cos(math.radians(20))  # faces whose areas count together
-_FEW = 0.01  # of the hull's area
+_FEW = 0.002  # of the hull's area
 _DIGITS = 3  # of a direction
+_SAME = math.cos(math.radians(1))  # of a face
+_ROUND = math.cos(math.radians(35))  # faces that tell how round the hull is around a view
+_BESIDE = 0.1  # of the view's own face, that such a face has at least: not the rounding of a flat face's edges
+_FLAT = math.sin(math.radians(0.6)) ** 2  # mean square of sines of their angles, below which they are one flat face
 PAD, _POINTS, _PRESSED = Pad(), 40, 10.0
 """What comes to lie on a mesh: a pad, seen at so many points along its side, and N."""
 _SLANT = 0.2  # most of a hull's face between crests
@@ -70,10 +76,29 @@ def _views(vertex: bytes, face: bytes, triangle: bytes) -> np.ndarray:
     for direction in chosen:
         near = (directions @ direction > _ALIKE)[which.ravel()]
         middle = np.average(middles[near], axis=0, weights=twice[near])
-        views.append(_view(outline, _lying(vertices, faces, -direction, middle)))
+        view = _view(outline, _lying(vertices, faces, -direction, middle))
+        own = areas[directions @ direction > _SAME].sum()
+        around = ((directions @ direction > _ROUND) & (areas > _BESIDE * own))[which.ravel()]
+        radii = _radii(middles[around], cross[around], view[3:9].reshape(2, 3))
+        away = (outline @ -view[:3]).max() * np.eye(2)
+        views.append(np.concatenate((view, (radii - away).ravel())))
     found = np.array(views)
     found.flags.writeable = False
     return found
+
+
+def _radii(middles: np.ndarray, cross: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """(2, 2) m along two axes (2, 3): by how much the places of faces differ where their normals do, by least squares.
+    middles (n, 3) m and cross (n, 3), outward, twice their areas."""
+    if len(cross) == 0:
+        return np.zeros((2, 2))
+    twice = np.linalg.norm(cross, axis=1)
+    places, sines = middles @ axes.T, cross @ axes.T / twice[:, None]
+    weight = twice / twice.sum()
+    places, sines = places - weight @ places, sines - weight @ sines
+    found = np.linalg.solve((sines.T * weight) @ sines + _FLAT * np.eye(2), (sines.T * weight) @ places)
+    values, turn = np.linalg.eigh((found + found.T) / 2)
+    return (turn * np.maximum(values, 0.0)) @ turn.T
 
 
 def _lying(vertices: np.ndarray, faces: np.ndarray, along: np.ndarray, middle: np.ndarray) -> np.ndarray:
@@ -107,7 +132,7 @@ def _hull(model: mujoco.MjModel, mesh: int, faces: np.ndarray) -> np.ndarray:
 
 
 def _view(vertices: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """(VIEW,) along a unit vector, its other axes along the narrowest rectangle round the mesh."""
+    """(11,) of a view along a unit vector, its other axes along the narrowest rectangle round the mesh."""
     _, aside, other = _across(along)
     angles = np.radians(np.arange(0, 90, 1.0))[:, None]
     first, second = (
@@ -162,9 +187,11 @@ def viewed(views, count, normal, place, half_face):
     q0 = place[0] + p0 + more * (c1 * p2 - c2 * p1)
     q1 = place[1] + p1 + more * (c2 * p0 - c0 * p2)
     q2 = place[2] + p2 + more * (c0 * p1 - c1 * p0)
-    aside = view[3] * q0 + view[4] * q1 + view[5] * q2 - view[9] + half_face
-    along = view[6] * q0 + view[7] * q1 + view[8] * q2 - view[10] + half_face
-    return best, max(aside, 0.0), max(along, 0.0)
+    across = view[3] * normal[0] + view[4] * normal[1] + view[5] * normal[2]
+    other = view[6] * normal[0] + view[7] * normal[1] + view[8] * normal[2]
+    aside = view[3] * q0 + view[4] * q1 + view[5] * q2 + view[11] * across + view[12] * other
+    along = view[6] * q0 + view[7] * q1 + view[8] * q2 + view[13] * across + view[14] * other
+    return best, max(aside - view[9] + half_face, 0.0), max(along - view[10] + half_face, 0.0)
 
 
 def array_viewed(views: Array, normal: Array, place: Array, half_face: Array) -> tuple[Array, Array, Array]:
@@ -183,10 +210,13 @@ def array_viewed(views: Array, normal: Array, place: Array, half_face: Array) ->
     once = _cross(xp, turn, place)
     cosine = (axis * normal).sum(-1)
     seen = place + once + _cross(xp, turn, once) / (1 + cosine)[..., None]
+    across, other = (aside * normal).sum(-1), (along * normal).sum(-1)
+    first = (aside * seen).sum(-1) + view[..., 11] * across + view[..., 12] * other
+    second = (along * seen).sum(-1) + view[..., 13] * across + view[..., 14] * other
     return (
         best,
-        ((aside * seen).sum(-1) - view[..., 9] + half_face).clip(0.0, None),
-        ((along * seen).sum(-1) - view[..., 10] + half_face).clip(0.0, None),
+        (first - view[..., 9] + half_face).clip(0.0, None),
+        (second - view[..., 10] + half_face).clip(0.0, None),
     )
 
 

@@ -51,12 +51,13 @@ static int viewed(const double* views, int count, const double normal[3], const 
     }
   }
   const double* v = views + best * VIEW;
-  double c[3], once[3], twice[3];
+  double c[3], once[3], twice[3], across = dot(v + 3, normal), other = dot(v + 6, normal);
   mju_cross(c, normal, v);
   mju_cross(once, c, p);
   mju_cross(twice, c, once);
   for (int i = 0; i < 3; i++) q[i] = p[i] + once[i] + twice[i] / (1 + most);
-  for (int j = 0; j < 2; j++) at[j] = greater(dot(v + 3 * (j + 1), q) - v[9 + j] + half, 0);
+  for (int j = 0; j < 2; j++)
+    at[j] = greater(dot(v + 3 * (j + 1), q) + v[11 + 2 * j] * across + v[12 + 2 * j] * other - v[9 + j] + half, 0);
   return best;
 }
 

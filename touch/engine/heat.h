@@ -39,8 +39,9 @@ enum { PLACES = 24, FORCES = 14, ENDS = 4, SHARES = 2 * PLACES + VALUES * FORCES
 enum { BEND = 10, CURVES = 7, SIDES = 8 };
 #define WIDE 10.0 /* m, half of what no pad reaches the end of */
 static const double pi = 3.14159265358979323846;
-/* a mesh from one side: three axes, the first inwards, and m along the others where it begins */
-enum { VIEW = 11 };
+/* a mesh from one side: three axes, the first inwards, m along the others where it begins, and (2, 2) m by which its radii are more than its
+   distance from the middle */
+enum { VIEW = 15 };
 /* a rod under a pad, 0 of others: rad/N, N/m^2.5 of the silicone and of the skin, m of the gap and radius; half lengths m */
 enum { TURN_BY, SOFT, FIRM, APART, RADIUS, HALF_ROD, HALF_PAD, HALF_FACE, TILT };
 
