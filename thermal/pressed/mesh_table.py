@@ -38,7 +38,7 @@ from ..contact import (
     table_values,
     touching,
 )
-from ..matter import Material, Skin
+from ..matter import Material, Skin, material
 from .face import Seen, conducted, pressed
 from .height_map import HeightMap, height_map
 from .lying import end
@@ -50,8 +50,9 @@ _FINE = 97  # places, among which those of a table are chosen
 _USUAL = slice(4, 11)  # of the forces, 0.5 to 53 N
 _UNFELT = 1e-3  # of the most that can be felt
 _HALF_CONDUCTING = 0.4  # W/K, about
-_BARE = 0.09  # W/K on a newton of force on the face, and
-_SKINNED = 2e5  # on a m2, about
+_TYPICAL = "steel"  # of what presses on a bare face
+_BARE, _GAS = 0.09, 8e3  # W/K of a bare face on a newton of force and on a m2, about, and
+_SKINNED = 2e5  # on a m2 of a skin
 _NEAR_CROWN = (0.35, 0.65, 0.85, 1.0)  # of half the face, and
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 
@@ -147,7 +148,7 @@ def pressed_view(
     else:
         fine = np.stack([_fine(pad, span) for span in (high - low).tolist()])
         bare = pad.face_stiffness is None
-        places = _bent(PressedView(fine, bared(pad) if bare else pad, seen, low, high - low), bare)
+        places = _bent(PressedView(fine, pad, seen, low, high - low), bare)
     places.flags.writeable = False
     return PressedView(places, pad, seen, low, high - low)
 
@@ -177,7 +178,7 @@ def _bent(view: PressedView, bare: bool) -> np.ndarray:
     for axis in range(2):
         fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
         some = (every, middle) if axis == 0 else (middle, every)
-        signed = _signed(view.touched(some=some), bare)
+        signed = _signed(view.touched(some=some, bare=material(_TYPICAL) if bare else None), bare)
         exact = _conducting(signed)
         face, half = view.pad.face, view.pad.face / 2
         crown = [span / 2 + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
@@ -201,7 +202,8 @@ def _signed(touched: np.ndarray, bare: bool) -> np.ndarray:
     """(usual forces, places): about what contacts conduct over _HALF_CONDUCTING, W/K, as a table has it."""
     forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))[:, None, None]
     values = np.zeros((*touched.shape[:3], 6))
-    values[..., 0] = touched[..., 1] * forces * _BARE if bare else touched[..., 0] * _SKINNED
+    area, load = touched[..., 0], touched[..., 1] * forces
+    values[..., 0] = load * _BARE + area * _GAS if bare else area * _SKINNED
     begin_contacts(values)
     return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_CONDUCTING
 

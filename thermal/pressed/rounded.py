@@ -1,9 +1,10 @@
 """The directions in which a mesh's surface looks at the corners of its triangles, where that is smooth.
 
 A mesh stands for a round body by flat triangles, and a rigid face would lie on one of them. Where triangles that meet
-at a corner look nearly alike, the surface is taken as smooth there and looks their way on the mean. Edges that are
-sharper stay edges, and so do those at the end of triangles so long that a smooth surface would leave them by far: the
-straight wall of a jar below its shoulder.
+at a corner look nearly alike, the surface is taken as smooth there and looks their way on the mean, the larger one's
+more. Edges that are sharper stay edges, and so do those at the end of triangles so long that a smooth surface would
+leave them by far: the straight wall of a jar below its shoulder. A triangle that goes on for much longer than its
+neighbour, the way that the surface turns, is flat up to there, as a face beside its rounded edge.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from thermograsp.compiled import njit
 
 _SMOOTH = math.cos(math.radians(30.0))
 _BULGE = 0.5e-3  # m, by which a smooth surface leaves a triangle at most
+_LONGER = 4.0  # times its neighbour, along the turn, from which on a triangle is flat there
 _SAME = 1e-7  # m between vertices that are one
 
 
@@ -39,7 +41,7 @@ def corner_normals(vertices: bytes, faces: bytes) -> np.ndarray:
 def _mean(points, triangles, corner, neighbours, begin, normals):
     """Fills normals. corner: (m, 3) the corners' numbers, vertices at one place having the same. neighbours: the
     triangles that meet at each, from begin to the next one's."""
-    flat, angle = np.zeros((len(triangles), 3)), np.zeros((len(triangles), 3))
+    flat, weight = np.zeros((len(triangles), 3)), np.zeros((len(triangles), 3))
     for f in range(len(triangles)):
         p, q, r = points[triangles[f, 0]], points[triangles[f, 1]], points[triangles[f, 2]]
         cross = np.cross(q - p, r - p)
@@ -49,33 +51,32 @@ def _mean(points, triangles, corner, neighbours, begin, normals):
         for k in range(3):
             at = points[triangles[f, k]]
             u, v = points[triangles[f, (k + 1) % 3]] - at, points[triangles[f, (k + 2) % 3]] - at
-            angle[f, k] = math.atan2(size, (u * v).sum()) if size > 0.0 else 0.0
+            weight[f, k] = size * math.atan2(size, (u * v).sum()) if size > 0.0 else 0.0
     for f in range(len(triangles)):
         for k in range(3):
             total = np.zeros(3)
             for n in range(begin[corner[f, k]], begin[corner[f, k] + 1]):
                 other = neighbours[n]
-                if (flat[f] * flat[other]).sum() > _SMOOTH and _bulge(
-                    points, triangles, flat, f, other
-                ) < _BULGE:
+                if other == f or _go_on(points, triangles, flat, f, other):
                     for j in range(3):
                         if corner[other, j] == corner[f, k]:
-                            total += angle[other, j] * flat[other]
+                            total += weight[other, j] * flat[other]
             size = np.sqrt((total**2).sum())
             if size > 0.0:
                 normals[f, k] = total / size
 
 
 @njit(cache=True, error_model="numpy")
-def _bulge(points, triangles, flat, f, other):
-    """m by which a surface that turns evenly from one triangle's direction to the other's leaves the longer of them:
-    an eighth of the turn times its extent in the direction of the turn."""
-    turn = flat[other] - flat[f]
-    most = 0.0
-    for each in (f, other):
+def _go_on(points, triangles, flat, f, other):
+    """Whether triangle f goes on smoothly in the other: that surface, which turns evenly from one's direction to the
+    other's, leaves the longer of them by an eighth of the turn times its extent in the direction of the turn."""
+    if not (flat[f] * flat[other]).sum() > _SMOOTH:
+        return False
+    turn, extent = flat[other] - flat[f], np.zeros(2)
+    for n, each in enumerate((f, other)):
         low, high = np.inf, -np.inf
         for k in range(3):
             along = (points[triangles[each, k]] * turn).sum()
             low, high = min(low, along), max(high, along)
-        most = max(most, high - low)
-    return most / 8
+        extent[n] = high - low
+    return max(extent[0], extent[1]) / 8 < _BULGE and extent[0] <= _LONGER * extent[1]

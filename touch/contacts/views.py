@@ -34,7 +34,8 @@ frame; and (2, 2) m by which the hull's radii of curvature along the others are 
 middle."""
 _DISTINCT = math.cos(math.radians(35))  # views
 _ALIKE = math.cos(math.radians(20))  # faces whose areas count together
-_FEW = 0.002  # of the hull's area
+_FEW, _FEWEST = 0.01, 0.002  # of the hull's area beside a flat face, and elsewhere
+_BETWEEN = math.cos(math.radians(57))  # flat faces, which are level to pads that lean on the edges between them
 _DIGITS = 3  # of a direction
 _SAME = math.cos(math.radians(1))  # of a face
 _ROUND = math.cos(math.radians(35))  # faces that tell how round the hull is around a view
@@ -68,10 +69,15 @@ def _views(vertex: bytes, face: bytes, triangle: bytes) -> np.ndarray:
     )
     directions, areas = cross[first] / twice[first, None], np.bincount(which.ravel(), weights=twice)
     chosen: list[np.ndarray] = []
+    flat: list[np.ndarray] = []
     for n in np.argsort(-np.round(areas / areas.sum(), 6), kind="stable"):
         if all(directions[n] @ other < _DISTINCT for other in chosen):
-            if areas[directions @ directions[n] > _ALIKE].sum() > _FEW * areas.sum():
+            alike = areas[directions @ directions[n] > _ALIKE].sum()
+            beside = any(directions[n] @ other > _BETWEEN for other in flat)
+            if alike > (_FEW if beside else _FEWEST) * areas.sum():
                 chosen.append(directions[n])
+                if areas[directions @ directions[n] > _SAME].sum() > alike / 2:
+                    flat.append(directions[n])
     views = []
     for direction in chosen:
         near = (directions @ direction > _ALIKE)[which.ravel()]
