@@ -21,9 +21,11 @@ from ..matter import SensorStack
 from ..meshes import (
     BodyModes,
     PlacedPatch,
+    area_within,
     body_modes,
     nearest_surface,
     patch_on_grid,
+    patch_sides,
     place_patch,
     uniform_pattern,
 )
@@ -138,21 +140,24 @@ def _places(
 
 
 def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
-    """Of a patch's square, where there is a surface that looks its way, within half a side of its middle; and how
-    thick m the body is below it, the median: inf where there is none."""
+    """Of a patch's square, the share where there is a surface that looks its way, within half a side of its middle; and
+    how thick m the body is below it, the median: inf where there is none."""
     half, outward, centre = patch.half_width, patch.direction, np.array(patch.centre)
-    sides = half * np.linalg.svd(outward[None])[2][1:]
-    triangles = body.outside
-    local = (triangles - centre) @ sides.T / half
-    near = triangles[((local.min(axis=1) <= half) & (local.max(axis=1) >= -half)).all(axis=1)]
+    sides, triangles = patch_sides(outward), body.outside
+    local = (triangles - centre) @ np.stack((*sides, outward)).T
+    across = (local.min(axis=1) <= half) & (local.max(axis=1) >= -half)
+    near = triangles[across[:, :2].all(axis=1)]
     thick = []
-    for at in _SAMPLED:
+    for at in half * _SAMPLED:
         crossed = crossings(near, centre + at @ sides, outward)
         if not len(crossed) or (face := crossed[np.abs(crossed).argmin()]) <= -half or face >= half:
             continue
         left = crossings(near, centre + at @ sides, -outward) + face
         thick.append(min(left[left > 0], default=math.inf))
-    return len(thick) / len(_SAMPLED), float(np.median(thick)) if thick else math.inf
+    areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    facing = across.all(axis=1) & (areas @ outward > FACING * np.linalg.norm(areas, axis=1))
+    share = area_within(np.ascontiguousarray(local[facing]), half) / patch.half_width**2 / 4
+    return min(share, 1.0), float(np.median(thick)) if thick else math.inf
 
 
 def _triple(values: np.ndarray) -> _Triple:

@@ -5,7 +5,7 @@ from .grid import MeshGridding
 from .modes import BodyModes, body_modes
 from .network import PatchFields, body_network, patch_fields
 from .patch import PatchPatterns, patch_on_grid, uniform_pattern
-from .place import ABOVE, PlacedPatch, place_patch
+from .place import ABOVE, PlacedPatch, area_within, patch_sides, place_patch
 from .press import press_body
 from .touched import (
     PLATE,
@@ -38,6 +38,8 @@ __all__ = [
     "nearest_surface",
     "patch_fields",
     "patch_on_grid",
+    "area_within",
+    "patch_sides",
     "place_patch",
     "press_body",
     "surface_normal",

@@ -42,9 +42,7 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
     aligned = bool(np.abs(normal[axis]) > ALONG)
     if aligned:
         normal = np.sign(normal[axis]) * np.eye(3)[axis]
-    first = np.cross(normal, np.eye(3)[(axis + 1) % 3])
-    first /= np.linalg.norm(first)
-    sides = np.stack((first, np.cross(normal, first)))
+    sides = patch_sides(normal)
     # where the very middle is a hole, the surface beside it
     for middle in half * np.array([[0, 0], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]]):
         depth = crossings(triangles, centre + middle @ sides, normal)
@@ -57,6 +55,13 @@ def place_patch(triangles: np.ndarray, patch: SurfacePatch, frame: np.ndarray) -
         f"the patch at ({at}) mm with normal {tuple(round(x, 3) for x in patch.normal)} does not meet the "
         "surface: give a point on it and the outward normal there"
     )
+
+
+def patch_sides(normal: np.ndarray) -> np.ndarray:
+    """(2, 3): the directions of a patch's sides, across its normal (3,)."""
+    first = np.cross(normal, np.eye(3)[(np.argmax(np.abs(normal)) + 1) % 3])
+    first /= np.linalg.norm(first)
+    return np.stack((first, np.cross(normal, first)))
 
 
 def layer_beneath(triangles: np.ndarray, patch: PlacedPatch) -> float:
@@ -101,3 +106,13 @@ def within_cube(local, half):
                 corners[end + i, c] = first[i, c]
         end += count
     return corners[:end], counts
+
+
+def area_within(local: np.ndarray, half: float) -> float:
+    """m2 across the third axis of the triangles' (F, 3, 3) parts within the cube of that half side."""
+    corners, counts = within_cube(local, half)
+    ends = np.cumsum(counts)
+    after = np.arange(1, len(corners) + 1)
+    after[ends[counts > 0] - 1] = (ends - counts)[counts > 0]  # the last one's is the first of its part
+    (x, y), (u, v) = corners[:, :2].T, corners[after, :2].T
+    return float((x * v - u * y).sum() / 2)
