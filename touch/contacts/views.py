@@ -35,12 +35,18 @@ middle."""
 _DISTINCT = math.cos(math.radians(35))  # views
 _ALIKE = math.cos(math.radians(20))  # faces whose areas count together
 _FEW, _FEWEST = 0.01, 0.002  # of the hull's area beside a flat face, and elsewhere
-_BETWEEN = math.cos(math.radians(57))  # flat faces, which are level to pads that lean on the edges between them
+_BETWEEN = math.cos(
+    math.radians(57)
+)  # flat faces, which are level to pads that lean on the edges between them
 _DIGITS = 3  # of a direction
 _SAME = math.cos(math.radians(1))  # of a face
 _ROUND = math.cos(math.radians(35))  # faces that tell how round the hull is around a view
-_BESIDE = 0.1  # of the view's own face, that such a face has at least: not the rounding of a flat face's edges
-_FLAT = math.sin(math.radians(0.6)) ** 2  # mean square of sines of their angles, below which they are one flat face
+_BESIDE = (
+    0.1  # of the view's own face, that such a face has at least: not the rounding of a flat face's edges
+)
+_FLAT = (
+    math.sin(math.radians(0.6)) ** 2
+)  # mean square of sines of their angles, below which they are one flat face
 PAD, _POINTS, _PRESSED = Pad(), 40, 10.0
 """What comes to lie on a mesh: a pad, seen at so many points along its side, and N."""
 _SLANT = 0.2  # most of a hull's face between crests
