@@ -19,7 +19,7 @@ from thermograsp.touch.contacts import CONDUCTANCE
 from .engine_scene import keep_boxes
 
 FORCE = 8.0  # N
-ELLIPSOID, EGG = (0.01, 0.02, 0.03), (0.02, 0.02, 0.03)
+ELLIPSOID, EGG, LENS = (0.01, 0.02, 0.03), (0.02, 0.02, 0.03), (0.02, 0.02, 0.005)
 
 
 @pytest.fixture(autouse=True)
@@ -39,8 +39,10 @@ def solid(name: str) -> trimesh.Trimesh:
         corners = np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1).T * (0.02 - radius)
         ball = trimesh.creation.icosphere(3, radius).vertices
         return trimesh.convex.convex_hull((corners[:, None] + ball).reshape(-1, 3))
-    made = trimesh.creation.icosphere(4)
-    made.apply_scale(ELLIPSOID if name == "ellipsoid" else EGG)
+    if name == "ball":
+        return trimesh.creation.uv_sphere(0.01)
+    made = trimesh.creation.icosphere(5 if name == "fine lens" else 4)
+    made.apply_scale({"ellipsoid": ELLIPSOID, "egg": EGG}.get(name, LENS))
     return made
 
 
@@ -115,7 +117,15 @@ def test_a_pad_that_goes_round_a_body_is_always_on_what_it_touches() -> None:
 def test_a_round_end_is_where_it_lies() -> None:
     """A capsule's, which moves from under the pad's middle as it is turned about its own."""
     straight = conducts("capsule")
+    assert straight == pytest.approx(conducts("ball", geom='type="sphere" size=".01"'), rel=0.1)
     for degrees in (5.0, 10.0, 20.0):
         gone = 0.02 * math.sin(math.radians(degrees))
         assert conducts("capsule", degrees, aside=gone) == pytest.approx(straight, rel=0.15)
         assert conducts("capsule", degrees, aside=gone - 0.009) < 0.3 * straight
+
+
+def test_a_finer_mesh_of_a_lens_is_as_round() -> None:
+    for degrees in (6.0, 12.0):
+        assert conducts("fine lens", degrees, 1, None) == pytest.approx(
+            conducts("lens", degrees, 1, None), rel=0.1
+        )

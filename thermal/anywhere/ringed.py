@@ -156,7 +156,12 @@ def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
         thick.append(min(left[left > 0], default=math.inf))
     areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     facing = across.all(axis=1) & (areas @ outward > FACING * np.linalg.norm(areas, axis=1))
-    share = area_within(np.ascontiguousarray(local[facing]), half) / patch.half_width**2 / 4
+    over = (
+        across[:, :2].all(axis=1)
+        & (local[..., 2].max(axis=1) >= -half)
+        & (local[..., 2].min(axis=1) <= 2 * half)
+    )
+    share = area_within(local[facing], local[over], half) / patch.half_width**2 / 4
     return min(share, 1.0), float(np.median(thick)) if thick else math.inf
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from thermograsp.compiled import njit
 from thermograsp.errors import MeshError
 
-from ..surfaces import SurfacePatch, clip, crossings
+from ..surfaces import SurfacePatch, clip, crossed_above, crossings
 
 ALONG = 1 - 1e-9  # of a unit vector, from which on it is along an axis
 CORNERS = 24  # of a triangle clipped by twelve planes: 15
@@ -108,11 +108,18 @@ def within_cube(local, half):
     return corners[:end], counts
 
 
-def area_within(local: np.ndarray, half: float) -> float:
-    """m2 across the third axis of the triangles' (F, 3, 3) parts within the cube of that half side."""
-    corners, counts = within_cube(local, half)
+def area_within(local: np.ndarray, over: np.ndarray, half: float) -> float:
+    """m2 across the third axis of the triangles' (F, 3, 3) parts within the cube of that half side, but for those that
+    have another triangle, of `over` (n, 3, 3), above their middle."""
+    corners, counts = within_cube(np.ascontiguousarray(local), half)
+    counts = counts[counts > 0]
+    if not len(counts):
+        return 0.0
     ends = np.cumsum(counts)
-    after = np.arange(1, len(corners) + 1)
-    after[ends[counts > 0] - 1] = (ends - counts)[counts > 0]  # the last one's is the first of its part
+    begin, after = ends - counts, np.arange(1, len(corners) + 1)
+    after[ends - 1] = begin  # the last one's is the first of its part
     (x, y), (u, v) = corners[:, :2].T, corners[after, :2].T
-    return float((x * v - u * y).sum() / 2)
+    areas = np.add.reduceat(x * v - u * y, begin) / 2
+    middles = np.add.reduceat(corners, begin) / counts[:, None]
+    above = crossed_above(middles, np.ascontiguousarray(over), ABOVE)
+    return float(areas[~above.any(axis=1)].sum())

@@ -37,6 +37,7 @@ _LINE, _COMPACT = 0.1, 0.25
 as a disc."""
 _CURVED = 1e-3  # of the face: what touches less is no flat face
 _FEWEST = 30  # points
+_UPRIGHT = 1e-9  # of a point, by which all paraboloids that fit points in a line are told apart
 _FLATTEST = 0.5  # m, of the radii of crowns
 _UNLIKE = 0.1  # of the squares of the heights' differences, that a paraboloid leaves at most
 
@@ -296,6 +297,8 @@ def _crown(points, heights, cover, counted, law):
             count += 1
     if count < _FEWEST:
         return 0.0, 0.0, edge
+    for j in range(terms):
+        matrix[j, j] += _UPRIGHT * count  # of points in a line
     found = np.linalg.solve(matrix, right)
     spread = square - right[0] ** 2 / count
     left = square - (found * right).sum()

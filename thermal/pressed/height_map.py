@@ -16,6 +16,7 @@ from thermograsp.compiled import njit
 
 _PITCH = 0.25e-3  # m
 _FACING = 0.3  # cosine, of a corner that looks the way that the surface is seen from
+_STRAIGHT = 0.05  # of the turn along a triangle's most bent edge, below which another is straight
 _MOST_NODES = 2000  # each way: half a metre at that pitch, and 64 MB
 _PARTS = 8  # of a node's square along either side, which are seen or not: as many as bits tell
 _WHOLE = np.uint64(2**64 - 1)
@@ -57,12 +58,15 @@ def height_map(
 def _bulges(seen: np.ndarray, faces: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """(m, 3) m by which a surface that follows the corners' slopes leaves the middles of the triangles' edges (from the
     first corner, the second, the third), times 4: of a quadratic, half the change of its slope along the edge. 0 where
-    a corner hardly looks this way. seen, normals: along the map's axes."""
+    a corner hardly looks this way, and along edges that are bent far less than another of the triangle: those of long
+    strips, whose ends other triangles turn a little. seen, normals: along the map's axes."""
     facing = -normals[..., 0]
     slopes = normals[..., 1:] / np.maximum(facing, _FACING)[..., None]
     along = np.roll(seen[faces][..., 1:], -1, axis=1) - seen[faces][..., 1:]
     change = slopes - np.roll(slopes, -1, axis=1)
     bulges = 0.5 * (change * along).sum(axis=2)
+    turned = (change**2).sum(axis=2)
+    bulges[turned < _STRAIGHT**2 * turned.max(axis=1, keepdims=True)] = 0.0
     return np.where(np.all(facing > _FACING, axis=1)[:, None], bulges, 0.0)
 
 

@@ -46,14 +46,18 @@ from .rounded import corner_normals
 from .springs import Ring, touching_joint
 
 _ALL = ((0, PLACES), (0, PLACES))
-_FINE = 97  # places, among which those of a table are chosen
+_EDGED, _CROWNED = (40, 47, 20), (47, 48, 0)
+"""Of places, among which those of a table are chosen, how many lie evenly, around the crown and at either end: of any
+mesh, and of one that has its crown in the middle of a soft face, along which little changes at its ends."""
+_DIGITS = 9  # of places m, which round-off tells apart no further
 _USUAL = slice(4, 11)  # of the forces, 0.5 to 53 N
 _UNFELT = 1e-3  # of the most that can be felt
 _HALF_CONDUCTING = 0.4  # W/K, about
 _TYPICAL = "steel"  # of what presses on a bare face
-_BARE, _GAS = 0.09, 8e3  # W/K of a bare face on a newton of force and on a m2, about, and
-_SKINNED = 2e5  # on a m2 of a skin
+_SKINNED = 2e5  # W/K on a m2 of a skin, about
+_TOP = 20e-6  # m, below the first of a mesh to touch, of what lies about as high
 _NEAR_CROWN = (0.35, 0.65, 0.85, 1.0)  # of half the face, and
+_GONE = 1.4  # of it, where no crown is on the face
 _NEAR_EDGE = (0.0, 0.35, 0.65, 0.9, 1.15, 1.4)  # of half the face
 
 
@@ -146,9 +150,11 @@ def pressed_view(
     if not rounded:
         places = np.stack([_places(pad.face, float(span)) for span in high - low])
     else:
-        fine = np.stack([_fine(pad, span) for span in (high - low).tolist()])
-        bare = pad.face_stiffness is None
-        places = _bent(PressedView(fine, pad, seen, low, high - low), bare)
+        crown = _crown(seen, low, high - low)
+        spans, bare = (high - low).tolist(), pad.face_stiffness is None
+        number = _EDGED if bare or crown != (spans[0] / 2, spans[1] / 2) else _CROWNED
+        fine = np.stack([_fine(pad, *each, number) for each in zip(spans, crown, strict=True)])
+        places = _bent(PressedView(fine, pad, seen, low, high - low), crown, bare)
     places.flags.writeable = False
     return PressedView(places, pad, seen, low, high - low)
 
@@ -160,52 +166,73 @@ def _places(face: float, span: float) -> np.ndarray:
     return even_places(0.0, span, (face, span - face, *crown))
 
 
-def _fine(pad: Pad, span: float) -> np.ndarray:
-    """(_FINE,) m up to the span, symmetric: half of them where a crown in the mesh's middle is under the pad, and where
-    the face begins and ceases to be wholly over the mesh among them."""
+def _crown(seen: HeightMap, begin: np.ndarray, spans: np.ndarray) -> tuple[float, float]:
+    """m, the middle of what of the mesh comes first, as places are counted; the mesh's own where it is there."""
+    first = seen.height <= seen.height.min() + _TOP
+    weight = np.where(first, seen.seen, 0.0)
+    nodes = np.stack(np.meshgrid(*map(np.arange, seen.height.shape), indexing="ij"), axis=-1)
+    at = seen.corner + seen.pitch * (weight[..., None] * nodes).sum(axis=(0, 1)) / weight.sum() - begin
+    first_at, second_at = np.where(abs(at - spans / 2) < seen.pitch, spans / 2, at).tolist()
+    return first_at, second_at
+
+
+def _fine(pad: Pad, span: float, crown: float, number: tuple[int, int, int]) -> np.ndarray:
+    """(n,) m up to the span: some evenly, many where the pad is over the crown and at either end, and where the face
+    begins and ceases to be wholly over the mesh; symmetric where the crown is in the middle."""
+    even, around, ends = number
     half = min(pad.width / 2, span / 2)
-    near = span / 2 + np.linspace(-half, half, _FINE // 2 + 2)[1:-1]
-    return np.sort(
-        np.concatenate((np.linspace(0.0, span, _FINE // 2 - 1), near, (pad.face, span - pad.face)))
-    )
+    near = np.linspace(max(crown - half, 0.0), min(crown + half, span), around + 2)[1:-1]
+    first = np.linspace(0.0, min(1.5 * pad.face, span / 2), ends)
+    points = np.linspace(0.0, span, even), near, first, span - first, (pad.face, span - pad.face, crown)
+    return np.sort(np.round(np.concatenate(points), _DIGITS))
 
 
-def _bent(view: PressedView, bare: bool) -> np.ndarray:
-    """(2, PLACES) m, in pairs about the middle, of a view with _FINE places: where the face begins and ceases to be
-    wholly over a mesh that touches it there, or to touch a crown in the middle, and then where what is felt of it,
-    along the middle, is furthest from what a table would tell with those that there are."""
-    found, middle = np.empty((2, PLACES)), (_FINE // 2, _FINE // 2 + 1)
+def _bent(view: PressedView, crown: tuple[float, float], bare: bool) -> np.ndarray:
+    """(2, PLACES) m, of a view with _fine places: where the face begins and ceases to be wholly over a mesh that
+    touches it there, or to touch the crown, and then where what is felt of it, along the crown, is furthest from what a
+    table would tell with those that there are; in pairs about the middle if the crown is there."""
+    found = np.empty((2, PLACES))
     for axis in range(2):
-        fine, span, every = view.places[axis], float(view.spans[axis]), (0, _FINE)
-        some = (every, middle) if axis == 0 else (middle, every)
-        signed = _signed(view.touched(some=some, bare=material(_TYPICAL) if bare else None), bare)
+        fine, span, at = view.places[axis], float(view.spans[axis]), crown[axis]
+        row = int(np.argmin(abs(view.places[1 - axis] - crown[1 - axis])))
+        every, along = (0, len(fine)), (row, row + 1)
+        some = (every, along) if axis == 0 else (along, every)
+        signed = _signed(view, some, bare)
         exact = _conducting(signed)
-        face, half = view.pad.face, view.pad.face / 2
-        crown = [span / 2 + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
-        ends = [each for each in (face, span - face, *crown) if 0 < each < span]
+        face, half, even = view.pad.face, view.pad.face / 2, at == span / 2
+        near = [at + way * near * half for near in _NEAR_CROWN for way in (-1, 1)]
+        over, gone = (
+            np.array([np.interp(at + off, fine, row) for row in exact]) for off in (0.0, _GONE * half)
+        )
+        ends = [face, span - face, *(near if (gone < over / 2).any() else ())]
+        ends = [each for each in ends if 0 < each < span]
         touching = np.max([np.interp(ends, fine, row) for row in exact], axis=0) > 0
-        chosen = {0.0, span / 2, span, *np.array(ends)[touching].tolist()}
+        chosen = {float(fine[0]), at, float(fine[-1]), *np.array(ends)[touching].tolist()}
         while len(chosen) < PLACES - 1:
-            at = np.sort(list(chosen))
-            coarse = [_conducting(np.interp(fine, at, np.interp(at, fine, row))) for row in signed]
+            known = np.sort(list(chosen))
+            coarse = [_conducting(np.interp(fine, known, np.interp(known, fine, row))) for row in signed]
             off = np.abs(coarse - exact).max(axis=0)
-            both = np.maximum(off, off[::-1])
-            most = int(np.argmax(both))
-            if both[most] < _UNFELT:
+            off = np.maximum(off, off[::-1]) if even else off
+            off[np.isin(fine, known)] = 0.0  # no more than one of places that round-off tells apart
+            most = int(np.argmax(off))
+            if not off[most] >= _UNFELT:
                 break
-            chosen |= {float(fine[most]), float(span - fine[most])}
+            chosen |= {float(fine[most]), float(span - fine[most])} if even else {float(fine[most])}
         found[axis] = even_places(0.0, span, chosen)
     return found
 
 
-def _signed(touched: np.ndarray, bare: bool) -> np.ndarray:
-    """(usual forces, places): about what contacts conduct over _HALF_CONDUCTING, W/K, as a table has it."""
-    forces = np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES))[:, None, None]
-    values = np.zeros((*touched.shape[:3], 6))
-    area, load = touched[..., 0], touched[..., 1] * forces
-    values[..., 0] = load * _BARE + area * _GAS if bare else area * _SKINNED
-    begin_contacts(values)
-    return values[_USUAL, ..., 0].reshape(-1, _FINE) / _HALF_CONDUCTING
+def _signed(view: PressedView, some: tuple[tuple[int, int], tuple[int, int]], bare: bool) -> np.ndarray:
+    """(n, places): what contacts conduct over _HALF_CONDUCTING, about, as a table has it, at usual forces."""
+    if bare:
+        conducts = view.conducted(None, material(_TYPICAL), some)[_USUAL, ..., 6:8].sum(axis=-1)
+    else:
+        touched = view.touched(some=some)
+        values = np.zeros((*touched.shape[:3], 6))
+        values[..., 0] = touched[..., 0]
+        begin_contacts(values)
+        conducts = _SKINNED * values[_USUAL, ..., 0]
+    return conducts.reshape(len(conducts), -1) / _HALF_CONDUCTING
 
 
 def _conducting(conducts: np.ndarray) -> np.ndarray:

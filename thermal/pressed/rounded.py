@@ -18,7 +18,7 @@ from thermograsp.compiled import njit
 
 _SMOOTH = math.cos(math.radians(30.0))
 _BULGE = 0.5e-3  # m, by which a smooth surface leaves a triangle at most
-_LONGER = 4.0  # times its neighbour, along the turn, from which on a triangle is flat there
+_LONGER = 2.0  # times its neighbour, along the turn, from which on a triangle is flat there
 _SAME = 1e-7  # m between vertices that are one
 
 

@@ -39,7 +39,7 @@ _BETWEEN = math.cos(
     math.radians(57)
 )  # flat faces, which are level to pads that lean on the edges between them
 _DIGITS = 3  # of a direction
-_SAME = math.cos(math.radians(1))  # of a face
+_SAME, _EXACTLY = math.cos(math.radians(1)), math.cos(math.radians(0.1))  # of a face, and of one that is flat
 _ROUND = math.cos(math.radians(35))  # faces that tell how round the hull is around a view
 _BESIDE = (
     0.1  # of the view's own face, that such a face has at least: not the rounding of a flat face's edges
@@ -89,7 +89,7 @@ def _views(vertex: bytes, face: bytes, triangle: bytes) -> np.ndarray:
         near = (directions @ direction > _ALIKE)[which.ravel()]
         middle = np.average(middles[near], axis=0, weights=twice[near])
         view = _view(outline, _lying(vertices, faces, -direction, middle))
-        own = areas[directions @ direction > _SAME].sum()
+        own = areas[directions @ direction > _EXACTLY].max()
         around = ((directions @ direction > _ROUND) & (areas > _BESIDE * own))[which.ravel()]
         radii = _radii(middles[around], cross[around], view[3:9].reshape(2, 3))
         away = (outline @ -view[:3]).max() * np.eye(2)

@@ -34,3 +34,14 @@ def test_of_a_hollow_body_it_is_the_wall() -> None:
     body = solid(np.array(both.vertices), np.array(both.faces), material("ceramic"))
     share, thick = wall_below(body, surface_patch(body, np.array([0.0, 0.0, 0.02]), UP, STACK, cache=False))
     assert (share, thick) == pytest.approx((1.0, 0.002))
+
+
+def test_of_a_floor_below_the_wall_nothing_counts() -> None:
+    """A cavity of 2 mm under a wall of 1 mm, whose floor looks the sensor's way, too."""
+    outer, inner = trimesh.creation.box((0.006, 0.006, 0.03)), trimesh.creation.box((0.005, 0.005, 0.002))
+    inner.apply_translation((0, 0, 0.013))
+    inner.invert()
+    both = trimesh.util.concatenate([outer, inner])
+    body = solid(np.array(both.vertices), np.array(both.faces), material("ceramic"))
+    share, _ = wall_below(body, surface_patch(body, np.array([0.0, 0.0, 0.015]), UP, STACK, cache=False))
+    assert share == pytest.approx(4 / 9)
