@@ -6,7 +6,7 @@ import trimesh
 
 from thermograsp.thermal import material, sensor
 from thermograsp.thermal.anywhere import surface_patch, wall_below
-from thermograsp.thermal.surfaces import solid
+from thermograsp.thermal.surfaces import Solid, solid
 
 STACK, UP = sensor("seed"), np.array([0.0, 0.0, 1.0])
 
@@ -27,11 +27,16 @@ def test_of_a_bars_end_it_is_the_bar(side: float, aside: float) -> None:
     assert thick == pytest.approx(0.03)
 
 
+def hollow(outer: trimesh.Trimesh, inner: trimesh.Trimesh) -> Solid:
+    """One in the other, of ceramic."""
+    vertices = np.concatenate((outer.vertices, inner.vertices))
+    faces = np.concatenate((outer.faces, np.fliplr(inner.faces) + len(outer.vertices)))
+    return solid(vertices, faces, material("ceramic"))
+
+
 def test_of_a_hollow_body_it_is_the_wall() -> None:
     outer, inner = trimesh.creation.box((0.04, 0.04, 0.04)), trimesh.creation.box((0.036, 0.036, 0.036))
-    inner.invert()
-    both = trimesh.util.concatenate([outer, inner])
-    body = solid(np.array(both.vertices), np.array(both.faces), material("ceramic"))
+    body = hollow(outer, inner)
     share, thick = wall_below(body, surface_patch(body, np.array([0.0, 0.0, 0.02]), UP, STACK, cache=False))
     assert (share, thick) == pytest.approx((1.0, 0.002))
 
@@ -40,8 +45,6 @@ def test_of_a_floor_below_the_wall_nothing_counts() -> None:
     """A cavity of 2 mm under a wall of 1 mm, whose floor looks the sensor's way, too."""
     outer, inner = trimesh.creation.box((0.006, 0.006, 0.03)), trimesh.creation.box((0.005, 0.005, 0.002))
     inner.apply_translation((0, 0, 0.013))
-    inner.invert()
-    both = trimesh.util.concatenate([outer, inner])
-    body = solid(np.array(both.vertices), np.array(both.faces), material("ceramic"))
+    body = hollow(outer, inner)
     share, _ = wall_below(body, surface_patch(body, np.array([0.0, 0.0, 0.015]), UP, STACK, cache=False))
     assert share == pytest.approx(4 / 9)
