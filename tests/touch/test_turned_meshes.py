@@ -96,7 +96,8 @@ def test_a_rounded_edge_leaves_the_face_level_to_pads_that_lean(degrees: float) 
 
 def test_the_ends_of_slender_bodies_are_felt() -> None:
     ends = [
-        conducts("ellipsoid", degrees, axis, None) for axis in (0, 1) for degrees in (0.0, 5.0, 10.0, 15.0)
+        conducts("ellipsoid", degrees, axis, None)
+        for axis, degrees in ((0, 0.0), (0, 15.0), (1, 5.0), (1, 15.0))
     ]
     exact = conducts("ellipsoid", geom='type="ellipsoid" size=".01 .02 .03"')
     assert ends == pytest.approx([exact] * len(ends), rel=0.3)

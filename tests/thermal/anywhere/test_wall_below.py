@@ -11,8 +11,9 @@ from thermograsp.thermal.surfaces import Solid, solid
 STACK, UP = sensor("seed"), np.array([0.0, 0.0, 1.0])
 
 
-@pytest.mark.parametrize("side", [0.003, 0.005, 0.006, 0.0073, 0.008, 0.02])
-@pytest.mark.parametrize("aside", [0.0, 0.001])
+@pytest.mark.parametrize(
+    ("side", "aside"), [(0.003, 0.0), (0.006, 0.0), (0.0073, 0.001), (0.008, 0.0), (0.02, 0.01)]
+)
 def test_of_a_bars_end_it_is_the_bar(side: float, aside: float) -> None:
     """A grid of 7 x 7 rays took bars of 6 and of 8 mm for as wide."""
     bar = trimesh.creation.box((side, 2 * side, 0.03))
