@@ -69,14 +69,14 @@ def held(heat: Any, spec: ObjectSpec, steps: int, force: float = 10.0, **at: flo
 
 @lru_cache
 def touched(spec: ObjectSpec, name: str, skin: str | None, surround: str | None, force: float) -> np.ndarray:
-    """Drops K of a ThermalTouch every 10 ms for 2 s."""
+    """Drops K of a ThermalTouch every 10 ms for 2 s, in contact from the first step on."""
     high = spec.size[0] / 2
     model = mujoco.MjModel.from_xml_string(f"""
 <mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
   <body name="thing" pos="0 0 {high}">
     <joint name="up" type="slide" axis="0 0 1" damping="50"/>{GEOMS[spec]}
   </body>
-  <body name="tip" pos="0 0 -.0101"><geom name="flat" type="box" size=".01 .01 .01" mass="1"/></body>
+  <body name="tip" pos="0 0 -.00999"><geom name="flat" type="box" size=".01 .01 .01" mass="1"/></body>
 </worldbody></mujoco>""")
     touch = ThermalTouch(
         model,
