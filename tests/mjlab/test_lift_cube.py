@@ -38,6 +38,7 @@ from thermograsp.touch.contacts import (
     LENGTH,
     NORMAL,
     PLACE,
+    PULSES,
 )
 from thermograsp.touch.heat import JoinedHeat
 from thermograsp.touch.scene import BodyShape, PadPlace, bodies, pads
@@ -183,9 +184,11 @@ def test_it_is_the_heat_of_the_cpu_environments(held: Held) -> None:
     material = np.arange(WORLDS)[:, None] % 2
     for contacts, drop in zip(held.contacts, held.drop, strict=True):
         step = fixed.reads.of_step(contacts, material, fixed.of_object)
-        touches[:, :, :1, CONDUCTANCE], touches[:, :, :1, AREA] = step.conductance, step.area
-        touches[:, :, :1, ASIDE:BESIDE] = step.area[..., None] * step.shares
-        touches[:, :, :1, LENGTH], touches[:, :, :1, CLOSED] = step.area * step.length, step.area > 0
+        area = step.area * step.closed
+        touches[:, :, :1, CONDUCTANCE], touches[:, :, :1, AREA] = step.conductance, area
+        touches[:, :, :1, ASIDE:BESIDE] = area[..., None] * step.shares
+        touches[:, :, :1, LENGTH] = area * step.length
+        touches[:, :, :1, CLOSED], touches[:, :, :1, PULSES] = step.closed, step.pulses
         heat.advance(touches, 1)
         np.testing.assert_allclose(drop, heat.drop, rtol=0, atol=1e-4)
 
