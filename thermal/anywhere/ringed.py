@@ -161,7 +161,7 @@ def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
         & (local[..., 2].max(axis=1) >= -half)
         & (local[..., 2].min(axis=1) <= 2 * half)
     )
-    share = area_within(local[facing], local[over], half) / patch.half_width**2 / 4
+    share = area_within(local[facing], local[over], half) / (2 * half) ** 2
     return min(share, 1.0), float(np.median(thick)) if thick else math.inf
 
 

@@ -170,8 +170,10 @@ def _crown(seen: HeightMap, begin: np.ndarray, spans: np.ndarray) -> tuple[float
     """m, the middle of what of the mesh comes first, as places are counted; the mesh's own where it is there."""
     first = seen.height <= seen.height.min() + _TOP
     weight = np.where(first, seen.seen, 0.0)
-    nodes = np.stack(np.meshgrid(*map(np.arange, seen.height.shape), indexing="ij"), axis=-1)
-    at = seen.corner + seen.pitch * (weight[..., None] * nodes).sum(axis=(0, 1)) / weight.sum() - begin
+    node = [
+        np.average(np.arange(count), weights=weight.sum(axis=1 - n)) for n, count in enumerate(weight.shape)
+    ]
+    at = seen.corner + seen.pitch * np.array(node) - begin
     first_at, second_at = np.where(abs(at - spans / 2) < seen.pitch, spans / 2, at).tolist()
     return first_at, second_at
 
