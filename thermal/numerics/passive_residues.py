@@ -13,11 +13,10 @@ from thermograsp.lanes import LANES, add_products, put_sum
 
 from .symmetric import turn_diagonal
 
-_FEW = 8  # rates, up to which a stiffer penalty ends in half the steps, and drops are as accurate
-_STEPS = 6, 12  # at most: of few rates, and of more
-_PENALTY = 2e-2, 5e-3  # of leaving the cone, beside columns of unit length
-_RIDGE = 2e-4, 1e-4  # of the first guess, without constraint
+_STEPS = 12  # at most
 _SETTLED = 4e-4  # change of any residue in a step, beside columns of unit length, up to which it is the last
+_PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
+_RIDGE = 1e-4  # of the first guess, without constraint
 _FREE_RIDGE = 1e-6  # of residues without constraint
 _RELAXED = 1.6
 
@@ -52,9 +51,7 @@ def _residues(columns, wanted, weight, mirrored):
     if mirrored:
         groups, half = 2, half // 2
     scaled, size, inverse = np.zeros((samples, wide)), np.ones(wide), np.empty((2, wide, wide))
-    many = int(columns.shape[1] > _FEW)
-    penalty = _PENALTY[many]
-    _inverses(columns, weight, (_RIDGE[many], penalty), scaled, size, inverse)
+    _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
     rates, values = groups * wide, np.empty(samples)
     seen, inside = np.zeros((half, half, rates)), np.zeros((half, half, rates))
     for group in range(groups):
@@ -73,7 +70,7 @@ def _residues(columns, wanted, weight, mirrored):
                     put_sum(seen, at + n, scaled, n, wide, values, 0, samples)
                 for n in range(0, wide, LANES):
                     put_sum(inside, at + n, inverse, n, wide, seen, at, wide)
-    _in_cone(inverse[1], seen, inside, penalty, _STEPS[many])
+    _in_cone(inverse[1], seen, inside)
     found = np.empty((groups * half, groups * half, columns.shape[1]))
     for i in range(half):
         for j in range(i + 1):
@@ -150,9 +147,9 @@ def _inverse(matrix, ridge, out):
 
 
 @njit(cache=True, inner=True, error_model="numpy")
-def _in_cone(solve, seen, inside, penalty, steps):
-    """Turns the first guess inside (N, N, G K) into the answer, in so many steps at most. Of these and of seen
-    (N, N, G K) it looks at the lower half. solve: (K, K) symmetric."""
+def _in_cone(solve, seen, inside):
+    """Turns the first guess inside (N, N, G K) into the answer; of these and of seen (N, N, G K) it looks at the lower
+    half. solve: (K, K) symmetric."""
     ports, rates, each = seen.shape[1], seen.shape[2], len(solve)
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
     turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
@@ -160,11 +157,11 @@ def _in_cone(solve, seen, inside, penalty, steps):
     row = ports * rates
     for i in range(ports):
         turn[i, i] = 1.0
-    for _ in range(steps):
+    for _ in range(_STEPS):
         for i in range(ports):
             for j in range(i + 1):
                 for k in range(rates):
-                    pulled[k] = seen[i, j, k] + penalty * (inside[i, j, k] - dual[i, j, k])
+                    pulled[k] = seen[i, j, k] + _PENALTY * (inside[i, j, k] - dual[i, j, k])
                 for first in range(0, rates, each):
                     for n in range(0, each, LANES):
                         put_sum(free, first + n, solve, n, each, pulled, first, each)

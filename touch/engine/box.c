@@ -7,14 +7,12 @@ exponentials.py. */
 
 #include "heat.h"
 
-enum { MODES = 24, FEW = 8 };
+enum { MODES = 24, STEPS = 12 };
 #define IN_AIR 0.5 /* of a sheet's faces, as touch/heat/places/bodies.py */
 #define SWITCH 0.0075 /* diffusion length squared over length squared from which eigenfunctions serve */
 #define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
-/* Up to FEW rates a stiffer penalty ends in half the steps, as thermal/numerics/passive_residues.py: few rates, more. */
-static const int STEPS[] = {6, 12};
-static const double PENALTY[] = {2e-2, 5e-3}; /* of leaving the cone, beside columns of unit length */
-static const double RIDGE[] = {2e-4, 1e-4};   /* of the first guess, without constraint */
+#define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
+#define RIDGE 1e-4    /* of the first guess, without constraint */
 #define RELAXED 1.6
 #define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
 
@@ -219,9 +217,8 @@ static void impedance(const Numbers* numbers, int object, const Network* network
 /* inside (K, W, W) positive semidefinite, whose sum with the columns (MOMENTS, K) is nearest to wanted (MOMENTS, W, W):
 thermal/numerics/passive_residues.py. Meanwhile the rates come last, (W, W, K). */
 static void residues(int rates, int wide, double* columns, const double* wanted, double* inside, double* room) {
-  int square = wide * wide, many = rates > FEW;
+  int square = wide * wide;
   size_t whole = (size_t)rates * square;
-  double penalty = PENALTY[many];
   double *seen = room, *dual = seen + whole, *turn = dual + whole, *half = turn + whole, *moved = half + whole;
   double size[rates], normal[rates * rates], ridged[rates * rates], solve[rates * rates], guess[rates * rates];
   for (int k = 0; k < rates; k++) {
@@ -233,8 +230,8 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
   mju_mulMatTMat(normal, columns, columns, MOMENTS, rates, rates);
   memcpy(ridged, normal, sizeof normal);
   for (int k = 0; k < rates; k++) {
-    normal[k * rates + k] += penalty;
-    ridged[k * rates + k] += RIDGE[many];
+    normal[k * rates + k] += PENALTY;
+    ridged[k * rates + k] += RIDGE;
   }
   heat_inverse(rates, normal, solve);
   heat_inverse(rates, ridged, guess);
@@ -244,11 +241,11 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
   mju_mulMatMat(inside, seen, guess, square, rates, rates); /* symmetric, as solve is */
   for (int i = 0; i < wide; i++)
     for (int k = 0; k < rates; k++) AT(turn, i, i)[k] = 1;
-  for (int step = 0; step < STEPS[many]; step++) {
+  for (int step = 0; step < STEPS; step++) {
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
         double *residue = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
-        for (int k = 0; k < rates; k++) pulled[k] = from[k] + penalty * (residue[k] - left[k]);
+        for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (residue[k] - left[k]);
         mju_mulMatVec(free, solve, pulled, rates, rates);
         for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * residue[k] + left[k];
         memcpy(AT(dual, j, i), left, sizeof free);
