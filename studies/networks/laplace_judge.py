@@ -39,11 +39,12 @@ from thermograsp.thermal.kernels import (
     touch_sides,
 )
 from thermograsp.thermal.network import LEVELS
+from thermograsp.touch.heat.places import resolution
 
 TIMES = np.array([0.05, 0.15, 0.5, 1.5, 5.0, 12.0, 30.0])
 """(T,) s after the touch at which drops are compared, as far as LEVELS are promised."""
-JUDGED = (*(level for level, _ in LEVELS), FIXED_LEVEL)
-"""The last one is the environments'."""
+JUDGED = (*(level for level, _ in LEVELS), FIXED_LEVEL, resolution(0.05))
+"""The last two are of environments, and of ThermalTouch, whose patterns are not of each place but of the whole face."""
 WITHIN = 0.05 / 12
 """Share of the first difference, over which touches are counted."""
 FACE = {"low": 4, "high": 5}

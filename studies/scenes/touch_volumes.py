@@ -130,13 +130,14 @@ def face(refine: float) -> np.ndarray:
     return np.sort(HALF - lines(0.0, HALF, round(6 * refine), HALF / (16 * refine)))
 
 
-def element(half_y: np.ndarray, half_z: np.ndarray, refine: float) -> Grid:
-    """A quarter of a fingertip's element, from its face to the thermostat; temperatures above COOL."""
+def element(half_y: np.ndarray, half_z: np.ndarray, refine: float, brief: bool = False) -> Grid:
+    """A quarter of a fingertip's element, from its face to the thermostat; temperatures above COOL. brief: finer at the
+    face, for contacts that close for milliseconds."""
     pieces, k, c, at = [np.zeros(1)], [], [], 0.0
+    count, first = round((6 if brief else 4) * refine), (1e-5 if brief else 3e-5) / refine
     for number, layer in enumerate(STACK.layers[::-1]):
-        count = round(4 * refine)
         edges = (
-            lines(0.0, layer.thickness, count, min(3e-5 / refine, layer.thickness / count))
+            lines(0.0, layer.thickness, count, min(first, layer.thickness / count))
             if number == 0
             else np.linspace(0.0, layer.thickness, count + 1)
         )
@@ -147,14 +148,17 @@ def element(half_y: np.ndarray, half_z: np.ndarray, refine: float) -> Grid:
     return Grid((np.concatenate(pieces), half_y, half_z), np.array(k), np.array(c), held=WARM - COOL)
 
 
-def block(name: str, size: tuple[float, float, float], refine: float, thick: int) -> Grid:
-    """A quarter of a box, touched in the middle of the faces at the first axis' ends."""
+def block(
+    name: str, size: tuple[float, float, float], refine: float, thick: int, first: float = 1e-4
+) -> Grid:
+    """A quarter of a box, touched in the middle of the faces at the first axis' ends. thick: cells to the middle, of
+    which the first is `first` m thick, both at a refinement of 1."""
     half = face(refine)
     y, z = (
         np.concatenate((half, lines(HALF, side / 2, round(5 * refine), HALF / (16 * refine))[1:]))
         for side in size[1:]
     )
-    near = lines(0.0, size[0] / 2, round(thick * refine), 1e-4 / refine)
+    near = lines(0.0, size[0] / 2, round(thick * refine), first / refine)
     x = np.concatenate((near, (size[0] - near[:-1])[::-1]))
     return _solid(name, (x, y, z))
 
@@ -433,8 +437,10 @@ def on_blocks(
     drive: Callable[[float, mujoco.MjData], None],
     tolerance: float,
     seconds: float = 3.0,
+    brief: bool = False,
 ) -> tuple[Run, np.ndarray]:
-    """objects: name -> material, place and size m of a block, first axis along x."""
+    """objects: name -> material, place and size m of a block, first axis along x. brief: contacts close for
+    milliseconds, in which heat gets no farther than some hundredths of a millimetre."""
     blocks = "".join(
         f'<body name="{name}" pos="{place}"><geom type="box" size="{" ".join(str(side / 2) for side in size)}"/></body>'
         for name, (_, place, size) in objects.items()
@@ -443,8 +449,9 @@ def on_blocks(
     contacts = [(joint.fingertip, joint.target) for joint in joints]
     names = [name for name, _, _ in fingers]
     run = heard(_world(blocks, fingers), made_of, names, contacts, drive, seconds, tolerance)
-    tip = body(element(face(refine), face(refine), refine))
-    bodies = [body(block(one, size, refine, 7)) for one, _, size in objects.values()]
+    tip = body(element(face(refine), face(refine), refine, brief))
+    cells = (12, 1.5e-5) if brief else (7, 1e-4)
+    bodies = [body(block(one, size, refine, *cells)) for one, _, size in objects.values()]
     return run, by_volumes([tip] * len(fingers), bodies, joints, run.through, refine)
 
 
@@ -479,7 +486,8 @@ def _come_and_go(
     """A finger that is driven to for `closed` s of every period s, and away."""
     drive = _push(f0=lambda now: 20.0 if now % period < closed else -12.0)
     objects = {"block": (made_of, "0.0195 0 0", BLOCK)}
-    return on_blocks(refine, objects, [("f0", "0 0 0", "0")], [Joint(0, 0, False)], drive, tolerance)
+    fingers = [("f0", "0 0 0", "0")]
+    return on_blocks(refine, objects, fingers, [Joint(0, 0, False)], drive, tolerance, brief=True)
 
 
 def chatter(refine: float, made_of: str, tolerance: float) -> tuple[Run, np.ndarray]:

@@ -226,7 +226,7 @@ def test_what_has_no_own_shape_says_why(caplog: pytest.LogCaptureFixture) -> Non
 
 def test_a_box_is_no_other_for_a_mesh_that_is_not_there(caplog: pytest.LogCaptureFixture) -> None:
     touch = touch_of(spec('type="box" size=".02 .02 .02"', 0.02).compile())
-    assert touch._shapes[0].solid is None and touch._heat.rung == "fields:8x3" and not caplog.records
+    assert touch._shapes[0].solid is None and touch._heat.rung == "fields:14x3" and not caplog.records
 
 
 MOVES = ((10.0, 0.0, 10.0, 0.0), (-2.0, 0.02, 10.0, -0.03), (10.0, 0.02, -2.0, 0.0), (8.0, 0.03, 8.0, -0.03))

@@ -73,8 +73,7 @@ class JoinedHeat:
         self._pads, self._shapes = pads, tuple(shapes)
         self._glued = GluedContacts(fingertips, glued, len(shapes), worlds) if glued else None
         self._dt, self._ambient = dt, ambient
-        padded = any(pad.surround is not None for pad in pads)
-        self._level = resolution(tolerance, padded, any(shape.solid is not None for shape in shapes))
+        self._level = resolution(tolerance, any(shape.solid is not None for shape in shapes))
         self._tip_fields = tuple(tip_field(pad, self._level) for pad in pads)
         self._tips = tuple(field.tip for field in self._tip_fields)
         # pads around elements, which are contacts of their own behind the sensors'

@@ -18,25 +18,19 @@ from ...scene import PadPlace
 Rings = tuple[float, ...]
 """m, the outer sides of the rings of a pad."""
 
-_LEVELS = ((0.04, Resolution(8, 3)), (0.015, Resolution(12, 4)), (0.0, Resolution(18, 5)))
-_PADDED_LEVELS = (
-    (0.04, Resolution(12, 3, slowest=3e-3)),
-    (0.015, Resolution(12, 4, slowest=3e-3)),
-    (0.0, Resolution(18, 5, slowest=3e-3)),
-)
-"""The same where a fingertip has a pad, which touches more of an object: there heat stays for longer."""
+_SLOWEST = 3e-3  # 1/s, so that rates serve the minute of a grasp, and pads, in which heat stays for long
+_LEVELS = ((0.04, Resolution(14, 3, slowest=_SLOWEST)), (0.0, Resolution(14, 4, slowest=_SLOWEST)))
 _PADDED_MOMENTS = 12
 
 
-def resolution(tolerance: float, padded: bool = False, solid: bool = False) -> Resolution:
-    """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K. padded:
-    whether a fingertip has a pad around its element. solid: whether an object is no box, which has one level."""
+def resolution(tolerance: float, solid: bool = False) -> Resolution:
+    """Rates and patterns that are meant to keep a tolerance, K of temperature drop for a difference of 12 K. solid:
+    whether an object is no box, which has one level."""
     if solid:
         from ....thermal.anywhere import PLACED_LEVEL  # nothing that meshes need is loaded without them
 
         return PLACED_LEVEL
-    levels = _PADDED_LEVELS if padded else _LEVELS
-    return next(level for least, level in levels if tolerance >= least)
+    return next(level for least, level in _LEVELS if tolerance >= least)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
