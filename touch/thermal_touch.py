@@ -56,6 +56,7 @@ from .scene import (
     warn_of_wide_faces,
     whole_steps,
 )
+from .watch import PadWatch
 
 _NOBODY = object()
 """In place of an MjData. None would do for update(None) too."""
@@ -205,6 +206,7 @@ class ThermalTouch:
         self._make(range(count), *materials_by_world(objects or {}, self._shapes, count, ambient))
         self._heat.reset(range(count), self._first)
         self._rest(range(count))
+        self._watch = PadWatch(self._pads, dt)
         self._reading = self._read()
 
     @property
@@ -629,6 +631,7 @@ class ThermalTouch:
         """Makes the reading that was due at that time s, the last one so far, where `hear` has returned DUE. Behind the
         last of several steps once does for all of them."""
         self._reading = self._electronics.reading(np.array([time]), self._reader.broken)
+        self._watch.see(self._reading)
 
     def _finish(self, heard: int) -> TouchReading:
         """What is left to do where `hear` found something to do."""
@@ -653,7 +656,9 @@ class ThermalTouch:
         self._near, self._hearing, self._recorded = _NOBODY, None, None
 
     def _read(self) -> TouchReading:
-        return self._electronics.reading(self._time, self._reader.broken)
+        reading = self._electronics.reading(self._time, self._reader.broken)
+        self._watch.see(reading)
+        return reading
 
 
 def _numbers(chain: SignalChain, pad: PadPlace, sample: float) -> np.ndarray:

@@ -190,3 +190,42 @@ def test_a_pad_as_wide_as_its_face_is_not_told_of() -> None:
             Fingertip("pad", position=(0, 0, 0), normal=(0, 0, -1)),
         ):
             ThermalTouch(scene(tip=WIDE), fingertips={"tip": tip}, objects={"block": "glass"})
+
+
+def side_by_side(apart: float) -> mujoco.MjModel:
+    """Two fingers that press on one plate, and so do not look at each other."""
+    tips = "".join(
+        f"""<body name="tip{n}" pos="{side * apart} 0 .0065"><joint type="slide" axis="0 0 -1" damping="20"/>
+        <geom name="tip{n}" type="box" size=".01 .01 .004" mass=".05"/></body>"""
+        for n, side in enumerate((-1, 1))
+    )
+    return mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+        <body name="plate"><geom type="box" size=".1 .03 .002"/></body>{tips}</worldbody></mujoco>""")
+
+
+def told(model: mujoco.MjModel, steps: int, **tips: str | Fingertip) -> list[str]:
+    """The warnings of so many steps under 8 N."""
+    data = mujoco.MjData(model)
+    touching = ThermalTouch(model, fingertips=tips, objects={"plate": "glass"})
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        for _ in range(steps):
+            data.qfrc_applied[:] = 8.0
+            mujoco.mj_step(model, data)
+            touching.update(data)
+    return [str(each.message) for each in found]
+
+
+def test_fingertips_whose_pads_look_elsewhere_are_told_of_once() -> None:
+    model = side_by_side(0.011)
+    found = told(model, 1000, a="tip0", b="tip1")
+    assert len(found) == 2
+    assert (
+        "fingertip 'a' is pressed by 8 N beside its pad" in found[0] and "looks along (1, 0, 0)" in found[0]
+    )
+    below = {"position": (0, 0, -0.004), "normal": (0, 0, -1), "size": (0.02, 0.02)}
+    assert told(model, 500, a=Fingertip("tip0", **below), b=Fingertip("tip1", **below)) == []
+
+
+def test_a_short_push_beside_a_pad_is_not_told_of() -> None:
+    assert told(side_by_side(0.011), 200, a="tip0", b="tip1") == []
