@@ -116,6 +116,7 @@ ROOMS = {
         "draw",
         "fixed_touch",
         "readings",
+        "watch",
         "heard",
         "given",
         "ahead",
