@@ -207,7 +207,7 @@ class ThermalTouch:
         self._heat.reset(range(count), self._first)
         self._rest(range(count))
         self._watch = PadWatch(self._pads, dt)
-        self._reading = self._read()
+        self._read(self._time)
 
     @property
     def fingertips(self) -> tuple[str, ...]:
@@ -325,7 +325,7 @@ class ThermalTouch:
         if not self._many:
             self._started = data is not None
         self._rest(rows)
-        self._reading = self._read()
+        self._read(self._time)
         return self._reading
 
     def fixed_places(self, like: Array, *, world: int = 0) -> FixedPlaces:
@@ -592,7 +592,7 @@ class ThermalTouch:
         self._electronics.sample(due)
         if due:
             self._taken[0] = 0
-            self._reading = self._read()
+            self._read(self._time)
 
     def _listen(self) -> None:
         """From now on one call hears a step of the last update's data, where MuJoCo's bindings say where they are."""
@@ -630,8 +630,7 @@ class ThermalTouch:
     def due(self, time: float) -> None:
         """Makes the reading that was due at that time s, the last one so far, where `hear` has returned DUE. Behind the
         last of several steps once does for all of them."""
-        self._reading = self._electronics.reading(np.array([time]), self._reader.broken)
-        self._watch.see(self._reading)
+        self._read(np.array([time]))
 
     def _finish(self, heard: int) -> TouchReading:
         """What is left to do where `hear` found something to do."""
@@ -644,7 +643,7 @@ class ThermalTouch:
         if heard & SPENT:
             self._electronics.noise.refill()
         if heard & DUE:
-            self._reading = self._read()
+            self._read(self._time)
         return self._reading
 
     def __getstate__(self) -> dict[str, Any]:
@@ -655,10 +654,9 @@ class ThermalTouch:
         self.__dict__.update(state)
         self._near, self._hearing, self._recorded = _NOBODY, None, None
 
-    def _read(self) -> TouchReading:
-        reading = self._electronics.reading(self._time, self._reader.broken)
-        self._watch.see(reading)
-        return reading
+    def _read(self, time: np.ndarray) -> None:
+        self._reading = self._electronics.reading(time, self._reader.broken)
+        self._watch.see(self._reading)
 
 
 def _numbers(chain: SignalChain, pad: PadPlace, sample: float) -> np.ndarray:

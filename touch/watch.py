@@ -20,7 +20,10 @@ class PadWatch:
 
     def __init__(self, pads: Sequence[PadPlace], dt: float) -> None:
         self._pads, self._most = tuple(pads), math.ceil(_PATIENCE / dt)
-        self._unfelt, self._readings = np.ones(len(pads), bool), np.zeros(len(pads), int)
+        self._unfelt, self._readings = (
+            np.ones(len(pads), bool),
+            np.zeros((1, len(pads)), int),
+        )  # in each world
 
     def see(self, reading: TouchReading) -> None:
         """To be called with every reading."""
@@ -29,8 +32,8 @@ class PadWatch:
         tips = len(self._pads)
         force, beside = (each.reshape(-1, tips) for each in (reading.force, reading.beside))
         self._unfelt &= ~(force > 0).any(axis=0)
-        self._readings = np.where((beside > 0).any(axis=0), self._readings + 1, 0)
-        for f in np.flatnonzero(self._unfelt & (self._readings >= self._most)).tolist():
+        self._readings = np.where(beside > 0, self._readings + 1, 0)
+        for f in np.flatnonzero(self._unfelt & (self._readings >= self._most).any(axis=0)).tolist():
             self._unfelt[f] = False
             self._warn(self._pads[f], float(np.nanmax(beside[:, f])))
 
