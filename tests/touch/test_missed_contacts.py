@@ -192,10 +192,14 @@ def test_a_pad_as_wide_as_its_face_is_not_told_of() -> None:
             ThermalTouch(scene(tip=WIDE), fingertips={"tip": tip}, objects={"block": "glass"})
 
 
-def side_by_side(apart: float) -> mujoco.MjModel:
-    """Two fingers that press on one plate, and so do not look at each other."""
+def side_by_side(
+    apart: float, rail: str = '<joint type="slide" axis="1 0 0" stiffness="1e4"/>'
+) -> mujoco.MjModel:
+    """Two fingers that press on one plate, and so do not look at each other. rail: a joint beside the one that
+    presses."""
     tips = "".join(
-        f"""<body name="tip{n}" pos="{side * apart} 0 .0065"><joint type="slide" axis="0 0 -1" damping="20"/>
+        f"""<body name="tip{n}" pos="{side * apart} 0 .0065">{rail}
+        <joint name="down{n}" type="slide" axis="0 0 -1" damping="20"/>
         <geom name="tip{n}" type="box" size=".01 .01 .004" mass=".05"/></body>"""
         for n, side in enumerate((-1, 1))
     )
@@ -210,7 +214,8 @@ def told(model: mujoco.MjModel, steps: int, **tips: str | Fingertip) -> list[str
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         for _ in range(steps):
-            data.qfrc_applied[:] = 8.0
+            for finger in range(2):
+                data.joint(f"down{finger}").qfrc_applied[:] = 8.0
             mujoco.mj_step(model, data)
             touching.update(data)
     return [str(each.message) for each in found]

@@ -20,6 +20,7 @@ from ...thermal.matter import skin as named_skin
 from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
+from .closing import closing
 from .faces import flat_faces, largest_face, rotation, triangles
 from .names import collides, find, geom_label, geoms_of, names
 
@@ -43,9 +44,10 @@ class Fingertip:
     a Material, as wide as a square of the pad's area, or a Surround that is no wider; None for a sensor by itself. A
     fingertip with one is flat and sits on an ideal thermostat.
 
-    The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or at the
-    objects where there is one fingertip or no such face; of a round geom it is where that direction leaves it, and as
-    curved as that is there. A site's pad lies in its y and z and looks along its x. Or it is given in the frame of the
+    The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or the way
+    in which the fingertip's own joint closes it, where they are beside it, as on a hand; or at the objects where there
+    is one fingertip or no such face. Of a round geom it is where that direction leaves it, and as curved as that is
+    there. A site's pad lies in its y and z and looks along its x. Or it is given in the frame of the
     body that carries it, and flat: position (3,) m and normal (3,) together, and size (2,) m."""
 
     name: str
@@ -157,13 +159,18 @@ def pads(
     _require_different_geoms(model, geoms, objects)
     _require_labels(fingertips, objects)
     middles = {label: _middle(data, where, geoms[label]) for label, where in found.items()}
+    bodies = {label: _carrier(model, where) for label, where in found.items()}
     placed = []
     for label, one in given.items():
-        others = [middle for other, middle in middles.items() if other != label]
-        towards = [np.mean(others, axis=0)] if others else []
-        for shape in objects:
-            towards += _within(data, shape, middles[label])
-        placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middles[label]))
+        middle = middles[label]
+        towards = [place for shape in objects for place in _within(data, shape, middle)]
+        others = [other for other in given if other != label]
+        if others:
+            ahead = np.mean([middles[other] for other in others], axis=0)
+            carriers = [bodies[other] for other in others]
+            way = closing(model, data, bodies[label], middle, carriers, ahead, towards)
+            towards = [*([] if way is None else [middle + way]), ahead, *towards]
+        placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middle))
         if placed[-1].surround is not None:
             _require_no_elements(label, objects)
     return tuple(placed)
@@ -224,6 +231,14 @@ def _require_different_geoms(
                 )
 
 
+def _carrier(model: mujoco.MjModel, where: tuple[str, int]) -> int:
+    """The body that carries what was found."""
+    kind, number = where
+    if kind == "body":
+        return number
+    return int((model.geom_bodyid if kind == "geom" else model.site_bodyid)[number])
+
+
 def _middle(data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...]) -> np.ndarray:
     if where[0] == "site":
         return data.site_xpos[where[1]].copy()
@@ -249,12 +264,7 @@ def _pad(
     towards: list[np.ndarray],
     middle: np.ndarray,
 ) -> PadPlace:
-    kind, number = where
-    body = (
-        number
-        if kind == "body"
-        else int((model.geom_bodyid if kind == "geom" else model.site_bodyid)[number])
-    )
+    (kind, number), body = where, _carrier(model, where)
     turn, curvature = data.xmat[body].reshape(3, 3), (0.0, 0.0)
     if one.position is not None:
         normal = np.asarray(one.normal, float)

@@ -1,0 +1,116 @@
+"""Pads look the way in which fingers close, also where the other fingertips are beside them."""
+
+# mujoco ships no type stubs for its compiled names
+# pyright: reportAttributeAccessIssue=false
+
+import mujoco
+import numpy as np
+import pytest
+
+from thermograsp.touch import Fingertip, ThermalTouch
+from thermograsp.touch.scene import pads
+
+PALMAR = (0.0, -1.0, 0.0)  # the way in which the fingers of `hand` close; they are along z, side by side in x
+SHAPES = {"capsule": 'size=".007" fromto="0 0 0 0 0 .024"', "box": 'size=".007 .007 .014" pos="0 0 .014"'}
+
+
+def hand(
+    shape: str = "capsule", ranges: str = "0 90", axis: str = "1 0 0", further: str = ""
+) -> mujoco.MjModel:
+    """A hand stretched along z: three fingers of two links and a thumb before the palm, at their side."""
+    fingers = "".join(
+        f"""<body name="knuckle{n}" pos="{x} 0 .05"><joint type="hinge" axis="0 1 0" range="-20 20"/>
+        <geom size=".007" fromto="0 0 0 0 0 .03"/>
+        <body name="finger{n}" pos="0 0 {0.04 + 0.01 * n}">
+          <joint type="hinge" axis="{axis}" range="{ranges}"/>{further}
+          <geom type="{shape}" {SHAPES[shape]}/></body></body>"""
+        for n, x in enumerate((-0.022, 0.0, 0.022))
+    )
+    return mujoco.MjModel.from_xml_string(f"""<mujoco><compiler autolimits="true"/>
+        <default><geom type="capsule" mass=".01"/></default><worldbody><body name="palm">
+        <joint type="hinge" axis="0 0 1" range="-90 90"/><geom type="box" size=".04 .01 .05"/>{fingers}
+        <body name="thumb" pos="-.05 0 .03"><joint type="hinge" axis="1 1 0" range="-90 0"/>
+        <geom type="{shape}" {SHAPES[shape]}/></body></body></worldbody></mujoco>""")
+
+
+def looks(model: mujoco.MjModel, *bodies: str) -> np.ndarray:
+    """(F, 3) where the pads look, in the world."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    found = pads(model, {body: Fingertip(body) for body in bodies}, ())
+    return np.array([data.xmat[pad.body].reshape(3, 3) @ pad.axes[:, 0] for pad in found])
+
+
+TWO = {"a": "tip0", "b": "tip1"}
+FINGERS = ("finger0", "finger1", "finger2")
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(
+    ("ranges", "axis"),
+    [("0 90", "1 0 0"), ("-90 0", "-1 0 0"), ("-20 90", "1 0 0")],
+    ids=["", "turned", "both"],
+)
+def test_parallel_fingers_look_where_they_bend(shape: str, ranges: str, axis: str) -> None:
+    """They looked at one another: none of them felt what the hand closed round."""
+    model = hand(shape, ranges, axis)
+    np.testing.assert_allclose(looks(model, *FINGERS, "thumb")[:3], [PALMAR] * 3, atol=1e-6)
+    np.testing.assert_allclose(looks(model, *FINGERS), [PALMAR] * 3, atol=1e-6)
+
+
+def test_a_thumb_that_bends_towards_the_fingers_looks_at_them() -> None:
+    direction = looks(hand(), *FINGERS, "thumb")[3]
+    assert direction @ (0.5**0.5, -(0.5**0.5), 0) > 0.7
+
+
+@pytest.mark.parametrize("further", ["", '<joint type="hinge" axis="0 0 1" range="-5 5"/>'])
+def test_fingers_of_whose_joints_nothing_is_known_look_at_each_other(further: str) -> None:
+    """They bend both ways alike, or on several joints at one place."""
+    model = hand("box", ranges="-90 90" if not further else "0 90", further=further)
+    assert looks(model, *FINGERS[:2])[0][0] > 0.9
+
+
+def test_a_joint_of_all_fingertips_is_no_fingers_own() -> None:
+    """The palm's hinge, which would sweep them in y."""
+    model = mujoco.MjModel.from_xml_string("""<mujoco><compiler autolimits="true"/><worldbody><body>
+        <joint type="hinge" axis="0 0 1" pos="-.1 0 0" range="0 90"/><geom size=".01" mass="1"/>
+        <body name="left" pos="-.02 0 0"><geom type="box" size=".004 .01 .02"/></body>
+        <body name="right" pos=".02 0 0"><geom type="box" size=".004 .01 .02"/></body></body></worldbody></mujoco>""")
+    np.testing.assert_allclose(looks(model, "left", "right"), [[1, 0, 0], [-1, 0, 0]], atol=1e-9)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_object_tells_which_of_two_ways_closes(side: int) -> None:
+    """Fingertips side by side on rails looked at each other, and felt nothing of the plate that they were on."""
+    tips = "".join(
+        f"""<body name="tip{n}" pos="{x} 0 {side * 0.0065}"><joint name="{n}" type="slide" axis="0 0 1" damping="20"/>
+        <geom type="box" size=".01 .01 .004" mass=".05"/></body>"""
+        for n, x in enumerate((-0.011, 0.011))
+    )
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+        <body name="plate"><geom type="box" size=".1 .03 .002"/></body>{tips}</worldbody></mujoco>""")
+    touch, data = ThermalTouch(model, fingertips=TWO, objects={"plate": "glass"}), mujoco.MjData(model)
+    for _ in range(200):
+        data.qfrc_applied[:] = -8.0 * side
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    assert (touch.reading.temperature_drop > 1.0).all() and not touch.reading.beside.any()
+
+
+def gripper(axis: str, ranges: str, gap: float) -> mujoco.MjModel:
+    fingers = "".join(
+        f"""<body name="{name}" pos="{side * gap} 0 0"><joint type="slide" axis="{axis}" range="{ranges}"/>
+        <geom type="box" size=".004 .01 .02"/></body>"""
+        for name, side in (("left", 1), ("right", -1))
+    )
+    return mujoco.MjModel.from_xml_string(
+        f'<mujoco><compiler autolimits="true"/><worldbody><body><freejoint/><geom size=".01"/>{fingers}</body>'
+        "</worldbody></mujoco>"
+    )
+
+
+@pytest.mark.parametrize("ranges", ["0 .04", "-.04 0", "-.04 .04"])
+def test_fingers_that_slide_look_at_each_other_whichever_way_opens(ranges: str) -> None:
+    np.testing.assert_allclose(
+        looks(gripper("1 0 0", ranges, 0.03), "left", "right"), [[-1, 0, 0], [1, 0, 0]], atol=1e-9
+    )
