@@ -44,7 +44,8 @@ class PadWatch:
         warnings.warn(
             f"fingertip {pad.label!r} is pressed by {newtons:.3g} N beside its pad, where it feels nothing, and was "
             f"never pressed on it. Its pad is at ({position}) m in its body's frame and looks along ({normal}); if it "
-            "should be elsewhere, give it: Fingertip(name, position=(x, y, z), normal=(x, y, z), size=(y, z))",
+            "should look elsewhere, give Fingertip(name, normal=(x, y, z)), and of a flat one position=(x, y, z) and "
+            "size=(y, z) too",
             RuntimeWarning,
             stacklevel=5,
         )

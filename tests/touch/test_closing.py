@@ -3,12 +3,15 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
 
+from thermograsp.errors import InvalidValueError
 from thermograsp.touch import Fingertip, ThermalTouch
-from thermograsp.touch.scene import pads
+from thermograsp.touch.scene import PadPlace, pads
 
 PALMAR = (0.0, -1.0, 0.0)  # the way in which the fingers of `hand` close; they are along z, side by side in x
 SHAPES = {"capsule": 'size=".007" fromto="0 0 0 0 0 .024"', "box": 'size=".007 .007 .014" pos="0 0 .014"'}
@@ -114,3 +117,59 @@ def test_fingers_that_slide_look_at_each_other_whichever_way_opens(ranges: str) 
     np.testing.assert_allclose(
         looks(gripper("1 0 0", ranges, 0.03), "left", "right"), [[-1, 0, 0], [1, 0, 0]], atol=1e-9
     )
+
+
+def placed(model: mujoco.MjModel, **words: Any) -> PadPlace:
+    return pads(model, {"tip": Fingertip("finger0", **words)}, ())[0]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_pad_looks_where_its_normal_says(shape: str) -> None:
+    """Of the box and of the capsule's side in the middle; as curved as that is."""
+    pad = placed(hand(shape), normal=(0, 3, 0.5))
+    np.testing.assert_allclose(pad.axes[:, 0], [0, 1, 0], atol=1e-9)
+    at = {"box": [0, 0.007, 0.014], "capsule": [0, 0.007, 0.012]}[shape]
+    np.testing.assert_allclose(pad.position, at, atol=1e-9)
+    assert max(pad.curvature) == pytest.approx({"box": 0, "capsule": 1 / 0.007}[shape])
+
+
+def test_a_normal_puts_a_pad_on_a_capsules_round_end() -> None:
+    """As of a finger that touches with its tip: 45 degrees off its side."""
+    pad = placed(hand(), normal=(0, -1, 1))
+    np.testing.assert_allclose(pad.axes[:, 0], np.array([0, -1, 1]) / 2**0.5, atol=1e-9)
+    np.testing.assert_allclose(pad.position, [0, -0.007 / 2**0.5, 0.024 + 0.007 / 2**0.5], atol=1e-9)
+    assert pad.curvature == pytest.approx((1 / 0.007, 1 / 0.007))
+    np.testing.assert_allclose(placed(hand(), normal=(0, -1, 1), size=(0.004, 0.005)).size, [0.004, 0.005])
+
+
+def test_a_finger_that_touches_with_its_tip_feels_there() -> None:
+    """A capsule that leans by 45 degrees, on aluminium; its side is told to touch beside its pad."""
+    model = mujoco.MjModel.from_xml_string("""<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>
+        <body name="plate"><geom type="box" size=".1 .03 .02"/></body><body name="tip" pos="0 0 .0272">
+        <joint type="slide" axis="0 0 -1" damping="20"/>
+        <geom type="capsule" size=".007" fromto="0 0 0 .02 0 .02" mass=".05"/></body></worldbody></mujoco>""")
+    drops = []
+    for normal in ((-0.1, 0, -1), (1, 0, -1)):
+        tip = Fingertip("tip", normal=normal)
+        touch, data = (
+            ThermalTouch(model, fingertips={"tip": tip}, objects={"plate": "aluminium"}),
+            mujoco.MjData(model),
+        )
+        for _ in range(200):
+            data.qfrc_applied[:] = 5.0
+            mujoco.mj_step(model, data)
+            touch.update(data)
+        drops.append(float(touch.reading.temperature_drop[0]))
+    assert drops[0] > 2.0 and drops[1] == 0.0
+
+
+def test_a_normal_that_says_nothing_is_refused() -> None:
+    with pytest.raises(InvalidValueError, match="points towards where its normal does"):
+        placed(hand("box"), normal=(1, 1, 1))
+    with pytest.raises(InvalidValueError, match="a position needs the pad's normal"):
+        Fingertip("finger0", position=(0, 0, 0))
+    text = (
+        """<mujoco><worldbody><body name="a"><geom size=".01"/><site name="s"/></body></worldbody></mujoco>"""
+    )
+    with pytest.raises(InvalidValueError, match="is a site, which looks along its x axis"):
+        pads(mujoco.MjModel.from_xml_string(text), {"tip": Fingertip("s", normal=(0, 0, 1))}, ())

@@ -1,16 +1,21 @@
 """What stands in somebody's MuJoCo model: fingertips with their pads, and the objects that they may touch."""
 
 from .bodies import PREFIX, BodyShape, Objects, SensorElement, ThermalBody, bodies, materials_by_world
-from .contact_filters import refuse_sleep, warn_of_contact_filters
+from .checks import (
+    refuse_overlap,
+    refuse_sleep,
+    warn_of_contact_filters,
+    warn_of_fixed_bodies,
+    warn_of_wide_faces,
+)
 from .elements import glued_elements
 from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
-from .fingertips import Fingertip, PadPlace, is_round, pads
-from .fixed_bodies import warn_of_fixed_bodies
+from .fingertips import Fingertip, PadPlace
 from .names import find, geom_label, geoms_of
-from .overlap import refuse_overlap
 from .own_shape import own_shapes, warn_of_boxes
+from .pads import pads
+from .round_faces import is_round
 from .steps import LONGEST, samples_in, whole_steps
-from .wide_faces import warn_of_wide_faces
 
 __all__ = [
     "LONGEST",

@@ -14,7 +14,8 @@ from thermograsp.errors import InvalidValueError
 
 from ...thermal import sensor as sensor_preset
 from .bodies import BodyShape, require_box
-from .fingertips import PadPlace, frame
+from .faces import frame
+from .fingertips import PadPlace
 
 OFF_FACE = 1e-3  # m from a face's plane, up to which an element is on it
 _ALONG = 0.999  # least cosine between an element's normal and its face's

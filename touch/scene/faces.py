@@ -86,6 +86,14 @@ def rotation(quat: np.ndarray) -> np.ndarray:
     return matrix.reshape(3, 3)
 
 
+def frame(normal: np.ndarray) -> np.ndarray:
+    """(3, 3) of a unit vector: columns the normal, y and z, along the body's axes where it can be."""
+    z = np.eye(3)[2] if abs(normal[2]) < 0.9 else np.eye(3)[0]
+    z = z - (z @ normal) * normal
+    z = z / np.linalg.norm(z)
+    return np.stack([normal, np.cross(z, normal), z], axis=1)
+
+
 def flat_faces(parts: Iterable[tuple[str, np.ndarray]], direction: np.ndarray) -> list[Face]:
     """Each part's largest flat face that looks along `direction` (unit vector). parts: geom's name, triangles (n, 3, 3)
     m. Nearly flat ones where none is flat, such as on the balls of fingers."""

@@ -12,9 +12,9 @@ import numpy as np
 
 from thermograsp.errors import InvalidValueError
 
-from .bodies import BodyShape
-from .fingertips import PadPlace
-from .names import geom_label
+from ..bodies import BodyShape
+from ..fingertips import PadPlace
+from ..names import geom_label
 
 DEEPEST = 0.004  # m of a pad's middle below an object's surface; a soft contact sinks in by less
 

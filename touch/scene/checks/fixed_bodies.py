@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 
-from .bodies import BodyShape
-from .fingertips import Fingertip, PadPlace
-from .names import collides, find, geom_label
+from ..bodies import BodyShape
+from ..fingertips import Fingertip, PadPlace
+from ..names import collides, find, geom_label
 
 _NAMED = 3  # geoms that a warning names
 

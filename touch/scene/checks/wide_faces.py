@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from .faces import triangles
-from .fingertips import PadPlace
+from ..faces import triangles
+from ..fingertips import PadPlace
 
 _MORE = 1e-3  # m beyond a pad's sides
 _OFF = 1e-3  # m from a pad's plane, and

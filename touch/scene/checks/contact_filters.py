@@ -14,9 +14,9 @@ import mujoco
 
 from thermograsp.errors import InvalidValueError
 
-from .bodies import BodyShape
-from .fingertips import PadPlace
-from .names import collides
+from ..bodies import BodyShape
+from ..fingertips import PadPlace
+from ..names import collides
 
 _NONE = "the model disables its flag {}: enable it"
 _STILL = (
