@@ -20,6 +20,11 @@ HANDS = {  # package, file, names of the fingertips' bodies, the thumb last
     "Shadow": (ROBOTICS, "envs/assets/hand/manipulate_block.xml", [f"robot0:{n}distal" for n in SHORT]),
     "Adroit": (ROBOTICS, "envs/assets/adroit_hand/adroit_relocate.xml", [f"{n}distal" for n in SHORT]),
     "Inspire": (SUITE, "models/assets/grippers/inspire_right_hand.xml", [f"r_{n}_distal" for n in LONG]),
+    "Jaco": (
+        SUITE,
+        "models/assets/grippers/jaco_three_finger_gripper.xml",
+        [f"{n}_distal" for n in ("index", "pinky", "thumb")],
+    ),
     "Fourier": (
         SUITE,
         "models/assets/grippers/fourier_right_hand.xml",

@@ -28,12 +28,12 @@ class Fingertip:
     a Material, as wide as a square of the pad's area, or a Surround that is no wider; None for a sensor by itself. A
     fingertip with one is flat and sits on an ideal thermostat.
 
-    The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips, or the way
-    in which the fingertip's own joint closes it, where they are beside it, as on a hand; or at the objects where there
-    is one fingertip or no such face. Of a round geom it is where that direction leaves it, and as curved as that is
-    there. A site's pad lies in its y and z and looks along its x. normal (3,), in the frame of the body that carries
-    it: the direction in which the face lies that is the pad, in place of these; of a capsule the side is the pad up to
-    20 degrees off it, and its round end beyond. With position (3,) m too the pad is flat and there. size: (2,) m."""
+    The pad is the largest flat face of the geom or of the body's geoms that looks at the other fingertips of its hand;
+    where these are more than 25 degrees off it, the way in which the fingertip's own joint closes it; or at the objects
+    where there is one fingertip or no such face. Of a round geom it is where that direction leaves it, and as curved as
+    that is there. A site's pad lies in its y and z and looks along its x. normal (3,), in the frame of the body that
+    carries it: where the pad looks, in place of these; up to 20 degrees off a capsule's side that is the pad, and its
+    round end beyond. With position (3,) m too the pad is flat and there. size: (2,) m."""
 
     name: str
     position: tuple[float, float, float] | None = None

@@ -19,9 +19,9 @@ from ...thermal.matter import skin as named_skin
 from ...thermal.matter import surround as named_surround
 from ...thermal.stack import HeatedStack, any_sensor, heated_core
 from .bodies import BodyShape
-from .closing import closing
 from .faces import flat_faces, frame, largest_face, rotation, triangles
 from .fingertips import Fingertip, PadPlace
+from .looking import Hands
 from .names import collides, find, geom_label, geoms_of, names
 from .round_faces import FLAT, Place, bulge
 
@@ -50,19 +50,13 @@ def pads(
     geoms = {label: geoms_of(model, *where) for label, where in found.items()}
     _require_different_geoms(model, geoms, objects)
     _require_labels(fingertips, objects)
-    middles = {label: _middle(data, where, geoms[label]) for label, where in found.items()}
-    bodies = {label: _carrier(model, where) for label, where in found.items()}
+    middles = [_middle(data, where, geoms[label]) for label, where in found.items()]
+    hands = Hands(model, data, tuple(_carrier(model, where) for where in found.values()), np.array(middles))
     placed = []
-    for label, one in given.items():
-        middle = middles[label]
-        towards = [place for shape in objects for place in _within(data, shape, middle)]
-        others = [other for other in given if other != label]
-        if others:
-            ahead = np.mean([middles[other] for other in others], axis=0)
-            carriers = [bodies[other] for other in others]
-            way = closing(model, data, bodies[label], middle, carriers, ahead, towards)
-            towards = [*([] if way is None else [middle + way]), ahead, *towards]
-        placed.append(_pad(model, data, label, one, found[label], geoms[label], towards, middle))
+    for tip, (label, one) in enumerate(given.items()):
+        touched = [place for shape in objects for place in _within(data, shape, middles[tip])]
+        ways = hands.ways(tip, touched)
+        placed.append(_pad(model, data, label, one, found[label], geoms[label], ways))
         if placed[-1].surround is not None:
             _require_no_elements(label, objects)
     return tuple(placed)
@@ -153,10 +147,9 @@ def _pad(
     one: Fingertip,
     where: tuple[str, int],
     geoms: tuple[int, ...],
-    towards: list[np.ndarray],
-    middle: np.ndarray,
+    ways: list[np.ndarray],
 ) -> PadPlace:
-    found = _given(model, one, where) or _found(model, data, one, where, geoms, towards, middle)
+    found = _given(model, one, where) or _found(model, data, one, where, geoms, ways)
     if found is None:
         towards_what = (
             "the other fingertips or the objects" if one.normal is None else "where its normal does"
@@ -223,16 +216,12 @@ def _found(
     one: Fingertip,
     where: tuple[str, int],
     geoms: tuple[int, ...],
-    towards: list[np.ndarray],
-    middle: np.ndarray,
+    ways: list[np.ndarray],
 ) -> Place | None:
-    """The pad that looks where the fingertip's normal does, or at the first of the goals that a face of it looks at."""
+    """The pad that looks where the fingertip's normal does, or along the first of the ways that a face of it does."""
     turn = data.xmat[_carrier(model, where)].reshape(3, 3)
-    if one.normal is not None:
-        ways = [np.asarray(one.normal, float)]
-    else:
-        ways = [turn.T @ (goal - middle) for goal in towards]
-    for way in ways:
+    own = [turn.T @ way for way in ways] if one.normal is None else [np.asarray(one.normal, float)]
+    for way in own:
         if np.linalg.norm(way) > 1e-6:
             way = _unit(way)
             found = _face(model, geoms, way) or bulge(model, geoms, way, one.normal is not None)

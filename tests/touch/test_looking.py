@@ -1,4 +1,4 @@
-"""Pads look the way in which fingers close, also where the other fingertips are beside them."""
+"""Where pads look: at the others of their hand, or the way in which fingers close."""
 
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
@@ -117,6 +117,59 @@ def test_fingers_that_slide_look_at_each_other_whichever_way_opens(ranges: str) 
     np.testing.assert_allclose(
         looks(gripper("1 0 0", ranges, 0.03), "left", "right"), [[-1, 0, 0], [1, 0, 0]], atol=1e-9
     )
+
+
+@pytest.mark.parametrize("apart", [0.1, 1.0])
+def test_two_grippers_look_at_their_own_fingers(apart: float) -> None:
+    """In one model: each pad looked at the mean of the others, which is the other arm."""
+    arms = "".join(
+        f"""<body name="{arm}" pos="0 {y} 0"><joint type="hinge" axis="1 0 0"/><geom size=".01" mass="1"/>"""
+        + "".join(
+            f"""<body name="{arm}{n}" pos="{x} 0 .1"><joint type="slide" axis="1 0 0"/>
+            <geom type="box" size=".004 .01 .02"/></body>"""
+            for n, x in enumerate((-0.03, 0.03))
+        )
+        + "</body>"
+        for arm, y in (("a", -apart), ("b", apart))
+    )
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{arms}</worldbody></mujoco>")
+    np.testing.assert_allclose(looks(model, "a0", "a1", "b0", "b1")[:, 0], [1, -1, 1, -1], atol=1e-9)
+
+
+@pytest.mark.parametrize("arms", [1, 2])
+@pytest.mark.parametrize("ranges", ["0 100", "-10 100"])
+def test_a_jaw_that_moves_on_another_and_that_one_look_at_each_other(arms: int, ranges: str) -> None:
+    """The hinge's positive way opens the jaw; the wrist below, which moves both, tells nothing."""
+    bodies = "".join(
+        f"""<body pos="0 {y} 0"><joint type="hinge" axis="1 0 0" range="-90 90"/><geom size=".01" mass="1"/>
+        <body name="fixed{y}" pos="0 0 .05"><joint type="hinge" axis="0 0 1" range="-150 150"/>
+        <geom type="box" size=".01 .004 .03" pos="0 -.01 .05"/><geom type="box" size=".02 .02 .01"/>
+        <body name="moving{y}" pos="0 .02 .02"><joint type="hinge" axis="-1 0 0" range="{ranges}"/>
+        <geom type="box" size=".01 .004 .03" pos="0 0 .03"/></body></body></body>"""
+        for y in range(arms)
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><compiler autolimits="true"/><worldbody>{bodies}</worldbody></mujoco>'
+    )
+    names = [f"{jaw}{y}" for y in range(arms) for jaw in ("fixed", "moving")]
+    np.testing.assert_allclose(looks(model, *names)[:, 1], [1, -1] * arms, atol=1e-6)
+
+
+@pytest.mark.parametrize("fingers", [("", "index"), ("", "index", "middle"), ("",)])
+def test_phalanges_of_a_finger_look_where_it_bends(fingers: tuple[str, ...]) -> None:
+    """Both of a finger's links feel; the nearer one looked along the finger."""
+    chains = "".join(
+        f"""<body name="near{name}" pos="{0.022 * n} 0 .05"><joint type="hinge" axis="1 0 0" range="0 90"/>
+        <geom type="box" size=".007 .007 .014" pos="0 0 .014"/>
+        <body name="far{name}" pos="0 0 .03"><joint type="hinge" axis="1 0 0" range="0 90"/>
+        <geom type="box" size=".007 .007 .014" pos="0 0 .014"/></body></body>"""
+        for n, name in enumerate(fingers)
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><compiler autolimits="true"/><worldbody><body><geom size=".01"/>{chains}</body></worldbody></mujoco>'
+    )
+    names = [f"{link}{name}" for name in fingers for link in ("near", "far")]
+    np.testing.assert_allclose(looks(model, *names), [PALMAR] * len(names), atol=1e-6)
 
 
 def placed(model: mujoco.MjModel, **words: Any) -> PadPlace:
