@@ -8,10 +8,11 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.touch import Fingertip, ThermalTouch
-from thermograsp.touch.scene import PadPlace, pads
+from thermograsp.touch.scene import PadPlace, bodies, pads
 
 PALMAR = (0.0, -1.0, 0.0)  # the way in which the fingers of `hand` close; they are along z, side by side in x
 SHAPES = {"capsule": 'size=".007" fromto="0 0 0 0 0 .024"', "box": 'size=".007 .007 .014" pos="0 0 .014"'}
@@ -34,6 +35,10 @@ def hand(
         <joint type="hinge" axis="0 0 1" range="-90 90"/><geom type="box" size=".04 .01 .05"/>{fingers}
         <body name="thumb" pos="-.05 0 .03"><joint type="hinge" axis="1 1 0" range="-90 0"/>
         <geom type="{shape}" {SHAPES[shape]}/></body></body></worldbody></mujoco>""")
+
+
+def translated(*by: float) -> np.ndarray:
+    return trimesh.transformations.translation_matrix(by)
 
 
 def looks(model: mujoco.MjModel, *bodies: str) -> np.ndarray:
@@ -66,11 +71,17 @@ def test_a_thumb_that_bends_towards_the_fingers_looks_at_them() -> None:
     assert direction @ (0.5**0.5, -(0.5**0.5), 0) > 0.7
 
 
-@pytest.mark.parametrize("further", ["", '<joint type="hinge" axis="0 0 1" range="-5 5"/>'])
+@pytest.mark.parametrize("further", ["", '<joint type="hinge" axis="0 1 0" range="-40 40"/>'])
 def test_fingers_of_whose_joints_nothing_is_known_look_at_each_other(further: str) -> None:
-    """They bend both ways alike, or on several joints at one place."""
-    model = hand("box", ranges="-90 90" if not further else "0 90", further=further)
+    """They bend both ways alike, or as far as they spread."""
+    model = hand("box", ranges="0 80" if further else "-90 90", further=further)
     assert looks(model, *FINGERS[:2])[0][0] > 0.9
+
+
+@pytest.mark.parametrize("further", ["0 0 1", "0 1 0"])
+def test_joints_that_roll_or_spread_a_finger_tell_nothing(further: str) -> None:
+    model = hand("box", further=f'<joint type="hinge" axis="{further}" range="-20 20"/>')
+    np.testing.assert_allclose(looks(model, *FINGERS), [PALMAR] * 3, atol=1e-6)
 
 
 def test_a_joint_of_all_fingertips_is_no_fingers_own() -> None:
@@ -134,6 +145,90 @@ def test_two_grippers_look_at_their_own_fingers(apart: float) -> None:
     )
     model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{arms}</worldbody></mujoco>")
     np.testing.assert_allclose(looks(model, "a0", "a1", "b0", "b1")[:, 0], [1, -1, 1, -1], atol=1e-9)
+
+
+def test_a_palm_that_feels_turns_no_finger_from_the_other() -> None:
+    model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody><body>
+        <geom name="palm" type="box" size=".03 .05 .005" pos="0 0 .08"/>
+        <body name="left" pos="0 .03 0"><joint type="slide" axis="0 -1 0"/><geom type="box" size=".01 .004 .02"/></body>
+        <body name="right" pos="0 -.03 0"><joint type="slide" axis="0 1 0"/><geom type="box" size=".01 .004 .02"/>
+        </body></body></worldbody></mujoco>""")
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    found = pads(model, {name: Fingertip(name) for name in ("left", "right", "palm")}, ())
+    np.testing.assert_allclose(
+        [pad.axes[:, 0] for pad in found], [[0, -1, 0], [0, 1, 0], [0, 0, -1]], atol=1e-9
+    )
+
+
+@pytest.mark.parametrize("first", [True, False])
+@pytest.mark.parametrize("aside", [0.0, 0.01, 0.018])
+def test_one_fingertip_looks_at_the_nearest_place_of_the_nearest_object(aside: float, first: bool) -> None:
+    """In whatever order they are named. It looked at the middle of a block, askew, and at the first object."""
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco><worldbody>
+        <body name="block"><geom type="box" size=".02 .02 .02"/></body>
+        <body name="mug" pos=".2 0 .02"><geom type="cylinder" size=".03 .04"/></body>
+        <body name="tip" pos="{aside} 0 .0291"><joint type="slide" axis="0 0 -1"/><geom size=".008"/></body>
+        </worldbody></mujoco>""")
+    named = {"block": "glass", "mug": "wood"}
+    shapes = bodies(model, named if first else dict(reversed(named.items())), 24.0)
+    (pad,) = pads(model, {"tip": Fingertip("tip")}, shapes)
+    np.testing.assert_allclose(pad.axes[:, 0], [0, 0, -1], atol=1e-6)
+
+
+def test_a_pad_is_on_the_hull_that_touches() -> None:
+    """A finger whose mesh is hollowed out where it looks: MuJoCo has contacts with its convex hull."""
+    block = trimesh.creation.box((0.02, 0.02, 0.04))
+    groove = trimesh.creation.box((0.012, 0.012, 0.05), transform=translated(0, -0.008, 0))
+    mesh = trimesh.boolean.difference([block, groove], engine="manifold")
+    spec = mujoco.MjSpec()
+    spec.add_mesh(name="m", uservert=mesh.vertices.ravel(), userface=mesh.faces.ravel())
+    body = spec.worldbody.add_body(name="tip")
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="m")
+    (pad,) = pads(spec.compile(), {"tip": Fingertip("tip", normal=(0, -1, 0))}, ())
+    np.testing.assert_allclose(pad.position, [0, -0.01, 0], atol=1e-6)
+    np.testing.assert_allclose(sorted(pad.size), [0.02, 0.04], atol=1e-6)
+
+
+def test_a_pad_of_two_boxes_in_one_plane_is_both() -> None:
+    """As on Robotiq's 2F-85 in several models; of boxes that leave a gap it is one."""
+    box = '<geom type="box" size=".011 .004 .009" pos="0 0 {}"/>'
+    for z, size in ((0.009, 0.036), (0.02, 0.018)):
+        text = (
+            f'<mujoco><worldbody><body name="tip">{box.format(z)}{box.format(-z)}</body></worldbody></mujoco>'
+        )
+        tip = Fingertip("tip", normal=(0, 1, 0))
+        (pad,) = pads(mujoco.MjModel.from_xml_string(text), {"tip": tip}, ())
+        np.testing.assert_allclose(sorted(pad.size), sorted([0.022, size]), atol=1e-9)
+        np.testing.assert_allclose(
+            pad.position, [0, 0.004, 0 if z < 0.01 else abs(pad.position[2])], atol=1e-9
+        )
+
+
+@pytest.mark.parametrize("capsule_first", [True, False])
+def test_a_round_pad_is_on_the_geom_that_reaches_furthest(capsule_first: bool) -> None:
+    """In whatever order the MJCF has them."""
+    geoms = ['<geom type="capsule" size=".007" fromto="0 0 0 0 0 .03"/>', '<geom size=".0068"/>']
+    text = "".join(geoms if capsule_first else geoms[::-1])
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><worldbody><body name="tip">{text}</body></worldbody></mujoco>'
+    )
+    (pad,) = pads(model, {"tip": Fingertip("tip", normal=(0, -1, 0))}, ())
+    np.testing.assert_allclose(pad.position, [0, -0.007, 0.015], atol=1e-9)
+
+
+def test_a_pad_on_a_lopsided_face_is_in_the_middle_of_its_sides() -> None:
+    """Of a mesh that is wider at one end: the pad was about its area's centroid, and stood over an end."""
+    outline = [(0, 0), (0.03, 0), (0.03, 0.004), (0.01, 0.008), (0, 0.008)]
+    points = np.array([[x, y, z] for z in (0.0, 0.005) for x, y in outline])
+    spec = mujoco.MjSpec()
+    spec.add_mesh(name="m", uservert=points.ravel())
+    spec.worldbody.add_body(name="tip").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="m")
+    model = spec.compile()
+    (pad,) = pads(model, {"tip": Fingertip("tip", normal=(0, 0, 1))}, ())
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    np.testing.assert_allclose(pad.position, [0.015, 0.004, 0.005], atol=1e-6)
 
 
 @pytest.mark.parametrize("arms", [1, 2])

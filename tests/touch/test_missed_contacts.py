@@ -234,3 +234,51 @@ def test_fingertips_whose_pads_look_elsewhere_are_told_of_once() -> None:
 
 def test_a_short_push_beside_a_pad_is_not_told_of() -> None:
     assert told(side_by_side(0.011), 200, a="tip0", b="tip1") == []
+
+
+def on_pad(text: str, objects: dict, tip: Fingertip) -> list[str]:
+    """The warnings of two seconds under 8 N."""
+    model = mujoco.MjModel.from_xml_string(text)
+    touching, data = ThermalTouch(model, fingertips={"tip": tip}, objects=objects), mujoco.MjData(model)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        for _ in range(1000):
+            data.qfrc_applied[0] = 8.0
+            mujoco.mj_step(model, data)
+            touching.update(data)
+    return [str(each.message) for each in found]
+
+
+LONG = """<mujoco><option gravity="0 0 0"/><worldbody><body name="block"><geom type="box" size=".01 .02 .02"/></body>
+    <body name="tip" pos="{x} 0 .0241"><joint type="slide" axis="0 0 -1" damping="20"/>
+    <geom name="pad" type="box" size=".03 .01 .004" mass=".1"/></body></worldbody></mujoco>"""
+
+
+def test_a_fingertip_whose_sensor_is_beside_what_its_pad_is_on_is_told_of_once() -> None:
+    """The end of a pad 60 mm long was pressed by 8 N, and its sensor in the middle felt 0 K, without a word."""
+    found = on_pad(LONG.format(x=0.025), {"block": "aluminium"}, Fingertip("pad"))
+    assert len(found) == 1
+    assert "pressed by 8 N on its pad, and its sensor has felt no heat" in found[0]
+    assert "9 mm wide in the pad's middle at (0, 0, -0.004) m" in found[0]
+    assert on_pad(LONG.format(x=0.0), {"block": "aluminium"}, Fingertip("pad")) == []
+    assert on_pad(LONG.format(x=0.025), {"block": "aluminium"}, Fingertip("pad", sensor=None)) == []
+
+
+def test_fingertips_that_close_on_each_other_alone_are_not_told_of() -> None:
+    """They are as warm as one another, and feel no heat."""
+    model = mujoco.MjModel.from_xml_string("""<mujoco><option gravity="0 0 0"/><worldbody>
+        <body name="far" pos="1 0 0"><geom size=".01"/></body>
+        <body name="a" pos="0 0 .0041"><joint type="slide" axis="0 0 -1" damping="20"/>
+        <geom type="box" size=".01 .01 .004" mass=".1"/></body>
+        <body name="b" pos="0 0 -.0041"><joint type="slide" axis="0 0 1" damping="20"/>
+        <geom type="box" size=".01 .01 .004" mass=".1"/></body>
+        </worldbody></mujoco>""")
+    touching = ThermalTouch(model, fingertips={"a": "a", "b": "b"}, objects={"far": "glass"})
+    data = mujoco.MjData(model)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(500):
+            data.qfrc_applied[:] = 8.0
+            mujoco.mj_step(model, data)
+            touching.update(data)
+    assert (touching.reading.force > 4).all() and touching.reading.touching == ("b", "a")

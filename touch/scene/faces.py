@@ -60,12 +60,30 @@ def mesh_of(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray]:
     return vertices, model.mesh_face[first : first + count].astype(np.int64)
 
 
-def triangles(model: mujoco.MjModel, geom: int) -> np.ndarray:
-    """(n, 3, 3) m: a geom's triangles in its body's frame, none for what is round everywhere."""
+def hull_of(model: mujoco.MjModel, geom: int) -> np.ndarray:
+    """(n, 3, 3) m: triangles of a mesh geom's convex hull, outwards, in its frame; of the mesh where the model has no
+    hull of it. MuJoCo has contacts with the hull."""
+    vertices, faces = mesh_of(model, geom)
+    first = int(model.mesh_graphadr[model.geom_dataid[geom]])
+    if first >= 0:
+        points, count = (int(n) for n in model.mesh_graph[first : first + 2])
+        first += 2 + 3 * points + 3 * count  # after the graph's addresses, points and edges
+        faces = model.mesh_graph[first : first + 3 * count].reshape(-1, 3)
+    found = vertices[faces]
+    if first < 0:
+        return found
+    normals = np.cross(found[:, 1] - found[:, 0], found[:, 2] - found[:, 0])
+    inwards = np.einsum("ij,ij->i", normals, found.mean(axis=1) - found.mean(axis=(0, 1))) < 0
+    return np.where(inwards[:, None, None], found[:, ::-1], found)
+
+
+def triangles(model: mujoco.MjModel, geom: int, hull: bool = False) -> np.ndarray:
+    """(n, 3, 3) m: a geom's triangles in its body's frame, none for what is round everywhere. hull: of meshes those of
+    their convex hulls."""
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == mujoco.mjtGeom.mjGEOM_MESH:
         vertices, faces = mesh_of(model, geom)
-        found = vertices[faces]
+        found = hull_of(model, geom) if hull else vertices[faces]
     elif kind == mujoco.mjtGeom.mjGEOM_BOX:
         sides = _BOX * size
         found = np.concatenate([sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]])

@@ -16,7 +16,7 @@ import numpy as np
 _AHEAD = math.cos(math.radians(25))  # between a joint's way and what is ahead; further off it is beside
 _CLOSES = math.cos(math.radians(45))  # between a jaw's way and the one that it closes on
 _TELLS = 0.35  # cosine from which on what a fingertip moves to or from tells the way that closes
-_LEVER = 1e-3  # m, the least distance of a fingertip from its hinge's axis
+_LEVER = 3e-3  # m, the least distance of a fingertip from its hinge's axis
 _LARGER = 3.0  # times as far as the other way does a finger bend inwards, from where its model begins
 
 
@@ -82,8 +82,7 @@ class Hands:
         return None if way is None or abs(towards) < _CLOSES else math.copysign(1.0, towards) * way
 
     def _own_joint(self, tip: int) -> int | None:
-        """The nearest joint that moves a fingertip and none of the others but those that it carries. None where there
-        is none, or several at one place."""
+        """The nearest joint that moves a fingertip's middle and none of the others but those that it carries."""
         model, body = self.model, self.bodies[tip]
         shared = {0}
         for other in self.bodies:
@@ -92,10 +91,20 @@ class Hands:
         if body in (each for n, each in enumerate(self.bodies) if n != tip):
             return None
         while body not in shared:
-            if model.body_jntnum[body]:
-                return int(model.body_jntadr[body]) if model.body_jntnum[body] == 1 else None
+            first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+            moving = [joint for joint in range(first, first + count) if self._way(tip, joint) is not None]
+            if moving:
+                return moving[0] if len(moving) == 1 else self._widest(moving)
             body = int(model.body_parentid[body])
         return None
+
+    def _widest(self, joints: list[int]) -> int | None:
+        """Of several at one place the hinge that turns twice as far as any other: fingers bend further than they
+        spread."""
+        spans = [np.ptp(self.model.jnt_range[joint]) * self.model.jnt_limited[joint] for joint in joints]
+        first, second = sorted(zip(spans, joints, strict=True), reverse=True)[:2]
+        hinges = all(self.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE for joint in joints)
+        return first[1] if hinges and first[0] >= 2 * second[0] > 0 else None
 
     def _way(self, tip: int, joint: int | None) -> np.ndarray | None:
         """(3,) unit vector along which a joint takes a fingertip."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 
 import mujoco
 import numpy as np
@@ -28,6 +29,9 @@ from .round_faces import FLAT, Place, bulge
 SMALLEST = 4e-6  # m2, of a face that can be a pad
 _METAL = 1.74e-3  # m, of the seed's thermostat plate
 _STEP = 0.01  # s; what is in front of a heater does not depend on it
+_FAR = 10.0  # m up to which objects are looked for
+_LEVEL, _PLANE = 0.999, 2e-4  # least cosine and m between faces of geoms in one plane
+_FILLED = 0.95  # of the rectangle round such faces, from which on it is one pad
 _DEFAULT = 0.02  # m, the side of a pad at a site that has no size of its own
 
 
@@ -54,8 +58,7 @@ def pads(
     hands = Hands(model, data, tuple(_carrier(model, where) for where in found.values()), np.array(middles))
     placed = []
     for tip, (label, one) in enumerate(given.items()):
-        touched = [place for shape in objects for place in _within(data, shape, middles[tip])]
-        ways = hands.ways(tip, touched)
+        ways = hands.ways(tip, _objects(model, data, geoms[label], middles[tip], objects))
         placed.append(_pad(model, data, label, one, found[label], geoms[label], ways))
         if placed[-1].surround is not None:
             _require_no_elements(label, objects)
@@ -131,13 +134,30 @@ def _middle(data: mujoco.MjData, where: tuple[str, int], geoms: tuple[int, ...])
     return data.geom_xpos[list(geoms)].mean(axis=0)
 
 
-def _within(data: mujoco.MjData, shape: BodyShape, near: np.ndarray) -> list[np.ndarray]:
-    """Where an object is as seen from a place: the nearest point of what is left of its box less half its least side
-    all round, which is a table's part below the place, a rod's beside it and a cube's centre; and its centre."""
-    body = data.xmat[shape.body].reshape(3, 3)
-    centre, axes = data.xpos[shape.body] + body @ shape.centre, body @ shape.axes
-    half = (shape.extent - shape.extent.min()) / 2
-    return [centre + axes @ np.clip(axes.T @ (near - centre), -half, half), centre]
+def _objects(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    geoms: tuple[int, ...],
+    middle: np.ndarray,
+    objects: Sequence[BodyShape],
+) -> list[np.ndarray]:
+    """Where the objects are as seen from the middle (3,) m of a fingertip's geoms, the nearest first: as far and along
+    as from the fingertip to the nearest point of each, and its centre."""
+    found = []
+    for shape in objects:
+        nearest = min(
+            (_gap(model, data, *pair) for pair in product(geoms, shape.geoms)), key=lambda gap: gap[0]
+        )
+        centre = data.xpos[shape.body] + data.xmat[shape.body].reshape(3, 3) @ shape.centre
+        found.append((nearest[0], [middle + nearest[1], centre]))
+    return [place for _, places in sorted(found, key=lambda each: each[0]) for place in places]
+
+
+def _gap(model: mujoco.MjModel, data: mujoco.MjData, one: int, other: int) -> tuple[float, np.ndarray]:
+    """m between two geoms, negative where they overlap, and (3,) m from one to the nearest place of the other."""
+    ends = np.zeros(6)
+    gap = mujoco.mj_geomDistance(model, data, one, other, _FAR, ends)
+    return gap, math.copysign(1.0, gap) * (ends[3:] - ends[:3])
 
 
 def _pad(
@@ -274,17 +294,36 @@ def bare_thermostat(size: np.ndarray) -> SensorStack:
 
 
 def _face(model: mujoco.MjModel, geoms: tuple[int, ...], direction: np.ndarray) -> Place | None:
-    """The face of these geoms that looks along a direction of their body's frame."""
-    parts = [(str(geom), triangles(model, geom)) for geom in geoms]
-    face = largest_face(flat_faces([part for part in parts if len(part[1])], direction), direction)
+    """The face of these geoms that looks along a direction of their body's frame, with those of other geoms that make
+    one rectangle with it."""
+    parts = [(str(geom), triangles(model, geom, hull=True)) for geom in geoms]
+    faces = flat_faces([part for part in parts if len(part[1])], direction)
+    face = largest_face(faces, direction)
     if face is None or face.area < SMALLEST:
         return None
-    axes = frame(face.normal)
-    flat = (face.corners - face.centre) @ axes[:, 1:]
+    level = [
+        each
+        for each in faces
+        if each.normal @ face.normal > _LEVEL and abs((each.centre - face.centre) @ face.normal) < _PLANE
+    ]
+    place, wide = (
+        _rectangle(face.normal, face.corners),
+        _rectangle(face.normal, np.concatenate([each.corners for each in level])),
+    )
+    filled = sum(each.area for each in level) > _FILLED * wide[2].prod()
+    return wide if filled else place
+
+
+def _rectangle(normal: np.ndarray, corners: np.ndarray) -> Place:
+    """The narrowest round the corners (n, 3) m of a flat face, in whose plane they are in the mean."""
+    axes = frame(normal)
+    flat = corners @ axes[:, 1:]
     # the side lengths along the axes in which the face is narrowest
     angles = np.radians(np.arange(0, 90, 1.0))
     turns = np.array([[[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]] for a in angles])
-    spans = np.ptp(flat @ turns, axis=1)
+    turned = flat @ turns
+    spans = np.ptp(turned, axis=1)
     best = int(np.argmin(np.round(spans.prod(axis=1), 12)))
     axes = np.column_stack((axes[:, 0], axes[:, 1:] @ turns[best]))
-    return face.centre, axes, spans[best], FLAT
+    middle = (turned[best].max(axis=0) + turned[best].min(axis=0)) / 2
+    return axes @ [float((corners @ axes[:, 0]).mean()), *middle], axes, spans[best], FLAT

@@ -24,12 +24,11 @@ FLAT = (0.0, 0.0)
 def bulge(
     model: mujoco.MjModel, geoms: tuple[int, ...], direction: np.ndarray, strict: bool = False
 ) -> Place | None:
-    """The pad where a direction of the body's frame leaves the first round geom. It lies on a capsule's
-    straight part where the direction leans at most 60 degrees to its end, or 20 if strict."""
-    for geom in geoms:
-        if is_round(model, geom):
-            return _round(model, geom, direction, _STRICT if strict else _STRAIGHT)
-    return None
+    """The pad where a direction of the body's frame leaves the round geom that reaches furthest that way. It lies on a
+    capsule's straight part where the direction leans at most 60 degrees to its end, or 20 if strict."""
+    straight = _STRICT if strict else _STRAIGHT
+    found = [_round(model, geom, direction, straight) for geom in geoms if is_round(model, geom)]
+    return max(found, key=lambda place: round(float(place[0] @ direction), 9), default=None)
 
 
 def is_round(model: mujoco.MjModel, geom: int) -> bool:

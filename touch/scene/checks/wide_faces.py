@@ -24,7 +24,7 @@ def warn_of_wide_faces(model: mujoco.MjModel, pads: Sequence[PadPlace]) -> None:
     """Warns the caller's caller of pads that lie on a wider face."""
     for pad in pads:
         for geom in pad.geoms:
-            corners = _face(pad, triangles(model, geom))
+            corners = _face(pad, triangles(model, geom, hull=True))
             if len(corners) and (np.abs(corners).max(axis=0) > pad.size / 2 + _MORE).any():
                 small, wide = (
                     " x ".join(f"{1e3 * side:.3g}" for side in sides)
