@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
+import pytest
 
 from thermograsp.touch import ThermalTouch, prepare
 
@@ -29,7 +30,7 @@ CAN = """
     <geom name="left_pad" type="box" size=".004 .01 .01" mass=".1"/></body>
   <body name="right" pos=".0345 0 0"><joint type="slide" axis="-1 0 0" damping="20"/>
     <geom name="right_pad" type="box" size=".004 .01 .01" mass=".1"/></body>
-  <body name="can"><geom type="cylinder" size=".03 .05"/></body>
+  <body name="can"><geom {}/></body>
 </worldbody></mujoco>"""
 
 
@@ -52,10 +53,14 @@ def test_fixed_places_are_numpy_s(kind: Kind) -> None:
         assert drop.dtype == kind.float64.dtype
 
 
-def test_contacts_are_felt_as_in_numpy(kind: Kind) -> None:
-    """A can between two fingers, by strips and in worlds of two materials, in one function of the record."""
+@pytest.mark.parametrize(
+    "geom", ['type="cylinder" size=".03 .05"', 'type="ellipsoid" size=".03 .02 .09" euler="0 0 10"']
+)
+def test_contacts_are_felt_as_in_numpy(kind: Kind, geom: str) -> None:
+    """A can between two fingers, by strips and in worlds of two materials, in one function of the record; and an egg
+    between the radii of its sides."""
     tips = {"left": "left_pad", "right": "right_pad"}
-    model = prepare(mujoco.MjSpec.from_string(CAN), tips, {"can": "glass"})
+    model = prepare(mujoco.MjSpec.from_string(CAN.format(geom)), tips, {"can": "glass"})
     data, rows = mujoco.MjData(model), []
     for _ in range(200):
         data.qfrc_applied[:2] = 8.0

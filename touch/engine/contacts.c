@@ -8,6 +8,8 @@
 #define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in */
 #define RIM 0.0005   /* m beyond the pad's sides */
 #define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
+#define BY_RADIUS 0.7     /* the power of an ellipsoid's radius, by which contacts between its sides are even */
+#define ONE_RADIUS 1e-6   /* relative difference, up to which two radii are one */
 
 /* A pad in the world: its middle and its axes. */
 typedef struct {
@@ -61,6 +63,27 @@ static int viewed(const double* views, int count, const double normal[3], const 
   return best;
 }
 
+/* The sides of an ellipsoid with the next smaller and the next larger radius, and the share of the second, as
+touch/contacts/views.py. */
+static double next_sides(const double* radii, int count, const double normal[3], int sides[2]) {
+  double bent = 0;
+  for (int k = 0; k < 3; k++) bent += normal[k] * normal[k] / radii[k];
+  double radius = (1 + ONE_RADIUS) / bent;
+  int below = -1, above = -1;
+  for (int k = 0; k < count; k++)
+    if (radii[k] > radius) {
+      if (above < 0 || radii[k] < radii[above]) above = k;
+    } else if (radii[k] > 0 && (below < 0 || radii[k] > radii[below])) {
+      below = k;
+    }
+  sides[0] = below < 0 ? above : below;
+  sides[1] = above < 0 ? below : above;
+  if (below < 0 || above < 0) return 0;
+  double least = radii[below];
+  double share = (pow(1 / bent / least, BY_RADIUS) - 1) / (pow(radii[above] / least, BY_RADIUS) - 1);
+  return lesser(greater(share, 0), 1);
+}
+
 /* Adds what presses one pad on one partner to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. before: steps of the sample before it. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
@@ -87,7 +110,14 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   double seen[2] = {0};
   if (views && !bulging)
     side = viewed(numbers->views + g * numbers->sides * VIEW, views, looking, place, law->half_face, seen);
-  int table = other ? -1 : (int)numbers->curved[(f * numbers->partners + g) * numbers->sides + side];
+  const double *radii = numbers->radii + g * numbers->sides, *tables = numbers->curved + (f * numbers->partners + g) * numbers->sides;
+  int next[2] = {side, side};
+  double part = 0;
+  if (!other && !views && radii[0] > 0) {
+    part = next_sides(radii, numbers->sides, looking, next);
+    side = next[0];
+  }
+  int table = other ? -1 : (int)tables[side], larger = (int)tables[next[1]];
   if (table >= 0 && !bulging) {
     double lying = force, whole = 1;
     if (views) {
@@ -103,6 +133,15 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     }
     if (whole > 0)
       conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length, shares);
+    if (part > 0 && larger >= 0) {
+      double others[4] = {0}, wide = 0, long_ = 0;
+      double more = heat_curved(numbers->bent + larger * CURVED, numbers->grid, lying, first, second, &wide, &long_, others);
+      double one = (1 - part) * area, two = part * wide;
+      for (int k = 0; k < 4; k++) shares[k] = one + two > 0 ? (one * shares[k] + two * others[k]) / (one + two) : 0;
+      conducts = (1 - part) * conducts + part * more;
+      area = one + two;
+      length = sqrt((1 - part) * length * length + part * long_ * long_);
+    }
     area *= whole;
     length *= whole;
   } else if (bulging) {
