@@ -18,6 +18,7 @@ from thermograsp.thermal.contact import curved_table, curved_touch
 from thermograsp.thermal.numerics import as_like
 from thermograsp.touch import Fingertip, ThermalTouch, install
 from thermograsp.touch.contacts import AREA, BESIDE, CONDUCTANCE, CURVED
+from thermograsp.touch.contacts.round_pads import WIDE, array_on_ellipsoid
 from thermograsp.touch.contacts.views import (
     array_between_sides,
     array_next_sides,
@@ -46,8 +47,30 @@ def frame(axis: int, degrees: float) -> tuple[str, np.ndarray]:
     return " ".join(map(str, quat)), turn.reshape(3, 3)[2]
 
 
-def scene(size: tuple[float, ...], axis: int = 0, degrees: float = 0.0, aside: float = 0.0) -> str:
-    """A pad of 20 mm over the highest place of an ellipsoid, or of a ball, so far m aside."""
+def bent(size: tuple[float, ...], normal: np.ndarray, tangents: np.ndarray) -> np.ndarray:
+    """(2, 2) 1/m along two tangents: how the normal turns as the place on the surface moves."""
+    half, step = np.array(size), 1e-6
+    place = half**2 * normal / math.sqrt(((half * normal) ** 2).sum())
+    ahead, behind = ((place + way * step * tangents) / half**2 for way in (1, -1))
+    turned = [each / np.linalg.norm(each, axis=1, keepdims=True) for each in (ahead, behind)]
+    return (turned[0] - turned[1]) @ tangents.T / (2 * step)
+
+
+def across(normal: np.ndarray) -> np.ndarray:
+    """(2, 3): two unit vectors."""
+    aside = np.cross(normal, np.eye(3)[np.argmin(abs(normal))])
+    aside /= np.linalg.norm(aside)
+    return np.stack([aside, np.cross(normal, aside)])
+
+
+FLAT = 'type="box" size=".01 .01 .004"'
+
+
+def scene(
+    size: tuple[float, ...], axis: int = 0, degrees: float = 0.0, aside: float = 0.0, tip: str = FLAT
+) -> str:
+    """A pad of 20 mm, or another fingertip 8 mm high, over the highest place of an ellipsoid, or of a ball, so far m
+    aside."""
     quat, up = frame(axis, degrees)
     half = np.array(size if len(size) == 3 else 3 * size)
     turn = np.zeros(9)
@@ -60,7 +83,7 @@ def scene(size: tuple[float, ...], axis: int = 0, degrees: float = 0.0, aside: f
         <body name="thing"><geom type="{kind}" size="{" ".join(map(str, size))}" quat="{quat}"/></body>
         <body name="tip" pos="{top[0] + aside} {top[1]} {high + 0.0041}">
           <joint name="tip" type="slide" axis="0 0 -1" damping="20"/>
-          <geom name="tip" type="box" size=".01 .01 .004" mass=".05"/></body>
+          <geom name="tip" {tip} mass=".05"/></body>
       </worldbody><actuator><motor joint="tip"/></actuator></mujoco>"""
 
 
@@ -86,22 +109,32 @@ def touches(
 
 @pytest.mark.parametrize("size", SIZES)
 def test_its_radius_is_that_of_the_surface(size: tuple[float, ...]) -> None:
-    """Where its normal is n: by the area that n sweeps over as the place on the surface moves."""
-    half, radii, step = np.array(size), np.array(ellipsoid_radii(size)), 1e-6
-    for axis, degrees in TURNS:
-        _, normal = frame(axis, degrees)
-        place = half**2 * normal / math.sqrt(((half * normal) ** 2).sum())
-        aside = np.cross(normal, np.eye(3)[np.argmin(abs(normal))])
-        aside /= np.linalg.norm(aside)
-        tangents = np.stack([aside, np.cross(normal, aside)])
-
-        def looks(at: np.ndarray, half: np.ndarray = half) -> np.ndarray:
-            steep = at / half**2
-            return steep / np.linalg.norm(steep)
-
-        swept = [(looks(place + step * way) - looks(place - step * way)) / (2 * step) for way in tangents]
-        gauss = np.linalg.det(np.array(swept) @ tangents.T)
+    radii = np.array(ellipsoid_radii(size))
+    for turn in TURNS:
+        _, normal = frame(*turn)
+        gauss = np.linalg.det(bent(size, normal, across(normal)))
         assert 1 / (normal**2 / radii[:3]).sum() == pytest.approx(1 / math.sqrt(gauss), rel=1e-5)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_under_a_round_pad_it_is_as_curved_as_its_surface(size: tuple[float, ...]) -> None:
+    """Both ways, where a ball's side touches it as well as where its pad's middle does."""
+    radii, curve = np.array([ellipsoid_radii(size)]), np.array([[[30.0, 70.0, *[WIDE] * 5]]])
+    for turn, lean in product(TURNS, ((0.0, 0.0), (0.3, -0.2), (0.0, 0.6))):
+        _, normal = frame(*turn)
+        tangents = across(normal)
+        # the turn that leads the pad's normal to where it leans
+        there = np.array([math.sqrt(1 - math.hypot(*lean) ** 2), *lean]) @ [normal, *tangents]
+        angle, about = math.asin(math.hypot(*lean)), np.cross(normal, there)
+        quat, moved = np.zeros(4), np.zeros((2, 3))
+        mujoco.mju_axisAngle2Quat(quat, about / max(np.linalg.norm(about), 1e-12), angle)
+        for of_pad, out in zip(tangents, moved, strict=True):
+            mujoco.mju_rotVecQuat(out, of_pad, quat)
+        found = array_on_ellipsoid(
+            radii, curve, np.array([[lean]]), normal[None, None], tangents.T[None, None]
+        )[0, 0]
+        made = found.T @ (curve[0, 0, :2, None] * found)
+        np.testing.assert_allclose(made, bent(size, there, moved), rtol=1e-4, atol=1e-3)
 
 
 def test_its_sides_are_few_and_near_one_another() -> None:
@@ -198,11 +231,18 @@ def test_so_are_the_rings_around_the_sensor() -> None:
 
 @NEEDS_COMPILER
 @NEEDS_SPECS
-@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+@pytest.mark.parametrize(
+    ("tip", "skin"),
+    [
+        (FLAT, None),
+        (FLAT, "filled_silicone"),
+        ('type="ellipsoid" size=".006 .008 .004"', None),
+    ],
+)
 @pytest.mark.parametrize("size", SIZES[1:3])
-def test_in_mujoco_s_step_it_is_the_same(size: tuple[float, ...], skin: str | None) -> None:
+def test_in_mujoco_s_step_it_is_the_same(size: tuple[float, ...], tip: str, skin: str | None) -> None:
     for axis, degrees in ((1, 0.0), (1, 20.0), (1, 75.0), (3, 40.0)):
-        spec = mujoco.MjSpec.from_string(scene(size, axis, degrees, 0.001))
+        spec = mujoco.MjSpec.from_string(scene(size, axis, degrees, 0.001, tip))
         words = {"fingertips": {"tip": Fingertip("tip", skin=skin)}, "objects": {"thing": "glass"}}
         model = install(spec, **words)
         data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain="ideal")

@@ -33,7 +33,7 @@ from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
 from .pad_contacts import DEPTH, LOOKING, RIM
-from .round_pads import array_round_contact, bends, curves
+from .round_pads import array_on_ellipsoid, array_round_contact, bends, curves
 from .tilt import RADIUS, TILT, array_tilted
 from .views import array_between_sides, array_next_sides, array_viewed
 
@@ -267,6 +267,11 @@ class ArrayContacts:
         seen = (geom_turn[:, None, :, :, :, None] * axes[:, :, None, :, None, 1:]).sum(-3)  # (B, F, G, 3, 2)
         picked = (of_axis[..., None, None] * self.across).sum(-3)  # (B, F, G, 2, 3)
         sides = (picked[..., None] * seen[..., None, :, :]).sum(-2)
+        if self.any_rounded:
+            ahead = _seen(geom_turn[:, None], axes[:, :, None, :, 0])
+            on_it = array_on_ellipsoid(self.radii, curve, self.bend[:, None, :2] * off, ahead, seen)
+            rounded = (self.radii[:, 0] + 0.0 * off[..., 0] > 0)[..., None, None]
+            sides = xp.where(rounded, on_it, sides)
         facing = (of_axis[..., None] * seen).sum(-2)  # what a flat face looks along
         ahead = (of_axis * _seen(geom_turn[:, None], axes[:, :, None, :, 0])).sum(-1)
         # fingertips and meshes count as level

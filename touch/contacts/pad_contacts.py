@@ -241,6 +241,11 @@ def feel(
                     sides[7] = place[2] + pushed[f, g, 2] / force
                 if geom < 0 or parts[g, 3] > 0 or curve[g, axis, 0] + curve[g, axis, 1] > 0:
                     sides[4], sides[5] = 0.0, 0.0  # fingertips and meshes count as level
+                if geom >= 0 and radii[g, 0] > 0:
+                    _on_ellipsoid(
+                        geom_xmat, frames, f, geom, radii[g], curve[g, axis], bend[f], pushed[f, g, 1] / force,
+                        pushed[f, g, 2] / force, sides,
+                    )  # fmt: skip
                 area, share, kept, longer, even = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
@@ -352,3 +357,32 @@ def _sides(geom_xmat, frames, f, geom, other, axis, sides):
         else:
             sides[2 * n], sides[2 * n + 1] = y, z
             n += 1
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _on_ellipsoid(geom_xmat, frames, f, geom, radii, curve, bend, y, z, sides):
+    """Fills sides[:4] so that with the curvatures of `curve` they are as curved as the ellipsoid where it looks against
+    a round pad y and z m from its middle. There the radii of curvature are (A - A n n'A/h^2)/h, with A of the half
+    axes' squares, n the normal and h^2 = n'A n: the second derivative of the support function h (Schneider, Convex
+    Bodies, section 2.5)."""
+    lean_y, lean_z = bend[0] * y, bend[1] * z
+    upright = math.sqrt(max(1.0 - lean_y * lean_y - lean_z * lean_z, 0.0))
+    square, on_y, on_z, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(3):
+        along, first, second = 0.0, 0.0, 0.0
+        for k in range(3):
+            points = geom_xmat[geom, 3 * k + i]
+            along += points * frames[f, 3 + k]
+            first += points * frames[f, 6 + k]
+            second += points * frames[f, 9 + k]
+        normal = upright * along + lean_y * first + lean_z * second
+        turned = (along + normal) / (1 + upright)  # the pad's sides turn with its normal, the shortest way
+        first, second = first - lean_y * turned, second - lean_z * turned
+        half = radii[0] * radii[1] * radii[2] / radii[i]  # the half axis's square
+        square += half * normal * normal
+        on_y, on_z = on_y + half * normal * first, on_z + half * normal * second
+        yy, yz, zz = yy + half * first * first, yz + half * first * second, zz + half * second * second
+    yy, yz, zz = yy - on_y * on_y / square, yz - on_y * on_z / square, zz - on_z * on_z / square
+    high = math.sqrt(square)
+    sides[0], sides[2] = math.sqrt(high * zz / (yy * zz - yz * yz) / curve[0]), 0.0
+    sides[1], sides[3] = -sides[0] * yz / zz, math.sqrt(high / zz / curve[1])

@@ -84,6 +84,35 @@ static double next_sides(const double* radii, int count, const double normal[3],
   return lesser(greater(share, 0), 1);
 }
 
+/* The sides of an ellipsoid for a round pad that it touches y and z m from its middle, as touch/contacts/pad_contacts.py.
+facing: its axes. */
+static void on_ellipsoid(const double facing[3][3], const Pose* at, const double* radii, const double* curve, const double* bend,
+                         double y, double z, double sides[SIDES]) {
+  double lean_y = bend[0] * y, lean_z = bend[1] * z, upright = sqrt(greater(1 - lean_y * lean_y - lean_z * lean_z, 0));
+  double square = 0, on_y = 0, on_z = 0, yy = 0, yz = 0, zz = 0;
+  for (int i = 0; i < 3; i++) {
+    double along = dot(facing[i], at->axes[0]), first = dot(facing[i], at->axes[1]), second = dot(facing[i], at->axes[2]);
+    double normal = upright * along + lean_y * first + lean_z * second, turned = (along + normal) / (1 + upright);
+    first -= lean_y * turned;
+    second -= lean_z * turned;
+    double half = radii[0] * radii[1] * radii[2] / radii[i];
+    square += half * normal * normal;
+    on_y += half * normal * first;
+    on_z += half * normal * second;
+    yy += half * first * first;
+    yz += half * first * second;
+    zz += half * second * second;
+  }
+  yy -= on_y * on_y / square;
+  yz -= on_y * on_z / square;
+  zz -= on_z * on_z / square;
+  double high = sqrt(square);
+  sides[0] = sqrt(high * zz / (yy * zz - yz * yz) / curve[0]);
+  sides[1] = -sides[0] * yz / zz;
+  sides[2] = 0;
+  sides[3] = sqrt(high / zz / curve[1]);
+}
+
 /* Adds what presses one pad on one partner to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. before: steps of the sample before it. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
@@ -134,13 +163,13 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     if (whole > 0)
       conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length, shares);
     if (part > 0 && larger >= 0) {
-      double others[4] = {0}, wide = 0, long_ = 0;
-      double more = heat_curved(numbers->bent + larger * CURVED, numbers->grid, lying, first, second, &wide, &long_, others);
+      double others[4] = {0}, wide = 0, longer = 0;
+      double more = heat_curved(numbers->bent + larger * CURVED, numbers->grid, lying, first, second, &wide, &longer, others);
       double one = (1 - part) * area, two = part * wide;
       for (int k = 0; k < 4; k++) shares[k] = one + two > 0 ? (one * shares[k] + two * others[k]) / (one + two) : 0;
       conducts = (1 - part) * conducts + part * more;
       area = one + two;
-      length = sqrt((1 - part) * length * length + part * long_ * long_);
+      length = sqrt((1 - part) * length * length + part * longer * longer);
     }
     area *= whole;
     length *= whole;
@@ -151,6 +180,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       for (int k = 1; k < 3; k++)
         if (i != axis) sides[n++] = dot(facing[i], at->axes[k]);
         else sides[3 + k] = flat ? dot(facing[i], at->axes[k]) / dot(facing[i], at->axes[0]) : 0;
+    if (!other && radii[0] > 0) on_ellipsoid(facing, at, radii, curve, bend, first, second, sides);
     sides[6] = other ? place[1] + first : 0;
     sides[7] = other ? place[2] + second : 0;
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer, &even);
