@@ -415,7 +415,7 @@ def _clippings(xp, x, y):
     cap_root = (root * (5 - 2 * root * root) * y + 3 * asin_root) / 8
     load = y * root * (1 - y * y / 3 - root * root / 3) + 2 / 3 * (cap_x - cap_root)
     squared = (
-        root * y * _square_mean(root, y)
+        root * y * _square_means(root, y)
         + 8
         / 15
         * (
@@ -427,8 +427,14 @@ def _clippings(xp, x, y):
     return (
         xp.where(inside, x * y, area),
         xp.where(inside, x * y * (1 - (x * x + y * y) / 3), load),
-        xp.where(inside, x * y * _square_mean(x, y), squared),
+        xp.where(inside, x * y * _square_means(x, y), squared),
     )
+
+
+def _square_means(x, y):
+    """_square_mean of arrays that are not NumPy's, too."""
+    first, second = x * x, y * y
+    return 1 - 2 / 3 * (first + second) + (first * first + second * second) / 5 + 2 / 9 * first * second
 
 
 def _kept_of(xp, at, reach, half):
